@@ -1,0 +1,46 @@
+//! Where samples come from: the plant, a recording, a file of a real instrument.
+
+use octant_plant::Truth;
+use octant_sample::{Aiding, GimbalCommand, Sample};
+
+/// What one step of a source delivers.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Epoch {
+    /// The inertial sample.
+    pub sample: Sample,
+    /// The reference, when one is due.
+    pub aiding: Option<Aiding>,
+}
+
+/// A source of epochs.
+pub trait Source {
+    /// The next epoch, or `None` when the source has ended.
+    ///
+    /// `command` is the gimbal command of the core's last output, computed from sample k. A source
+    /// that turns gimbals lets it act from the end of the interval that this call delivers
+    /// (k + 1); one that replays ignores it.
+    ///
+    /// # Errors
+    /// If the source is broken: file truncated, device gone.
+    fn next(&mut self, command: &GimbalCommand) -> Result<Option<Epoch>, SourceError>;
+
+    /// Truth at the stamp of the last epoch, where the source knows it. Costs more than a sample:
+    /// ask only when it is recorded.
+    fn truth(&self) -> Option<Truth>;
+
+    /// Samples that the source will deliver in all, where it knows.
+    fn samples_total(&self) -> Option<u64>;
+}
+
+/// Why a source could not go on.
+#[derive(Debug, thiserror::Error)]
+pub enum SourceError {
+    /// A file could not be read.
+    #[error("read {path}: {reason}")]
+    Read {
+        /// The file.
+        path: String,
+        /// What is wrong with it: found and expected, with line or offset.
+        reason: String,
+    },
+}

@@ -1,0 +1,256 @@
+//! What the core is given before the first sample. All angles in rad, all quantities SI.
+
+use crate::sequence::Sequence;
+use octant_earth::{UnitQuaternion, Vector3};
+use octant_sample::Parameters;
+use octant_sample::parameters::Group;
+
+/// Everything that the core is configured with.
+#[derive(Clone, Debug)]
+pub struct Config {
+    /// Sample period, ns.
+    pub sample_period_ns: u64,
+    /// Where the instrument stands; navigation starts here.
+    pub site: Site,
+    /// How the initial attitude is found.
+    pub alignment: Alignment,
+    /// The calibration; `None`: navigate at once with `initial_parameters`.
+    pub calibration: Option<Calibration>,
+    /// Navigation after the calibration; `None`: stop there.
+    pub navigation: Option<NavigationPlan>,
+    /// Rates of the turntable, as far as the core needs them for its timing.
+    pub turntable: TurntableRates,
+    /// Noise of the sensors, as the core believes it.
+    pub noise: Noise,
+    /// Parameters to start from, of an earlier calibration or zero.
+    pub initial_parameters: Parameters,
+    /// Screens and gates.
+    pub screening: Screening,
+}
+
+/// Geodetic position of the instrument.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Site {
+    /// Geodetic latitude, rad.
+    pub latitude_rad: f64,
+    /// Longitude, rad.
+    pub longitude_rad: f64,
+    /// Height above the ellipsoid, m.
+    pub height_m: f64,
+}
+
+/// How the initial attitude is found.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Alignment {
+    /// Attitude and velocity are handed over (with errors of the size of the filter's prior).
+    Given {
+        /// Attitude `q_nb` at the start of the first interval.
+        q_nb: UnitQuaternion<f64>,
+        /// Velocity in n, m/s.
+        velocity_mps: Vector3<f64>,
+    },
+    /// Gravity and Earth rate averaged over the first seconds of the first stop.
+    Coarse {
+        /// How long to average, s.
+        duration_s: f64,
+    },
+}
+
+/// A calibration through a position sequence.
+#[derive(Clone, Debug)]
+pub struct Calibration {
+    /// The stops, their relative dwell times and the passes.
+    pub sequence: Sequence,
+    /// Whole time of the calibration, s: moves, dwells, all passes.
+    pub duration_s: f64,
+    /// How the parameters are estimated.
+    pub estimator: Estimator,
+}
+
+/// How the parameters are estimated.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Estimator {
+    /// 39-state error-state Kalman filter, closed loop.
+    Kalman(Kalman),
+    /// Multi-position least squares on the norm of gravity and of Earth rate.
+    LeastSquares(LeastSquares),
+    /// The case on a precise external turntable whose angles are the reference.
+    ExternalTurntable(ExternalTurntable),
+}
+
+/// The form of the system error model.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum ErrorModel {
+    /// Attitude error against the true navigation frame (paper, eq. 1 to 3).
+    #[default]
+    Phi,
+    /// Attitude error against the computer frame.
+    Psi,
+}
+
+/// Tuning of the Kalman filter.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Kalman {
+    /// Form of the error model.
+    pub error_model: ErrorModel,
+    /// Which groups of parameters are states, in the order of [`Group::ALL`]. The six-position
+    /// filter of the conventional method has no [`Group::GDependent`].
+    pub estimated: [bool; 7],
+    /// Prior standard deviations.
+    pub prior: Prior,
+    /// The reference and its standard deviation.
+    pub aiding: AidingMode,
+    /// Period of aiding and of covariance propagation, ns: a multiple of the sample period.
+    pub aiding_period_ns: u64,
+    /// Mean NIS (three axes) above which the calibration is refused.
+    pub refuse_above_mean_nis: f64,
+}
+
+/// Prior standard deviations, SI.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Prior {
+    /// Attitude error north, east, down, rad.
+    pub attitude_rad: [f64; 3],
+    /// Velocity, each axis, m/s.
+    pub velocity_mps: f64,
+    /// Position, each axis, m.
+    pub position_m: f64,
+    /// Parameters by group, in the order of [`Group::ALL`], SI.
+    pub parameters: [f64; 7],
+}
+
+impl Prior {
+    /// Prior standard deviation of a parameter group, SI.
+    #[must_use]
+    pub fn of(&self, group: Group) -> f64 {
+        self.parameters[group as usize]
+    }
+}
+
+/// The reference that the filter measures against.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum AidingMode {
+    /// Velocity over ground: zero when static, of the dock's reference on a ship.
+    Velocity {
+        /// Standard deviation of each axis, m/s.
+        sigma_mps: f64,
+    },
+    /// Position of the dock; sway is treated as white noise.
+    Position {
+        /// Standard deviation of each axis, m.
+        sigma_m: f64,
+    },
+}
+
+/// Settings of the least-squares estimator.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LeastSquares {
+    /// Local gravity, m/s²; `None`: normal gravity at the site.
+    pub gravity_mps2: Option<f64>,
+    /// Where the gyro bias and the gyro matrix come from.
+    pub gyro: GyroReference,
+    /// How static intervals are found.
+    pub intervals: StaticIntervals,
+}
+
+/// What the least-squares estimator measures gyros against.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum GyroReference {
+    /// Norm of Earth rate over the static intervals: gyros that see it.
+    EarthRate,
+    /// Gravity turned between neighbouring static attitudes, bias from the first interval: gyros
+    /// that don't see Earth rate (MEMS).
+    RotatedGravity,
+}
+
+/// How static intervals are found in the samples.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum StaticIntervals {
+    /// From the procedure: the core commands the gimbals and knows when they stand.
+    Commanded,
+    /// From the data: windowed standard deviation of specific force below a multiple of what it is
+    /// in the first, known static, interval.
+    Detected {
+        /// Length of the first interval, known to be static, s.
+        initial_s: f64,
+        /// Window, s.
+        window_s: f64,
+        /// Threshold as a multiple of the standard deviation in the first interval.
+        threshold: f64,
+        /// Shortest interval to use, s.
+        shortest_s: f64,
+    },
+}
+
+/// Settings of the external-turntable estimator.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ExternalTurntable {
+    /// Attitude of the table's base, `q_nc`, known from its survey.
+    pub q_nc: UnitQuaternion<f64>,
+}
+
+/// Navigation after the calibration: free inertial, height held.
+#[derive(Clone, Debug)]
+pub struct NavigationPlan {
+    /// Duration, s; `None`: until the source ends.
+    pub duration_s: Option<f64>,
+    /// Stops that are repeated for as long as it lasts; one stop: no rotation.
+    pub rotation: Sequence,
+    /// Dwell at each stop of weight 1, s.
+    pub dwell_s: f64,
+}
+
+/// Rates of the turntable.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TurntableRates {
+    /// Largest rate of a move, rad/s.
+    pub rate_radps: f64,
+    /// Acceleration of a move, rad/s².
+    pub acceleration_radps2: f64,
+}
+
+/// Noise of the sensors.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Noise {
+    /// Gyro angle random walk, rad/√s.
+    pub angle_random_walk: f64,
+    /// Accelerometer noise density (velocity random walk), (m/s²)/√Hz.
+    pub velocity_random_walk: f64,
+}
+
+/// Screens and gates. Each can be switched off, to see the bare core.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Screening {
+    /// Innovation gate; `None`: every measurement is used.
+    pub gate: Option<Gate>,
+    /// Identical counts in a row that make a channel "stuck"; `None`: no test.
+    pub stuck_samples: Option<u32>,
+}
+
+/// Innovation gate and its recovery.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Gate {
+    /// NIS (three axes) above which a measurement is rejected.
+    pub nis: f64,
+    /// Rejections in a row that start a recovery.
+    pub rejections: u32,
+    /// What a recovery does.
+    pub recovery: Recovery,
+}
+
+/// What the core does when the gate has rejected too often.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Recovery {
+    /// Zero the covariance of φ, δv, δr with its cross terms, set the σ given, apply the update.
+    Reset {
+        /// σ of φ, rad.
+        attitude_rad: f64,
+        /// σ of δv, m/s.
+        velocity_mps: f64,
+        /// σ of δr, m.
+        position_m: f64,
+    },
+    /// Re-open φ, δv, δr as wide as the innovation says, hold the parameters while the attitude
+    /// settles, then let them go on from the covariance that they had.
+    Widening,
+}

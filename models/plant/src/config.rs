@@ -1,0 +1,214 @@
+//! What the plant is made from. All angles in rad, all quantities SI.
+
+use octant_sample::Parameters;
+
+/// The whole truth of one run.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Config {
+    /// Sample period, ns.
+    pub sample_period_ns: u64,
+    /// Seed of every random stream.
+    pub seed: u64,
+    /// Samples of the calibration phase; what follows is navigation. Random streams are keyed by
+    /// phase and count from its first sample.
+    pub calibration_samples: u64,
+    /// Where the dock is.
+    pub site: Site,
+    /// How the case moves.
+    pub motion: Motion,
+    /// The two gimbals.
+    pub turntable: Turntable,
+    /// The sensors.
+    pub imu: Imu,
+    /// The reference handed to the core during calibration.
+    pub aiding: AidingSource,
+}
+
+/// Geodetic position.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Site {
+    /// Geodetic latitude, rad.
+    pub latitude_rad: f64,
+    /// Longitude, rad.
+    pub longitude_rad: f64,
+    /// Height above the ellipsoid, m.
+    pub height_m: f64,
+}
+
+/// Mean attitude of the case, `c_nc = Rz(heading) Ry(pitch) Rx(roll)`.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct CaseAttitude {
+    /// Heading, rad.
+    pub heading_rad: f64,
+    /// Pitch, rad.
+    pub pitch_rad: f64,
+    /// Roll of the case (not of the gimbal), rad.
+    pub roll_rad: f64,
+}
+
+/// How the case moves.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Motion {
+    /// Fixed to the ground.
+    Static(CaseAttitude),
+    /// On a moored ship.
+    Dockside(Dockside),
+}
+
+/// A moored ship: sums of sinusoids about a mean attitude and position.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Dockside {
+    /// Mean attitude.
+    pub mean: CaseAttitude,
+    /// Roll of the ship.
+    pub roll: Vec<Sinusoid>,
+    /// Pitch of the ship.
+    pub pitch: Vec<Sinusoid>,
+    /// Yaw of the ship.
+    pub yaw: Vec<Sinusoid>,
+    /// Surge, along the mean heading, m.
+    pub surge: Vec<Sinusoid>,
+    /// Sway, to starboard of the mean heading, m.
+    pub sway: Vec<Sinusoid>,
+    /// Heave, positive down, m.
+    pub heave: Vec<Sinusoid>,
+    /// Constant offset from the dock's reference position, north, east, down, m.
+    pub mooring_offset_m: [f64; 3],
+}
+
+/// One component `amplitude · sin(2π t / period + phase)`, amplitude in rad or m.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sinusoid {
+    /// Amplitude, rad or m.
+    pub amplitude: f64,
+    /// Period, s.
+    pub period_s: f64,
+    /// Phase at time 0, rad.
+    pub phase_rad: f64,
+}
+
+/// The two gimbals and their imperfections.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Turntable {
+    /// Largest rate of a move, rad/s.
+    pub rate_radps: f64,
+    /// Acceleration of a move, rad/s².
+    pub acceleration_radps2: f64,
+    /// Encoder error, 1σ, rad: a constant of each gimbal and each angle (drawn per stop angle from
+    /// a periodic error curve), not white noise.
+    pub encoder_sigma_rad: f64,
+    /// Angle by which the two gimbal axes miss a right angle, rad.
+    pub non_orthogonality_rad: f64,
+    /// Play of each gear, rad: the body lags the command by half of it, on the side it came from.
+    pub backlash_rad: f64,
+}
+
+/// The sensors.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Imu {
+    /// True coefficients of the error model.
+    pub parameters: Parameters,
+    /// Gyro angle random walk, rad/√s.
+    pub angle_random_walk: f64,
+    /// Accelerometer noise density, (m/s²)/√Hz.
+    pub velocity_random_walk: f64,
+    /// What the filter doesn't model.
+    pub extensions: Extensions,
+}
+
+/// What the sensors have and the filter doesn't model. The default is none of it.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Extensions {
+    /// First-order Gauss-Markov gyro bias: σ (rad/s) and correlation time (s).
+    pub gyro_gauss_markov: Option<GaussMarkov>,
+    /// First-order Gauss-Markov accelerometer bias: σ (m/s²) and correlation time (s).
+    pub accel_gauss_markov: Option<GaussMarkov>,
+    /// Gyro rate random walk, (rad/s)/√s.
+    pub gyro_rate_random_walk: f64,
+    /// Quantization of the gyros, coarser than the format, rad per count; 0: none.
+    pub gyro_quantization_rad: f64,
+    /// Quantization of the accelerometers, m/s per count; 0: none.
+    pub accel_quantization_mps: f64,
+    /// Range of the gyros, rad/s; 0: only that of the format.
+    pub gyro_range_radps: f64,
+    /// Range of the accelerometers, m/s²; 0: only that of the format.
+    pub accel_range_mps2: f64,
+    /// Temperature and what it does.
+    pub temperature: Option<Temperature>,
+    /// Vibration of the sensor block.
+    pub vibration: Option<Vibration>,
+    /// Position of each accelerometer's proof mass from the centre of rotation, in b, m (size
+    /// effect): row i is that of axis i.
+    pub lever_arm_m: [[f64; 3]; 3],
+    /// Stamp minus true time of validity, s: the gyros and accelerometers lag the gimbal angles.
+    pub time_skew_s: f64,
+}
+
+/// First-order Gauss-Markov process.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GaussMarkov {
+    /// Stationary standard deviation.
+    pub sigma: f64,
+    /// Correlation time, s.
+    pub correlation_time_s: f64,
+}
+
+/// Linear temperature ramp that ends at a plateau, and first-order sensitivities.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Temperature {
+    /// Ramp, K/s.
+    pub ramp_kps: f64,
+    /// Temperature change at which the ramp ends, K.
+    pub plateau_k: f64,
+    /// Gyro bias sensitivity, (rad/s)/K.
+    pub gyro_bias_per_k: [f64; 3],
+    /// Accelerometer bias sensitivity, (m/s²)/K.
+    pub accel_bias_per_k: [f64; 3],
+    /// Gyro scale factor sensitivity, 1/K.
+    pub gyro_scale_per_k: [f64; 3],
+    /// Accelerometer scale factor sensitivity, 1/K.
+    pub accel_scale_per_k: [f64; 3],
+}
+
+/// Sinusoidal vibration of the sensor block: linear and angular, so that gyros and accelerometers
+/// feel the same motion.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Vibration {
+    /// Frequency, Hz.
+    pub frequency_hz: f64,
+    /// Linear displacement amplitude in b, m.
+    pub displacement_m: [f64; 3],
+    /// Angular amplitude in b, rad.
+    pub angle_rad: [f64; 3],
+    /// Phase of the angular motion against the linear one, rad.
+    pub phase_rad: f64,
+}
+
+/// The reference handed to the core during calibration.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AidingSource {
+    /// What is measured.
+    pub kind: AidingKind,
+    /// Period, ns; a multiple of the sample period.
+    pub period_ns: u64,
+}
+
+/// What the reference measures. The white noise is the reference's own, from its own stream.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum AidingKind {
+    /// Velocity of the ground or dock: zero, with noise of this σ, m/s. It doesn't know of sway.
+    ZeroVelocity {
+        /// 1σ of each axis, m/s.
+        sigma_mps: f64,
+    },
+    /// True velocity of the instrument over ground with noise of this σ, m/s.
+    Velocity {
+        /// 1σ of each axis, m/s.
+        sigma_mps: f64,
+    },
+    /// Position of the dock: constant, with noise of this σ, m. It doesn't know of sway.
+    DockPosition {
+        /// 1σ of each axis, m.
+        sigma_m: f64,
+    },
+}

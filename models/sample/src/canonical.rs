@@ -1,0 +1,111 @@
+//! The canonical bytes: what the stream hash is taken over, the same for every realisation.
+//!
+//! Little-endian, fixed layout, no padding; f64 as its 64 bits. Host time is not part of it.
+
+use crate::{Aiding, Output, Reference, Sample};
+
+/// Bytes of a sample.
+pub const SAMPLE_BYTES: usize = 8 + 8 + 6 * 4 + 2 * 4 + 2;
+/// Bytes of an aiding message.
+pub const AIDING_BYTES: usize = 8 + 1 + 3 * 8;
+/// Bytes of an output.
+pub const OUTPUT_BYTES: usize = 8 + 8 + 1 + 2 + 1 + 8 + 10 * 8 + 4 + 8 + 4;
+
+/// A cursor over a fixed buffer; every layout below fills its buffer exactly.
+struct Writer<'a> {
+    rest: &'a mut [u8],
+}
+
+impl Writer<'_> {
+    #[inline]
+    fn put(&mut self, bytes: &[u8]) {
+        let (head, tail) = core::mem::take(&mut self.rest).split_at_mut(bytes.len());
+        head.copy_from_slice(bytes);
+        self.rest = tail;
+    }
+
+    #[inline]
+    fn f64(&mut self, value: f64) {
+        self.put(&value.to_bits().to_le_bytes());
+    }
+}
+
+/// A sample: sequence u64, device time ns u64, delta_theta 3×i32, delta_velocity 3×i32,
+/// azimuth i32, roll i32, status u16.
+#[inline]
+pub fn sample(sample: &Sample, bytes: &mut [u8; SAMPLE_BYTES]) {
+    let mut w = Writer { rest: bytes };
+    w.put(&sample.sequence.to_le_bytes());
+    w.put(&sample.device_time.ns.to_le_bytes());
+    for count in sample.delta_theta.iter().chain(&sample.delta_velocity) {
+        w.put(&count.to_le_bytes());
+    }
+    w.put(&sample.gimbal.azimuth.to_le_bytes());
+    w.put(&sample.gimbal.roll.to_le_bytes());
+    w.put(&sample.status.bits().to_le_bytes());
+}
+
+/// An aiding message: device time ns u64, kind u8 (0 velocity, 1 position), three f64 (north, east,
+/// down in m/s; or latitude, longitude in rad and height in m).
+#[inline]
+pub fn aiding(aiding: &Aiding, bytes: &mut [u8; AIDING_BYTES]) {
+    let mut w = Writer { rest: bytes };
+    w.put(&aiding.device_time.ns.to_le_bytes());
+    let (kind, values) = match aiding.reference {
+        Reference::Velocity(velocity) => (0u8, velocity),
+        Reference::Position { latitude_rad, longitude_rad, height_m } => {
+            (1, [latitude_rad, longitude_rad, height_m])
+        }
+    };
+    w.put(&[kind]);
+    for value in values {
+        w.f64(value);
+    }
+}
+
+/// An output: sequence u64, device time ns u64, mode u8, stop u16, moving u8, azimuth and roll set
+/// points i32, latitude, longitude, height, velocity 3×, q_nb 4× as f64, health u32, NIS f64,
+/// parameters revision u32.
+#[inline]
+pub fn output(output: &Output, bytes: &mut [u8; OUTPUT_BYTES]) {
+    let mut w = Writer { rest: bytes };
+    w.put(&output.sequence.to_le_bytes());
+    w.put(&output.device_time.ns.to_le_bytes());
+    w.put(&[output.mode as u8]);
+    w.put(&output.stop.to_le_bytes());
+    w.put(&[u8::from(output.moving)]);
+    w.put(&output.gimbal_command.target.azimuth.to_le_bytes());
+    w.put(&output.gimbal_command.target.roll.to_le_bytes());
+    let navigation = &output.navigation;
+    w.f64(navigation.latitude_rad);
+    w.f64(navigation.longitude_rad);
+    w.f64(navigation.height_m);
+    for value in navigation.velocity_mps.iter().chain(&navigation.q_nb) {
+        w.f64(*value);
+    }
+    w.put(&output.health.bits().to_le_bytes());
+    w.f64(output.nis);
+    w.put(&output.parameters_revision.to_le_bytes());
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_layout_fills_its_buffer() {
+        // The writers panic on overflow; a byte left over would stay 0xAA in these patterns.
+        let (mut a, mut b, mut c) =
+            ([0xAA; SAMPLE_BYTES], [0xAA; AIDING_BYTES], [0xAA; OUTPUT_BYTES]);
+        sample(&Sample::default(), &mut a);
+        aiding(
+            &Aiding {
+                device_time: crate::DeviceTime::default(),
+                reference: Reference::Velocity([0.0; 3]),
+            },
+            &mut b,
+        );
+        output(&Output::default(), &mut c);
+        assert!(a.iter().chain(&b).chain(&c).all(|byte| *byte == 0));
+    }
+}

@@ -1,0 +1,22 @@
+//! What crosses between the stations: inertial samples, aiding, gimbal commands, core outputs.
+//!
+//! The plant and the calibration core share this vocabulary and nothing else. Everything here is
+//! plain data with one canonical byte form ([`canonical`]), so that a run in one process, through
+//! an FMU or over a wire can be compared bit for bit.
+#![no_std]
+
+pub mod aiding;
+pub mod canonical;
+pub mod counts;
+pub mod gimbal;
+pub mod imu;
+pub mod output;
+pub mod parameters;
+pub mod time;
+
+pub use aiding::{Aiding, Reference};
+pub use gimbal::{GimbalAngles, GimbalCommand};
+pub use imu::{Sample, Status};
+pub use output::{Health, Mode, Navigation, Output};
+pub use parameters::Parameters;
+pub use time::DeviceTime;
