@@ -1,0 +1,3 @@
+//! What a sequence can observe and what it will reach, before anyone turns a gimbal.
+
+pub mod covariance;
