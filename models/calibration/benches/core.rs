@@ -80,8 +80,8 @@ fn second() -> Vec<(Sample, Option<Aiding>)> {
     (1..=SECOND)
         .map(|k| {
             let device_time = DeviceTime::from_ns(k as u64 * PERIOD_NS);
-            let delta_theta =
-                [rate.x, rate.y, rate.z].map(|w| (w * 0.005 * 2f64.powi(36) + noise(1000.0)) as i32);
+            let delta_theta = [rate.x, rate.y, rate.z]
+                .map(|w| (w * 0.005 * 2f64.powi(36) + noise(1000.0)) as i32);
             let delta_velocity =
                 [0.0, 0.0, -g].map(|f| (f * 0.005 * 2f64.powi(30) + noise(40_000.0)) as i32);
             let aiding = (k == SECOND)

@@ -98,9 +98,13 @@ pub struct Cursor {
     /// Passes to walk; navigation walks for ever.
     endless: bool,
     stop: u32,
-    /// Exact start of the present dwell and its end, s since the start of the phase.
+    /// Exact start of the present dwell and its end, s since the start of the phase, and the same
+    /// to the nearest sample.
     arrival_s: f64,
     departure_s: f64,
+    arrival_tick: u64,
+    departure_tick: u64,
+    command: GimbalCommand,
 }
 
 impl Cursor {
@@ -120,8 +124,30 @@ impl Cursor {
         let there = (from.azimuth_rad - first.azimuth_rad).abs() < 1e-3
             && (from.roll_rad - first.roll_rad).abs() < 1e-3;
         let arrival_s = if there { 0.0 } else { move_between_s(&from, &first, &rates) };
-        let departure_s = arrival_s + first.weight * dwell_s;
-        Self { sequence, rates, dwell_s, sample_s, endless, stop: 0, arrival_s, departure_s }
+        let mut cursor = Self {
+            sequence,
+            rates,
+            dwell_s,
+            sample_s,
+            endless,
+            stop: 0,
+            arrival_s,
+            departure_s: 0.0,
+            arrival_tick: 0,
+            departure_tick: 0,
+            command: GimbalCommand::default(),
+        };
+        cursor.plan_dwell();
+        cursor
+    }
+
+    /// Fills in what follows from the present stop and the arrival at it.
+    fn plan_dwell(&mut self) {
+        let stop = self.target();
+        self.departure_s = self.arrival_s + stop.weight * self.dwell_s;
+        let tick = |time_s: f64| (time_s / self.sample_s + 0.5) as u64;
+        (self.arrival_tick, self.departure_tick) = (tick(self.arrival_s), tick(self.departure_s));
+        self.command.target = GimbalAngles::from_rad(stop.azimuth_rad, stop.roll_rad);
     }
 
     /// Carries on to the output of sample `tick` (from 1) of the phase.
@@ -130,8 +156,7 @@ impl Cursor {
     /// to start at time t is commanded one sample early.
     #[inline]
     pub fn advance(&mut self, tick: u64) {
-        let acts_at_s = (tick + 1) as f64 * self.sample_s;
-        if acts_at_s + 0.5 * self.sample_s >= self.departure_s {
+        if tick + 1 >= self.departure_tick {
             self.depart();
         }
     }
@@ -146,7 +171,7 @@ impl Cursor {
         let from = self.target();
         self.stop = next;
         self.arrival_s = self.departure_s + move_between_s(&from, &to, &self.rates);
-        self.departure_s = self.arrival_s + to.weight * self.dwell_s;
+        self.plan_dwell();
     }
 
     fn target(&self) -> Stop {
@@ -164,7 +189,14 @@ impl Cursor {
     #[must_use]
     #[inline]
     pub fn moving(&self, tick: u64) -> bool {
-        (tick as f64) * self.sample_s < self.arrival_s - 0.5 * self.sample_s
+        tick < self.arrival_tick
+    }
+
+    /// Sample at whose end the present dwell starts.
+    #[must_use]
+    #[inline]
+    pub fn arrival_tick(&self) -> u64 {
+        self.arrival_tick
     }
 
     /// Start of the present dwell, s since the start of the phase.
@@ -181,8 +213,8 @@ impl Cursor {
 
     /// Set point of the gimbals.
     #[must_use]
+    #[inline]
     pub fn command(&self) -> GimbalCommand {
-        let target = self.target();
-        GimbalCommand { target: GimbalAngles::from_rad(target.azimuth_rad, target.roll_rad) }
+        self.command
     }
 }

@@ -122,6 +122,7 @@ pub struct Core {
     sample_s: f64,
     calibration_ticks: u64,
     navigation_ticks: u64,
+    settle_ticks: u64,
 
     tick: u64,
     mode: Mode,
@@ -215,6 +216,7 @@ impl Core {
             sample_s,
             calibration_ticks: 0,
             navigation_ticks: u64::MAX,
+            settle_ticks: ticks(GIMBAL_SETTLE_S, sample_s),
             tick: 0,
             mode: Mode::Aligning,
             cursor: None,
@@ -484,10 +486,8 @@ impl Core {
 
     fn compare_gimbals(&mut self, sample: &Sample, health: &mut Health) {
         let Some(cursor) = &self.cursor else { return };
-        let tick = self.phase_tick();
-        let settled_s = cursor.arrival_s() + GIMBAL_SETTLE_S;
         if sample.status.contains(Status::GIMBAL_INVALID)
-            || (tick as f64) * self.sample_s < settled_s
+            || self.phase_tick() < cursor.arrival_tick() + self.settle_ticks
             || self.mode == Mode::Refused
         {
             return;
@@ -504,23 +504,21 @@ impl Core {
     }
 
     fn answer(&mut self, sample: &Sample, health: Health, nis: f64) -> Output {
-        let mut output = Output {
-            sequence: sample.sequence,
-            device_time: sample.device_time,
-            mode: self.mode,
-            health,
-            nis,
-            parameters_revision: self.revision,
-            navigation: self.strapdown.navigation(),
-            ..self.last_output
-        };
+        let phase_tick = self.phase_tick();
+        let output = &mut self.last_output;
+        output.sequence = sample.sequence;
+        output.device_time = sample.device_time;
+        output.mode = self.mode;
+        output.health = health;
+        output.nis = nis;
+        output.parameters_revision = self.revision;
+        output.navigation = self.strapdown.navigation();
         if let Some(cursor) = &self.cursor {
             output.stop = cursor.stop() as u16;
-            output.moving = cursor.moving(self.phase_tick());
+            output.moving = cursor.moving(phase_tick);
             output.gimbal_command = cursor.command();
         }
-        self.last_output = output;
-        output
+        self.last_output
     }
 
     /// Estimated parameters.

@@ -36,6 +36,10 @@ pub struct Strapdown {
     /// ω_ie in n at the last evaluation.
     earth_rate: Vector3<f64>,
     tan_latitude: f64,
+    /// 1/(R_M + h), 1/(R_N + h) and 1/((R_N + h) cos L), 1/m: divisions are dear at every sample.
+    per_meridian: f64,
+    per_transverse: f64,
+    per_parallel: f64,
     until_earth_update: u32,
     previous: Option<(Vector3<f64>, Vector3<f64>)>,
     /// Velocity change by specific force in n during the last interval.
@@ -63,6 +67,9 @@ impl Strapdown {
             earth: Ellipsoid::at(latitude_rad, height_m),
             earth_rate: Vector3::zeros(),
             tan_latitude: 0.0,
+            per_meridian: 0.0,
+            per_transverse: 0.0,
+            per_parallel: 0.0,
             until_earth_update: 0,
             previous: None,
             delta_velocity_n: Vector3::zeros(),
@@ -75,6 +82,9 @@ impl Strapdown {
         self.earth = Ellipsoid::at(self.latitude_rad, self.height_m);
         self.earth_rate = self.earth.earth_rate();
         self.tan_latitude = self.earth.sin_latitude / self.earth.cos_latitude;
+        self.per_meridian = 1.0 / self.earth.meridian_radius_m;
+        self.per_transverse = 1.0 / self.earth.transverse_radius_m;
+        self.per_parallel = self.per_transverse / self.earth.cos_latitude;
         self.until_earth_update = EARTH_UPDATE_SAMPLES;
     }
 
@@ -99,9 +109,9 @@ impl Strapdown {
 
         // The navigation frame turns under the body by zeta.
         let v = &self.velocity_mps;
-        let east = v.y / self.earth.transverse_radius_m;
+        let east = v.y * self.per_transverse;
         let transport_rate =
-            Vector3::new(east, -v.x / self.earth.meridian_radius_m, -east * self.tan_latitude);
+            Vector3::new(east, -v.x * self.per_meridian, -east * self.tan_latitude);
         let zeta = (self.earth_rate + transport_rate) * interval_s;
         let mut dv_n = rotate(&self.q_nb, &dv_body);
         dv_n -= zeta.cross(&dv_n) * 0.5;
@@ -117,9 +127,8 @@ impl Strapdown {
             v_new.z = 0.0;
         }
         let mean = (v + v_new) * 0.5;
-        self.latitude_rad += mean.x / self.earth.meridian_radius_m * interval_s;
-        self.longitude_rad +=
-            mean.y / (self.earth.transverse_radius_m * self.earth.cos_latitude) * interval_s;
+        self.latitude_rad += mean.x * self.per_meridian * interval_s;
+        self.longitude_rad += mean.y * self.per_parallel * interval_s;
         self.height_m -= mean.z * interval_s;
         self.velocity_mps = v_new;
 
