@@ -5,5 +5,7 @@
 //! samples and aiding, never the truth, and it neither allocates nor asks for the time.
 #![no_std]
 
+pub mod alignment;
 pub mod config;
+pub mod least_squares;
 pub mod sequence;
