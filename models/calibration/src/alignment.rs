@@ -2,8 +2,9 @@
 //!
 //! Gravity comes first (TRIAD: M. D. Shuster, S. D. Oh, *Three-axis attitude determination from
 //! vector observations*, 1981): down is against the mean specific force, east is down × Earth rate,
-//! north completes. Errors, to first order: tilt = horizontal accelerometer error / g, azimuth
-//! = east gyro error / (Ω cos L). Of Earth rate only the direction of its horizontal part is used.
+//! north completes. Of Earth rate only the direction of its horizontal part is used. Errors, to
+//! first order, for errors ∇ and ε in n: `φ_north = ∇_east/g`, `φ_east = −∇_north/g`,
+//! `φ_down = ε_east/(Ω cos L) − φ_north tan L`.
 
 use nalgebra::{Matrix3, Vector3};
 use octant_earth::UnitQuaternion;

@@ -7,5 +7,6 @@
 
 pub mod alignment;
 pub mod config;
+pub mod external_turntable;
 pub mod least_squares;
 pub mod sequence;

@@ -27,15 +27,7 @@ pub(crate) fn estimate(
         let mut right = SVector::<f64, 9>::zeros();
         let mut sum = 0.0;
         for interval in intervals {
-            let force = compensation.force(&interval.force_mps2);
-            let norm = force.norm();
-            let residual = gravity_mps2 - norm;
-            // d|f|/db = −n'A, d|f|/dM_ij = −(n'A)_i f_j.
-            let gradient = -(compensation.accel.transpose() * force) / norm;
-            let row = SVector::<f64, 9>::from_fn(|k, _| {
-                let (axis, of) = ACCEL_TERMS[k];
-                gradient[axis] * if of == 0 { 1.0 } else { force[of - 1] }
-            });
+            let (residual, row) = norm_row(&compensation, interval, gravity_mps2);
             information += row * row.transpose();
             right += row * residual;
             sum += residual * residual;
@@ -56,3 +48,20 @@ pub(crate) fn estimate(
 
 /// From a start within 10 % Gauss-Newton needs five.
 const ITERATIONS_MAX: usize = 30;
+
+/// `g − |f|` of an interval, and the gradient of `|f|` with respect to the nine parameters:
+/// `d|f|/db = −n'A` and `d|f|/dM_ij = −(n'A)_i f_j` with `n = f/|f|`, `A = (I + M_a)⁻¹`.
+pub(crate) fn norm_row(
+    compensation: &Compensation,
+    interval: &Interval,
+    gravity_mps2: f64,
+) -> (f64, SVector<f64, 9>) {
+    let force = compensation.force(&interval.force_mps2);
+    let norm = force.norm();
+    let gradient = -(compensation.accel.transpose() * force) / norm;
+    let row = SVector::from_fn(|k, _| {
+        let (axis, of) = ACCEL_TERMS[k];
+        gradient[axis] * if of == 0 { 1.0 } else { force[of - 1] }
+    });
+    (gravity_mps2 - norm, row)
+}

@@ -19,7 +19,7 @@
 //! samples: the neglected second order is M_g² times the angle of a move. Parts in 10⁴ leave
 //! 0.01″; where M_g is large, pass over the data again from the first result.
 
-mod accelerometer;
+pub(crate) mod accelerometer;
 pub(crate) mod chain;
 mod detector;
 pub(crate) mod interval;

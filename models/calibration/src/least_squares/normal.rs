@@ -43,7 +43,8 @@ pub(crate) fn solve<const N: usize>(
             at = i;
         }
     }
-    if !(inverse[(at, at)] < INFLATION_MAX) {
+    let determined = inverse[(at, at)] < INFLATION_MAX;
+    if !determined {
         return Err(at);
     }
     let covariance = SMatrix::<f64, N, N>::from_fn(|i, j| inverse[(i, j)] * scale[i] * scale[j]);
