@@ -18,14 +18,20 @@
 //! | [`covariance`] | the 39 × 39 covariance and its kernels |
 //! | [`filter`] | the closed-loop Kalman filter, its gate and its recovery |
 //! | [`state_machine`] | the procedure, and [`Core`] |
+//! | [`alignment`] | attitude from gravity and Earth rate |
+//! | [`least_squares`] | the second estimator: norms over static intervals |
+//! | [`external_turntable`] | the third: a precise turntable's angles as the reference |
 //! | [`table`] | a finished calibration that can be exported and loaded |
 #![no_std]
 
+pub mod alignment;
 pub mod compensation;
 pub mod config;
 pub mod covariance;
 pub mod error_model;
+pub mod external_turntable;
 pub mod filter;
+pub mod least_squares;
 pub mod monitor;
 pub mod positions;
 pub mod schedule;

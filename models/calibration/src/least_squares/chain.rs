@@ -1,0 +1,272 @@
+//! Static intervals in unknown (or known) attitudes, tied by the moves: one joint adjustment.
+//!
+//! Unknowns: the thirty parameters, and the attitude error θ of each interval, in b:
+//! `c_nb = c_nb⁰ exp([θ×])`, so `c_bn v = v⁰ + [v⁰×] θ`. Each interval measures
+//! ```text
+//! f̃ = (I + M_a) f + b_a          f = c_bn (0, 0, −g)
+//! ω̃ = (I + M_g) ω + b_g + G f    ω = c_bn ω_ie
+//! ```
+//! and each move, with its rotation R over a time t, `R = c_bn(0) exp(ω_ie t) c_nb(1)`.
+//! Attitudes are eliminated as soon as the next one is tied to them, so the store is one matrix of
+//! 36 × 36 whatever the number of intervals.
+
+use super::Refusal;
+use super::interval::Interval;
+use super::moves::{ACCEL_TERMS, Compensation, GYRO_TERMS, Move, matrix};
+use super::normal::solve;
+use nalgebra::{Matrix3, SMatrix, SVector, UnitQuaternion, Vector3};
+use octant_earth::rotation::{exp, log, skew};
+use octant_sample::Parameters;
+
+/// White noise of the sensors, variance per axis times duration.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Noise {
+    /// (m/s²)²·s.
+    pub(crate) force: Vector3<f64>,
+    /// rad²/s.
+    pub(crate) rate: Vector3<f64>,
+}
+
+/// A move at the present parameters.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Turn {
+    rotation: UnitQuaternion<f64>,
+    sensitivity: SMatrix<f64, 3, 12>,
+    duration_s: f64,
+    complete: bool,
+}
+
+impl Turn {
+    /// A move that was integrated with `compensation`, of the parameters `integrated_with`.
+    pub(crate) fn new(
+        of: &Move,
+        compensation: &Compensation,
+        integrated_with: &Parameters,
+        parameters: &Parameters,
+    ) -> Self {
+        let sensitivity = of.sensitivity(&compensation.gyro);
+        let (from, to) = (integrated_with.to_array(), parameters.to_array());
+        let change = SVector::<f64, 12>::from_fn(|i, _| to[i] - from[i]);
+        Self {
+            rotation: exp(&(sensitivity * change)) * of.rotation(),
+            sensitivity,
+            duration_s: of.duration_s,
+            complete: of.complete,
+        }
+    }
+}
+
+/// What is known beforehand of an attitude: a standard deviation of θ about three axes in b.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct AttitudePrior {
+    /// Orthonormal axes in b, as columns.
+    pub(crate) axes: Matrix3<f64>,
+    /// Standard deviations, rad.
+    pub(crate) sigma_rad: Vector3<f64>,
+}
+
+/// The parameters, the attitude before, the attitude now.
+const SIZE: usize = 36;
+type Row = SVector<f64, SIZE>;
+
+/// The adjustment, interval by interval.
+#[derive(Clone, Debug)]
+pub(crate) struct Chain {
+    information: SMatrix<f64, SIZE, SIZE>,
+    right: Row,
+    squares: f64,
+    /// Measurements minus eliminated unknowns.
+    freedom: usize,
+    previous: Option<UnitQuaternion<f64>>,
+    parameters: Parameters,
+    gravity: Vector3<f64>,
+    earth_rate: Vector3<f64>,
+    noise: Noise,
+    estimated: [bool; 30],
+}
+
+/// Solution of the adjustment.
+#[derive(Clone, Debug)]
+pub(crate) struct Solution {
+    pub(crate) correction: SVector<f64, 30>,
+    covariance: SMatrix<f64, 30, 30>,
+    /// Root of the mean square of the residuals in units of their noise.
+    pub(crate) residual_rms: f64,
+    estimated: [bool; 30],
+}
+
+impl Solution {
+    /// The last correction is small against the noise.
+    pub(crate) fn settled(&self) -> bool {
+        (0..30).all(|i| {
+            !self.estimated[i]
+                || self.correction[i].abs() <= 0.01 * libm::sqrt(self.covariance[(i, i)])
+        })
+    }
+
+    /// σ of the estimated parameters, NaN for the others. Residuals larger than the noise widen it.
+    pub(crate) fn sigma(&self) -> [f64; 30] {
+        let factor = self.residual_rms.max(1.0);
+        core::array::from_fn(|i| {
+            if self.estimated[i] { factor * libm::sqrt(self.covariance[(i, i)]) } else { f64::NAN }
+        })
+    }
+}
+
+impl Chain {
+    pub(crate) fn new(
+        parameters: &Parameters,
+        gravity: Vector3<f64>,
+        earth_rate: Vector3<f64>,
+        noise: Noise,
+        estimated: [bool; 30],
+    ) -> Self {
+        Self {
+            information: SMatrix::zeros(),
+            right: Row::zeros(),
+            squares: 0.0,
+            freedom: 0,
+            previous: None,
+            parameters: *parameters,
+            gravity,
+            earth_rate,
+            noise,
+            estimated,
+        }
+    }
+
+    /// Adds an interval, linearised at the attitude `q_nb`, and the move that led to it.
+    pub(crate) fn interval(
+        &mut self,
+        interval: &Interval,
+        q_nb: &UnitQuaternion<f64>,
+        turn: Option<&Turn>,
+        prior: Option<&AttitudePrior>,
+    ) {
+        let force = q_nb.inverse() * self.gravity;
+        let rate = q_nb.inverse() * self.earth_rate;
+        let g = matrix(self.parameters.g_matrix());
+        let accel = Matrix3::identity() + matrix(self.parameters.accel_matrix());
+        let gyro = Matrix3::identity() + matrix(self.parameters.gyro_matrix());
+        let force_residual =
+            interval.force_mps2 - accel * force - Vector3::from(self.parameters.accel_bias);
+        let rate_residual = interval.rate_radps
+            - gyro * rate
+            - Vector3::from(self.parameters.gyro_bias)
+            - g * force;
+        let force_turn = accel * skew(&force);
+        let rate_turn = gyro * skew(&rate) + g * skew(&force);
+        for axis in 0..3 {
+            let mut row = Row::zeros();
+            for (k, (at, of)) in ACCEL_TERMS.iter().enumerate() {
+                if *at == axis {
+                    row[21 + k] = if *of == 0 { 1.0 } else { force[of - 1] };
+                }
+            }
+            row.fixed_rows_mut::<3>(33).copy_from(&force_turn.row(axis).transpose());
+            self.add(row, force_residual[axis], self.noise.force[axis] / interval.duration_s);
+
+            let mut row = Row::zeros();
+            for (k, (at, of)) in GYRO_TERMS.iter().enumerate() {
+                if *at == axis {
+                    row[k] = if *of == 0 { 1.0 } else { rate[of - 1] };
+                }
+            }
+            row.fixed_rows_mut::<3>(12 + 3 * axis).copy_from(&force);
+            row.fixed_rows_mut::<3>(33).copy_from(&rate_turn.row(axis).transpose());
+            self.add(row, rate_residual[axis], self.noise.rate[axis] / interval.duration_s);
+        }
+        if let Some(prior) = prior {
+            for k in 0..3 {
+                let mut row = Row::zeros();
+                row.fixed_rows_mut::<3>(33).copy_from(&prior.axes.column(k));
+                self.add(row, 0.0, prior.sigma_rad[k] * prior.sigma_rad[k]);
+            }
+        }
+        if let Some(before) = self.previous {
+            if let Some(turn) = turn.filter(|turn| turn.complete) {
+                self.tie(&before, q_nb, turn);
+            }
+            self.eliminate_previous();
+        } else {
+            self.shift();
+        }
+        self.freedom -= 3;
+        self.previous = Some(*q_nb);
+    }
+
+    /// `exp(ψ) R = exp(−θ₀) Q exp(θ₁)` with `Q = c_bn(0) exp(ω_ie t) c_nb(1)`, so with
+    /// `ρ = log(R Q⁻¹)` the measurement is `ρ = −J δp − θ₀ + Q θ₁`.
+    fn tie(&mut self, before: &UnitQuaternion<f64>, after: &UnitQuaternion<f64>, turn: &Turn) {
+        let predicted = before.inverse() * exp(&(self.earth_rate * turn.duration_s)) * after;
+        let residual = log(&(turn.rotation * predicted.inverse()));
+        let q = predicted.to_rotation_matrix().into_inner();
+        // The axes turn through the move: their mean noise stands for each.
+        let variance = self.noise.rate.mean() * turn.duration_s;
+        for axis in 0..3 {
+            let mut row = Row::zeros();
+            row.fixed_rows_mut::<12>(0).copy_from(&-turn.sensitivity.row(axis).transpose());
+            row[30 + axis] = -1.0;
+            row.fixed_rows_mut::<3>(33).copy_from(&q.row(axis).transpose());
+            self.add(row, residual[axis], variance);
+        }
+    }
+
+    fn add(&mut self, mut row: Row, residual: f64, variance: f64) {
+        for i in 0..30 {
+            if !self.estimated[i] {
+                row[i] = 0.0;
+            }
+        }
+        let weight = 1.0 / variance;
+        self.information.ger(weight, &row, &row, 1.0);
+        self.right += row * (weight * residual);
+        self.squares += weight * residual * residual;
+        self.freedom += 1;
+    }
+
+    /// Takes the attitude before out of the equations (Schur complement), the one now becomes it.
+    fn eliminate_previous(&mut self) {
+        let block = self.information.fixed_view::<3, 3>(30, 30).into_owned();
+        // Gravity and Earth rate, or a prior, determine every attitude; were one not to be, its
+        // information is zero and there is nothing to carry on.
+        let inverse = block.try_inverse().unwrap_or_default();
+        let to = self.information.fixed_view::<36, 3>(0, 30).into_owned();
+        let part = self.right.fixed_rows::<3>(30).into_owned();
+        let gain = to * inverse;
+        self.information -= gain * to.transpose();
+        self.right -= gain * part;
+        self.squares -= part.dot(&(inverse * part));
+        self.shift();
+    }
+
+    fn shift(&mut self) {
+        for i in 0..SIZE {
+            let moved = self.information.fixed_view::<1, 3>(i, 33).into_owned();
+            self.information.fixed_view_mut::<1, 3>(i, 30).copy_from(&moved);
+            self.information.fixed_view_mut::<1, 3>(i, 33).fill(0.0);
+        }
+        for i in 0..SIZE {
+            let moved = self.information.fixed_view::<3, 1>(33, i).into_owned();
+            self.information.fixed_view_mut::<3, 1>(30, i).copy_from(&moved);
+            self.information.fixed_view_mut::<3, 1>(33, i).fill(0.0);
+        }
+        let moved = self.right.fixed_rows::<3>(33).into_owned();
+        self.right.fixed_rows_mut::<3>(30).copy_from(&moved);
+        self.right.fixed_rows_mut::<3>(33).fill(0.0);
+    }
+
+    /// Eliminates the last attitude and solves for the parameters.
+    pub(crate) fn solve(mut self) -> Result<Solution, Refusal> {
+        self.eliminate_previous();
+        let information = self.information.fixed_view::<30, 30>(0, 0).into_owned();
+        let right = self.right.fixed_rows::<30>(0).into_owned();
+        let (correction, covariance) = solve(&information, &right, &self.estimated)
+            .map_err(|parameter| Refusal::Undetermined { parameter })?;
+        let unknowns = self.estimated.iter().filter(|estimated| **estimated).count();
+        let squares = (self.squares - correction.dot(&right)).max(0.0);
+        let freedom = self.freedom.saturating_sub(unknowns);
+        let residual_rms = if freedom > 0 { libm::sqrt(squares / freedom as f64) } else { 0.0 };
+        Ok(Solution { correction, covariance, residual_rms, estimated: self.estimated })
+    }
+}

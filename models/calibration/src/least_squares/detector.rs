@@ -1,0 +1,114 @@
+//! Standstill from the data: windowed standard deviation of specific force against that of a first
+//! interval that is known to be static.
+
+use super::Refusal;
+use nalgebra::Vector3;
+use octant_sample::Sample;
+use octant_sample::counts::DELTA_VELOCITY_LSB_MPS;
+
+/// Longest window, samples.
+pub const WINDOW_SAMPLES_MAX: usize = 512;
+
+/// Delays the stream by half a window, and says of each sample whether the instrument stood.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Detector {
+    initial_s: f64,
+    threshold: f64,
+    window: usize,
+    ring: [(Sample, f64); WINDOW_SAMPLES_MAX],
+    /// Samples seen.
+    count: usize,
+    /// Samples given back.
+    delivered: usize,
+    time_s: f64,
+    delivered_time_s: f64,
+    initial_samples: f64,
+    initial_mean: Vector3<f64>,
+    initial_squares: f64,
+    standing: bool,
+}
+
+impl Detector {
+    pub(crate) fn new(
+        initial_s: f64,
+        window_s: f64,
+        threshold: f64,
+        sample_period_ns: u64,
+    ) -> Result<Self, Refusal> {
+        let window = window_s / (sample_period_ns as f64 * 1e-9) + 0.5;
+        if !(window >= 4.0 && window < (WINDOW_SAMPLES_MAX + 1) as f64) {
+            return Err(Refusal::Window { samples: window });
+        }
+        if !(initial_s >= window_s && initial_s.is_finite()) {
+            return Err(Refusal::InitialInterval { initial_s });
+        }
+        if !(threshold > 1.0 && threshold.is_finite()) {
+            return Err(Refusal::Threshold { threshold });
+        }
+        Ok(Self {
+            initial_s,
+            threshold,
+            window: window as usize,
+            ring: [(Sample::default(), 0.0); WINDOW_SAMPLES_MAX],
+            count: 0,
+            delivered: 0,
+            time_s: 0.0,
+            delivered_time_s: 0.0,
+            initial_samples: 0.0,
+            initial_mean: Vector3::zeros(),
+            initial_squares: 0.0,
+            standing: true,
+        })
+    }
+
+    /// Takes a sample; gives back the one half a window ago, its period, and whether it stood.
+    pub(crate) fn step(&mut self, sample: &Sample, dt_s: f64) -> Option<(Sample, f64, bool)> {
+        self.ring[self.count % self.window] = (*sample, dt_s);
+        self.count += 1;
+        self.time_s += dt_s;
+        if self.time_s <= self.initial_s {
+            // Welford: mean and sum of squares in one pass without cancellation.
+            self.initial_samples += 1.0;
+            let force = force_of(sample, dt_s);
+            let from_old = force - self.initial_mean;
+            self.initial_mean += from_old / self.initial_samples;
+            self.initial_squares += from_old.dot(&(force - self.initial_mean));
+        }
+        if self.count <= self.window / 2 {
+            return None;
+        }
+        if self.count >= self.window {
+            let limit = self.threshold * self.threshold * self.initial_squares
+                / (self.initial_samples - 1.0).max(1.0);
+            self.standing = self.delivered_time_s < self.initial_s || self.variance() < limit;
+        }
+        self.deliver()
+    }
+
+    /// The samples still held back, one a call, when the stream has ended: they stand as the last.
+    pub(crate) fn drain(&mut self) -> Option<(Sample, f64, bool)> {
+        (self.delivered < self.count).then(|| self.deliver()).flatten()
+    }
+
+    fn deliver(&mut self) -> Option<(Sample, f64, bool)> {
+        let (sample, dt_s) = self.ring[self.delivered % self.window];
+        self.delivered += 1;
+        self.delivered_time_s += dt_s;
+        Some((sample, dt_s, self.standing))
+    }
+
+    /// Sum over the axes of the variance of specific force in the window, (m/s²)². Computed anew
+    /// for every sample: running sums would collect rounding, and the window is bounded.
+    fn variance(&self) -> f64 {
+        let held = &self.ring[..self.window];
+        let n = self.window as f64;
+        let mean = held.iter().fold(Vector3::zeros(), |sum, (s, dt)| sum + force_of(s, *dt)) / n;
+        held.iter().fold(0.0, |sum, (s, dt)| sum + (force_of(s, *dt) - mean).norm_squared())
+            / (n - 1.0)
+    }
+}
+
+/// Mean specific force in b over a sample, m/s².
+fn force_of(sample: &Sample, dt_s: f64) -> Vector3<f64> {
+    Vector3::from(sample.delta_velocity).map(|c| f64::from(c) * (DELTA_VELOCITY_LSB_MPS / dt_s))
+}

@@ -1,0 +1,180 @@
+//! Static intervals and the moves between them, sample by sample.
+
+use super::moves::{Compensation, Move};
+use nalgebra::Vector3;
+use octant_sample::counts::{DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS, GIMBAL_LSB_RAD};
+use octant_sample::{Sample, Status};
+
+/// What is kept of a static interval.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Interval {
+    /// Mean specific force as measured, m/s².
+    pub force_mps2: Vector3<f64>,
+    /// Mean angular rate as measured, rad/s.
+    pub rate_radps: Vector3<f64>,
+    /// White noise of the mean force, variance per axis times duration, (m/s²)²·s.
+    pub force_noise: Vector3<f64>,
+    /// White noise of the mean rate, variance per axis times duration, rad²/s.
+    pub rate_noise: Vector3<f64>,
+    /// Mean gimbal angles (azimuth, roll), rad; `None` without valid encoders.
+    pub gimbal_rad: Option<(f64, f64)>,
+    /// Samples averaged.
+    pub samples: u32,
+    /// Time averaged, s.
+    pub duration_s: f64,
+}
+
+/// Running sums of a static interval. Counts are summed as integers: the mean has no rounding.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Sums {
+    delta_theta: [i64; 3],
+    delta_velocity: [i64; 3],
+    /// Squared differences of successive increments: twice the white variance, whatever the slow
+    /// drift (the Allan variance at one sample).
+    theta_differences: [f64; 3],
+    velocity_differences: [f64; 3],
+    last: Option<([i32; 3], [i32; 3])>,
+    differences: u32,
+    gimbal: (i64, i64),
+    gimbal_samples: u32,
+    samples: u32,
+    duration_s: f64,
+}
+
+impl Sums {
+    fn add(&mut self, sample: &Sample, dt_s: f64) {
+        for axis in 0..3 {
+            self.delta_theta[axis] += i64::from(sample.delta_theta[axis]);
+            self.delta_velocity[axis] += i64::from(sample.delta_velocity[axis]);
+        }
+        if let Some((theta, velocity)) = self.last {
+            for axis in 0..3 {
+                let dt = f64::from(sample.delta_theta[axis]) - f64::from(theta[axis]);
+                let dv = f64::from(sample.delta_velocity[axis]) - f64::from(velocity[axis]);
+                self.theta_differences[axis] += dt * dt;
+                self.velocity_differences[axis] += dv * dv;
+            }
+            self.differences += 1;
+        }
+        self.last = Some((sample.delta_theta, sample.delta_velocity));
+        if !sample.status.contains(Status::GIMBAL_INVALID) {
+            self.gimbal.0 += i64::from(sample.gimbal.azimuth);
+            self.gimbal.1 += i64::from(sample.gimbal.roll);
+            self.gimbal_samples += 1;
+        }
+        self.samples += 1;
+        self.duration_s += dt_s;
+    }
+
+    fn interval(&self) -> Interval {
+        let per_s = 1.0 / self.duration_s;
+        // Variance of an increment over the sample period; not less than that of rounding.
+        let pairs = 2.0 * f64::from(self.differences.max(1));
+        let dt_s = self.duration_s / f64::from(self.samples);
+        let noise = |sum: f64, lsb: f64| lsb * lsb * (sum / pairs).max(1.0 / 6.0) / dt_s;
+        Interval {
+            force_mps2: Vector3::from(self.delta_velocity)
+                .map(|sum| sum as f64 * (DELTA_VELOCITY_LSB_MPS * per_s)),
+            rate_radps: Vector3::from(self.delta_theta)
+                .map(|sum| sum as f64 * (DELTA_THETA_LSB_RAD * per_s)),
+            force_noise: Vector3::from(self.velocity_differences)
+                .map(|sum| noise(sum, DELTA_VELOCITY_LSB_MPS)),
+            rate_noise: Vector3::from(self.theta_differences)
+                .map(|sum| noise(sum, DELTA_THETA_LSB_RAD)),
+            gimbal_rad: (self.gimbal_samples > 0).then(|| {
+                let scale = GIMBAL_LSB_RAD / f64::from(self.gimbal_samples);
+                (self.gimbal.0 as f64 * scale, self.gimbal.1 as f64 * scale)
+            }),
+            samples: self.samples,
+            duration_s: self.duration_s,
+        }
+    }
+}
+
+/// Cuts the stream of samples into static intervals and moves.
+///
+/// A standstill shorter than the shortest interval belongs to the move around it: the rotation is
+/// integrated through it until it is long enough.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Segmenter {
+    shortest_s: f64,
+    standing: bool,
+    sums: Sums,
+    /// The move up to the start of the standstill.
+    arrival: Move,
+    /// The move up to now.
+    running: Move,
+    last_sequence: Option<u64>,
+}
+
+impl Segmenter {
+    pub(crate) fn new(shortest_s: f64) -> Self {
+        Self {
+            shortest_s,
+            standing: false,
+            sums: Sums::default(),
+            arrival: Move::default(),
+            running: Move::default(),
+            last_sequence: None,
+        }
+    }
+
+    /// Takes one sample; returns an interval that just ended and the move that led to it.
+    pub(crate) fn step(
+        &mut self,
+        sample: &Sample,
+        dt_s: f64,
+        standing: bool,
+        compensation: &Compensation,
+    ) -> Option<(Move, Interval)> {
+        let ended = if self.standing && !standing { self.flush() } else { None };
+        let unbroken = self.last_sequence.is_none_or(|last| sample.sequence == last + 1);
+        self.last_sequence = Some(sample.sequence);
+        let usable = !sample.status.intersects(
+            Status::INERTIAL_INVALID | Status::GYRO_SATURATED | Status::ACCELEROMETER_SATURATED,
+        );
+        if standing && !self.standing {
+            self.sums = Sums::default();
+            self.arrival = self.running;
+            self.arrival.complete &= unbroken;
+        }
+        self.standing = standing;
+        if standing && usable {
+            self.sums.add(sample, dt_s);
+        }
+        if !standing || self.sums.duration_s < self.shortest_s {
+            self.running.complete &= usable && unbroken;
+            self.integrate(sample, dt_s, compensation);
+        }
+        ended
+    }
+
+    /// Ends a standstill; returns it if it was long enough.
+    pub(crate) fn flush(&mut self) -> Option<(Move, Interval)> {
+        if !self.standing {
+            return None;
+        }
+        self.standing = false;
+        if self.sums.duration_s < self.shortest_s || self.sums.samples < 2 {
+            return None;
+        }
+        self.running = Move::default();
+        Some((self.arrival, self.sums.interval()))
+    }
+
+    /// Starts the move again with the sample that began it, under another compensation.
+    pub(crate) fn restart(&mut self, sample: &Sample, dt_s: f64, compensation: &Compensation) {
+        let complete = self.running.complete;
+        self.running = Move::default();
+        self.running.complete = complete;
+        self.integrate(sample, dt_s, compensation);
+    }
+
+    fn integrate(&mut self, sample: &Sample, dt_s: f64, compensation: &Compensation) {
+        let delta_theta =
+            Vector3::from(sample.delta_theta).map(|c| f64::from(c) * DELTA_THETA_LSB_RAD);
+        let delta_velocity =
+            Vector3::from(sample.delta_velocity).map(|c| f64::from(c) * DELTA_VELOCITY_LSB_MPS);
+        self.running.step(&delta_theta, &delta_velocity, dt_s, compensation);
+    }
+}

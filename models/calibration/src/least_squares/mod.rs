@@ -1,0 +1,378 @@
+//! Multi-position least squares: the estimator beside the Kalman filter.
+//!
+//! The instrument stands in a number of attitudes. What is kept of each is the mean specific force
+//! and the mean rate; of each move between them, the rotation by the gyros and its sensitivity to
+//! their parameters. Two references, by [`GyroReference`]:
+//!
+//! - **Earth rate**, for gyros that see it: gravity and Earth rate are known vectors in n, the
+//!   attitude of each interval is not ([`chain`]). In every interval the norm of gravity, the norm
+//!   of Earth rate and their product `f·ω = gΩ sin L` are measured, and each move ties two
+//!   attitudes. Determines b_g, S_g, M_g, b_a, S_a and M_a; six positions are enough, because
+//!   the moves tie the accelerometers' axes to each other, which the norm of gravity alone cannot.
+//! - **Rotated gravity**, for MEMS: accelerometers from the norm of gravity, gyro bias from the
+//!   first interval, S_g and M_g from gravity turned between attitudes.
+//!
+//! G is not estimated by either: it keeps its initial value, with which the gyros are compensated,
+//! and its σ is NaN. Where G is not what was given, biases absorb a part of it, and σ doesn't know.
+//!
+//! The linearisation of the moves is about the initial parameters, in a single pass over the
+//! samples: the neglected second order is M_g² times the angle of a move. Parts in 10⁴ leave
+//! 0.01″; where M_g is large, pass over the data again from the first result.
+
+pub(crate) mod accelerometer;
+pub(crate) mod chain;
+mod detector;
+pub(crate) mod interval;
+pub(crate) mod moves;
+mod normal;
+pub mod raw;
+mod rotated_gravity;
+
+use crate::config::{self, GyroReference, Site, StaticIntervals};
+use chain::Chain;
+use detector::Detector;
+use interval::Segmenter;
+use moves::{Compensation, Move, corrected};
+use nalgebra::{SVector, Vector3};
+use octant_earth::ellipsoid::Ellipsoid;
+use octant_sample::{Parameters, Sample};
+
+pub use detector::WINDOW_SAMPLES_MAX;
+pub use interval::Interval;
+
+/// Largest number of static intervals: six passes of nineteen stops fit.
+pub const INTERVALS_MAX: usize = 128;
+
+/// Shortest standstill to use when the procedure commands it, s.
+const SHORTEST_COMMANDED_S: f64 = 1.0;
+
+/// Steps of Gauss-Newton on the chain of attitudes. It starts within the initial errors of a
+/// navigation-grade instrument and gains several digits a step.
+const ITERATIONS: usize = 8;
+
+/// Why there is no estimate.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum Refusal {
+    /// Not enough static intervals.
+    #[error("{found} static intervals were found, at least {needed} are needed")]
+    TooFewIntervals {
+        /// Intervals found.
+        found: usize,
+        /// Intervals needed.
+        needed: usize,
+    },
+    /// More static intervals than the fixed store holds.
+    #[error("more than {INTERVALS_MAX} static intervals were found")]
+    TooManyIntervals,
+    /// Not enough moves without lost or invalid samples.
+    #[error("{found} complete moves between static intervals were found, at least {needed} needed")]
+    TooFewMoves {
+        /// Moves found.
+        found: usize,
+        /// Moves needed.
+        needed: usize,
+    },
+    /// The attitudes don't determine a parameter.
+    #[error(
+        "the positions do not determine {}",
+        octant_sample::parameters::NAMES.get(*parameter).unwrap_or(&"the attitudes")
+    )]
+    Undetermined {
+        /// Index of the least determined parameter.
+        parameter: usize,
+    },
+    /// Earth rate has no horizontal part here, or gyros and gravity don't show it.
+    #[error("interval {interval}: the gyros do not show the direction of Earth rate")]
+    NoEarthRate {
+        /// Index of the interval, from 0.
+        interval: usize,
+    },
+    /// The adjustment did not converge.
+    #[error("the adjustment did not converge")]
+    Diverged,
+    /// Detection window outside of what the ring holds.
+    #[error("the detection window has {samples:.1} samples, expected 4 to {WINDOW_SAMPLES_MAX}")]
+    Window {
+        /// Samples in the window.
+        samples: f64,
+    },
+    /// The known static start is shorter than the window.
+    #[error("the initial static interval of {initial_s} s is shorter than the detection window")]
+    InitialInterval {
+        /// Length given, s.
+        initial_s: f64,
+    },
+    /// A threshold that the initial interval itself would not pass.
+    #[error("the detection threshold is {threshold}, expected a number above 1")]
+    Threshold {
+        /// Threshold given.
+        threshold: f64,
+    },
+    /// A shortest interval, gravity or other setting that is not a positive number.
+    #[error("{field} is {found}, expected a positive number")]
+    NotPositive {
+        /// Name of the setting.
+        field: &'static str,
+        /// Value found.
+        found: f64,
+    },
+    /// Initial parameters that can't be compensated with.
+    #[error("the initial parameters are not finite or have no inverse")]
+    InitialParameters,
+    /// An interval of the external turntable without encoder angles.
+    #[error("interval {interval}: no valid gimbal angles")]
+    NoEncoder {
+        /// Index of the interval, from 0.
+        interval: usize,
+    },
+}
+
+/// Result of an adjustment.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Estimate {
+    /// Estimated parameters; those that the method doesn't estimate keep their initial values.
+    pub parameters: Parameters,
+    /// Standard deviations, SI, in the order of the parameters; NaN: not estimated.
+    pub sigma: [f64; 30],
+    /// Root mean square of `|f| − g` over the intervals, m/s².
+    pub gravity_residual_rms_mps2: f64,
+    /// Root mean square over the moves, of the unit vector of gravity (rotated gravity), or of all
+    /// residuals in units of their noise: 1 if the model and the noise are right (Earth rate and
+    /// external turntable). Above 1 it has been put into σ.
+    pub residual_rms: f64,
+    /// Static intervals used.
+    pub intervals: usize,
+    /// Complete moves used.
+    pub moves: usize,
+}
+
+/// The streaming estimator: fixed size, one step a sample.
+#[derive(Clone, Debug)]
+pub struct LeastSquaresEstimator {
+    gyro: GyroReference,
+    gravity_mps2: f64,
+    earth: Ellipsoid,
+    initial: Parameters,
+    compensation: Compensation,
+    segmenter: Segmenter,
+    detector: Option<Detector>,
+    intervals: [Interval; INTERVALS_MAX],
+    moves: [Move; INTERVALS_MAX],
+    len: usize,
+    overflow: bool,
+}
+
+impl LeastSquaresEstimator {
+    /// An estimator for samples of a nominal period at a site. `initial` is what the moves are
+    /// linearised about: zero, or the result of an earlier calibration or pass.
+    ///
+    /// # Errors
+    /// If a setting is out of range.
+    pub fn new(
+        settings: &config::LeastSquares,
+        site: &Site,
+        sample_period_ns: u64,
+        initial: &Parameters,
+    ) -> Result<Self, Refusal> {
+        let earth = Ellipsoid::at(site.latitude_rad, site.height_m);
+        let gravity_mps2 = settings.gravity_mps2.unwrap_or(earth.gravity_mps2);
+        positive("gravity_mps2", gravity_mps2)?;
+        let (detector, shortest_s) = match settings.intervals {
+            StaticIntervals::Commanded => (None, SHORTEST_COMMANDED_S),
+            StaticIntervals::Detected { initial_s, window_s, threshold, shortest_s } => {
+                positive("shortest_s", shortest_s)?;
+                let detector = Detector::new(initial_s, window_s, threshold, sample_period_ns)?;
+                (Some(detector), shortest_s)
+            }
+        };
+        Ok(Self {
+            gyro: settings.gyro,
+            gravity_mps2,
+            earth,
+            initial: *initial,
+            compensation: Compensation::new(initial).ok_or(Refusal::InitialParameters)?,
+            segmenter: Segmenter::new(shortest_s),
+            detector,
+            intervals: [Interval::default(); INTERVALS_MAX],
+            moves: [Move::default(); INTERVALS_MAX],
+            len: 0,
+            overflow: false,
+        })
+    }
+
+    /// Takes one sample over `dt_s`. `standing` says whether the gimbals stood through it; it is
+    /// used where intervals are commanded (`None`: they did not), and ignored where they are
+    /// detected.
+    pub fn step(&mut self, sample: &Sample, dt_s: f64, standing: Option<bool>) {
+        if !(dt_s > 0.0 && dt_s.is_finite()) {
+            return;
+        }
+        match &mut self.detector {
+            None => self.segment(sample, dt_s, standing.unwrap_or(false)),
+            Some(detector) => {
+                if let Some((sample, dt_s, standing)) = detector.step(sample, dt_s) {
+                    self.segment(&sample, dt_s, standing);
+                }
+            }
+        }
+    }
+
+    fn segment(&mut self, sample: &Sample, dt_s: f64, standing: bool) {
+        if let Some(ended) = self.segmenter.step(sample, dt_s, standing, &self.compensation) {
+            self.keep(ended);
+            if self.len == 1 && self.gyro == GyroReference::RotatedGravity {
+                // The sample that ended the interval has been integrated with the bias as given.
+                self.segmenter.restart(sample, dt_s, &self.compensation);
+            }
+        }
+    }
+
+    fn keep(&mut self, (arrival, interval): (Move, Interval)) {
+        if self.len == INTERVALS_MAX {
+            self.overflow = true;
+            return;
+        }
+        if self.len == 0 && self.gyro == GyroReference::RotatedGravity {
+            // The bias is known from here on, and every move is integrated with it.
+            let force = self.compensation.force(&interval.force_mps2);
+            self.compensation.gyro_bias = interval.rate_radps - self.compensation.g * force;
+        }
+        self.intervals[self.len] = interval;
+        self.moves[self.len] = arrival;
+        self.len += 1;
+    }
+
+    /// Ends the stream and adjusts.
+    ///
+    /// # Errors
+    /// If the intervals don't determine the parameters, or are too many, or nothing converged.
+    pub fn finish(mut self) -> Result<Estimate, Refusal> {
+        while let Some((sample, dt_s, standing)) = self.detector.as_mut().and_then(Detector::drain)
+        {
+            self.segment(&sample, dt_s, standing);
+        }
+        if let Some(ended) = self.segmenter.flush() {
+            self.keep(ended);
+        }
+        if self.overflow {
+            return Err(Refusal::TooManyIntervals);
+        }
+        match self.gyro {
+            GyroReference::EarthRate => self.finish_earth_rate(),
+            GyroReference::RotatedGravity => self.finish_rotated_gravity(),
+        }
+    }
+
+    /// The static intervals found so far.
+    #[must_use]
+    pub fn intervals(&self) -> &[Interval] {
+        &self.intervals[..self.len]
+    }
+
+    /// Moves between neighbouring intervals: `k` leads from interval k to k + 1. What came before
+    /// the first interval is not a move.
+    fn between(&self) -> &[Move] {
+        &self.moves[1.min(self.len)..self.len]
+    }
+
+    fn finish_rotated_gravity(&self) -> Result<Estimate, Refusal> {
+        let (mut parameters, accel_sigma, gravity_residual_rms_mps2) =
+            accelerometer::estimate(self.intervals(), &self.initial, self.gravity_mps2)?;
+        let accel = Compensation::new(&parameters).ok_or(Refusal::Diverged)?;
+        let (correction, gyro_sigma, residual_rms) = rotated_gravity::estimate(
+            self.intervals(),
+            self.between(),
+            &self.compensation,
+            &accel,
+        )?;
+        let mut all = SVector::<f64, 30>::zeros();
+        all.fixed_rows_mut::<9>(3).copy_from(&correction);
+        parameters = corrected(&parameters, &all);
+        let first = &self.intervals[0];
+        let bias = first.rate_radps - self.compensation.g * accel.force(&first.force_mps2);
+        parameters.gyro_bias = bias.into();
+        let mut sigma = [f64::NAN; 30];
+        for axis in 0..3 {
+            sigma[axis] = libm::sqrt(first.rate_noise[axis] / first.duration_s);
+        }
+        sigma[3..12].copy_from_slice(&gyro_sigma);
+        sigma[21..30].copy_from_slice(&accel_sigma);
+        Ok(Estimate {
+            parameters,
+            sigma,
+            gravity_residual_rms_mps2,
+            residual_rms,
+            intervals: self.len,
+            moves: self.between().iter().filter(|turn| turn.complete).count(),
+        })
+    }
+
+    fn finish_earth_rate(&self) -> Result<Estimate, Refusal> {
+        if self.len < 2 {
+            return Err(Refusal::TooFewIntervals { found: self.len, needed: 2 });
+        }
+        let mut estimated = [true; 30];
+        estimated[12..21].fill(false);
+        // Noise pooled over the intervals: one instrument, many samples.
+        let count = self.len as f64;
+        let pooled = |of: fn(&Interval) -> Vector3<f64>| {
+            self.intervals().iter().fold(Vector3::zeros(), |sum, at| sum + of(at)) / count
+        };
+        let noise = chain::Noise {
+            force: pooled(|interval| interval.force_noise),
+            rate: pooled(|interval| interval.rate_noise),
+        };
+        let gravity = Vector3::new(0.0, 0.0, -self.gravity_mps2);
+        let earth_rate = self.earth.earth_rate();
+        let mut parameters = self.initial;
+        let mut adjusted = None;
+        for _ in 0..ITERATIONS {
+            let at = Compensation::new(&parameters).ok_or(Refusal::Diverged)?;
+            let mut chain = Chain::new(&parameters, gravity, earth_rate, noise, estimated);
+            for (index, interval) in self.intervals().iter().enumerate() {
+                let force = at.force(&interval.force_mps2);
+                let rate = at.rate(&interval.rate_radps, &force);
+                let q_nb = crate::alignment::attitude_of(&force, &rate)
+                    .ok_or(Refusal::NoEarthRate { interval: index })?;
+                let turn = (index > 0).then(|| {
+                    chain::Turn::new(
+                        &self.moves[index],
+                        &self.compensation,
+                        &self.initial,
+                        &parameters,
+                    )
+                });
+                chain.interval(interval, &q_nb, turn.as_ref(), None);
+            }
+            let solution = chain.solve()?;
+            parameters = corrected(&parameters, &solution.correction);
+            adjusted = Some(solution);
+        }
+        let solution = adjusted.ok_or(Refusal::Diverged)?;
+        if !solution.settled() {
+            return Err(Refusal::Diverged);
+        }
+        let at = Compensation::new(&parameters).ok_or(Refusal::Diverged)?;
+        let squares = self.intervals().iter().fold(0.0, |sum, interval| {
+            let residual = at.force(&interval.force_mps2).norm() - self.gravity_mps2;
+            sum + residual * residual
+        });
+        Ok(Estimate {
+            parameters,
+            sigma: solution.sigma(),
+            gravity_residual_rms_mps2: libm::sqrt(squares / count),
+            residual_rms: solution.residual_rms,
+            intervals: self.len,
+            moves: self.between().iter().filter(|turn| turn.complete).count(),
+        })
+    }
+}
+
+/// A setting that has to be a positive number.
+pub(crate) fn positive(field: &'static str, found: f64) -> Result<(), Refusal> {
+    if found > 0.0 && found.is_finite() {
+        Ok(())
+    } else {
+        Err(Refusal::NotPositive { field, found })
+    }
+}

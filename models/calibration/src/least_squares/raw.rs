@@ -1,0 +1,57 @@
+//! The same calibration in terms of raw counts, the way data sheets of MEMS units print it.
+//!
+//! A sensor's counts become SI with nominal values, `f̃ = k (raw − c)`, axis by axis, before the
+//! estimator sees them. Ours says `f̃ = (I + M) f + b`, so
+//! ```text
+//! f = (I + M)⁻¹ (k (raw − c) − b) = A k (raw − (c + b/k)),   A = (I + M)⁻¹
+//! ```
+//! which is `f = T K (raw − bias)` with `bias = c + b/k`, `K_j = A_jj k_j` on the diagonal and
+//! `T_ij = A_ij / A_jj`: T has a unit diagonal, and is lower triangular if M is.
+
+use super::moves::matrix;
+use nalgebra::Matrix3;
+use octant_sample::Parameters;
+
+/// The nominal values that the counts were turned into SI with.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Nominal {
+    /// c, counts.
+    pub bias_counts: [f64; 3],
+    /// k, m/s² or rad/s per count.
+    pub scale: [f64; 3],
+}
+
+/// `f = T K (raw − bias)`, or the same for ω.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RawModel {
+    /// Counts at zero.
+    pub bias_counts: [f64; 3],
+    /// Diagonal of K, m/s² or rad/s per count.
+    pub scale: [f64; 3],
+    /// T by rows, with a unit diagonal.
+    pub cross: [[f64; 3]; 3],
+}
+
+/// The accelerometers' parameters in raw counts; `None` if I + M_a has no inverse.
+#[must_use]
+pub fn accelerometer(parameters: &Parameters, nominal: &Nominal) -> Option<RawModel> {
+    model(matrix(parameters.accel_matrix()), parameters.accel_bias, nominal)
+}
+
+/// The gyros' parameters in raw counts; `None` if I + M_g has no inverse. G is left out.
+#[must_use]
+pub fn gyroscope(parameters: &Parameters, nominal: &Nominal) -> Option<RawModel> {
+    model(matrix(parameters.gyro_matrix()), parameters.gyro_bias, nominal)
+}
+
+fn model(m: Matrix3<f64>, bias: [f64; 3], nominal: &Nominal) -> Option<RawModel> {
+    let a = (Matrix3::identity() + m).try_inverse()?;
+    let model = RawModel {
+        bias_counts: core::array::from_fn(|i| nominal.bias_counts[i] + bias[i] / nominal.scale[i]),
+        scale: core::array::from_fn(|j| a[(j, j)] * nominal.scale[j]),
+        cross: core::array::from_fn(|i| core::array::from_fn(|j| a[(i, j)] / a[(j, j)])),
+    };
+    let finite = |values: &[f64; 3]| values.iter().all(|value| value.is_finite());
+    let good = finite(&model.bias_counts) && finite(&model.scale) && model.cross.iter().all(finite);
+    good.then_some(model)
+}
