@@ -64,7 +64,9 @@ fn twenty_seeds_are_consistent() {
             }
         }
         let q = |q: [f64; 4]| {
-            nalgebra::UnitQuaternion::new_unchecked(nalgebra::Quaternion::new(q[0], q[1], q[2], q[3]))
+            nalgebra::UnitQuaternion::new_unchecked(nalgebra::Quaternion::new(
+                q[0], q[1], q[2], q[3],
+            ))
         };
         let mut core = core.clone();
         let mut plant = plant.clone();
@@ -92,7 +94,11 @@ fn twenty_seeds_are_consistent() {
             group.unit()
         );
     }
-    println!("tilt {:.2} arcsec, azimuth {:.1} arcsec", tilt.sqrt() / ARCSEC, azimuth.sqrt() / ARCSEC);
+    println!(
+        "tilt {:.2} arcsec, azimuth {:.1} arcsec",
+        tilt.sqrt() / ARCSEC,
+        azimuth.sqrt() / ARCSEC
+    );
 
     assert!((nis - 3.0).abs() <= 0.05, "NIS {nis}");
     for group in Group::ALL {
@@ -101,7 +107,12 @@ fn twenty_seeds_are_consistent() {
             6 => 0.6..1.5,
             _ => 0.65..1.4,
         };
-        assert!(bounds.contains(&nees[group as usize]), "NEES of {}: {}", group.name(), nees[group as usize]);
+        assert!(
+            bounds.contains(&nees[group as usize]),
+            "NEES of {}: {}",
+            group.name(),
+            nees[group as usize]
+        );
     }
     assert!(rms(Group::GyroBias) <= 8e-4);
     assert!(rms(Group::GyroScale) <= 2.0);
