@@ -141,7 +141,7 @@ fn gauss_markov_has_its_variance_and_correlation() {
     let a = libm::exp(-DT / 0.5);
     for (axis, sigma) in [(0, process.sigma), (1, process.sigma), (4, 100.0 * MICRO_G)] {
         let x = |k: usize| noise[k][axis] / (sigma * DT);
-        // 2 τ / dt = 200 samples a correlation: five standard errors of a variance estimate.
+        // Variance of a variance estimate over T: 2 τ / T, with τ = 100 samples.
         let bound = 5.0 * (2.0 * 100.0 / n as f64).sqrt();
         let variance = (0..n).map(|k| x(k) * x(k)).sum::<f64>() / n as f64;
         assert!((variance - 0.5 * (1.0 + a)).abs() < bound, "{axis} {variance}");
@@ -165,7 +165,7 @@ fn gauss_markov_starts_in_its_stationary_distribution() {
         }
     }
     let n = 3.0 * seeds as f64;
-    // 1 °/h is 1600 counts in … 5 ms it is 2: rounding adds 1/12 of a count squared, twice.
+    // Both plants round to counts, of which 1 °/h in 5 ms is 1670: that adds 1/6 of a count².
     let count = DELTA_THETA_LSB_RAD / (DEG_PER_HOUR * DT);
     let expected = 1.0 + count * count / 6.0;
     assert!((sum / n - expected).abs() < 5.0 * (2.0 / n).sqrt() * expected, "{}", sum / n);
@@ -227,7 +227,6 @@ fn navigation_meets_the_same_noise_after_any_calibration() {
 #[test]
 fn the_reference_has_its_period_noise_and_end() {
     let mut config = noisy();
-    config.calibration_samples = 2_000_000;
     config.aiding.period_ns = 10_000_000;
     config.motion = Motion::Dockside(octant_plant::motion::dockside_default(1));
     config.calibration_samples = 40_000;
