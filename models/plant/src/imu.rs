@@ -48,12 +48,17 @@ struct Triple {
 
 impl Triple {
     #[inline(always)]
-    fn count(&mut self, mut reading: Vector3<f64>, sample: u64) -> ([i32; 3], bool) {
+    fn count(
+        &mut self,
+        mut reading: Vector3<f64>,
+        sample: u64,
+        words: &[u64; 4],
+    ) -> ([i32; 3], bool) {
         for wander in &mut self.wanders {
             reading += Vector3::from(wander.increment(sample)) / self.lsb;
         }
         if self.sigma_counts > 0.0 {
-            let noise = self.noise.at(sample);
+            let noise = self.noise.of(sample, words);
             for axis in 0..3 {
                 reading[axis] += self.sigma_counts * noise[axis];
             }
@@ -195,9 +200,12 @@ impl Sensors {
         if let Some(temperature) = &self.temperature {
             warm(temperature, &mut reading, increments, start_s, self.dt);
         }
-        let (gyro, gyro_saturated) = self.gyro.count(reading.gyro, sample);
+        // Both blocks before either is used: their chains of multiplications overlap.
+        let gyro_words = self.gyro.noise.words(sample);
+        let accelerometer_words = self.accelerometer.noise.words(sample);
+        let (gyro, gyro_saturated) = self.gyro.count(reading.gyro, sample, &gyro_words);
         let (accelerometer, accelerometer_saturated) =
-            self.accelerometer.count(reading.accelerometer, sample);
+            self.accelerometer.count(reading.accelerometer, sample, &accelerometer_words);
         let mut status = Status::empty();
         status.set(Status::GYRO_SATURATED, gyro_saturated);
         status.set(Status::ACCELEROMETER_SATURATED, accelerometer_saturated);

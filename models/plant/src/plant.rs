@@ -34,6 +34,8 @@ pub struct Plant {
     sensors: Sensors,
     encoders: [ErrorCurve; 2],
     aider: Aider,
+    /// Samples until the reference is due.
+    until_aiding: u64,
     non_orthogonality_rad: f64,
     saturated_samples: u64,
     /// Increments and reading of every sample, while nothing moves.
@@ -51,6 +53,7 @@ impl Plant {
         validate(config)?;
         let dt = config.sample_period_ns as f64 * 1e-9;
         let sigma_rad = config.turntable.encoder_sigma_rad;
+        let aider = Aider::new(config);
         Ok(Self {
             sequence: 0,
             time_ns: 0,
@@ -60,7 +63,8 @@ impl Plant {
             sensors: Sensors::new(&config.imu, dt, config.seed),
             encoders: ["turntable.encoder.azimuth", "turntable.encoder.roll"]
                 .map(|name| ErrorCurve::new(config.seed, name, sigma_rad)),
-            aider: Aider::new(config),
+            until_aiding: aider.period_samples(),
+            aider,
             non_orthogonality_rad: config.turntable.non_orthogonality_rad,
             saturated_samples: 0,
             still: None,
@@ -97,9 +101,8 @@ impl Plant {
             None => self.read_encoders(),
         };
         let device_time = DeviceTime::from_ns(self.time_ns);
-        let aided = self.sequence <= self.calibration_samples
-            && self.sequence.is_multiple_of(self.aider.period_samples());
-        let aiding = aided.then(|| self.aid(device_time, sample));
+        self.until_aiding -= 1;
+        let aiding = if self.until_aiding == 0 { self.aid(device_time, sample) } else { None };
 
         if self.body.command(command, self.time_ns) {
             self.still = None;
@@ -142,8 +145,11 @@ impl Plant {
     }
 
     #[inline(never)]
-    fn aid(&self, device_time: DeviceTime, sample: u64) -> Aiding {
-        self.aider.measure(device_time, sample, || self.body.case.whereabouts(self.seconds()))
+    fn aid(&mut self, device_time: DeviceTime, sample: u64) -> Option<Aiding> {
+        self.until_aiding = self.aider.period_samples();
+        (self.sequence <= self.calibration_samples).then(|| {
+            self.aider.measure(device_time, sample, || self.body.case.whereabouts(self.seconds()))
+        })
     }
 
     fn seconds(&self) -> f64 {

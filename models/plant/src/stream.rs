@@ -2,7 +2,7 @@
 //! counter is the sample number in the phase: adding a stream, or lengthening the calibration,
 //! moves no number of any other.
 
-use crate::normal::Ziggurat;
+use crate::normal::{self, Ziggurat};
 use crate::philox::Key;
 
 /// The part of a run that a stream counts in.
@@ -63,6 +63,18 @@ impl Triad {
     #[inline(always)]
     pub(crate) fn at(&self, sample: u64) -> [f64; 3] {
         self.ziggurat.three(self.current, sample)
+    }
+
+    /// The random words of a sample of the present phase.
+    #[inline(always)]
+    pub(crate) fn words(&self, sample: u64) -> [u64; 4] {
+        normal::words(self.current, sample)
+    }
+
+    /// The numbers of a sample of the present phase, from its words.
+    #[inline(always)]
+    pub(crate) fn of(&self, sample: u64, words: &[u64; 4]) -> [f64; 3] {
+        self.ziggurat.three_of(self.current, sample, words)
     }
 
     /// The numbers drawn once, for an initial state.
