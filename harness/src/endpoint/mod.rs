@@ -1,5 +1,9 @@
 //! Where the core is: in this process, in an FMU, at the other end of a wire.
 
+mod in_process;
+
+pub use in_process::InProcess;
+
 use crate::source::Epoch;
 use octant_sample::parameters::PARAMETER_COUNT;
 use octant_sample::{Output, Parameters};

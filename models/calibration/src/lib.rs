@@ -1,12 +1,44 @@
 //! The calibration core of a dual-axis rotational INS: the unit under test.
 //!
-//! A state machine that is stepped one sample at a time: it aligns, turns its own gimbals through a
-//! position sequence, estimates its sensors' errors, compensates them and navigates. It sees
-//! samples and aiding, never the truth, and it neither allocates nor asks for the time.
+//! A state machine that is stepped one sample at a time ([`Core::step`]): it aligns, turns its own
+//! gimbals through a position sequence, estimates its sensors' errors, compensates them and
+//! navigates. It sees samples and aiding, never the truth, and it neither allocates nor asks for
+//! the time.
+//!
+//! The modules, in the order in which a sample meets them:
+//!
+//! | module | idea |
+//! |---|---|
+//! | [`config`] | what the core is given before the first sample |
+//! | [`sequence`], [`positions`], [`schedule`] | the stops, the published ones, and when the gimbals turn |
+//! | [`monitor`] | what is wrong with a sample on its face: gaps, stuck channels, saturation |
+//! | [`compensation`] | subtracting the estimated errors |
+//! | [`alignment`] | the first attitude, from gravity and Earth rate |
+//! | [`strapdown`] | attitude, velocity and position from increments |
+//! | [`error_model`] | how errors grow: phi-angle and psi-angle form (paper, eq. 1 to 3) |
+//! | [`covariance`] | the 39 × 39 covariance and its kernels |
+//! | [`filter`] | the closed-loop Kalman filter, its gate and its recovery |
+//! | [`least_squares`] | the second estimator: static attitudes and the moves between them |
+//! | [`external_turntable`] | the third: an external turntable's angles are the reference |
+//! | [`state_machine`] | the procedure, and [`Core`] |
+//! | [`table`] | a finished calibration that can be exported and loaded |
 #![no_std]
 
 pub mod alignment;
+pub mod compensation;
 pub mod config;
+pub mod covariance;
+pub mod error_model;
 pub mod external_turntable;
+pub mod filter;
 pub mod least_squares;
+pub mod monitor;
+pub mod positions;
+pub mod schedule;
 pub mod sequence;
+pub mod state_machine;
+pub mod strapdown;
+pub mod table;
+
+pub use config::Config;
+pub use state_machine::Core;

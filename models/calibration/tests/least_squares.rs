@@ -188,3 +188,26 @@ fn a_lost_sample_in_a_move_costs_that_move_only() {
     assert_eq!((estimate.intervals, estimate.moves), (EIGHT.len(), EIGHT.len() - 2));
     assert!(worst(&estimate, &truth).0 < 0.2, "{:?}", worst(&estimate, &truth));
 }
+
+#[test]
+fn print_golden() {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/golden/covariance.json");
+    let golden: serde_json::Value =
+        serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap();
+    for (name, stops) in [("six", SIX), ("eight", EIGHT)] {
+        let row = golden["rows"].as_array().unwrap().iter().find(|row| {
+            row["positions"] == name && row["calibration_h"] == 4 && row["g_prior_dph_per_g"] == 0.0005
+        }).unwrap();
+        let dwell_s = (4.0 * 3600.0 - 20.0 * 9.0) / stops.len() as f64;
+        let mut truth = truth();
+        truth.g_dependent = [0.0; 9];
+        let estimate = run(
+            Instrument::new(truth, instrument::ARW, instrument::VRW, 3),
+            stops, GyroReference::EarthRate, dwell_s, &Parameters::default()).unwrap();
+        println!("{name} rms {}", estimate.residual_rms);
+        for i in 0..30 {
+            let g = row["sigma"][NAMES[i]].as_f64().unwrap();
+            println!("{} {:.3e} golden {:.3e} ratio {:.3}", NAMES[i], estimate.sigma[i], g, estimate.sigma[i] / g);
+        }
+    }
+}

@@ -1,0 +1,46 @@
+//! The core in this process.
+
+use super::{Endpoint, EndpointError, ParameterEstimate};
+use crate::source::Epoch;
+use octant_calibration::{Config, Core};
+use octant_sample::Output;
+
+/// The calibration core, called directly.
+#[derive(Clone, Debug)]
+pub struct InProcess {
+    core: Core,
+    revision: u32,
+}
+
+impl InProcess {
+    /// A core that waits for its first sample.
+    ///
+    /// # Errors
+    /// If the configuration contradicts itself.
+    pub fn new(config: &Config) -> Result<Self, octant_calibration::state_machine::ConfigError> {
+        Ok(Self { core: Core::new(config)?, revision: 0 })
+    }
+
+    /// The core behind the endpoint, for what no wire carries: diagnostics and table.
+    #[must_use]
+    pub fn core(&self) -> &Core {
+        &self.core
+    }
+}
+
+impl Endpoint for InProcess {
+    #[inline]
+    fn step(&mut self, epoch: &Epoch) -> Result<Output, EndpointError> {
+        let output = self.core.step(&epoch.sample, epoch.aiding.as_ref());
+        self.revision = output.parameters_revision;
+        Ok(output)
+    }
+
+    fn parameters(&self) -> ParameterEstimate {
+        ParameterEstimate {
+            revision: self.revision,
+            parameters: *self.core.parameters(),
+            sigma: *self.core.sigma(),
+        }
+    }
+}

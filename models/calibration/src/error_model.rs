@@ -1,0 +1,170 @@
+//! How errors grow: the system error model over one interval, in phi-angle and psi-angle form.
+//!
+//! Phi-angle form (Zheng, Han and Zheng, 2015, eq. 1 to 3), errors computed − true:
+//! ```text
+//! φ̇ = −(ω_ie + ω_en) × φ + δω_in − C ε
+//! δv̇ = f × φ − (2ω_ie + ω_en) × δv − (2δω_ie + δω_en) × v + δg + C ∇
+//! δṙ = −ω_en × δr + δv
+//! ```
+//! Psi-angle form (Benson, 1975): the attitude error is counted from the computer frame, which is
+//! turned from the true one by δθ = (δr_E/R_N, −δr_N/R_M, −δr_E tan L/R_N), so φ = ψ + δθ:
+//! ```text
+//! ψ̇ = −(ω_ie + ω_en) × ψ − C ε
+//! δv̇ = f × ψ − (2ω_ie + ω_en) × δv + δg + C ∇      δg = (−g/R_M δr_N, −g/R_N δr_E, 2g/R δr_D)
+//! δṙ = −ω_en × δr + δv
+//! ```
+//! The parameters are states too, with no dynamics. They count true − estimated, so that ε = δb +
+//! δM ω + δG f and ∇ = δb_a + δM_a f are what compensation has left over.
+
+use crate::config::ErrorModel;
+use crate::covariance::{DR, DV, PARAMETERS, PHI, Row, Transition};
+use nalgebra::{Matrix3, Vector3};
+use octant_earth::ellipsoid::Ellipsoid;
+
+/// Rows and columns of M_g in the order of its off-diagonal states.
+const GYRO_OFF_DIAGONAL: [(usize, usize); 6] = [(0, 1), (0, 2), (1, 0), (1, 2), (2, 0), (2, 1)];
+/// Rows and columns of M_a in the order of its off-diagonal states.
+const ACCEL_OFF_DIAGONAL: [(usize, usize); 3] = [(1, 0), (2, 0), (2, 1)];
+
+/// What happened in a short interval, as far as errors care. Good to second order in its length as
+/// long as the body turns by less than a degree or so.
+#[derive(Clone, Copy, Debug)]
+pub struct Interval {
+    /// Length, s.
+    pub interval_s: f64,
+    /// Attitude in the middle of the interval.
+    pub c_nb: Matrix3<f64>,
+    /// Integrated rate in b, rad.
+    pub delta_theta: Vector3<f64>,
+    /// Integrated specific force in b, m/s.
+    pub delta_velocity: Vector3<f64>,
+    /// Integrated specific force in n, m/s.
+    pub delta_velocity_n: Vector3<f64>,
+    /// Velocity over ground in n, m/s.
+    pub velocity_mps: Vector3<f64>,
+}
+
+impl Transition {
+    /// Carries the transition on over one interval: `Φ ← (I + F h) Φ`, with the attitude error in
+    /// the middle of the interval driving velocity and the velocity error position.
+    pub fn advance(&mut self, model: ErrorModel, interval: &Interval, earth: &Ellipsoid) {
+        let h = interval.interval_s;
+        let v = &interval.velocity_mps;
+        let (rm, rn) = (earth.meridian_radius_m, earth.transverse_radius_m);
+        let tan_latitude = earth.sin_latitude / earth.cos_latitude;
+        let w_ie = earth.earth_rate() * h;
+        let w_en = earth.transport_rate(v) * h;
+        let w_in = w_ie + w_en;
+        let w_coriolis = w_ie + w_in;
+        let f = &interval.delta_velocity_n;
+
+        // δω_ie h and δω_en h by δv_N, δv_E, δr_N, δr_D; nothing of it in psi-angle form.
+        let on = if model == ErrorModel::Phi { 1.0 } else { 0.0 };
+        let ie_x_rn = on * w_ie.z / rm;
+        let ie_z_rn = -on * w_ie.x / rm;
+        let en_x_ve = on * h / rn;
+        let en_x_rd = on * h * v.y / (rn * rn);
+        let en_y_vn = -on * h / rm;
+        let en_y_rd = -on * h * v.x / (rm * rm);
+        let en_z_ve = -on * h * tan_latitude / rn;
+        let en_z_rn = -on * h * v.y / (rn * rm * earth.cos_latitude * earth.cos_latitude);
+        let en_z_rd = -on * h * v.y * tan_latitude / (rn * rn);
+        let g = earth.gravity_mps2 * h;
+        let (g_n, g_e) = ((on - 1.0) * g / rm, (on - 1.0) * g / rn);
+        let g_d = 2.0 * g / rm;
+
+        let input = parameter_input(interval);
+        let rows = &mut self.rows;
+        for j in 0..rows[0].len() {
+            let phi = [rows[PHI][j], rows[PHI + 1][j], rows[PHI + 2][j]];
+            let dv = [rows[DV][j], rows[DV + 1][j], rows[DV + 2][j]];
+            let dr = [rows[DR][j], rows[DR + 1][j], rows[DR + 2][j]];
+
+            let ie = [ie_x_rn * dr[0], 0.0, ie_z_rn * dr[0]];
+            let en = [
+                en_x_ve * dv[1] + en_x_rd * dr[2],
+                en_y_vn * dv[0] + en_y_rd * dr[2],
+                en_z_ve * dv[1] + en_z_rn * dr[0] + en_z_rd * dr[2],
+            ];
+            let phi_new = [
+                phi[0] - (w_in.y * phi[2] - w_in.z * phi[1]) + ie[0] + en[0] + input[0][j],
+                phi[1] - (w_in.z * phi[0] - w_in.x * phi[2]) + en[1] + input[1][j],
+                phi[2] - (w_in.x * phi[1] - w_in.y * phi[0]) + ie[2] + en[2] + input[2][j],
+            ];
+            let m = [
+                0.5 * (phi[0] + phi_new[0]),
+                0.5 * (phi[1] + phi_new[1]),
+                0.5 * (phi[2] + phi_new[2]),
+            ];
+            // a = (2δω_ie + δω_en) h; −a × v = v × a.
+            let a = [2.0 * ie[0] + en[0], en[1], 2.0 * ie[2] + en[2]];
+            let c = &w_coriolis;
+            let dv_new = [
+                dv[0] + (f.y * m[2] - f.z * m[1]) - (c.y * dv[2] - c.z * dv[1])
+                    + (v.y * a[2] - v.z * a[1])
+                    + g_n * dr[0]
+                    + input[3][j],
+                dv[1] + (f.z * m[0] - f.x * m[2]) - (c.z * dv[0] - c.x * dv[2])
+                    + (v.z * a[0] - v.x * a[2])
+                    + g_e * dr[1]
+                    + input[4][j],
+                dv[2] + (f.x * m[1] - f.y * m[0]) - (c.x * dv[1] - c.y * dv[0])
+                    + (v.x * a[1] - v.y * a[0])
+                    + g_d * dr[2]
+                    + input[5][j],
+            ];
+            let half = 0.5 * h;
+            let dr_new = [
+                dr[0] + half * (dv[0] + dv_new[0]) - (w_en.y * dr[2] - w_en.z * dr[1]),
+                dr[1] + half * (dv[1] + dv_new[1]) - (w_en.z * dr[0] - w_en.x * dr[2]),
+                dr[2] + half * (dv[2] + dv_new[2]) - (w_en.x * dr[1] - w_en.y * dr[0]),
+            ];
+            for axis in 0..3 {
+                rows[PHI + axis][j] = phi_new[axis];
+                rows[DV + axis][j] = dv_new[axis];
+                rows[DR + axis][j] = dr_new[axis];
+            }
+        }
+    }
+}
+
+/// What the parameter errors add to φ (rows 0 to 2) and δv (rows 3 to 5) in the interval.
+fn parameter_input(interval: &Interval) -> [Row; 6] {
+    let h = interval.interval_s;
+    let (dtheta, dv) = (&interval.delta_theta, &interval.delta_velocity);
+    let mut input: [Row; 6] = [[0.0; 40]; 6];
+    for i in 0..3 {
+        let c = [interval.c_nb[(i, 0)], interval.c_nb[(i, 1)], interval.c_nb[(i, 2)]];
+        let phi = &mut input[i][PARAMETERS..];
+        for axis in 0..3 {
+            phi[axis] = -c[axis] * h;
+            phi[3 + axis] = -c[axis] * dtheta[axis];
+            for column in 0..3 {
+                phi[12 + 3 * axis + column] = -c[axis] * dv[column];
+            }
+        }
+        for (k, (row, column)) in GYRO_OFF_DIAGONAL.into_iter().enumerate() {
+            phi[6 + k] = -c[row] * dtheta[column];
+        }
+        let velocity = &mut input[3 + i][PARAMETERS..];
+        for axis in 0..3 {
+            velocity[21 + axis] = c[axis] * h;
+            velocity[24 + axis] = c[axis] * dv[axis];
+        }
+        for (k, (row, column)) in ACCEL_OFF_DIAGONAL.into_iter().enumerate() {
+            velocity[27 + k] = c[row] * dv[column];
+        }
+    }
+    input
+}
+
+/// Rotation δθ of the computer frame from the true one by a position error (m; n, e, d), rad.
+#[must_use]
+pub fn computer_frame_error(dr: &Vector3<f64>, earth: &Ellipsoid) -> Vector3<f64> {
+    let east = dr.y / earth.transverse_radius_m;
+    Vector3::new(
+        east,
+        -dr.x / earth.meridian_radius_m,
+        -east * earth.sin_latitude / earth.cos_latitude,
+    )
+}

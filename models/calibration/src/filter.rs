@@ -1,0 +1,424 @@
+//! The calibration filter: 39-state error-state Kalman filter, closed loop.
+//!
+//! The transition is accumulated in sub-steps of at most 50 ms and the covariance is propagated
+//! when a measurement is due. Every estimate is fed back at once, so the error states are zero
+//! between measurements.
+
+use crate::config::{AidingMode, ErrorModel, Gate, Kalman, Noise, Recovery};
+use crate::covariance::{Covariance, DR, DV, PARAMETERS, PHI, STATE_COUNT, Transition};
+use crate::error_model::{Interval, computer_frame_error};
+use crate::strapdown::Strapdown;
+use nalgebra::{Matrix3, Vector3};
+use octant_sample::parameters::{Group, PARAMETER_COUNT};
+use octant_sample::{Parameters, Reference};
+
+/// Longest sub-step of the transition, ns.
+const SUB_STEP_MAX_NS: u64 = 50_000_000;
+
+/// First stage of the widening recovery: attitude and velocity find their feet, no gate, s.
+const CAPTURE_S: f64 = 10.0;
+/// Second stage: the attitude settles, the parameters are considered but not estimated, s.
+const SETTLE_S: f64 = 120.0;
+/// σ with which the second stage starts: what linearization errors of the first can have left.
+const SETTLE_ATTITUDE_RAD: [f64; 3] = [6e-4, 6e-4, 3e-3];
+/// σ of velocity and position with which the second stage starts, m/s and m.
+const SETTLE_VELOCITY_MPS: f64 = 0.1;
+const RECOVERY_POSITION_M: f64 = 10.0;
+/// Smallest σ of the attitude in the first stage, rad: 600″.
+const CAPTURE_ATTITUDE_RAD: f64 = 2.9e-3;
+
+/// What came of a measurement.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Measured {
+    /// Normalized innovation squared over three axes: 3 in the mean.
+    pub nis: f64,
+    /// The gate kept it out.
+    pub rejected: bool,
+    /// It started a recovery.
+    pub recovery_started: bool,
+}
+
+/// Counts over the whole calibration.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Tally {
+    /// Measurements used.
+    pub used: u64,
+    /// Measurements rejected by the gate.
+    pub rejected: u64,
+    /// Sum of NIS over the measurements used.
+    pub nis_sum: f64,
+    /// Recoveries.
+    pub recoveries: u32,
+    /// Measurements used while a recovery held the parameters.
+    pub held: u64,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Stage {
+    Normal,
+    /// Until these seconds of filter time.
+    Capture(f64),
+    Settle(f64),
+}
+
+/// The filter.
+#[derive(Clone, Debug)]
+pub struct CalibrationFilter {
+    model: ErrorModel,
+    aiding: AidingMode,
+    gate: Option<Gate>,
+    gyro_variance_per_s: f64,
+    accel_variance_per_s: f64,
+    covariance: Covariance,
+    transition: Transition,
+    sub_step: SubStep,
+    /// Since the last propagation: time and velocity change by specific force in n.
+    elapsed_s: f64,
+    force_sum: Vector3<f64>,
+    time_s: f64,
+    rejected_in_a_row: u32,
+    stage: Stage,
+    tally: Tally,
+}
+
+/// Sums over the samples of one sub-step.
+#[derive(Clone, Debug)]
+struct SubStep {
+    samples_max: u32,
+    samples: u32,
+    elapsed_s: f64,
+    c_middle: Matrix3<f64>,
+    delta_theta: Vector3<f64>,
+    delta_velocity: Vector3<f64>,
+    delta_velocity_n: Vector3<f64>,
+}
+
+impl SubStep {
+    fn new(samples_max: u32) -> Self {
+        Self {
+            samples_max,
+            samples: 0,
+            elapsed_s: 0.0,
+            c_middle: Matrix3::identity(),
+            delta_theta: Vector3::zeros(),
+            delta_velocity: Vector3::zeros(),
+            delta_velocity_n: Vector3::zeros(),
+        }
+    }
+}
+
+/// Standard deviations of all states at the start.
+#[must_use]
+pub fn prior_sigmas(kalman: &Kalman) -> [f64; STATE_COUNT] {
+    let mut sigmas = [0.0; STATE_COUNT];
+    for axis in 0..3 {
+        sigmas[PHI + axis] = kalman.prior.attitude_rad[axis];
+        sigmas[DV + axis] = kalman.prior.velocity_mps;
+        sigmas[DR + axis] = kalman.prior.position_m;
+    }
+    for group in Group::ALL {
+        if kalman.estimated[group as usize] {
+            sigmas[PARAMETERS..][group.range()].fill(kalman.prior.of(group));
+        }
+    }
+    sigmas
+}
+
+/// Samples of a sub-step: as many as fit into 50 ms and divide the period.
+#[must_use]
+pub fn sub_step_samples(sample_period_ns: u64, period_ns: u64) -> u32 {
+    let in_period = (period_ns / sample_period_ns.max(1)).max(1);
+    let mut samples = (SUB_STEP_MAX_NS / sample_period_ns.max(1)).clamp(1, in_period);
+    while !in_period.is_multiple_of(samples) {
+        samples -= 1;
+    }
+    samples as u32
+}
+
+/// Adds the process noise of white gyro and accelerometer noise over `elapsed_s`, in which the
+/// specific force in n integrates to `force_sum` (m/s).
+pub fn add_process_noise(
+    covariance: &mut Covariance,
+    noise: (f64, f64),
+    elapsed_s: f64,
+    force_sum: &Vector3<f64>,
+) {
+    let (gyro, accel) = (noise.0 * elapsed_s, noise.1 * elapsed_s);
+    // δv̇ = f × φ: with a constant f the velocity takes up half of f T times the noise of φ, and a
+    // third of its square.
+    let f = octant_earth::rotation::skew(force_sum);
+    let cross = f * (0.5 * gyro);
+    let square = f * f.transpose() * (gyro / 3.0);
+    for i in 0..3 {
+        covariance.add(PHI + i, PHI + i, gyro);
+        covariance.add(DV + i, DV + i, accel);
+        for j in 0..3 {
+            covariance.add(DV + i, PHI + j, cross[(i, j)]);
+            if j >= i {
+                covariance.add(DV + i, DV + j, square[(i, j)]);
+            }
+        }
+    }
+}
+
+impl CalibrationFilter {
+    /// A filter with its prior.
+    #[must_use]
+    pub fn new(kalman: &Kalman, noise: &Noise, gate: Option<Gate>, sample_period_ns: u64) -> Self {
+        Self {
+            model: kalman.error_model,
+            aiding: kalman.aiding,
+            gate,
+            gyro_variance_per_s: noise.angle_random_walk * noise.angle_random_walk,
+            accel_variance_per_s: noise.velocity_random_walk * noise.velocity_random_walk,
+            covariance: Covariance::from_sigmas(&prior_sigmas(kalman)),
+            transition: Transition::identity(),
+            sub_step: SubStep::new(sub_step_samples(sample_period_ns, kalman.aiding_period_ns)),
+            elapsed_s: 0.0,
+            force_sum: Vector3::zeros(),
+            time_s: 0.0,
+            rejected_in_a_row: 0,
+            stage: Stage::Normal,
+            tally: Tally::default(),
+        }
+    }
+
+    /// Takes in one interval that the strapdown has just integrated.
+    #[inline]
+    pub fn accumulate(
+        &mut self,
+        strapdown: &Strapdown,
+        dtheta: &Vector3<f64>,
+        dv: &Vector3<f64>,
+        interval_s: f64,
+    ) {
+        let step = &mut self.sub_step;
+        step.delta_theta += dtheta;
+        step.delta_velocity += dv;
+        step.delta_velocity_n += strapdown.delta_velocity_n();
+        step.elapsed_s += interval_s;
+        step.samples += 1;
+        if step.samples == step.samples_max.div_ceil(2) {
+            step.c_middle = strapdown.c_nb();
+        }
+        if step.samples >= step.samples_max {
+            self.close_sub_step(strapdown);
+        }
+    }
+
+    fn close_sub_step(&mut self, strapdown: &Strapdown) {
+        let fresh = SubStep::new(self.sub_step.samples_max);
+        let step = core::mem::replace(&mut self.sub_step, fresh);
+        if step.samples == 0 {
+            return;
+        }
+        let c_nb = if step.samples < step.samples_max.div_ceil(2) {
+            strapdown.c_nb()
+        } else {
+            step.c_middle
+        };
+        let interval = Interval {
+            interval_s: step.elapsed_s,
+            c_nb,
+            delta_theta: step.delta_theta,
+            delta_velocity: step.delta_velocity,
+            delta_velocity_n: step.delta_velocity_n,
+            velocity_mps: *strapdown.velocity_mps(),
+        };
+        self.transition.advance(self.model, &interval, strapdown.earth());
+        self.elapsed_s += step.elapsed_s;
+        self.force_sum += step.delta_velocity_n;
+    }
+
+    /// Brings the covariance to the present.
+    pub fn propagate(&mut self, strapdown: &Strapdown) {
+        self.close_sub_step(strapdown);
+        if self.elapsed_s == 0.0 {
+            return;
+        }
+        self.covariance.propagate(&self.transition);
+        add_process_noise(
+            &mut self.covariance,
+            (self.gyro_variance_per_s, self.accel_variance_per_s),
+            self.elapsed_s,
+            &self.force_sum,
+        );
+        self.time_s += self.elapsed_s;
+        self.transition = Transition::identity();
+        self.elapsed_s = 0.0;
+        self.force_sum = Vector3::zeros();
+        self.advance_recovery();
+    }
+
+    /// Uses a reference: gate, update, feedback into navigation and parameters.
+    ///
+    /// `None` when the reference is not of the kind that the filter is tuned for, or not finite.
+    /// In psi-angle form a velocity reference is taken as δv without its difference δθ × v between
+    /// the forms, which is below 1e-7 m/s for a moored ship.
+    pub fn measure(
+        &mut self,
+        reference: &Reference,
+        strapdown: &mut Strapdown,
+        parameters: &mut Parameters,
+    ) -> Option<Measured> {
+        let (first, sigma, error) = self.error_against(reference, strapdown)?;
+        let r = sigma * sigma;
+        let nis = self.nis(first, r, &error)?;
+
+        let mut recovery_started = false;
+        if let Some(gate) = self.gate
+            && nis > gate.nis
+            && !matches!(self.stage, Stage::Capture(_))
+        {
+            self.rejected_in_a_row += 1;
+            if self.rejected_in_a_row < gate.rejections {
+                self.tally.rejected += 1;
+                return Some(Measured { nis, rejected: true, recovery_started });
+            }
+            self.start_recovery(&gate, &error);
+            recovery_started = true;
+        }
+        self.rejected_in_a_row = 0;
+
+        let mut x = [0.0; STATE_COUNT];
+        let held = self.stage != Stage::Normal;
+        for axis in 0..3 {
+            let innovation = error[axis] - x[first + axis];
+            if held {
+                self.covariance.update_moving(first + axis, r, innovation, &mut x);
+            } else {
+                self.covariance.update(first + axis, r, innovation, &mut x);
+            }
+        }
+        self.feed_back(&x, strapdown, parameters);
+        self.tally.used += 1;
+        if held {
+            self.tally.held += 1;
+        } else {
+            self.tally.nis_sum += nis;
+        }
+        Some(Measured { nis, rejected: false, recovery_started })
+    }
+
+    /// First state, standard deviation and error (computed − reference) of a measurement.
+    fn error_against(
+        &self,
+        reference: &Reference,
+        strapdown: &Strapdown,
+    ) -> Option<(usize, f64, Vector3<f64>)> {
+        let found = match (reference, self.aiding) {
+            (Reference::Velocity(velocity), AidingMode::Velocity { sigma_mps }) => {
+                (DV, sigma_mps, strapdown.velocity_mps() - Vector3::from(*velocity))
+            }
+            (
+                Reference::Position { latitude_rad, longitude_rad, height_m },
+                AidingMode::Position { sigma_m },
+            ) => {
+                let (earth, navigation) = (strapdown.earth(), strapdown.navigation());
+                let error = Vector3::new(
+                    (navigation.latitude_rad - latitude_rad) * earth.meridian_radius_m,
+                    (navigation.longitude_rad - longitude_rad)
+                        * (earth.transverse_radius_m * earth.cos_latitude),
+                    height_m - navigation.height_m,
+                );
+                (DR, sigma_m, error)
+            }
+            _ => return None,
+        };
+        found.2.iter().all(|value| value.is_finite()).then_some(found)
+    }
+
+    fn nis(&self, first: usize, r: f64, error: &Vector3<f64>) -> Option<f64> {
+        let s = Matrix3::from_fn(|i, j| {
+            self.covariance.at(first + i, first + j) + if i == j { r } else { 0.0 }
+        });
+        let nis = error.dot(&(s.try_inverse()? * error));
+        nis.is_finite().then_some(nis)
+    }
+
+    fn feed_back(
+        &self,
+        x: &[f64; STATE_COUNT],
+        strapdown: &mut Strapdown,
+        parameters: &mut Parameters,
+    ) {
+        let at = |i: usize| Vector3::new(x[i], x[i + 1], x[i + 2]);
+        let (mut phi, mut dv, dr) = (at(PHI), at(DV), at(DR));
+        if self.model == ErrorModel::Psi {
+            let frame = computer_frame_error(&dr, strapdown.earth());
+            phi += frame;
+            dv -= frame.cross(strapdown.velocity_mps());
+        }
+        strapdown.correct(&phi, &dv, &dr);
+        let mut all = parameters.to_array();
+        for (value, change) in all.iter_mut().zip(&x[PARAMETERS..]) {
+            *value += change;
+        }
+        *parameters = Parameters::from_array(&all);
+    }
+
+    fn start_recovery(&mut self, gate: &Gate, error: &Vector3<f64>) {
+        self.tally.recoveries += 1;
+        match gate.recovery {
+            Recovery::Reset { attitude_rad, velocity_mps, position_m } => {
+                self.reopen([attitude_rad; 3], velocity_mps, position_m);
+            }
+            Recovery::Widening => {
+                // An attitude error φ has grown into a velocity error g φ t, or a position error
+                // g φ t²/2, while the gate was shut; twice that and no less than 600″.
+                let t = f64::from(gate.rejections.max(1));
+                let reach = match self.aiding {
+                    AidingMode::Velocity { .. } => error.norm() / t,
+                    AidingMode::Position { .. } => 2.0 * error.norm() / (t * t),
+                };
+                let attitude = (2.0 * reach / 9.8).clamp(CAPTURE_ATTITUDE_RAD, 1.0);
+                let velocity = (2.0 * reach * t).max(1.0);
+                self.reopen([attitude; 3], velocity, RECOVERY_POSITION_M.max(2.0 * error.norm()));
+                self.stage = Stage::Capture(self.time_s + CAPTURE_S);
+            }
+        }
+    }
+
+    fn advance_recovery(&mut self) {
+        match self.stage {
+            Stage::Capture(until) if self.time_s >= until => {
+                self.reopen(SETTLE_ATTITUDE_RAD, SETTLE_VELOCITY_MPS, RECOVERY_POSITION_M);
+                self.stage = Stage::Settle(self.time_s + SETTLE_S);
+            }
+            Stage::Settle(until) if self.time_s >= until => self.stage = Stage::Normal,
+            _ => {}
+        }
+    }
+
+    fn reopen(&mut self, attitude_rad: [f64; 3], velocity_mps: f64, position_m: f64) {
+        for axis in 0..3 {
+            self.covariance.reopen(PHI + axis, attitude_rad[axis]);
+            self.covariance.reopen(DV + axis, velocity_mps);
+            self.covariance.reopen(DR + axis, position_m);
+        }
+    }
+
+    /// Error covariance of all states, as of the last propagation and measurement.
+    #[must_use]
+    pub fn covariance(&self) -> &Covariance {
+        &self.covariance
+    }
+
+    /// Standard deviations of the parameters.
+    #[must_use]
+    pub fn parameter_sigmas(&self) -> [f64; PARAMETER_COUNT] {
+        core::array::from_fn(|i| self.covariance.sigma(PARAMETERS + i))
+    }
+
+    /// Counts since the start.
+    #[must_use]
+    pub fn tally(&self) -> &Tally {
+        &self.tally
+    }
+
+    /// A recovery is under way: the parameters are held.
+    #[must_use]
+    pub fn is_recovering(&self) -> bool {
+        self.stage != Stage::Normal
+    }
+}

@@ -1,0 +1,142 @@
+//! What is wrong with a sample on its face: order, gaps, saturation, stuck channels.
+
+use octant_sample::counts::{DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS};
+use octant_sample::{Health, Sample, Status};
+
+/// How a sample follows the one before.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Order {
+    /// The next one; its interval in ns.
+    Next(u64),
+    /// Later than the next one: so many are missing; the interval of one sample in ns.
+    Gap {
+        /// Missing samples.
+        missing: u64,
+    },
+    /// Not later than the last one: not to be used.
+    Behind,
+}
+
+/// Counts since the start.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct MonitorTally {
+    /// Gaps, and the samples missing in them.
+    pub gaps: u64,
+    /// Samples missing in all gaps.
+    pub missing: u64,
+    /// Samples that did not advance in time or sequence.
+    pub out_of_order: u64,
+    /// Samples with a channel that the test calls stuck.
+    pub stuck: u64,
+    /// Samples with saturated or invalid counts.
+    pub invalid: u64,
+}
+
+/// Watches the stream of samples.
+#[derive(Clone, Debug)]
+pub struct Monitor {
+    period_ns: u64,
+    stuck_samples: Option<u32>,
+    /// Which triads have enough noise for the test of identical counts.
+    testable: [bool; 2],
+    last: Option<Sample>,
+    identical: [u32; 6],
+    tally: MonitorTally,
+}
+
+/// White noise below this many counts makes identical samples likely.
+const TESTABLE_COUNTS: f64 = 20.0;
+
+impl Monitor {
+    /// A monitor for samples of this period, noise (1σ of an increment, rad and m/s) and number of
+    /// identical counts in a row that make a channel stuck.
+    #[must_use]
+    pub fn new(period_ns: u64, sigmas: (f64, f64), stuck_samples: Option<u32>) -> Self {
+        Self {
+            period_ns,
+            stuck_samples,
+            testable: [
+                sigmas.0 / DELTA_THETA_LSB_RAD >= TESTABLE_COUNTS,
+                sigmas.1 / DELTA_VELOCITY_LSB_MPS >= TESTABLE_COUNTS,
+            ],
+            last: None,
+            identical: [0; 6],
+            tally: MonitorTally::default(),
+        }
+    }
+
+    /// How this sample follows the last, and its health flags.
+    #[inline]
+    pub fn check(&mut self, sample: &Sample) -> (Order, Health) {
+        let mut health = Health::empty();
+        let order = self.order(sample);
+        match order {
+            Order::Behind => {
+                self.tally.out_of_order += 1;
+                return (order, Health::OUT_OF_ORDER);
+            }
+            Order::Gap { missing } => {
+                self.tally.gaps += 1;
+                self.tally.missing += missing;
+                health |= Health::GAP;
+            }
+            Order::Next(_) => {}
+        }
+        if sample.status.intersects(
+            Status::GYRO_SATURATED | Status::ACCELEROMETER_SATURATED | Status::INERTIAL_INVALID,
+        ) {
+            self.tally.invalid += 1;
+            health |= Health::INERTIAL_INVALID;
+        }
+        if let Some(limit) = self.stuck_samples {
+            health |= self.stuck(sample, limit);
+        }
+        self.last = Some(*sample);
+        (order, health)
+    }
+
+    #[inline]
+    fn order(&self, sample: &Sample) -> Order {
+        let Some(last) = &self.last else { return Order::Next(self.period_ns) };
+        if sample.sequence <= last.sequence || sample.device_time <= last.device_time {
+            return Order::Behind;
+        }
+        let interval_ns = sample.device_time.ns - last.device_time.ns;
+        // Rounded to whole samples: stamps of real instruments jitter.
+        let periods = (interval_ns + self.period_ns / 2) / self.period_ns;
+        if periods >= 2 { Order::Gap { missing: periods - 1 } } else { Order::Next(interval_ns) }
+    }
+
+    #[inline]
+    fn stuck(&mut self, sample: &Sample, limit: u32) -> Health {
+        let Some(last) = &self.last else { return Health::empty() };
+        let mut health = Health::empty();
+        for axis in 0..3 {
+            for (triad, now, before, flag) in [
+                (0, sample.delta_theta[axis], last.delta_theta[axis], Health::GYRO_STUCK),
+                (
+                    1,
+                    sample.delta_velocity[axis],
+                    last.delta_velocity[axis],
+                    Health::ACCELEROMETER_STUCK,
+                ),
+            ] {
+                let run = &mut self.identical[3 * triad + axis];
+                *run = if now == before { run.saturating_add(1) } else { 0 };
+                if self.testable[triad] && *run + 1 >= limit {
+                    health |= flag;
+                }
+            }
+        }
+        if !health.is_empty() {
+            self.tally.stuck += 1;
+        }
+        health
+    }
+
+    /// Counts since the start.
+    #[must_use]
+    pub fn tally(&self) -> &MonitorTally {
+        &self.tally
+    }
+}

@@ -1,0 +1,220 @@
+//! When the gimbals turn: dwell times that fill the calibration, and a cursor that walks the stops.
+
+use crate::config::TurntableRates;
+use crate::sequence::{Sequence, Stop};
+use octant_sample::{GimbalAngles, GimbalCommand};
+
+/// Time of a trapezoidal (or, when short, triangular) move over `angle_rad`, s.
+#[must_use]
+pub fn move_s(angle_rad: f64, rates: &TurntableRates) -> f64 {
+    let angle = angle_rad.abs();
+    let (rate, acceleration) = (rates.rate_radps, rates.acceleration_radps2);
+    // To the last bit the two branches meet where the rate is just reached.
+    if angle * acceleration >= rate * rate {
+        angle / rate + rate / acceleration
+    } else {
+        2.0 * libm::sqrt(angle / acceleration)
+    }
+}
+
+/// Angle turned `t_s` after the start of a move over `angle_rad` (signed), rad.
+#[must_use]
+pub fn turned_rad(angle_rad: f64, t_s: f64, rates: &TurntableRates) -> f64 {
+    let (angle, total) = (angle_rad.abs(), move_s(angle_rad, rates));
+    let t = t_s.clamp(0.0, total);
+    let ramp = (rates.rate_radps / rates.acceleration_radps2).min(0.5 * total);
+    let rising = |t: f64| 0.5 * rates.acceleration_radps2 * t * t;
+    let turned = if t < ramp {
+        rising(t)
+    } else if t <= total - ramp {
+        rising(ramp) + rates.acceleration_radps2 * ramp * (t - ramp)
+    } else {
+        angle - rising(total - t)
+    };
+    if angle_rad < 0.0 { -turned } else { turned }
+}
+
+/// Time of the move between two stops: both gimbals turn at once, the slower one counts.
+#[must_use]
+pub fn move_between_s(from: &Stop, to: &Stop, rates: &TurntableRates) -> f64 {
+    move_s(to.azimuth_rad - from.azimuth_rad, rates).max(move_s(to.roll_rad - from.roll_rad, rates))
+}
+
+/// The moves of a sequence do not fit into the time given.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[error(
+    "the moves alone take {moves_s} s, which leaves no dwell of at least {dwell_min_s} s in {duration_s} s"
+)]
+pub struct DoesNotFit {
+    /// Time of all moves, s.
+    pub moves_s: f64,
+    /// Time given, s.
+    pub duration_s: f64,
+    /// Shortest dwell that makes sense, s.
+    pub dwell_min_s: f64,
+}
+
+/// Shortest dwell of weight 1 that a calibration may be planned with, s.
+pub const DWELL_MIN_S: f64 = 1.0;
+
+/// Time of all moves of a sequence with all its passes, starting from gimbals at zero, s.
+#[must_use]
+pub fn moves_s(sequence: &Sequence, rates: &TurntableRates) -> f64 {
+    let stops = sequence.stops();
+    let within: f64 = stops.windows(2).map(|w| move_between_s(&w[0], &w[1], rates)).sum();
+    let back = move_between_s(&stops[stops.len() - 1], &stops[0], rates);
+    let passes = f64::from(sequence.passes());
+    move_between_s(&Stop::default(), &stops[0], rates) + passes * within + (passes - 1.0) * back
+}
+
+/// Dwell of weight 1 that makes a sequence fill `duration_s`.
+///
+/// # Errors
+/// If less than [`DWELL_MIN_S`] would be left for it.
+pub fn dwell_s(
+    sequence: &Sequence,
+    duration_s: f64,
+    rates: &TurntableRates,
+) -> Result<f64, DoesNotFit> {
+    let moves_s = moves_s(sequence, rates);
+    let weights: f64 = sequence.stops().iter().map(|stop| stop.weight).sum();
+    let dwell = (duration_s - moves_s) / (weights * f64::from(sequence.passes()));
+    if dwell >= DWELL_MIN_S {
+        Ok(dwell)
+    } else {
+        Err(DoesNotFit { moves_s, duration_s, dwell_min_s: DWELL_MIN_S })
+    }
+}
+
+/// Walks a sequence in time: which stop is commanded, and whether the gimbals are on their way.
+///
+/// Times are those of the phase (calibration or navigation), in samples since its start.
+#[derive(Clone, Debug)]
+pub struct Cursor {
+    sequence: Sequence,
+    rates: TurntableRates,
+    dwell_s: f64,
+    sample_s: f64,
+    /// Passes to walk; navigation walks for ever.
+    endless: bool,
+    stop: u32,
+    /// Exact start of the present dwell and its end, s since the start of the phase, and the same
+    /// to the nearest sample.
+    arrival_s: f64,
+    departure_s: f64,
+    arrival_tick: u64,
+    departure_tick: u64,
+    command: GimbalCommand,
+}
+
+impl Cursor {
+    /// Starts towards the first stop from gimbals at `from`.
+    #[must_use]
+    pub fn new(
+        sequence: Sequence,
+        from: GimbalAngles,
+        rates: TurntableRates,
+        dwell_s: f64,
+        sample_s: f64,
+        endless: bool,
+    ) -> Self {
+        let from = Stop { azimuth_rad: from.azimuth_rad(), roll_rad: from.roll_rad(), weight: 1.0 };
+        let first = sequence.stops()[0];
+        // An encoder's reading of "already there" is no move.
+        let there = (from.azimuth_rad - first.azimuth_rad).abs() < 1e-3
+            && (from.roll_rad - first.roll_rad).abs() < 1e-3;
+        let arrival_s = if there { 0.0 } else { move_between_s(&from, &first, &rates) };
+        let mut cursor = Self {
+            sequence,
+            rates,
+            dwell_s,
+            sample_s,
+            endless,
+            stop: 0,
+            arrival_s,
+            departure_s: 0.0,
+            arrival_tick: 0,
+            departure_tick: 0,
+            command: GimbalCommand::default(),
+        };
+        cursor.plan_dwell();
+        cursor
+    }
+
+    /// Fills in what follows from the present stop and the arrival at it.
+    fn plan_dwell(&mut self) {
+        let stop = self.target();
+        self.departure_s = self.arrival_s + stop.weight * self.dwell_s;
+        let tick = |time_s: f64| (time_s / self.sample_s + 0.5) as u64;
+        (self.arrival_tick, self.departure_tick) = (tick(self.arrival_s), tick(self.departure_s));
+        self.command.target = GimbalAngles::from_rad(stop.azimuth_rad, stop.roll_rad);
+    }
+
+    /// Carries on to the output of sample `tick` (from 1) of the phase.
+    ///
+    /// A command in the output of sample k acts from the end of interval k + 1, so a move that is
+    /// to start at time t is commanded one sample early.
+    #[inline]
+    pub fn advance(&mut self, tick: u64) {
+        if tick + 1 >= self.departure_tick {
+            self.depart();
+        }
+    }
+
+    fn depart(&mut self) {
+        let count = self.sequence.stops().len() as u32;
+        let next = self.stop + 1;
+        if !self.endless && next >= count * self.sequence.passes() {
+            return;
+        }
+        let to = self.sequence.stops()[(next % count) as usize];
+        let from = self.target();
+        self.stop = next;
+        self.arrival_s = self.departure_s + move_between_s(&from, &to, &self.rates);
+        self.plan_dwell();
+    }
+
+    fn target(&self) -> Stop {
+        let stops = self.sequence.stops();
+        stops[self.stop as usize % stops.len()]
+    }
+
+    /// Stop that the gimbals are at or move to, from 0, over all passes.
+    #[must_use]
+    pub fn stop(&self) -> u32 {
+        self.stop
+    }
+
+    /// The gimbals are on their way at the end of sample `tick`.
+    #[must_use]
+    #[inline]
+    pub fn moving(&self, tick: u64) -> bool {
+        tick < self.arrival_tick
+    }
+
+    /// Sample at whose end the present dwell starts.
+    #[must_use]
+    #[inline]
+    pub fn arrival_tick(&self) -> u64 {
+        self.arrival_tick
+    }
+
+    /// Start of the present dwell, s since the start of the phase.
+    #[must_use]
+    pub fn arrival_s(&self) -> f64 {
+        self.arrival_s
+    }
+
+    /// End of the present dwell, s since the start of the phase.
+    #[must_use]
+    pub fn departure_s(&self) -> f64 {
+        self.departure_s
+    }
+
+    /// Set point of the gimbals.
+    #[must_use]
+    #[inline]
+    pub fn command(&self) -> GimbalCommand {
+        self.command
+    }
+}

@@ -1,0 +1,205 @@
+//! Strapdown mechanization in the local-level frame (north, east, down).
+//!
+//! Increments are exact integrals over the interval. Attitude has the two-sample coning term,
+//! velocity the rotation and sculling terms (Savage, *Strapdown Analytics*, 7.1 and 7.2) with the
+//! rotation carried to third order: at 10 °/s and 200 Hz the second-order form alone would leave
+//! 1e-7 of gravity in every move.
+
+use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
+use octant_earth::ellipsoid::Ellipsoid;
+use octant_earth::rotation::{quaternion_of, renormalize};
+use octant_sample::Navigation;
+
+/// Samples between two evaluations of radii, gravity and Earth rate: 50 ms at 200 Hz, in which a
+/// ship at 10 m/s moves 0.5 m, 1e-7 of the Earth's radius.
+const EARTH_UPDATE_SAMPLES: u32 = 10;
+
+/// What the vertical channel does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Vertical {
+    /// Integrated like the others: needs aiding, a free one diverges.
+    Free,
+    /// Height and vertical velocity are held where they are.
+    Held,
+}
+
+/// Navigation state and what its integration remembers.
+#[derive(Clone, Debug)]
+pub struct Strapdown {
+    q_nb: Quaternion<f64>,
+    velocity_mps: Vector3<f64>,
+    latitude_rad: f64,
+    longitude_rad: f64,
+    height_m: f64,
+    vertical: Vertical,
+    earth: Ellipsoid,
+    /// ω_ie in n at the last evaluation.
+    earth_rate: Vector3<f64>,
+    tan_latitude: f64,
+    /// 1/(R_M + h), 1/(R_N + h) and 1/((R_N + h) cos L), 1/m: divisions are dear at every sample.
+    per_meridian: f64,
+    per_transverse: f64,
+    per_parallel: f64,
+    until_earth_update: u32,
+    previous: Option<(Vector3<f64>, Vector3<f64>)>,
+    /// Velocity change by specific force in n during the last interval.
+    delta_velocity_n: Vector3<f64>,
+}
+
+impl Strapdown {
+    /// Starts from an attitude, velocity (n, m/s) and position.
+    #[must_use]
+    pub fn new(
+        q_nb: &UnitQuaternion<f64>,
+        velocity_mps: Vector3<f64>,
+        latitude_rad: f64,
+        longitude_rad: f64,
+        height_m: f64,
+        vertical: Vertical,
+    ) -> Self {
+        let mut strapdown = Self {
+            q_nb: *q_nb.quaternion(),
+            velocity_mps,
+            latitude_rad,
+            longitude_rad,
+            height_m,
+            vertical,
+            earth: Ellipsoid::at(latitude_rad, height_m),
+            earth_rate: Vector3::zeros(),
+            tan_latitude: 0.0,
+            per_meridian: 0.0,
+            per_transverse: 0.0,
+            per_parallel: 0.0,
+            until_earth_update: 0,
+            previous: None,
+            delta_velocity_n: Vector3::zeros(),
+        };
+        strapdown.update_earth();
+        strapdown
+    }
+
+    fn update_earth(&mut self) {
+        self.earth = Ellipsoid::at(self.latitude_rad, self.height_m);
+        self.earth_rate = self.earth.earth_rate();
+        self.tan_latitude = self.earth.sin_latitude / self.earth.cos_latitude;
+        self.per_meridian = 1.0 / self.earth.meridian_radius_m;
+        self.per_transverse = 1.0 / self.earth.transverse_radius_m;
+        self.per_parallel = self.per_transverse / self.earth.cos_latitude;
+        self.until_earth_update = EARTH_UPDATE_SAMPLES;
+    }
+
+    /// Integrates one interval: compensated increments of ω_ib and f in b over `interval_s`.
+    #[inline]
+    pub fn step(&mut self, dtheta: &Vector3<f64>, dv: &Vector3<f64>, interval_s: f64) {
+        if self.until_earth_update == 0 {
+            self.update_earth();
+        }
+        self.until_earth_update -= 1;
+
+        let (dtheta0, dv0) = self.previous.unwrap_or((*dtheta, *dv));
+        self.previous = Some((*dtheta, *dv));
+
+        // Coning, rotation and sculling in the body frame at the start of the interval.
+        let rotation = dtheta + dtheta0.cross(dtheta) * (1.0 / 12.0);
+        let half = dtheta.cross(dv) * 0.5;
+        let dv_body = dv
+            + half
+            + dtheta.cross(&half) * (1.0 / 3.0)
+            + (dtheta0.cross(dv) + dv0.cross(dtheta)) * (1.0 / 12.0);
+
+        // The navigation frame turns under the body by zeta.
+        let v = &self.velocity_mps;
+        let east = v.y * self.per_transverse;
+        let transport_rate =
+            Vector3::new(east, -v.x * self.per_meridian, -east * self.tan_latitude);
+        let zeta = (self.earth_rate + transport_rate) * interval_s;
+        let mut dv_n = rotate(&self.q_nb, &dv_body);
+        dv_n -= zeta.cross(&dv_n) * 0.5;
+        self.delta_velocity_n = dv_n;
+
+        // Coriolis with the velocity at the middle of the interval, as far as it is known.
+        let gravity_dv = self.earth.gravity_mps2 * interval_s;
+        let v_middle = v + Vector3::new(dv_n.x, dv_n.y, dv_n.z + gravity_dv) * 0.5;
+        let coriolis = (self.earth_rate * 2.0 + transport_rate).cross(&v_middle) * interval_s;
+        let mut v_new = v + dv_n - coriolis;
+        v_new.z += gravity_dv;
+        if self.vertical == Vertical::Held {
+            v_new.z = 0.0;
+        }
+        let mean = (v + v_new) * 0.5;
+        self.latitude_rad += mean.x * self.per_meridian * interval_s;
+        self.longitude_rad += mean.y * self.per_parallel * interval_s;
+        self.height_m -= mean.z * interval_s;
+        self.velocity_mps = v_new;
+
+        // zeta is below 1e-6 rad: its quaternion to second order, closed by the renormalization.
+        let frame = Quaternion::new(1.0, -0.5 * zeta.x, -0.5 * zeta.y, -0.5 * zeta.z);
+        self.q_nb = renormalize(frame * (self.q_nb * quaternion_of(&rotation)));
+    }
+
+    /// Subtracts estimated errors: φ (rad, n), δv (m/s, n) and δr (m; north, east, down).
+    pub fn correct(&mut self, phi: &Vector3<f64>, dv: &Vector3<f64>, dr: &Vector3<f64>) {
+        // computed = (I − [φ×]) true, so true = exp(φ) computed.
+        self.q_nb = renormalize(quaternion_of(phi) * self.q_nb);
+        self.velocity_mps -= dv;
+        self.latitude_rad -= dr.x / self.earth.meridian_radius_m;
+        self.longitude_rad -= dr.y / (self.earth.transverse_radius_m * self.earth.cos_latitude);
+        self.height_m += dr.z;
+    }
+
+    /// Sets position and vertical channel for free navigation, keeping attitude and velocity.
+    pub fn start_free(&mut self, latitude_rad: f64, longitude_rad: f64, height_m: f64) {
+        (self.latitude_rad, self.longitude_rad, self.height_m) =
+            (latitude_rad, longitude_rad, height_m);
+        self.vertical = Vertical::Held;
+        self.velocity_mps.z = 0.0;
+        self.update_earth();
+    }
+
+    /// Attitude as a matrix `c_nb`.
+    #[must_use]
+    pub fn c_nb(&self) -> Matrix3<f64> {
+        *UnitQuaternion::new_unchecked(self.q_nb).to_rotation_matrix().matrix()
+    }
+
+    /// Velocity over ground in n, m/s.
+    #[must_use]
+    pub fn velocity_mps(&self) -> &Vector3<f64> {
+        &self.velocity_mps
+    }
+
+    /// Velocity change by specific force in n during the last interval, m/s.
+    #[must_use]
+    #[inline]
+    pub fn delta_velocity_n(&self) -> &Vector3<f64> {
+        &self.delta_velocity_n
+    }
+
+    /// The Earth where the instrument is, as of the last evaluation.
+    #[must_use]
+    pub fn earth(&self) -> &Ellipsoid {
+        &self.earth
+    }
+
+    /// The navigation solution.
+    #[must_use]
+    #[inline]
+    pub fn navigation(&self) -> Navigation {
+        let q = &self.q_nb;
+        Navigation {
+            latitude_rad: self.latitude_rad,
+            longitude_rad: self.longitude_rad,
+            height_m: self.height_m,
+            velocity_mps: [self.velocity_mps.x, self.velocity_mps.y, self.velocity_mps.z],
+            q_nb: [q.w, q.i, q.j, q.k],
+        }
+    }
+}
+
+/// `q u q*` for a unit quaternion.
+#[inline]
+fn rotate(q: &Quaternion<f64>, u: &Vector3<f64>) -> Vector3<f64> {
+    let axis = Vector3::new(q.i, q.j, q.k);
+    let t = axis.cross(u) * 2.0;
+    u + t * q.w + axis.cross(&t)
+}
