@@ -13,10 +13,13 @@
 //! | [`sequence`], [`positions`], [`schedule`] | the stops, the published ones, and when the gimbals turn |
 //! | [`monitor`] | what is wrong with a sample on its face: gaps, stuck channels, saturation |
 //! | [`compensation`] | subtracting the estimated errors |
+//! | [`alignment`] | the first attitude, from gravity and Earth rate |
 //! | [`strapdown`] | attitude, velocity and position from increments |
 //! | [`error_model`] | how errors grow: phi-angle and psi-angle form (paper, eq. 1 to 3) |
 //! | [`covariance`] | the 39 × 39 covariance and its kernels |
 //! | [`filter`] | the closed-loop Kalman filter, its gate and its recovery |
+//! | [`least_squares`] | the second estimator: static attitudes and the moves between them |
+//! | [`external_turntable`] | the third: an external turntable's angles are the reference |
 //! | [`state_machine`] | the procedure, and [`Core`] |
 //! | [`alignment`] | attitude from gravity and Earth rate |
 //! | [`least_squares`] | the second estimator: norms over static intervals |

@@ -144,7 +144,7 @@ impl ExternalTurntableEstimator {
     ///
     /// # Errors
     /// If the dwells and moves don't determine the parameters, or a dwell has no encoder angles.
-    pub fn finish(mut self) -> Result<Estimate, Refusal> {
+    pub fn finish(&mut self) -> Result<Estimate, Refusal> {
         if let Some(ended) = self.segmenter.flush() {
             self.keep(&ended);
         }
@@ -154,7 +154,8 @@ impl ExternalTurntableEstimator {
         if self.intervals < 2 {
             return Err(Refusal::TooFewIntervals { found: self.intervals, needed: 2 });
         }
-        let solution = self.chain.solve()?;
+        let solution = self.chain.clone().solve()?;
+        solution.consistent()?;
         Ok(Estimate {
             parameters: corrected(&self.initial, &solution.correction),
             sigma: solution.sigma(),

@@ -10,10 +10,10 @@
 //! Attitudes are eliminated as soon as the next one is tied to them, so the store is one matrix of
 //! 36 × 36 whatever the number of intervals.
 
-use super::Refusal;
 use super::interval::Interval;
 use super::moves::{ACCEL_TERMS, Compensation, GYRO_TERMS, Move, matrix};
 use super::normal::solve;
+use super::{RESIDUAL_RMS_MAX, Refusal};
 use nalgebra::{Matrix3, SMatrix, SVector, UnitQuaternion, Vector3};
 use octant_earth::rotation::{exp, log, skew};
 use octant_sample::Parameters;
@@ -102,6 +102,15 @@ impl Solution {
             !self.estimated[i]
                 || self.correction[i].abs() <= 0.01 * libm::sqrt(self.covariance[(i, i)])
         })
+    }
+
+    /// Residuals far above their noise refuse the solution.
+    pub(crate) fn consistent(&self) -> Result<(), Refusal> {
+        if self.residual_rms <= RESIDUAL_RMS_MAX {
+            Ok(())
+        } else {
+            Err(Refusal::Inconsistent { residual_rms: self.residual_rms })
+        }
     }
 
     /// σ of the estimated parameters, NaN for the others. Residuals larger than the noise widen it.
@@ -257,7 +266,7 @@ impl Chain {
     }
 
     /// Eliminates the last attitude and solves for the parameters.
-    pub(crate) fn solve(mut self) -> Result<Solution, Refusal> {
+    pub(crate) fn solve(&mut self) -> Result<Solution, Refusal> {
         self.eliminate_previous();
         let information = self.information.fixed_view::<30, 30>(0, 0).into_owned();
         let right = self.right.fixed_rows::<30>(0).into_owned();

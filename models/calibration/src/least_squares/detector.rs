@@ -35,9 +35,10 @@ impl Detector {
         threshold: f64,
         sample_period_ns: u64,
     ) -> Result<Self, Refusal> {
-        let window = window_s / (sample_period_ns as f64 * 1e-9) + 0.5;
+        let samples = window_s / (sample_period_ns as f64 * 1e-9);
+        let window = samples + 0.5;
         if !(window >= 4.0 && window < (WINDOW_SAMPLES_MAX + 1) as f64) {
-            return Err(Refusal::Window { samples: window });
+            return Err(Refusal::Window { samples });
         }
         if !(initial_s >= window_s && initial_s.is_finite()) {
             return Err(Refusal::InitialInterval { initial_s });

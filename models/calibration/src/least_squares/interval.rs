@@ -178,3 +178,57 @@ impl Segmenter {
         self.running.step(&delta_theta, &delta_velocity, dt_s, compensation);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    extern crate std;
+    use super::*;
+    use octant_earth::rotation::log;
+    use octant_sample::Parameters;
+
+    /// A body that turns about z by 0.001 rad a sample while `turning`.
+    fn sample(sequence: u64, turning: bool) -> Sample {
+        let z = if turning { (0.001 / DELTA_THETA_LSB_RAD) as i32 } else { 0 };
+        Sample { sequence, delta_theta: [0, 0, z], ..Sample::default() }
+    }
+
+    #[test]
+    fn a_pause_too_short_belongs_to_the_move_around_it() {
+        let compensation = Compensation::new(&Parameters::default()).unwrap();
+        let mut segmenter = Segmenter::new(1.0);
+        // Stand 2 s, turn, pause 0.5 s (while still turning a little), turn, stand 2 s.
+        let plan = [(200, true), (100, false), (50, true), (100, false), (200, true)];
+        let (mut sequence, mut found) = (0, std::vec::Vec::new());
+        for (part, (samples, standing)) in plan.into_iter().enumerate() {
+            for _ in 0..samples {
+                sequence += 1;
+                let sample = sample(sequence, !standing || part == 2);
+                found.extend(segmenter.step(&sample, 0.01, standing, &compensation));
+            }
+        }
+        found.extend(segmenter.flush());
+        assert_eq!(found.len(), 2);
+        let (arrival, interval) = &found[1];
+        assert_eq!((interval.samples, arrival.complete), (200, true));
+        assert!((arrival.duration_s - 2.5).abs() < 1e-9);
+        let turned = log(&arrival.rotation());
+        assert!((turned - Vector3::new(0.0, 0.0, 0.25)).norm() < 1e-8, "{turned}");
+    }
+
+    #[test]
+    fn a_jump_in_the_numbers_spoils_the_move_and_not_the_interval() {
+        let compensation = Compensation::new(&Parameters::default()).unwrap();
+        let mut segmenter = Segmenter::new(1.0);
+        let mut found = std::vec::Vec::new();
+        for sequence in (1..=600).filter(|n| ![150, 250].contains(n)) {
+            let standing = !(200..300).contains(&sequence);
+            let sample = sample(sequence, !standing);
+            found.extend(segmenter.step(&sample, 0.01, standing, &compensation));
+        }
+        found.extend(segmenter.flush());
+        assert_eq!(found.len(), 2);
+        assert_eq!(found[0].1.samples, 198);
+        assert!(!found[1].0.complete);
+        assert!(found[1].1.force_mps2.norm() == 0.0 && found[1].1.rate_radps.norm() == 0.0);
+    }
+}

@@ -15,6 +15,12 @@
 //! G is not estimated by either: it keeps its initial value, with which the gyros are compensated,
 //! and its σ is NaN. Where G is not what was given, biases absorb a part of it, and σ doesn't know.
 //!
+//! Against Earth rate σ is smaller than the Kalman filter's: that the instrument stands is taken as
+//! a fact, where the filter lets attitude wander with the gyros' random walk within a dwell. On a
+//! ship it isn't one, and the residuals refuse the result. Against rotated gravity a turn about the
+//! vertical leaves no trace in the accelerometers, and detection takes it for a standstill; no
+//! harm, gravity in b stays where it was.
+//!
 //! The linearisation of the moves is about the initial parameters, in a single pass over the
 //! samples: the neglected second order is M_g² times the angle of a move. Parts in 10⁴ leave
 //! 0.01″; where M_g is large, pass over the data again from the first result.
@@ -28,13 +34,14 @@ mod normal;
 pub mod raw;
 mod rotated_gravity;
 
+use crate::alignment::attitude_of;
 use crate::config::{self, GyroReference, Site, StaticIntervals};
 use chain::Chain;
 use detector::Detector;
 use interval::Segmenter;
 use moves::{Compensation, Move, corrected};
 use nalgebra::{SVector, Vector3};
-use octant_earth::ellipsoid::Ellipsoid;
+use octant_earth::ellipsoid::{EARTH_RATE_RADPS, Ellipsoid};
 use octant_sample::{Parameters, Sample};
 
 pub use detector::WINDOW_SAMPLES_MAX;
@@ -42,6 +49,10 @@ pub use interval::Interval;
 
 /// Largest number of static intervals: six passes of nineteen stops fit.
 pub const INTERVALS_MAX: usize = 128;
+
+/// Residuals in units of their noise above which the adjustment against Earth rate, or an external
+/// turntable, is refused. An unknown G of 5e-3 °/h/g reaches 3 to 5 in 4 h; sway reaches thousands.
+pub const RESIDUAL_RMS_MAX: f64 = 10.0;
 
 /// Shortest standstill to use when the procedure commands it, s.
 const SHORTEST_COMMANDED_S: f64 = 1.0;
@@ -81,11 +92,22 @@ pub enum Refusal {
         /// Index of the least determined parameter.
         parameter: usize,
     },
-    /// Earth rate has no horizontal part here, or gyros and gravity don't show it.
-    #[error("interval {interval}: the gyros do not show the direction of Earth rate")]
+    /// The gyros don't show Earth rate (half to twice of it, with a horizontal part): they are too
+    /// coarse for this reference, the site is at a pole, or the instrument did not stand.
+    #[error("interval {interval}: the gyros do not show Earth rate")]
     NoEarthRate {
         /// Index of the interval, from 0.
         interval: usize,
+    },
+    /// The residuals contradict the noise: the instrument swayed, or has errors far outside of the
+    /// model.
+    #[error(
+        "the residuals are {residual_rms:.1} times their noise, at most {RESIDUAL_RMS_MAX} are \
+         accepted: the instrument did not stand, or its errors are not those of the model"
+    )]
+    Inconsistent {
+        /// Root mean square of the residuals in units of their noise.
+        residual_rms: f64,
     },
     /// The adjustment did not converge.
     #[error("the adjustment did not converge")]
@@ -246,7 +268,7 @@ impl LeastSquaresEstimator {
     ///
     /// # Errors
     /// If the intervals don't determine the parameters, or are too many, or nothing converged.
-    pub fn finish(mut self) -> Result<Estimate, Refusal> {
+    pub fn finish(&mut self) -> Result<Estimate, Refusal> {
         while let Some((sample, dt_s, standing)) = self.detector.as_mut().and_then(Detector::drain)
         {
             self.segment(&sample, dt_s, standing);
@@ -332,7 +354,9 @@ impl LeastSquaresEstimator {
             for (index, interval) in self.intervals().iter().enumerate() {
                 let force = at.force(&interval.force_mps2);
                 let rate = at.rate(&interval.rate_radps, &force);
-                let q_nb = crate::alignment::attitude_of(&force, &rate)
+                let visible = rate.norm() / EARTH_RATE_RADPS;
+                let q_nb = attitude_of(&force, &rate)
+                    .filter(|_| visible > 0.5 && visible < 2.0)
                     .ok_or(Refusal::NoEarthRate { interval: index })?;
                 let turn = (index > 0).then(|| {
                     chain::Turn::new(
@@ -349,6 +373,7 @@ impl LeastSquaresEstimator {
             adjusted = Some(solution);
         }
         let solution = adjusted.ok_or(Refusal::Diverged)?;
+        solution.consistent()?;
         if !solution.settled() {
             return Err(Refusal::Diverged);
         }

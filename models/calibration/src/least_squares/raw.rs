@@ -55,3 +55,40 @@ fn model(m: Matrix3<f64>, bias: [f64; 3], nominal: &Nominal) -> Option<RawModel>
     let good = finite(&model.bias_counts) && finite(&model.scale) && model.cross.iter().all(finite);
     good.then_some(model)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::Vector3;
+
+    #[test]
+    fn both_forms_turn_the_same_counts_into_the_same_force() {
+        let parameters = Parameters {
+            accel_bias: [0.86, 1.2, -0.97],
+            accel_scale: [0.003, -0.002, 0.004],
+            accel_misalignment: [0.0036, 0.009, 0.021],
+            ..Parameters::default()
+        };
+        let nominal = Nominal { bias_counts: [32768.0, 32000.0, 100.0], scale: [2e-3, 3e-3, 4e-3] };
+        let raw = Vector3::new(36000.0, 30000.0, -2500.0);
+        let measured =
+            Vector3::from_fn(|i, _| nominal.scale[i] * (raw[i] - nominal.bias_counts[i]));
+        let a = (Matrix3::identity() + matrix(parameters.accel_matrix())).try_inverse().unwrap();
+        let ours = a * (measured - Vector3::from(parameters.accel_bias));
+        let model = accelerometer(&parameters, &nominal).unwrap();
+        let scaled = Vector3::from_fn(|i, _| model.scale[i] * (raw[i] - model.bias_counts[i]));
+        let theirs = matrix(model.cross) * scaled;
+        assert!((ours - theirs).norm() < 1e-12, "{ours} {theirs}");
+        for i in 0..3 {
+            assert_eq!(model.cross[i][i], 1.0);
+            assert!(model.cross[i][i + 1..].iter().all(|above| *above == 0.0));
+        }
+    }
+
+    #[test]
+    fn a_matrix_without_an_inverse_gives_none() {
+        let nominal = Nominal { bias_counts: [0.0; 3], scale: [1.0; 3] };
+        let parameters = Parameters { gyro_scale: [-1.0, 0.0, 0.0], ..Parameters::default() };
+        assert_eq!(gyroscope(&parameters, &nominal), None);
+    }
+}
