@@ -56,7 +56,7 @@ pub(crate) fn complete(
 }
 
 /// Checks one value against what its key takes.
-fn check(
+pub(crate) fn check(
     node: &mut Node,
     key: &'static Key,
     kind: &'static Kind,

@@ -269,3 +269,17 @@ pub(crate) fn write_value(value: &Value, out: &mut String) {
         }
     }
 }
+
+/// A value as JSON.
+pub(crate) fn json(value: &Value) -> serde_json::Value {
+    match value {
+        Value::Text(text) | Value::Date(text) => serde_json::Value::from(text.as_str()),
+        Value::Integer(number) => serde_json::Value::from(*number),
+        Value::Number(number) => serde_json::Value::from(*number),
+        Value::Boolean(value) => serde_json::Value::from(*value),
+        Value::Array(entries) => entries.iter().map(|entry| json(&entry.value)).collect(),
+        Value::Table(table) => {
+            table.entries.iter().map(|entry| (entry.key.clone(), json(&entry.node.value))).collect()
+        }
+    }
+}

@@ -14,6 +14,8 @@ mod positions;
 mod quantity;
 mod read;
 pub mod resolve;
+mod schema;
+mod tour;
 mod write;
 
 pub use error::{Place, Problem, ScenarioError};
@@ -22,6 +24,8 @@ pub use quantity::{Dimension, Quantity};
 pub use read::source::{
     Axis, Column, Delimiter, Fields, FileName, Mcap, Signal, SignalQuantity, Source, TextFiles,
 };
+pub use schema::schema;
+pub use tour::tour;
 
 use octant_calibration::config as core;
 use octant_plant::config as plant;

@@ -24,6 +24,32 @@ const SIX: [(i16, i16); 17] = [
     (0, 0),
 ];
 
+/// Nineteen positions (Xie Bo, 2011): y+90 ×3, y−90 ×3, z+90, x+90 ×3, x−90 ×3, z+90 ×2, z−90 ×3.
+/// At azimuth −90° body y lies along the roll axis, at 0° body x does, so both gimbals reach all of
+/// it. Published tables that turn about body y at roll 180° (twelve positions) are out of reach of
+/// two gimbals with this order.
+const NINETEEN: [(i16, i16); 19] = [
+    (-90, 0),
+    (-90, 90),
+    (-90, 180),
+    (-90, 270),
+    (-90, 180),
+    (-90, 90),
+    (-90, 0),
+    (0, 0),
+    (0, 90),
+    (0, 180),
+    (0, 270),
+    (0, 180),
+    (0, 90),
+    (0, 0),
+    (90, 0),
+    (180, 0),
+    (90, 0),
+    (0, 0),
+    (-90, 0),
+];
+
 /// Moves of the navigation scheme, 180° each: (gimbal, sign).
 const SIXTEEN: [(char, i16); 16] = [
     ('x', 1),
@@ -59,6 +85,9 @@ pub(crate) fn named(name: &str) -> Option<Vec<Stop>> {
             stops.insert(15, stop(90, 45, 2.0));
             stops.insert(1, stop(0, 45, 2.0));
             Some(stops)
+        }
+        "nineteen" => {
+            Some(NINETEEN.iter().map(|(azimuth, roll)| stop(*azimuth, *roll, 1.0)).collect())
         }
         _ => None,
     }
@@ -106,6 +135,34 @@ mod tests {
         assert_eq!(eight[16], stop(90, 45, 2.0));
         assert_eq!(eight[17], stop(90, 0, 1.0));
         assert_eq!(eight.iter().filter(|stop| stop.weight == 2.0).count(), 2);
+    }
+
+    #[test]
+    fn nineteen_turns_about_the_body_axes_of_its_source() {
+        use octant_earth::{Matrix3, frames, rotation};
+        let turns: [(char, f64); 18] = [
+            [('y', 1.0); 3].as_slice(),
+            &[('y', -1.0); 3],
+            &[('z', 1.0)],
+            &[('x', 1.0); 3],
+            &[('x', -1.0); 3],
+            &[('z', 1.0); 2],
+            &[('z', -1.0); 3],
+        ]
+        .concat()
+        .try_into()
+        .unwrap();
+        let stops = named("nineteen").unwrap();
+        for (pair, (axis, sign)) in stops.windows(2).zip(turns) {
+            let [from, to] = [0, 1].map(|i| frames::c_cb(pair[i].azimuth_rad, pair[i].roll_rad));
+            let about = match axis {
+                'x' => rotation::rx,
+                'y' => rotation::ry,
+                _ => rotation::rz,
+            };
+            let turn: Matrix3<f64> = from * about(sign * 90.0 * DEG);
+            assert!((turn - to).norm() < 1e-12, "{axis} {sign}: {pair:?}");
+        }
     }
 
     #[test]

@@ -247,6 +247,10 @@ const RMS_LENGTH: Kind =
 pub(crate) const POSITIONS: &[(&str, &str)] = &[
     ("six", "the conventional method: six orthogonal attitudes, 17 stops"),
     ("eight", "the six with two tilts in different body planes, 19 stops"),
+    (
+        "nineteen",
+        "the 19 positions of Xie Bo (2011), about body y, x and z from azimuth -90 deg, 19 stops",
+    ),
 ];
 
 static REQUIREMENT: Section = section(&[
