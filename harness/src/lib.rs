@@ -5,4 +5,5 @@
 
 pub mod endpoint;
 pub mod observe;
+pub mod scenario;
 pub mod source;

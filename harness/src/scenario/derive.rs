@@ -1,0 +1,144 @@
+//! Defaults that depend on other keys, and keys that have no effect beside others.
+
+use super::document::{Node, Table, Value, parse_default};
+use super::error::Problem;
+use super::quantity::{self, Dimension};
+
+/// Writes the defaults that depend on other keys into a document that hasn't been checked yet:
+/// values of a wrong kind are left for the check.
+pub(crate) fn derive(document: &mut Table) {
+    if text(document, "motion.kind") == Some("dockside") {
+        let own = ["roll", "pitch", "yaw", "surge", "sway", "heave", "spectrum"]
+            .iter()
+            .any(|key| document.at(&format!("motion.ship.{key}")).is_some());
+        set(document, "motion.ship.preset", if own { "calm" } else { "default" });
+    }
+    if document.at("procedure.calibration").is_some() {
+        calibration(document);
+    }
+    for table in ["source.text", "source.mcap"] {
+        if document.at(table).is_some() {
+            let rate = text(document, "imu.rate").unwrap_or("200 Hz").to_owned();
+            set(document, &format!("{table}.rate"), &rate);
+        }
+    }
+}
+
+fn calibration(document: &mut Table) {
+    if document.at("procedure.calibration.stops").is_none() {
+        set(document, "procedure.calibration.positions", "eight");
+    }
+    let dockside = text(document, "motion.kind") == Some("dockside");
+    let reference = if dockside { "dock-position" } else { "zero-velocity" };
+    set(document, "procedure.calibration.aiding.reference", reference);
+    let position =
+        text(document, "procedure.calibration.aiding.reference") == Some("dock-position");
+    let (sigma, noise) = if position { ("0.15 m", "0.01 m") } else { ("1 mm/s", "1 mm/s") };
+    set(document, "procedure.calibration.aiding.sigma", sigma);
+    set(document, "procedure.calibration.aiding.noise", noise);
+
+    let drawn = |key: &str| {
+        let text = text(document, &format!("imu.g_dependent.{key}"))?;
+        let quantity = quantity::parse(text).ok()?;
+        (quantity.is(Dimension::G_DEPENDENT) && quantity.si > 0.0)
+            .then(|| (quantity.si, text.to_owned()))
+    };
+    let prior = match (drawn("normal"), drawn("uniform")) {
+        (Some((_, text)), _) => text,
+        // Standard deviation of an even distribution of this half width.
+        (None, Some((half_width, _))) => Dimension::G_DEPENDENT.write(half_width / libm::sqrt(3.0)),
+        (None, None) => "0.0005 deg/h/g".to_owned(),
+    };
+    set(document, "procedure.calibration.prior.g_dependent", &prior);
+}
+
+fn text<'a>(document: &'a Table, path: &str) -> Option<&'a str> {
+    match &document.at(path)?.value {
+        Value::Text(text) => Some(text),
+        _ => None,
+    }
+}
+
+/// Sets a default, unless there is a value or something that isn't a table is in the way.
+fn set(document: &mut Table, path: &str, value: &str) {
+    let parents = path.match_indices('.').map(|(index, _)| &path[..index]);
+    let blocked = parents.into_iter().any(|parent| {
+        document.at(parent).is_some_and(|node| !matches!(node.value, Value::Table(_)))
+    });
+    if !blocked && document.at(path).is_none() {
+        document.set_at(path, parse_default(value));
+    }
+}
+
+/// Keys without effect in a completed document, with the reason: refused where the scenario gives
+/// them, and left out of the resolved scenario.
+pub(crate) fn without_effect(document: &Table) -> Vec<(String, &'static str)> {
+    let is = |path: &str, value: &str| text(document, path) == Some(value);
+    let mut all = Vec::new();
+    let mut add = |parent: &str, keys: &[&str], reason: &'static str| {
+        all.extend(keys.iter().map(|key| (format!("{parent}.{key}"), reason)));
+    };
+    if is("motion.kind", "static") {
+        add("motion", &["ship"], "without effect with motion.kind = \"static\"");
+    }
+    if is("procedure.alignment.method", "coarse") {
+        add(
+            "procedure.alignment",
+            &["tilt", "azimuth", "velocity", "attitude_error", "velocity_error"],
+            "without effect with method = \"coarse\"",
+        );
+    } else {
+        add("procedure.alignment", &["duration"], "without effect with method = \"given\"");
+    }
+    let estimator =
+        |name: &str| is("procedure.calibration.estimator", name) || is("baseline.estimator", name);
+    let calibration = "procedure.calibration";
+    if !estimator("kalman") {
+        add(
+            calibration,
+            &["error_model", "g_states", "not_estimated", "refuse_above_mean_nis", "prior"],
+            "without effect: no method of this scenario uses estimator = \"kalman\"",
+        );
+    }
+    if !estimator("least-squares") {
+        add(
+            calibration,
+            &["least_squares"],
+            "without effect: no method of this scenario uses estimator = \"least-squares\"",
+        );
+    } else if is("procedure.calibration.least_squares.intervals", "commanded") {
+        add(
+            "procedure.calibration.least_squares",
+            &["initial", "window", "threshold", "shortest"],
+            "without effect with intervals = \"commanded\"",
+        );
+    }
+    let uri = text(document, "source.uri").unwrap_or_default();
+    if !uri.starts_with("text:") {
+        add("source", &["text"], "without effect: source.uri is not text:FILE");
+    }
+    if !uri.starts_with("replay:") {
+        add("source", &["mcap"], "without effect: source.uri is not replay:FILE");
+    }
+    all
+}
+
+/// Problems with keys that are given and have no effect.
+pub(crate) fn refuse_without_effect(document: &Table) -> Vec<Problem> {
+    let given = |(path, reason): (String, &'static str)| {
+        let node = document.at(&path)?;
+        Some(Problem { place: first_given(node)?.place.clone(), path, message: reason.to_owned() })
+    };
+    without_effect(document).into_iter().filter_map(given).collect()
+}
+
+/// The first value of a tree that isn't a default.
+fn first_given(node: &Node) -> Option<&Node> {
+    if node.place != super::error::Place::Default {
+        return Some(node);
+    }
+    match &node.value {
+        Value::Table(table) => table.entries.iter().find_map(|entry| first_given(&entry.node)),
+        _ => None,
+    }
+}

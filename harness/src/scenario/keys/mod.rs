@@ -1,0 +1,149 @@
+//! The one table of keys: what can be written in a scenario, with dimension, default and meaning.
+//!
+//! Checking, defaults, error messages, the JSON Schema and the test of the tour all read it.
+
+mod calibration;
+mod instrument;
+mod run;
+mod source;
+
+use super::quantity::Dimension;
+
+pub(crate) use run::{POSITIONS, SCENARIO};
+
+/// The version of the format that this program reads.
+pub const SCHEMA: i64 = 1;
+
+/// One key.
+#[derive(Debug)]
+pub(crate) struct Key {
+    pub(crate) name: &'static str,
+    pub(crate) kind: Kind,
+    pub(crate) default: Default,
+    /// What it means: one sentence, shown in the schema.
+    pub(crate) doc: &'static str,
+}
+
+/// What stands in for a key that is left out.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Default {
+    /// It can't be left out.
+    Required,
+    /// A value, as TOML; texts without quotes.
+    Value(&'static str),
+    /// A value that depends on others, in words.
+    Derived(&'static str),
+    /// Nothing, in words.
+    Absent(&'static str),
+    /// A table with the defaults of its own keys.
+    Section,
+}
+
+/// What a key takes.
+#[derive(Debug)]
+pub(crate) enum Kind {
+    /// Any text.
+    Text,
+    /// A text with form `scheme` or `scheme:FILE`, of these schemes.
+    Uri(&'static [(&'static str, &'static str)]),
+    /// One of these, with their meaning.
+    Choice(&'static [(&'static str, &'static str)]),
+    /// A list of some of these.
+    Choices(&'static [&'static str]),
+    Boolean,
+    /// A whole number within limits.
+    Integer(i64, i64),
+    /// A plain number.
+    Number(Bounds),
+    /// So many plain numbers.
+    Numbers(usize),
+    /// A quantity of one dimension, or of one of several (which depends on another key).
+    Quantity(&'static [Dimension], Bounds),
+    /// So many quantities.
+    Quantities(Dimension, usize),
+    /// A quantity of any dimension, or a plain number.
+    Limit,
+    /// A column of a text file: its number from 1, or its name in the header.
+    Column,
+    Table(&'static Section),
+    /// An array of tables: at least so many, at most so many.
+    Tables(&'static Section, usize, usize),
+    /// One of these, told apart by the kind of TOML value.
+    Either(&'static [Kind]),
+    /// A key that is known and not possible in this version, with the reason.
+    Refused(&'static str),
+}
+
+impl Kind {
+    /// The keys of a table, where a table can be given.
+    pub(crate) fn section(&self) -> Option<&'static Section> {
+        match self {
+            Self::Table(section) => Some(section),
+            Self::Either(kinds) => kinds.iter().find_map(Self::section),
+            _ => None,
+        }
+    }
+}
+
+/// Limits of a number, or of a quantity in SI.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Bounds {
+    Any,
+    Positive,
+    NotNegative,
+    /// From, to, and how the user reads it.
+    Within(f64, f64, &'static str),
+}
+
+impl Bounds {
+    pub(crate) fn contain(self, value: f64) -> bool {
+        value.is_finite()
+            && match self {
+                Self::Any => true,
+                Self::Positive => value > 0.0,
+                Self::NotNegative => value >= 0.0,
+                Self::Within(from, to, _) => (from..=to).contains(&value),
+            }
+    }
+
+    /// Reads after "expected a value".
+    pub(crate) fn words(self) -> &'static str {
+        match self {
+            Self::Any => "that is finite",
+            Self::Positive => "above 0",
+            Self::NotNegative => "of 0 or more",
+            Self::Within(_, _, words) => words,
+        }
+    }
+}
+
+/// The keys of a table.
+#[derive(Debug)]
+pub(crate) struct Section {
+    pub(crate) keys: &'static [Key],
+    /// Exactly one of the keys is given.
+    pub(crate) one_of: bool,
+}
+
+impl Section {
+    pub(crate) fn key(&self, name: &str) -> Option<&Key> {
+        self.keys.iter().find(|key| key.name == name)
+    }
+
+    pub(crate) fn names(&self) -> impl Iterator<Item = &'static str> + Clone {
+        let possible = |key: &&Key| !matches!(key.kind, Kind::Refused(_));
+        self.keys.iter().filter(possible).map(|key| key.name)
+    }
+}
+
+const fn section(keys: &'static [Key]) -> Section {
+    Section { keys, one_of: false }
+}
+
+const fn one_of(keys: &'static [Key]) -> Section {
+    Section { keys, one_of: true }
+}
+
+const fn key(name: &'static str, kind: Kind, default: Default, doc: &'static str) -> Key {
+    Key { name, kind, default, doc }
+}

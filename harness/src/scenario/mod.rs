@@ -1,0 +1,359 @@
+//! A scenario: what is run, as a TOML file that an engineer can read.
+//!
+//! [`Scenario::load`] parses and checks it against one table of keys ([`keys`]), fills in every
+//! default and turns every quantity into SI. What is drawn from the seed is drawn once
+//! ([`resolve`]) and put into the configurations of plant and core, so that two methods compared
+//! on one seed meet the same instrument.
+
+mod complete;
+mod derive;
+mod document;
+mod error;
+mod keys;
+mod positions;
+mod quantity;
+mod read;
+pub mod resolve;
+mod schema;
+mod tour;
+mod write;
+
+pub use error::{Place, Problem, ScenarioError};
+pub use keys::SCHEMA;
+pub use quantity::{Dimension, Quantity};
+pub use read::source::{
+    Axis, Column, Delimiter, Fields, FileName, Mcap, Signal, SignalQuantity, Source, TextFiles,
+};
+pub use schema::schema;
+pub use tour::tour;
+
+use octant_calibration::config as core;
+use octant_plant::config as plant;
+use octant_sample::parameters::Group;
+use std::path::{Path, PathBuf};
+
+/// A checked scenario, SI inside. Values that are drawn are still distributions: see [`resolve`].
+#[derive(Clone, Debug)]
+pub struct Scenario {
+    /// What the run is about.
+    pub title: String,
+    /// Seed of every draw.
+    pub seed: u64,
+    /// Sample period, ns.
+    pub sample_period_ns: u64,
+    /// Where the instrument stands.
+    pub site: plant::Site,
+    /// How the case moves.
+    pub motion: Motion,
+    /// Noise densities and what the filter doesn't model; the parameters in it are zero until
+    /// they are drawn.
+    pub imu: plant::Imu,
+    /// Where each group of true parameters comes from, in the order of [`Group::ALL`].
+    pub parameters: [Distribution; 7],
+    /// The two gimbals.
+    pub turntable: plant::Turntable,
+    /// How the core finds its attitude.
+    pub alignment: Alignment,
+    /// Parameters that the core starts from.
+    pub initial_parameters: octant_sample::Parameters,
+    /// The calibration, if there is one.
+    pub calibration: Option<Calibration>,
+    /// The second method, if there is one.
+    pub baseline: Option<Calibration>,
+    /// The reference during calibration.
+    pub aiding: plant::AidingSource,
+    /// Navigation after it, if there is one.
+    pub navigation: Option<core::NavigationPlan>,
+    /// Screens and gates.
+    pub screening: core::Screening,
+    /// Limits that the results have to keep.
+    pub requirements: Vec<Requirement>,
+    /// What is recorded.
+    pub record: Record,
+    /// Where samples come from.
+    pub source: Source,
+    /// The scenario's own folder, from which relative file names start.
+    pub folder: PathBuf,
+    /// The document with every default written out.
+    document: document::Table,
+}
+
+/// Which of the two methods of a scenario.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Method {
+    /// The calibration of `[procedure.calibration]`.
+    Primary,
+    /// The calibration of `[baseline]`.
+    Baseline,
+}
+
+/// Where the true values of a parameter group come from, SI.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Distribution {
+    /// Normal with this standard deviation, each entry alone.
+    Normal(f64),
+    /// Even within plus and minus this half width, each entry alone.
+    Uniform(f64),
+    /// Given.
+    Constant(Vec<f64>),
+}
+
+/// How the case moves; phases that aren't given are drawn.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Motion {
+    /// Fixed to the ground.
+    Static(plant::CaseAttitude),
+    /// On a moored ship.
+    Dockside(Dockside),
+}
+
+/// Components of a moored ship's motion.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Dockside {
+    /// Mean attitude.
+    pub mean: plant::CaseAttitude,
+    /// Roll, pitch, yaw (rad), surge, sway, heave (m).
+    pub components: [Vec<Component>; 6],
+    /// Offset from the dock's reference, north, east, down, m.
+    pub mooring_offset_m: [f64; 3],
+}
+
+/// One sinusoid.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Component {
+    /// Amplitude, rad or m.
+    pub amplitude: f64,
+    /// Period, s.
+    pub period_s: f64,
+    /// Phase at time 0, rad; `None`: drawn.
+    pub phase_rad: Option<f64>,
+}
+
+/// How the core finds its attitude.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Alignment {
+    /// Handed over with an error.
+    Given {
+        /// 1σ of the tilt about north and east, rad.
+        tilt_rad: f64,
+        /// 1σ of the azimuth, rad.
+        azimuth_rad: f64,
+        /// 1σ of each velocity, m/s.
+        velocity_mps: f64,
+        /// The attitude error itself, where it isn't drawn, rad.
+        attitude_error_rad: Option<[f64; 3]>,
+        /// The velocity error itself, where it isn't drawn, m/s.
+        velocity_error_mps: Option<[f64; 3]>,
+    },
+    /// Found by the core.
+    Coarse {
+        /// How long to average, s.
+        duration_s: f64,
+    },
+}
+
+/// One method of calibration.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Calibration {
+    /// Name of the sequence, or `own stops`.
+    pub name: String,
+    /// The stops.
+    pub sequence: octant_calibration::sequence::Sequence,
+    /// Whole time, s.
+    pub duration_s: f64,
+    /// Dwell at a stop of weight 1 that fills the duration, s.
+    pub dwell_s: f64,
+    /// How the parameters are estimated. The external turntable's survey of the base is true.
+    pub estimator: core::Estimator,
+}
+
+impl Calibration {
+    /// Whether the filter estimates a group of parameters. Other estimators have no such choice.
+    #[must_use]
+    pub fn estimates(&self, group: Group) -> bool {
+        match &self.estimator {
+            core::Estimator::Kalman(kalman) => kalman.estimated[group as usize],
+            core::Estimator::LeastSquares(_) | core::Estimator::ExternalTurntable(_) => true,
+        }
+    }
+}
+
+/// A limit that a result has to keep.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Requirement {
+    /// Identifier.
+    pub id: String,
+    /// What is required.
+    pub text: String,
+    /// Dotted path into `summary.json`.
+    pub measure: String,
+    /// The limit in the measure's unit.
+    pub limit: f64,
+    /// The limit as it was written.
+    pub limit_text: String,
+    /// How they are compared.
+    pub comparison: Comparison,
+    /// Document and clause that it comes from.
+    pub clause: Option<String>,
+}
+
+/// How a measure is compared with its limit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Comparison {
+    /// `<=`
+    AtMost,
+    /// `<`
+    Below,
+    /// `>=`
+    AtLeast,
+    /// `>`
+    Above,
+}
+
+impl Comparison {
+    /// The sign used in scenarios.
+    #[must_use]
+    pub const fn sign(self) -> &'static str {
+        match self {
+            Self::AtMost => "<=",
+            Self::Below => "<",
+            Self::AtLeast => ">=",
+            Self::Above => ">",
+        }
+    }
+
+    /// Whether a value keeps the limit. One that isn't a number doesn't.
+    #[must_use]
+    pub fn holds(self, value: f64, limit: f64) -> bool {
+        match self {
+            Self::AtMost => value <= limit,
+            Self::Below => value < limit,
+            Self::AtLeast => value >= limit,
+            Self::Above => value > limit,
+        }
+    }
+}
+
+/// What is recorded.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Record {
+    /// Samples between two records of truth, output and decimated samples.
+    pub every_samples: u64,
+    /// Every sample is kept.
+    pub full_samples: bool,
+    /// Shortest time between two records of the parameters, ns.
+    pub parameters_period_ns: u64,
+}
+
+impl Scenario {
+    /// Reads and checks a scenario file, with `--set` arguments `KEY=VALUE` applied.
+    ///
+    /// # Errors
+    /// If the file can't be read, isn't TOML, or is not a scenario: every problem with its place.
+    pub fn load(path: &Path, overrides: &[String]) -> Result<Self, ScenarioError> {
+        let file = path.display().to_string();
+        let text = std::fs::read_to_string(path).map_err(|error| ScenarioError {
+            file: file.clone(),
+            problems: vec![Problem {
+                place: Place::Default,
+                path: String::new(),
+                message: format!("read the scenario: {error}"),
+            }],
+        })?;
+        let folder = path.parent().unwrap_or(Path::new("")).to_owned();
+        Self::parse(&text, &file, &folder, overrides)
+    }
+
+    /// Checks a scenario's text. `file` names it in errors, `folder` is where relative file names
+    /// start.
+    ///
+    /// # Errors
+    /// If it isn't TOML or not a scenario: every problem with its place.
+    pub fn parse(
+        text: &str,
+        file: &str,
+        folder: &Path,
+        overrides: &[String],
+    ) -> Result<Self, ScenarioError> {
+        let with_file = |problems| ScenarioError { file: file.to_owned(), problems };
+        let mut document = document::parse(text).map_err(with_file)?;
+        let mut problems = Vec::new();
+        for argument in overrides {
+            if let Err(problem) = override_set(&mut document, argument) {
+                problems.push(problem);
+            }
+        }
+        derive::derive(&mut document);
+        let start = Place::File { line: 1, column: 1 };
+        complete::complete(&mut document, &keys::SCENARIO, "", &start, &mut problems);
+        if problems.is_empty() {
+            problems = derive::refuse_without_effect(&document);
+        }
+        if !problems.is_empty() {
+            return Err(with_file(problems));
+        }
+        read::scenario(document, folder).map_err(|problem| with_file(vec![problem]))
+    }
+
+    /// Samples of the calibration phase.
+    #[must_use]
+    pub fn calibration_samples(&self) -> u64 {
+        let duration_s = self.calibration.as_ref().map_or(0.0, |c| c.duration_s);
+        (duration_s * 1e9).round() as u64 / self.sample_period_ns
+    }
+
+    /// Samples of the whole procedure; `None` where navigation lasts until the source ends.
+    #[must_use]
+    pub fn samples(&self) -> Option<u64> {
+        let navigation_s = match &self.navigation {
+            None => 0.0,
+            Some(plan) => plan.duration_s?,
+        };
+        Some(
+            self.calibration_samples()
+                + (navigation_s * 1e9).round() as u64 / self.sample_period_ns,
+        )
+    }
+}
+
+/// Applies a `--set KEY=VALUE` to a document: KEY is a dotted path, VALUE is TOML or a text
+/// without its quotes.
+pub(crate) fn override_set(document: &mut document::Table, argument: &str) -> Result<(), Problem> {
+    let problem = |path: &str, message: String| Problem {
+        place: Place::Argument(argument.to_owned()),
+        path: path.to_owned(),
+        message,
+    };
+    let Some((path, value)) = argument.split_once('=') else {
+        let message = "expected KEY=VALUE, such as procedure.calibration.duration=12 h".to_owned();
+        return Err(problem("", message));
+    };
+    let path = path.trim();
+    let mut section = &keys::SCENARIO;
+    let mut names = path.split('.').peekable();
+    while let Some(name) = names.next() {
+        let Some(key) = section.key(name) else {
+            let known = error::suggestion(name, section.names(), "known here");
+            return Err(problem(path, format!("unknown key {name:?}, {known}")));
+        };
+        if names.peek().is_some() {
+            section = key.kind.section().ok_or_else(|| {
+                problem(path, format!("{name} has no keys of its own; set it as a whole"))
+            })?;
+        }
+    }
+    // Giving a sequence in one way takes back the other, and a group's values take back its draw.
+    let exclusive: &[&str] = match path.rsplit_once('.').map_or(path, |(_, name)| name) {
+        "stops" => &["positions"],
+        "positions" => &["stops"],
+        _ if section.one_of => &["normal", "uniform", "constant"],
+        _ => &[],
+    };
+    if let Some((parent, _)) = path.rsplit_once('.') {
+        for name in exclusive {
+            document.remove_at(&format!("{parent}.{name}"));
+        }
+    }
+    document.set_at(path, document::parse_argument(value, argument));
+    Ok(())
+}

@@ -1,0 +1,245 @@
+//! From a checked and completed document to a [`Scenario`]: units are gone, what depends on several
+//! keys is decided here, and contradictions are told.
+
+mod instrument;
+mod procedure;
+mod requirement;
+pub(crate) mod source;
+
+pub(super) use instrument::MOTIONS;
+pub(super) use procedure::case_attitude;
+
+use super::complete::{join, number};
+use super::document::{Node, Table, Value};
+use super::error::{Place, Problem};
+use super::{Record, Scenario, quantity};
+use octant_plant::config as plant;
+use std::path::Path;
+
+/// A table of the completed document with its path and place. What the check has passed is there;
+/// an accessor that meets anything else reports a problem all the same.
+#[derive(Clone)]
+pub(super) struct Reader<'a> {
+    table: &'a Table,
+    path: String,
+    place: Place,
+}
+
+impl<'a> Reader<'a> {
+    fn root(table: &'a Table) -> Self {
+        Self { table, path: String::new(), place: Place::File { line: 1, column: 1 } }
+    }
+
+    pub(super) fn new(table: &'a Table, path: &str, place: &Place) -> Self {
+        Self { table, path: path.to_owned(), place: place.clone() }
+    }
+
+    /// A problem with a key, or with the table where the key is left out.
+    pub(super) fn problem(&self, key: &str, message: impl Into<String>) -> Problem {
+        let place = match self.table.get(key) {
+            Some(Node { place: Place::Default, .. }) | None => &self.place,
+            Some(node) => &node.place,
+        };
+        Problem { place: place.clone(), path: join(&self.path, key), message: message.into() }
+    }
+
+    pub(super) fn node(&self, key: &str) -> Option<&'a Node> {
+        self.table.get(key)
+    }
+
+    /// Whether the scenario itself gives the key, not its default.
+    pub(super) fn given(&self, key: &str) -> bool {
+        self.table.get(key).is_some_and(|node| node.place != Place::Default)
+    }
+
+    fn missing(&self, key: &str) -> Problem {
+        self.problem(key, "missing")
+    }
+
+    pub(super) fn table(&self, key: &str) -> Result<Reader<'a>, Problem> {
+        self.optional_table(key).ok_or_else(|| self.missing(key))
+    }
+
+    pub(super) fn optional_table(&self, key: &str) -> Option<Reader<'a>> {
+        let Some(Node { value: Value::Table(table), place }) = self.node(key) else { return None };
+        let place = if *place == Place::Default { &self.place } else { place };
+        Some(Reader::new(table, &join(&self.path, key), place))
+    }
+
+    pub(super) fn tables(&self, key: &str) -> Vec<Reader<'a>> {
+        let Some(Node { value: Value::Array(entries), .. }) = self.node(key) else {
+            return Vec::new();
+        };
+        let path = join(&self.path, key);
+        entries
+            .iter()
+            .enumerate()
+            .filter_map(|(index, node)| match &node.value {
+                Value::Table(table) => {
+                    Some(Reader::new(table, &format!("{path}[{index}]"), &node.place))
+                }
+                _ => None,
+            })
+            .collect()
+    }
+
+    pub(super) fn optional_text(&self, key: &str) -> Option<&'a str> {
+        match &self.node(key)?.value {
+            Value::Text(text) => Some(text),
+            _ => None,
+        }
+    }
+
+    pub(super) fn text(&self, key: &str) -> Result<&'a str, Problem> {
+        self.optional_text(key).ok_or_else(|| self.missing(key))
+    }
+
+    pub(super) fn texts(&self, key: &str) -> Vec<&'a str> {
+        let Some(Node { value: Value::Array(entries), .. }) = self.node(key) else {
+            return Vec::new();
+        };
+        let text = |node: &'a Node| match &node.value {
+            Value::Text(text) => Some(text.as_str()),
+            _ => None,
+        };
+        entries.iter().filter_map(text).collect()
+    }
+
+    pub(super) fn boolean(&self, key: &str) -> Result<bool, Problem> {
+        match self.node(key) {
+            Some(Node { value: Value::Boolean(value), .. }) => Ok(*value),
+            _ => Err(self.missing(key)),
+        }
+    }
+
+    pub(super) fn integer<T: TryFrom<i64>>(&self, key: &str) -> Result<T, Problem> {
+        match self.node(key) {
+            Some(Node { value: Value::Integer(value), .. }) => {
+                T::try_from(*value).map_err(|_| self.problem(key, format!("{value} is too large")))
+            }
+            _ => Err(self.missing(key)),
+        }
+    }
+
+    pub(super) fn number(&self, key: &str) -> Result<f64, Problem> {
+        self.node(key).and_then(|node| number(&node.value)).ok_or_else(|| self.missing(key))
+    }
+
+    pub(super) fn numbers<const N: usize>(&self, key: &str) -> Result<[f64; N], Problem> {
+        let Some(Node { value: Value::Array(entries), .. }) = self.node(key) else {
+            return Err(self.missing(key));
+        };
+        let all: Vec<f64> = entries.iter().filter_map(|node| number(&node.value)).collect();
+        all.try_into().map_err(|_| self.missing(key))
+    }
+
+    pub(super) fn optional_si(&self, key: &str) -> Option<f64> {
+        quantity::parse(self.optional_text(key)?).ok().map(|quantity| quantity.si)
+    }
+
+    /// A quantity in SI.
+    pub(super) fn si(&self, key: &str) -> Result<f64, Problem> {
+        self.optional_si(key).ok_or_else(|| self.missing(key))
+    }
+
+    pub(super) fn optional_si_vec(&self, key: &str) -> Option<Vec<f64>> {
+        self.node(key)?;
+        let texts = self.texts(key);
+        texts.iter().map(|text| quantity::parse(text).ok().map(|quantity| quantity.si)).collect()
+    }
+
+    pub(super) fn optional_si_array<const N: usize>(&self, key: &str) -> Option<[f64; N]> {
+        self.optional_si_vec(key)?.try_into().ok()
+    }
+
+    pub(super) fn si_array<const N: usize>(&self, key: &str) -> Result<[f64; N], Problem> {
+        self.optional_si_array(key).ok_or_else(|| self.missing(key))
+    }
+}
+
+/// Reads a completed document.
+pub(super) fn scenario(document: Table, folder: &Path) -> Result<Scenario, Problem> {
+    let root = Reader::root(&document);
+
+    let imu = root.table("imu")?;
+    let sample_period_ns = instrument::sample_period_ns(&imu)?;
+    let source = source::read(&root.table("source")?, sample_period_ns)?;
+    let site = root.table("site")?;
+    let site = plant::Site {
+        latitude_rad: site.si("latitude")?,
+        longitude_rad: site.si("longitude")?,
+        height_m: site.si("height")?,
+    };
+    let motion = instrument::motion(&root.table("motion")?)?;
+    let turntable = instrument::turntable(&root.table("turntable")?)?;
+    let screening = procedure::screening(&root.table("screening")?)?;
+    let setting = procedure::Setting {
+        sample_period_ns,
+        motion: &motion,
+        turntable: &turntable,
+        simulated: matches!(source, source::Source::Plant),
+    };
+    let procedure_table = root.table("procedure")?;
+    let procedure = procedure::procedure(&procedure_table, &setting)?;
+    let baseline = procedure::baseline(&root, &setting)?;
+    check_endpoint(&root.table("endpoint")?)?;
+    let scenario = Scenario {
+        title: root.text("title")?.to_owned(),
+        seed: root.integer("seed")?,
+        sample_period_ns,
+        site,
+        parameters: instrument::parameters(&imu)?,
+        imu: instrument::imu(&imu)?,
+        turntable,
+        alignment: procedure.alignment,
+        initial_parameters: procedure.initial_parameters,
+        calibration: procedure.calibration,
+        baseline,
+        aiding: procedure.aiding,
+        navigation: procedure.navigation,
+        screening,
+        requirements: requirement::read(&root)?,
+        record: record(&root.table("record")?, sample_period_ns)?,
+        source,
+        motion,
+        folder: folder.to_owned(),
+        document: Table::default(),
+    };
+    Ok(Scenario { document, ..scenario })
+}
+
+fn check_endpoint(endpoint: &Reader<'_>) -> Result<(), Problem> {
+    match endpoint.text("uri")? {
+        "in-process" => Ok(()),
+        other => Err(endpoint.problem(
+            "uri",
+            format!("found {other:?}, expected \"in-process\": this version has no other endpoint"),
+        )),
+    }
+}
+
+fn record(record: &Reader<'_>, sample_period_ns: u64) -> Result<Record, Problem> {
+    let samples = 1e9 / record.si("rate")? / sample_period_ns as f64;
+    let every_samples = samples.round();
+    if every_samples < 1.0 || (samples - every_samples).abs() > 1e-6 * samples {
+        return Err(record.problem(
+            "rate",
+            format!(
+                "found {:?}, which is {samples} samples of {} ns apart, expected a whole number",
+                record.text("rate")?,
+                sample_period_ns
+            ),
+        ));
+    }
+    Ok(Record {
+        every_samples: every_samples as u64,
+        full_samples: record.text("samples")? == "full",
+        parameters_period_ns: (record.si("parameters")? * 1e9).round() as u64,
+    })
+}
+
+/// A time as whole nanoseconds, if it is a multiple of the sample period.
+fn samples_of(time_s: f64, sample_period_ns: u64) -> Option<u64> {
+    let ns = (time_s * 1e9).round() as u64;
+    (ns > 0 && ns.is_multiple_of(sample_period_ns)).then(|| ns / sample_period_ns)
+}

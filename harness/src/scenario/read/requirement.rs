@@ -1,0 +1,128 @@
+//! Limits on results.
+
+use super::Reader;
+use crate::scenario::document::Value;
+use crate::scenario::error::Problem;
+use crate::scenario::quantity::{self, Quantity};
+use crate::scenario::{Comparison, Requirement};
+use octant_sample::parameters::{Group, NAMES};
+
+/// Units that the names of measures end in, with the unit's own spelling.
+const SUFFIXES: [(&str, &str); 9] = [
+    ("_arcmin", "arcmin"),
+    ("_arcsec", "arcsec"),
+    ("_nmi", "nmi"),
+    ("_deg", "deg"),
+    ("_mps", "m/s"),
+    ("_rad", "rad"),
+    ("_hours", "h"),
+    ("_s", "s"),
+    ("_m", "m"),
+];
+
+pub(super) fn read(root: &Reader<'_>) -> Result<Vec<Requirement>, Problem> {
+    let mut all: Vec<Requirement> = Vec::new();
+    for table in root.tables("requirements") {
+        let id = table.text("id")?.to_owned();
+        if id.trim().is_empty() {
+            return Err(table.problem("id", "found an empty text, expected an identifier"));
+        }
+        if all.iter().any(|other| other.id == id) {
+            return Err(
+                table.problem("id", format!("found {id:?} a second time, expected unique ids"))
+            );
+        }
+        let measure = table.text("measure")?;
+        let plain = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
+        if measure.split('.').any(|part| part.is_empty() || !part.chars().all(plain)) {
+            return Err(table.problem(
+                "measure",
+                format!(
+                    "found {measure:?}, expected a dotted path such as \
+                     navigation.longitude_error_arcmin.max"
+                ),
+            ));
+        }
+        let (limit, limit_text) = limit(&table, measure)?;
+        all.push(Requirement {
+            id,
+            text: table.text("text")?.to_owned(),
+            measure: measure.to_owned(),
+            limit,
+            limit_text,
+            comparison: match table.text("comparison")? {
+                "<" => Comparison::Below,
+                ">=" => Comparison::AtLeast,
+                ">" => Comparison::Above,
+                _ => Comparison::AtMost,
+            },
+            clause: table.optional_text("clause").map(str::to_owned),
+        });
+    }
+    Ok(all)
+}
+
+fn limit(table: &Reader<'_>, measure: &str) -> Result<(f64, String), Problem> {
+    let Some(Value::Text(text)) = table.node("limit").map(|node| &node.value) else {
+        let number = table.number("limit")?;
+        return Ok((number, number.to_string()));
+    };
+    let limit = quantity::parse(text)
+        .map_err(|_| table.problem("limit", format!("found {text:?}, expected a quantity")))?;
+    let Some((unit, one)) = unit_of(measure) else {
+        return Err(table.problem(
+            "limit",
+            format!("found {text:?}, expected a plain number: {measure} has no unit"),
+        ));
+    };
+    if !limit.same_dimension(one) {
+        return Err(table.problem(
+            "limit",
+            format!("found {text:?}, expected a quantity that is comparable with {unit}, the unit of {measure}"),
+        ));
+    }
+    // Written in the measure's own unit, the number is the one written.
+    let number = match text.trim().strip_suffix(&unit).and_then(|n| n.trim().parse().ok()) {
+        Some(number) => number,
+        None => limit.si / one.si,
+    };
+    Ok((number, text.to_owned()))
+}
+
+/// The unit of a measure, from its name: of a parameter, or the ending of a part of the path; with
+/// `slope_per_day` and `rate_per_h` the unit is per time.
+fn unit_of(measure: &str) -> Option<(String, Quantity)> {
+    let mut unit: Option<String> = None;
+    for part in measure.split('.') {
+        if let Some(index) = NAMES.iter().position(|name| *name == part) {
+            unit = Some(Group::of(index).unit().to_owned());
+        }
+        if let Some((_, found)) = SUFFIXES.iter().find(|(suffix, _)| part.ends_with(suffix)) {
+            unit = Some((*found).to_owned());
+        }
+        for (suffix, per) in [("_per_day", "/day"), ("_per_h", "/h")] {
+            if part.ends_with(suffix) {
+                unit = unit.map(|unit| unit + per);
+            }
+        }
+    }
+    let unit = unit?;
+    let one = quantity::parse(&format!("1 {unit}")).ok()?;
+    Some((unit, one))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_measure_names_its_unit() {
+        let unit = |measure| unit_of(measure).map(|(unit, _)| unit);
+        assert_eq!(unit("navigation.longitude_error_arcmin.max").as_deref(), Some("arcmin"));
+        let slope = unit("navigation.latitude_error_arcmin.slope_per_day");
+        assert_eq!(slope.as_deref(), Some("arcmin/day"));
+        assert_eq!(unit("navigation.radial_error_nmi.rate_per_h").as_deref(), Some("nmi/h"));
+        assert_eq!(unit("calibration.parameters.g_zz.sigma").as_deref(), Some("deg/h/g"));
+        assert_eq!(unit("calibration.nis_mean"), None);
+    }
+}

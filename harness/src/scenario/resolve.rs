@@ -1,0 +1,223 @@
+//! From a scenario to the configurations of plant and core, with what is drawn from the seed.
+//!
+//! Drawing is in [`Draws::of`] alone, through the two functions of [`Variates`]; all else takes the
+//! drawn values. Both methods of a scenario take the same draws.
+
+use super::read::case_attitude;
+use super::{Alignment, Component, Distribution, Method, Motion, Scenario};
+use octant_calibration::config as core;
+use octant_earth::{UnitQuaternion, Vector3, rotation};
+use octant_plant::config as plant;
+use octant_sample::Parameters;
+use octant_sample::parameters::{Group, PARAMETER_COUNT};
+
+/// Where random numbers come from. A stream is named, and `index` counts in it: no number depends
+/// on whether another one was drawn.
+pub trait Variates {
+    /// Standard normal.
+    fn normal(&mut self, stream: &str, index: u64) -> f64;
+    /// Even in [0, 1).
+    fn uniform(&mut self, stream: &str, index: u64) -> f64;
+}
+
+/// What is drawn from the seed before a run.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Draws {
+    /// True parameters.
+    pub parameters: Parameters,
+    /// Phases of the ship's components, rad: of roll, pitch, yaw, surge, sway, heave, in the order
+    /// of the components. Empty when static.
+    pub phases: [Vec<f64>; 6],
+    /// Error of the attitude handed over, φ north, east, down, rad.
+    pub attitude_error_rad: [f64; 3],
+    /// Error of the velocity handed over, m/s.
+    pub velocity_error_mps: [f64; 3],
+}
+
+impl Draws {
+    /// Draws what the scenario leaves open and takes over what it gives.
+    pub fn of(scenario: &Scenario, variates: &mut impl Variates) -> Self {
+        let mut all = [0.0; PARAMETER_COUNT];
+        for (group, distribution) in Group::ALL.into_iter().zip(&scenario.parameters) {
+            let stream = format!("parameters.{}", group.name());
+            for (index, value) in all[group.range()].iter_mut().enumerate() {
+                *value = match distribution {
+                    Distribution::Normal(sigma) => sigma * variates.normal(&stream, index as u64),
+                    Distribution::Uniform(half_width) => {
+                        half_width * (2.0 * variates.uniform(&stream, index as u64) - 1.0)
+                    }
+                    Distribution::Constant(values) => values[index],
+                };
+            }
+        }
+        let mut phases: [Vec<f64>; 6] = Default::default();
+        if let Motion::Dockside(ship) = &scenario.motion {
+            for ((phases, components), name) in
+                phases.iter_mut().zip(&ship.components).zip(super::read::MOTIONS)
+            {
+                let stream = format!("motion.{name}");
+                let mut draw =
+                    |index: usize| std::f64::consts::TAU * variates.uniform(&stream, index as u64);
+                let phase =
+                    |(index, c): (usize, &Component)| c.phase_rad.unwrap_or_else(|| draw(index));
+                *phases = components.iter().enumerate().map(phase).collect();
+            }
+        }
+        let (mut attitude_error_rad, mut velocity_error_mps) = ([0.0; 3], [0.0; 3]);
+        if let Alignment::Given {
+            tilt_rad,
+            azimuth_rad,
+            velocity_mps,
+            attitude_error_rad: attitude,
+            velocity_error_mps: velocity,
+        } = scenario.alignment
+        {
+            let mut normal = |stream: &str, index: u64| variates.normal(stream, index);
+            let sigma = [tilt_rad, tilt_rad, azimuth_rad];
+            for axis in 0..3 {
+                let index = axis as u64;
+                attitude_error_rad[axis] = attitude.map_or_else(
+                    || sigma[axis] * normal("alignment.attitude", index),
+                    |error| error[axis],
+                );
+                velocity_error_mps[axis] = velocity.map_or_else(
+                    || velocity_mps * normal("alignment.velocity", index),
+                    |error| error[axis],
+                );
+            }
+        }
+        Self {
+            parameters: Parameters::from_array(&all),
+            phases,
+            attitude_error_rad,
+            velocity_error_mps,
+        }
+    }
+}
+
+impl Scenario {
+    /// The plant's configuration.
+    #[must_use]
+    pub fn plant(&self, seed: u64, draws: &Draws) -> plant::Config {
+        plant::Config {
+            sample_period_ns: self.sample_period_ns,
+            seed,
+            calibration_samples: self.calibration_samples(),
+            site: self.site,
+            motion: self.plant_motion(draws),
+            turntable: self.turntable,
+            imu: plant::Imu { parameters: draws.parameters, ..self.imu.clone() },
+            aiding: self.aiding,
+        }
+    }
+
+    fn plant_motion(&self, draws: &Draws) -> plant::Motion {
+        let ship = match &self.motion {
+            Motion::Static(mean) => return plant::Motion::Static(*mean),
+            Motion::Dockside(ship) => ship,
+        };
+        let [roll, pitch, yaw, surge, sway, heave] = std::array::from_fn(|motion| {
+            let pairs = ship.components[motion].iter().zip(&draws.phases[motion]);
+            pairs
+                .map(|(component, phase_rad)| plant::Sinusoid {
+                    amplitude: component.amplitude,
+                    period_s: component.period_s,
+                    phase_rad: *phase_rad,
+                })
+                .collect()
+        });
+        let (mean, mooring_offset_m) = (ship.mean, ship.mooring_offset_m);
+        plant::Motion::Dockside(plant::Dockside {
+            mean,
+            roll,
+            pitch,
+            yaw,
+            surge,
+            sway,
+            heave,
+            mooring_offset_m,
+        })
+    }
+
+    /// The core's configuration for one of the two methods; `None` where the scenario has no
+    /// baseline.
+    ///
+    /// The attitude handed over is the true one with the drawn error: `c_nb(computed) =
+    /// (I − [φ×]) c_nb(true)`. `true_q_nb` and `true_velocity_mps` are the truth at the start.
+    #[must_use]
+    pub fn core(
+        &self,
+        method: Method,
+        draws: &Draws,
+        true_q_nb: &UnitQuaternion<f64>,
+        true_velocity_mps: &Vector3<f64>,
+    ) -> Option<core::Config> {
+        let calibration = match method {
+            Method::Primary => self.calibration.as_ref(),
+            Method::Baseline => Some(self.baseline.as_ref()?),
+        };
+        Some(core::Config {
+            sample_period_ns: self.sample_period_ns,
+            site: core::Site {
+                latitude_rad: self.site.latitude_rad,
+                longitude_rad: self.site.longitude_rad,
+                height_m: self.site.height_m,
+            },
+            alignment: match self.alignment {
+                Alignment::Coarse { duration_s } => core::Alignment::Coarse { duration_s },
+                Alignment::Given { .. } => core::Alignment::Given {
+                    q_nb: with_error(true_q_nb, draws.attitude_error_rad),
+                    velocity_mps: true_velocity_mps + Vector3::from(draws.velocity_error_mps),
+                },
+            },
+            calibration: calibration.map(|calibration| core::Calibration {
+                sequence: calibration.sequence.clone(),
+                duration_s: calibration.duration_s,
+                estimator: calibration.estimator,
+            }),
+            navigation: self.navigation.clone(),
+            turntable: core::TurntableRates {
+                rate_radps: self.turntable.rate_radps,
+                acceleration_radps2: self.turntable.acceleration_radps2,
+            },
+            noise: core::Noise {
+                angle_random_walk: self.imu.angle_random_walk,
+                velocity_random_walk: self.imu.velocity_random_walk,
+            },
+            initial_parameters: self.initial_parameters,
+            screening: self.screening,
+        })
+    }
+
+    /// Mean attitude of the case with the gimbals at zero, `q_nb`: the true one when static.
+    #[must_use]
+    pub fn mean_attitude(&self) -> UnitQuaternion<f64> {
+        match &self.motion {
+            Motion::Static(mean) => case_attitude(mean),
+            Motion::Dockside(ship) => case_attitude(&ship.mean),
+        }
+    }
+}
+
+/// An attitude with the error φ (rad, in n): the rotation whose first order is `I − [φ×]`.
+fn with_error(truth: &UnitQuaternion<f64>, phi_rad: [f64; 3]) -> UnitQuaternion<f64> {
+    rotation::exp(&-Vector3::from(phi_rad)) * truth
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use octant_earth::{Matrix3, frames, units::DEG};
+
+    #[test]
+    fn the_attitude_error_has_the_sign_of_phi() {
+        let truth = frames::quaternion_from_matrix(&frames::c_nc(0.7, -0.2, 0.1));
+        let phi = [2e-4, -3e-4, 1.7e-3];
+        let computed = with_error(&truth, phi);
+        let expected = (Matrix3::identity() - rotation::skew(&Vector3::from(phi)))
+            * truth.to_rotation_matrix().matrix();
+        let difference = computed.to_rotation_matrix().matrix() - expected;
+        assert!(difference.norm() < (0.1 * DEG).powi(2), "second order: {difference}");
+        assert!((frames::phi_of(&computed, &truth) - Vector3::from(phi)).norm() < 1e-12);
+    }
+}

@@ -1,0 +1,299 @@
+//! The tour: a scenario that names every key with its meaning, made from the table of keys.
+//!
+//! Keys that are left out by default, or that contradict another one, are there as comments.
+
+use super::complete::{expected, join};
+use super::document::{parse_default, write_value};
+use super::keys::{Default, Key, Kind, SCENARIO, Section};
+
+/// What the tour sets beside the defaults: path and TOML value.
+const SET: &[(&str, &str)] = &[
+    ("schema", "1"),
+    ("title", "a tour of every key"),
+    ("procedure.calibration.positions", "eight"),
+    ("procedure.navigation.duration", "24 h"),
+    ("baseline.positions", "six"),
+    ("baseline.g_states", "false"),
+    ("requirements.id", "NAV-1"),
+    ("requirements.text", "The longitude error stays below 20 arcmin over 24 hours."),
+    ("requirements.measure", "navigation.longitude_error_arcmin.max"),
+    ("requirements.limit", "20 arcmin"),
+    ("requirements.clause", "example: no document behind it"),
+];
+
+/// Tables that are left out by default and that the tour has.
+const OPENED: &[&str] =
+    &["procedure.calibration", "procedure.navigation", "baseline", "requirements"];
+
+/// Examples where the one of the dimension says little.
+const EXAMPLES: &[(&str, &str)] = &[
+    ("motion.ship.roll", r#"[{ amplitude = "3 deg", period = "8 s", phase = "0 deg" }]"#),
+    ("motion.ship.pitch", r#"[{ amplitude = "1.5 deg", period = "6 s", phase = "0 deg" }]"#),
+    ("motion.ship.yaw", r#"[{ amplitude = "1 deg", period = "10 s", phase = "0 deg" }]"#),
+    ("motion.ship.surge", r#"[{ amplitude = "0.2 m", period = "6 s", phase = "0 deg" }]"#),
+    ("motion.ship.sway", r#"[{ amplitude = "0.2 m", period = "7 s", phase = "0 deg" }]"#),
+    ("motion.ship.heave", r#"[{ amplitude = "0.2 m", period = "8 s", phase = "0 deg" }]"#),
+    ("motion.ship.spectrum.peak_period", r#""8 s""#),
+    ("imu.extensions.temperature.plateau", r#""15 K""#),
+    ("imu.extensions.vibration.frequency", r#""35 Hz""#),
+    (
+        "procedure.calibration.stops",
+        r#"[{ azimuth = "0 deg", roll = "0 deg", weight = 1.0 }, { azimuth = "0 deg", roll = "45 deg", weight = 2.0 }]"#,
+    ),
+    (
+        "baseline.stops",
+        r#"[{ azimuth = "0 deg", roll = "0 deg", weight = 1.0 }, { azimuth = "0 deg", roll = "90 deg", weight = 1.0 }]"#,
+    ),
+    ("source.text.gyro.file", r#""gyroscope.txt""#),
+    ("source.text.gyro.y", "3"),
+    ("source.text.gyro.z", "4"),
+    ("source.text.accelerometer.file", r#""accelerometer.txt""#),
+    ("source.text.accelerometer.x", "5"),
+    ("source.text.accelerometer.y", "6"),
+    ("source.text.accelerometer.z", "7"),
+    ("source.text.gimbal.azimuth", "8"),
+    ("source.text.gimbal.roll", "9"),
+    ("source.mcap.topic", r#""/imu""#),
+    ("source.mcap.time_field", r#""header.stamp""#),
+    ("source.mcap.gyro.x", r#""angular_velocity.x""#),
+    ("source.mcap.gyro.y", r#""angular_velocity.y""#),
+    ("source.mcap.gyro.z", r#""angular_velocity.z""#),
+    ("source.mcap.accelerometer.x", r#""linear_acceleration.x""#),
+    ("source.mcap.accelerometer.y", r#""linear_acceleration.y""#),
+    ("source.mcap.accelerometer.z", r#""linear_acceleration.z""#),
+];
+
+/// The example of the key at a path, as TOML.
+fn example_at(path: &str, kind: &Kind) -> String {
+    let own = EXAMPLES.iter().find(|(name, _)| *name == path);
+    own.map_or_else(|| example(kind), |(_, text)| (*text).to_owned())
+}
+
+/// Keys with a default that have no effect beside what the tour sets.
+const CLOSED: &[&str] = &["procedure.alignment.duration", "procedure.calibration.least_squares"];
+
+/// The tour as TOML. It runs: 4 hours of calibration, 24 hours of navigation, two methods.
+#[must_use]
+pub fn tour() -> String {
+    let mut out = String::from(
+        "# A tour of every key of a scenario: what it takes, its default and its meaning.\n\
+         #\n\
+         # Lines that start with \"#:\" are keys that this scenario leaves out: take the mark away to use\n\
+         # one. All others have their defaults, but for title, positions, navigation, baseline and\n\
+         # requirements. It runs: the instrument of Table 1 of the paper, static, four hours of\n\
+         # calibration in eight positions, 24 hours of navigation, and again with six positions.\n\n",
+    );
+    table(&SCENARIO, "", true, &mut out);
+    out
+}
+
+/// Writes the keys of a table: values first, then tables under their headers.
+fn table(section: &Section, path: &str, open: bool, out: &mut String) {
+    let possible = || section.keys.iter().filter(|key| !matches!(key.kind, Kind::Refused(_)));
+    for key in possible().filter(|key| headed(key, path).is_none()) {
+        comment(key, out);
+        let path = join(path, key.name);
+        let set = SET.iter().find(|(name, _)| *name == path).map(|(_, text)| *text);
+        let default = match key.default {
+            Default::Value(text) => Some(text),
+            _ => None,
+        };
+        let mark = if open && set.or(default).is_some() { "" } else { "#: " };
+        let value = set.or(default).map_or_else(|| example_at(&path, &key.kind), written);
+        *out += &format!("{mark}{} = {value}\n", key.name);
+    }
+    for key in possible() {
+        let Some((inner, array)) = headed(key, path) else { continue };
+        let path = join(path, key.name);
+        let optional = !matches!(key.default, Default::Section | Default::Value(_));
+        let open = open
+            && (!optional || OPENED.contains(&path.as_str()))
+            && !CLOSED.contains(&path.as_str());
+        out.push('\n');
+        comment(key, out);
+        let mark = if open { "" } else { "#: " };
+        *out += &if array { format!("{mark}[[{path}]]\n") } else { format!("{mark}[{path}]\n") };
+        table(inner, &path, open, out);
+    }
+}
+
+/// The keys of a table that has its own header, and whether it is one of an array.
+fn headed(key: &Key, path: &str) -> Option<(&'static Section, bool)> {
+    match &key.kind {
+        Kind::Table(section) if !section.one_of => Some((section, false)),
+        Kind::Tables(section, ..) if path.is_empty() => Some((section, true)),
+        Kind::Either(kinds) => kinds.iter().find_map(Kind::section).map(|section| (section, false)),
+        _ => None,
+    }
+}
+
+/// Meaning, what is taken, and the default.
+fn comment(key: &Key, out: &mut String) {
+    let mut text = key.doc.to_owned();
+    match &key.kind {
+        Kind::Table(section) if section.one_of => {
+            let each = section.keys.iter().map(|key| {
+                format!("{} = {} ({})", key.name, example(&key.kind), key.doc.trim_end_matches('.'))
+            });
+            text += &format!(" One of: {}.", each.collect::<Vec<_>>().join("; "));
+        }
+        Kind::Choice(choices) | Kind::Uri(choices) => {
+            let each = choices.iter().map(|(name, doc)| {
+                if doc.is_empty() { format!("{name:?}") } else { format!("{name:?} ({doc})") }
+            });
+            text += &format!(" {}.", each.collect::<Vec<_>>().join("; "));
+        }
+        Kind::Either(kinds) if !kinds.iter().any(|kind| matches!(kind, Kind::Table(_))) => {
+            text += &format!(" Takes {}.", expected(&key.kind));
+        }
+        Kind::Either(kinds) => {
+            let texts = kinds.iter().filter(|kind| !matches!(kind, Kind::Table(_)));
+            let each = texts.map(|kind| format!("{} = {}", key.name, example(kind)));
+            text += &format!(" Instead of the table: {}.", each.collect::<Vec<_>>().join(" or "));
+        }
+        Kind::Table(_) | Kind::Tables(..) => {}
+        kind => text += &format!(" Takes {}.", expected(kind)),
+    }
+    match key.default {
+        Default::Value(default) if !matches!(key.kind, Kind::Either(_)) => {
+            text += &format!(" Default {}.", written(default));
+        }
+        Default::Value(_) | Default::Section => {}
+        Default::Derived(words) => text += &format!(" Default: {words}."),
+        Default::Absent(words) => text += &format!(" Left out: {words}."),
+        Default::Required => text += " Always given.",
+    }
+    let mut line = String::from("#");
+    for word in text.split_whitespace() {
+        if line.chars().count() + 1 + word.chars().count() > 100 {
+            *out += &line;
+            out.push('\n');
+            line = String::from("#");
+        }
+        line.push(' ');
+        line += word;
+    }
+    *out += &line;
+    out.push('\n');
+}
+
+/// A default of the table as TOML.
+fn written(default: &str) -> String {
+    let mut out = String::new();
+    write_value(&parse_default(default).value, &mut out);
+    out
+}
+
+/// A value that a kind takes, as TOML.
+fn example(kind: &Kind) -> String {
+    let repeat = |text: &str, count: usize| format!("[{}]", vec![text; count].join(", "));
+    match kind {
+        Kind::Text => "\"text\"".to_owned(),
+        Kind::Choice(choices) | Kind::Uri(choices) => format!("{:?}", choices[0].0),
+        Kind::Choices(choices) => format!("[{:?}]", choices[0]),
+        Kind::Boolean => "true".to_owned(),
+        Kind::Integer(from, _) => from.to_string(),
+        Kind::Number(_) => "1.0".to_owned(),
+        Kind::Numbers(count) => repeat("1.0", *count),
+        Kind::Quantity(dimensions, _) => format!("{:?}", dimensions[0].example),
+        Kind::Quantities(dimension, count) => repeat(&format!("{:?}", dimension.example), *count),
+        Kind::Limit => "\"20 arcmin\"".to_owned(),
+        Kind::Column => "2".to_owned(),
+        Kind::Table(section) | Kind::Tables(section, ..) => {
+            let keys = section.keys.iter().take(if section.one_of { 1 } else { usize::MAX });
+            let each = keys.map(|key| match key.default {
+                Default::Value(text) => format!("{} = {}", key.name, written(text)),
+                _ => format!("{} = {}", key.name, example(&key.kind)),
+            });
+            let table = format!("{{ {} }}", each.collect::<Vec<_>>().join(", "));
+            if matches!(kind, Kind::Tables(..)) { format!("[{table}]") } else { table }
+        }
+        Kind::Either(kinds) => example(&kinds[0]),
+        Kind::Refused(reason) => format!("{reason:?}"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::complete::complete;
+    use super::super::document;
+    use super::super::error::Place;
+    use super::*;
+
+    /// Every path of the table of keys, with the key.
+    fn paths(section: &'static Section, path: &str, all: &mut Vec<(String, &'static Key)>) {
+        for key in section.keys.iter().filter(|key| !matches!(key.kind, Kind::Refused(_))) {
+            let path = join(path, key.name);
+            all.push((path.clone(), key));
+            let inner = match &key.kind {
+                Kind::Tables(section, ..) => Some(*section),
+                kind => kind.section(),
+            };
+            if let Some(section) = inner {
+                paths(section, &path, all);
+            }
+        }
+    }
+
+    #[test]
+    fn the_shipped_tour_is_the_one_of_the_table() {
+        let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/scenarios/tour.toml");
+        if std::env::var_os("OCTANT_WRITE_FIXTURES").is_some() {
+            std::fs::write(file, tour()).unwrap();
+        }
+        let shipped = std::fs::read_to_string(file).unwrap();
+        assert_eq!(shipped, tour(), "run this test with OCTANT_WRITE_FIXTURES=1 to write the tour");
+    }
+
+    #[test]
+    fn the_tour_names_every_key_of_the_table() {
+        let tour = tour();
+        let mut all = Vec::new();
+        paths(&SCENARIO, "", &mut all);
+        assert!(all.len() > 150, "{} keys", all.len());
+        for (path, _) in all {
+            let (parent, name) = path.rsplit_once('.').unwrap_or(("", &path));
+            // Under the parent's header, or in the parent's line where that is an inline table.
+            let header = format!("[{path}]");
+            let parent_header = format!("[{parent}]");
+            let block = if parent.is_empty() {
+                &tour[..]
+            } else if let Some(at) = tour.find(&parent_header) {
+                &tour[at..]
+            } else {
+                let inline = parent.rsplit('.').next().unwrap();
+                let at = tour.find(&format!("{inline} = ")).unwrap_or_else(|| panic!("{path}"));
+                let from = tour[..at].rfind("\n\n").unwrap_or(0);
+                &tour[from..]
+            };
+            let named = tour.contains(&header) || block.contains(&format!("{name} = "));
+            assert!(named, "{path} is not in the tour");
+        }
+    }
+
+    #[test]
+    fn every_example_and_every_default_passes_the_check() {
+        let mut all = Vec::new();
+        paths(&SCENARIO, "", &mut all);
+        // A table's example is the sum of those of its keys.
+        all.retain(|(_, key)| key.kind.section().is_none_or(|section| section.one_of));
+        for (path, key) in all {
+            let mut values = vec![example_at(&path, &key.kind)];
+            if let Default::Value(text) = key.default {
+                values.push(written(text));
+            }
+            for value in values {
+                let text = format!("x = {value}");
+                let mut table = document::parse(&text).unwrap_or_else(|e| panic!("{path}: {e:?}"));
+                let mut problems = Vec::new();
+                let node = table.get_mut("x").unwrap();
+                super::super::complete::check(node, key, &key.kind, &path, &mut problems);
+                assert!(problems.is_empty(), "{path}: {text}: {problems:?}");
+            }
+        }
+        let mut table = document::parse("").unwrap();
+        let mut problems = Vec::new();
+        complete(&mut table, &SCENARIO, "", &Place::Default, &mut problems);
+        assert_eq!(problems.len(), 1, "the schema alone has to be given: {problems:?}");
+    }
+}
