@@ -36,6 +36,9 @@ pub fn euler_of(c: &Matrix3<f64>) -> (f64, f64, f64) {
 /// Attitude error φ (rad, in n) of a computed attitude against the true one:
 /// `c_nb(computed) = (I − [φ×]) c_nb(true)`.
 #[must_use]
-pub fn phi_of(computed: &UnitQuaternion<f64>, truth: &UnitQuaternion<f64>) -> nalgebra::Vector3<f64> {
+pub fn phi_of(
+    computed: &UnitQuaternion<f64>,
+    truth: &UnitQuaternion<f64>,
+) -> nalgebra::Vector3<f64> {
     -crate::rotation::log(&(computed * truth.inverse()))
 }

@@ -39,7 +39,9 @@ fn g_dependent_bias_by_orientation() {
     let vector = |value: &Value| {
         Vector3::from_iterator(value.as_array().unwrap().iter().map(|v| v.as_f64().unwrap()))
     };
-    let g = Matrix3::from_rows(&[0, 1, 2].map(|i| vector(&golden["g_matrix_dph_per_g"][i]).transpose()));
+    let g = Matrix3::from_rows(
+        &[0, 1, 2].map(|i| vector(&golden["g_matrix_dph_per_g"][i]).transpose()),
+    );
     for row in golden["rows"].as_array().unwrap() {
         let angle = |key: &str| row[key].as_f64().unwrap() * DEG;
         let c = c_cb(angle("azimuth_deg"), angle("roll_deg"));
