@@ -77,7 +77,11 @@ impl Rows {
             if !self.read_line()? {
                 return Ok(false);
             }
-            let line = self.text.trim();
+            let line = match self.delimiter {
+                Delimiter::Blanks => self.text.trim(),
+                // A tab may be the delimiter, and the first field empty.
+                Delimiter::Character(_) => self.text.trim_end_matches(['\r', '\n']),
+            };
             if line.is_empty() || (!self.comment.is_empty() && line.starts_with(&self.comment)) {
                 continue;
             }
