@@ -4,5 +4,6 @@
 //! **source → faults → endpoint → recorder → score → report**.
 
 pub mod endpoint;
+pub mod evidence;
 pub mod recorder;
 pub mod source;
