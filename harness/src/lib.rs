@@ -6,4 +6,6 @@
 pub mod endpoint;
 pub mod observe;
 pub mod scenario;
+pub mod evidence;
+pub mod recorder;
 pub mod source;

@@ -1,9 +1,9 @@
 //! Ensembles: the filter is consistent, and the paper's claim holds where physics lets it.
 #![allow(clippy::unwrap_used)]
 
-mod common;
+mod instrument;
 
-use common::{Case, PERIOD_NS};
+use instrument::{Case, PERIOD_NS};
 use octant_calibration::Core;
 use octant_calibration::covariance::{DV, PARAMETERS, PHI};
 use octant_calibration::positions::{EIGHT, SIX};

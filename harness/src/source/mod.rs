@@ -1,5 +1,20 @@
 //! Where samples come from: the plant, a recording, a file of a real instrument.
 
+mod counting;
+mod fields;
+mod foreign;
+mod replay;
+mod rows;
+mod text;
+
+pub use counting::Quantity;
+pub use foreign::{MappedField, MappedStamp, McapMapping};
+pub use replay::Replay;
+pub use text::{
+    Axis, Column, Delimiter, GimbalColumns, TextFiles, TextMapping, TextSource, TimeColumn,
+    TimeUnit,
+};
+
 use octant_plant::Truth;
 use octant_sample::{Aiding, GimbalCommand, Sample};
 
@@ -43,4 +58,13 @@ pub enum SourceError {
         /// What is wrong with it: found and expected, with line or offset.
         reason: String,
     },
+}
+
+/// The period of a nominal rate, rounded to a nanosecond.
+fn nominal_period_ns(rate_hz: f64) -> Result<u64, String> {
+    if rate_hz.is_finite() && (1e-3..=1e8).contains(&rate_hz) {
+        Ok((1e9 / rate_hz).round() as u64)
+    } else {
+        Err(format!("nominal rate is {rate_hz} Hz, expected 0.001 to 1e8 Hz"))
+    }
 }

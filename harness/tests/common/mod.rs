@@ -1,128 +1,138 @@
-//! Plant and core of the reference instrument, put together without a scenario file.
-#![allow(dead_code, clippy::unwrap_used)]
+//! Epochs for the tests of recordings.
+#![allow(dead_code, unreachable_pub, clippy::unwrap_used)]
 
-use nalgebra::UnitQuaternion;
-use octant_calibration::config::{self as core, *};
-use octant_calibration::positions::{SIXTEEN, from_degrees};
-use octant_earth::rotation::exp;
-use octant_earth::units::*;
-use octant_plant::config as plant;
-use octant_plant::draw::{Draw, ParameterDraws, alignment_error, parameters};
-use octant_sample::Parameters;
+use octant::endpoint::ParameterEstimate;
+use octant::recorder::{Extra, Frame, Recorder, RecorderOptions, RecorderSummary};
+use octant::source::Epoch;
+use octant_plant::Truth;
+use octant_sample::time::SimulatedTime;
+use octant_sample::{
+    Aiding, DeviceTime, GimbalAngles, GimbalCommand, Health, Mode, Navigation, Output, Parameters,
+    Reference, Sample, Status,
+};
+use std::io::{self, Write};
+use std::sync::{Arc, Mutex};
 
-pub const PERIOD_NS: u64 = 5_000_000;
-pub const LATITUDE_RAD: f64 = 30.5 * DEG;
-
-/// One method on one seed of the reference instrument.
-pub struct Case {
-    pub seed: u64,
-    pub positions: &'static [(f64, f64, f64)],
-    pub passes: u32,
-    pub calibration_h: f64,
-    pub navigation_h: f64,
-    pub g_dph_per_g: f64,
-    pub g_states: bool,
-    pub angle_random_walk: f64,
+/// Everything the run loop has of one epoch.
+#[derive(Clone, Debug)]
+pub struct Step {
+    pub clean: Epoch,
+    pub faulted: Epoch,
+    pub output: Output,
+    pub parameters: Option<ParameterEstimate>,
 }
 
-impl Case {
-    pub fn table_1(seed: u64, positions: &'static [(f64, f64, f64)]) -> Self {
-        Self {
-            seed,
-            positions,
-            passes: 1,
-            calibration_h: 4.0,
-            navigation_h: 0.0,
-            g_dph_per_g: 5e-4,
-            g_states: true,
-            angle_random_walk: 7e-4,
-        }
-    }
+/// Period of the test streams: 200 Hz.
+pub const PERIOD_NS: u64 = 5_000_000;
 
-    pub fn plant(&self) -> plant::Config {
-        let draws = ParameterDraws {
-            g_dependent: Draw::Normal { sigma: self.g_dph_per_g * DEG_PER_HOUR_PER_G },
-            ..ParameterDraws::table_1()
-        };
-        plant::Config {
-            sample_period_ns: PERIOD_NS,
-            seed: self.seed,
-            calibration_samples: (self.calibration_h * 3600.0 * 200.0) as u64,
-            site: plant::Site { latitude_rad: LATITUDE_RAD, longitude_rad: 2.0, height_m: 0.0 },
-            motion: plant::Motion::Static(plant::CaseAttitude::default()),
-            turntable: plant::Turntable {
-                rate_radps: 10.0 * DEG,
-                acceleration_radps2: 10.0 * DEG,
-                encoder_sigma_rad: 18.0 * ARCSEC,
-                non_orthogonality_rad: 0.0,
-                backlash_rad: 0.0,
-            },
-            imu: plant::Imu {
-                parameters: parameters(self.seed, &draws),
-                angle_random_walk: self.angle_random_walk * DEG_PER_SQRT_HOUR,
-                velocity_random_walk: 50.0 * MICRO_G,
-                extensions: plant::Extensions::default(),
-            },
-            aiding: plant::AidingSource {
-                kind: plant::AidingKind::ZeroVelocity { sigma_mps: 1e-3 },
-                period_ns: 1_000_000_000,
-            },
-        }
-    }
-
-    pub fn core(&self) -> core::Config {
-        let error = alignment_error(self.seed, 60.0 * ARCSEC, 0.1 * DEG, 0.02);
-        let phi = nalgebra::Vector3::from(error.phi_rad);
-        let mut estimated = [true; 7];
-        estimated[octant_sample::parameters::Group::GDependent as usize] = self.g_states;
-        core::Config {
-            sample_period_ns: PERIOD_NS,
-            site: Site { latitude_rad: LATITUDE_RAD, longitude_rad: 2.0, height_m: 0.0 },
-            alignment: Alignment::Given {
-                // computed = (I − [φ×]) true
-                q_nb: exp(&-phi) * UnitQuaternion::identity(),
-                velocity_mps: error.velocity_mps.into(),
-            },
-            calibration: Some(Calibration {
-                sequence: from_degrees(self.positions, self.passes).unwrap(),
-                duration_s: self.calibration_h * 3600.0,
-                estimator: Estimator::Kalman(Kalman {
-                    error_model: ErrorModel::Phi,
-                    estimated,
-                    prior: Prior {
-                        attitude_rad: [60.0 * ARCSEC, 60.0 * ARCSEC, 0.1 * DEG],
-                        velocity_mps: 0.02,
-                        position_m: 1.0,
-                        parameters: [
-                            0.005 * DEG_PER_HOUR,
-                            30.0 * PPM,
-                            40.0 * ARCSEC,
-                            self.g_dph_per_g * DEG_PER_HOUR_PER_G,
-                            100.0 * MICRO_G,
-                            30.0 * PPM,
-                            40.0 * ARCSEC,
-                        ],
-                    },
-                    aiding: AidingMode::Velocity { sigma_mps: 1e-3 },
-                    aiding_period_ns: 1_000_000_000,
-                    refuse_above_mean_nis: 9.0,
+/// A stream that looks like a run: noisy counts, aiding and parameters at 1 Hz, a change of mode
+/// half way.
+pub fn stream(epochs: u64) -> Vec<Step> {
+    let mut state = 0x9E37_79B9_7F4A_7C15u64;
+    let mut noise = move |scale: i64| {
+        // xorshift64*, only to have bits that don't compress.
+        state ^= state >> 12;
+        state ^= state << 25;
+        state ^= state >> 27;
+        ((state.wrapping_mul(0x2545_F491_4F6C_DD1D) >> 32) as i64 % (2 * scale) - scale) as i32
+    };
+    (1..=epochs)
+        .map(|k| {
+            let device_time = DeviceTime::from_ns(k * PERIOD_NS);
+            let sample = Sample {
+                sequence: k,
+                device_time,
+                delta_theta: [noise(5000) + 12_000, noise(5000), noise(5000) - 20_000],
+                delta_velocity: [noise(9000), noise(9000), noise(9000) - 52_000_000],
+                gimbal: GimbalAngles { azimuth: (k / 1000) as i32 * 100, roll: -7 },
+                status: Status::empty(),
+            };
+            let second = k % 200 == 0;
+            let wiggle = |scale: f64, n: i32| scale * f64::from(n);
+            let epoch = Epoch {
+                sample,
+                aiding: second.then(|| Aiding {
+                    device_time,
+                    reference: Reference::Velocity(std::array::from_fn(|_| {
+                        wiggle(1e-6, noise(999))
+                    })),
                 }),
-            }),
-            navigation: (self.navigation_h > 0.0).then(|| NavigationPlan {
-                duration_s: Some(self.navigation_h * 3600.0),
-                rotation: from_degrees(SIXTEEN, 1).unwrap(),
-                dwell_s: 300.0,
-            }),
-            turntable: TurntableRates { rate_radps: 10.0 * DEG, acceleration_radps2: 10.0 * DEG },
-            noise: Noise {
-                angle_random_walk: self.angle_random_walk * DEG_PER_SQRT_HOUR,
-                velocity_random_walk: 50.0 * MICRO_G,
-            },
-            initial_parameters: Parameters::default(),
-            screening: Screening {
-                gate: Some(Gate { nis: 25.0, rejections: 5, recovery: Recovery::Widening }),
-                stuck_samples: Some(8),
-            },
-        }
+            };
+            let revision = (k / 200) as u32;
+            let output = Output {
+                sequence: k,
+                device_time,
+                mode: if k > epochs / 2 { Mode::Navigating } else { Mode::Calibrating },
+                stop: (k / 1000) as u16,
+                moving: k % 1000 < 100,
+                gimbal_command: GimbalCommand { target: GimbalAngles { azimuth: 5, roll: -5 } },
+                navigation: Navigation {
+                    latitude_rad: 0.53 + wiggle(1e-12, noise(99_999)),
+                    longitude_rad: 2.0 + wiggle(1e-12, noise(99_999)),
+                    height_m: wiggle(1e-5, noise(99_999)),
+                    velocity_mps: std::array::from_fn(|_| wiggle(1e-8, noise(99_999))),
+                    q_nb: std::array::from_fn(|_| 0.5 + wiggle(1e-9, noise(99_999))),
+                },
+                health: Health::empty(),
+                nis: if second { wiggle(1e-3, noise(3000)).abs() } else { f64::NAN },
+                parameters_revision: revision,
+            };
+            let parameters = (second).then(|| ParameterEstimate {
+                revision,
+                parameters: Parameters::from_array(&std::array::from_fn(|_| {
+                    wiggle(1e-12, noise(999))
+                })),
+                sigma: std::array::from_fn(|_| wiggle(1e-12, noise(999)).abs()),
+            });
+            Step { clean: epoch, faulted: epoch, output, parameters }
+        })
+        .collect()
+}
+
+/// Truth at the stamp of a step.
+pub fn truth_of(step: &Step) -> Truth {
+    Truth {
+        time: SimulatedTime::from_ns(step.clean.sample.device_time.ns),
+        latitude_rad: 0.53,
+        q_nb: [1.0, -0.0, 0.0, 1e-9],
+        ..Truth::default()
     }
+}
+
+/// What the run loop does with one step.
+pub fn push(recorder: &mut Recorder, step: &Step) -> Result<(), octant::recorder::RecorderError> {
+    recorder.push(Frame { clean: &step.clean, faulted: &step.faulted, output: &step.output })?;
+    if recorder.truth_due() {
+        recorder.extra(&Extra::Truth(truth_of(step)));
+    }
+    if recorder.parameters_due() {
+        recorder.extra(&Extra::Parameters(step.parameters.unwrap()));
+    }
+    Ok(())
+}
+
+/// Bytes in memory that outlive the writer.
+#[derive(Clone, Default)]
+pub struct Memory(pub Arc<Mutex<Vec<u8>>>);
+
+impl Write for Memory {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.0.lock().unwrap().extend_from_slice(bytes);
+        Ok(bytes.len())
+    }
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}
+
+/// Records steps into memory.
+pub fn record(steps: &[Step], options: &RecorderOptions) -> (Vec<u8>, RecorderSummary) {
+    let memory = Memory::default();
+    let mut recorder = Recorder::to_writer(memory.clone(), options).unwrap();
+    for step in steps {
+        push(&mut recorder, step).unwrap();
+    }
+    let summary = recorder.finish().unwrap();
+    let bytes = std::mem::take(&mut *memory.0.lock().unwrap());
+    (bytes, summary)
 }

@@ -2,7 +2,8 @@
 //!
 //! Little-endian, fixed layout, no padding; f64 as its 64 bits. Host time is not part of it.
 
-use crate::{Aiding, Output, Reference, Sample};
+use crate::parameters::PARAMETER_COUNT;
+use crate::{Aiding, Output, Parameters, Reference, Sample};
 
 /// Bytes of a sample.
 pub const SAMPLE_BYTES: usize = 8 + 8 + 6 * 4 + 2 * 4 + 2;
@@ -10,6 +11,8 @@ pub const SAMPLE_BYTES: usize = 8 + 8 + 6 * 4 + 2 * 4 + 2;
 pub const AIDING_BYTES: usize = 8 + 1 + 3 * 8;
 /// Bytes of an output.
 pub const OUTPUT_BYTES: usize = 8 + 8 + 1 + 2 + 1 + 8 + 10 * 8 + 4 + 8 + 4;
+/// Bytes of the parameters with their σ.
+pub const PARAMETERS_BYTES: usize = 2 * PARAMETER_COUNT * 8;
 
 /// A cursor over a fixed buffer; every layout below fills its buffer exactly.
 struct Writer<'a> {
@@ -88,6 +91,20 @@ pub fn output(output: &Output, bytes: &mut [u8; OUTPUT_BYTES]) {
     w.put(&output.parameters_revision.to_le_bytes());
 }
 
+/// Parameters and σ: the thirty estimates, then their thirty 1σ, as f64, in the order of
+/// [`crate::parameters::NAMES`].
+#[inline]
+pub fn parameters(
+    parameters: &Parameters,
+    sigma: &[f64; PARAMETER_COUNT],
+    bytes: &mut [u8; PARAMETERS_BYTES],
+) {
+    let mut w = Writer { rest: bytes };
+    for value in parameters.to_array().iter().chain(sigma) {
+        w.f64(*value);
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -97,6 +114,7 @@ mod tests {
         // The writers panic on overflow; a byte left over would stay 0xAA in these patterns.
         let (mut a, mut b, mut c) =
             ([0xAA; SAMPLE_BYTES], [0xAA; AIDING_BYTES], [0xAA; OUTPUT_BYTES]);
+        let mut d = [0xAA; PARAMETERS_BYTES];
         sample(&Sample::default(), &mut a);
         aiding(
             &Aiding {
@@ -106,6 +124,7 @@ mod tests {
             &mut b,
         );
         output(&Output::default(), &mut c);
-        assert!(a.iter().chain(&b).chain(&c).all(|byte| *byte == 0));
+        parameters(&Parameters::default(), &[0.0; PARAMETER_COUNT], &mut d);
+        assert!(a.iter().chain(&b).chain(&c).chain(&d).all(|byte| *byte == 0));
     }
 }

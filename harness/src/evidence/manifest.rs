@@ -1,0 +1,352 @@
+//! `manifest.json`: who made a run, with what, and the hashes of everything in its folder.
+
+use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
+use std::collections::BTreeSet;
+use std::fs::File;
+use std::io::{self, Read};
+use std::path::{Path, PathBuf};
+use std::time::SystemTime;
+
+/// Name of the manifest in a run folder.
+pub const FILE_NAME: &str = "manifest.json";
+/// Version of its layout.
+pub const SCHEMA: u32 = 1;
+
+/// The manifest of a run.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Manifest {
+    /// Version of this layout.
+    pub schema: u32,
+    /// Version of octant.
+    pub octant: String,
+    /// State of the repository that octant was built from; `null` outside of one.
+    pub git: Option<Git>,
+    /// Compiler that octant was built with; `null` if it did not tell.
+    pub rustc: Option<String>,
+    /// The machine.
+    pub host: Host,
+    /// Seed of the run; `null` where there is none, as in a replay.
+    pub seed: Option<u64>,
+    /// Start of the run, UTC, RFC 3339.
+    pub started: String,
+    /// End of the run, UTC, RFC 3339.
+    pub ended: String,
+    /// The command line as it was given.
+    pub command_line: Vec<String>,
+    /// A line for a POSIX shell that runs it again.
+    pub rerun: String,
+    /// Every other file of the folder, by path.
+    pub files: Vec<FileHash>,
+    /// Runs are not signed in this version: always `null`.
+    pub signature: Option<String>,
+}
+
+/// State of a repository.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Git {
+    /// The commit.
+    pub commit: String,
+    /// There were changes that no commit has.
+    pub dirty: bool,
+}
+
+/// A machine.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Host {
+    /// Its name.
+    pub name: String,
+    /// Operating system.
+    pub os: String,
+    /// Architecture of the program.
+    pub arch: String,
+    /// Model of the processor; `null` where the system doesn't tell.
+    pub cpu: Option<String>,
+    /// Processors that the run could use.
+    pub cpus: usize,
+}
+
+/// A file with its hashes.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+pub struct FileHash {
+    /// Path in the folder, with `/`.
+    pub path: String,
+    /// Size.
+    pub bytes: u64,
+    /// BLAKE3, hexadecimal.
+    pub blake3: String,
+    /// SHA-256, hexadecimal.
+    pub sha256: String,
+}
+
+/// What the run knows about itself.
+#[derive(Clone, Debug)]
+pub struct RunFacts {
+    /// Seed, where there is one.
+    pub seed: Option<u64>,
+    /// Host time of the start.
+    pub started: SystemTime,
+    /// Host time of the end.
+    pub ended: SystemTime,
+    /// The command line, program first.
+    pub command_line: Vec<String>,
+}
+
+/// Why a manifest could not be written or read.
+#[derive(Debug, thiserror::Error)]
+pub enum ManifestError {
+    /// A file can't be read or written.
+    #[error("{action} {path}: {source}")]
+    System {
+        /// What was tried.
+        action: &'static str,
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        source: io::Error,
+    },
+    /// The manifest is not what it should be.
+    #[error("read {path}: {reason}")]
+    Content {
+        /// The manifest.
+        path: PathBuf,
+        /// Found and expected.
+        reason: String,
+    },
+}
+
+/// A difference between a folder and its manifest.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Difference {
+    /// The file is named in the manifest and not there.
+    Missing(String),
+    /// The file is there and the manifest doesn't name it.
+    Unknown(String),
+    /// The file has another content.
+    Changed(String),
+}
+
+impl Manifest {
+    /// Hashes everything in the folder of a run and writes its manifest.
+    ///
+    /// # Errors
+    /// If a file can't be read or the manifest not written.
+    pub fn write(folder: &Path, facts: &RunFacts) -> Result<Self, ManifestError> {
+        let some = |text: &str| (!text.is_empty()).then(|| text.to_owned());
+        let manifest = Self {
+            schema: SCHEMA,
+            octant: env!("CARGO_PKG_VERSION").into(),
+            git: some(env!("OCTANT_GIT_COMMIT"))
+                .map(|commit| Git { commit, dirty: env!("OCTANT_GIT_DIRTY") == "true" }),
+            rustc: some(env!("OCTANT_RUSTC")),
+            host: Host::this(),
+            seed: facts.seed,
+            started: humantime::format_rfc3339_millis(facts.started).to_string(),
+            ended: humantime::format_rfc3339_millis(facts.ended).to_string(),
+            rerun: shell_line(&facts.command_line),
+            command_line: facts.command_line.clone(),
+            files: files(folder)?
+                .iter()
+                .map(|path| hash_file(folder, path))
+                .collect::<Result<_, _>>()?,
+            signature: None,
+        };
+        let path = folder.join(FILE_NAME);
+        let mut text = serde_json::to_string_pretty(&manifest).map_err(|error| {
+            ManifestError::Content { path: path.clone(), reason: error.to_string() }
+        })?;
+        text.push('\n');
+        system("write", &path, std::fs::write(&path, text))?;
+        Ok(manifest)
+    }
+
+    /// Reads the manifest of a run.
+    ///
+    /// # Errors
+    /// If there is none, or none of this version.
+    pub fn read(folder: &Path) -> Result<Self, ManifestError> {
+        let path = folder.join(FILE_NAME);
+        let text = system("read", &path, std::fs::read(&path))?;
+        let content = |reason: String| ManifestError::Content { path: path.clone(), reason };
+        // The version first: a later layout is not to fail on a field.
+        #[derive(Deserialize)]
+        struct Version {
+            schema: u32,
+        }
+        let version: Version =
+            serde_json::from_slice(&text).map_err(|error| content(error.to_string()))?;
+        if version.schema != SCHEMA {
+            return Err(content(format!(
+                "manifest of schema {}, this octant reads {SCHEMA}",
+                version.schema
+            )));
+        }
+        serde_json::from_slice(&text).map_err(|error| content(error.to_string()))
+    }
+
+    /// Compares a folder with this manifest: none means that every file is as it was.
+    ///
+    /// # Errors
+    /// If a file can't be read.
+    pub fn verify(&self, folder: &Path) -> Result<Vec<Difference>, ManifestError> {
+        let mut found = files(folder)?;
+        let mut differences = Vec::new();
+        for file in &self.files {
+            if !found.remove(&file.path) {
+                differences.push(Difference::Missing(file.path.clone()));
+            } else if hash_file(folder, &file.path)? != *file {
+                differences.push(Difference::Changed(file.path.clone()));
+            }
+        }
+        differences.extend(found.into_iter().map(Difference::Unknown));
+        Ok(differences)
+    }
+}
+
+impl Host {
+    /// This machine.
+    #[must_use]
+    pub fn this() -> Self {
+        Self {
+            name: gethostname::gethostname().to_string_lossy().into_owned(),
+            os: std::env::consts::OS.into(),
+            arch: std::env::consts::ARCH.into(),
+            cpu: cpu_model(),
+            cpus: std::thread::available_parallelism().map_or(1, usize::from),
+        }
+    }
+}
+
+/// Linux tells in `/proc/cpuinfo`; others need a library, and the manifest says `null`.
+fn cpu_model() -> Option<String> {
+    let text = std::fs::read_to_string("/proc/cpuinfo").ok()?;
+    let line = text.lines().find(|line| line.starts_with("model name"))?;
+    line.split_once(':').map(|(_, model)| model.trim().to_owned())
+}
+
+/// Files of a folder by path, without the manifest and hidden ones at the top.
+fn files(folder: &Path) -> Result<BTreeSet<String>, ManifestError> {
+    let mut found = BTreeSet::new();
+    let mut open = vec![String::new()];
+    while let Some(prefix) = open.pop() {
+        let path = folder.join(&prefix);
+        for entry in system("list", &path, std::fs::read_dir(&path))? {
+            let entry = system("list", &path, entry)?;
+            let name = entry.file_name().to_string_lossy().into_owned();
+            let kind = system("list", &path, entry.file_type())?;
+            if prefix.is_empty() && (name == FILE_NAME || name.starts_with('.')) {
+                continue;
+            }
+            if kind.is_dir() {
+                open.push(format!("{prefix}{name}/"));
+            } else {
+                found.insert(format!("{prefix}{name}"));
+            }
+        }
+    }
+    Ok(found)
+}
+
+fn hash_file(folder: &Path, path: &str) -> Result<FileHash, ManifestError> {
+    let full = folder.join(path);
+    let mut file = system("read", &full, File::open(&full))?;
+    let (mut blake3, mut sha256, mut bytes) = (blake3::Hasher::new(), Sha256::new(), 0);
+    let mut buffer = vec![0; 1 << 17];
+    loop {
+        let n = system("read", &full, file.read(&mut buffer))?;
+        if n == 0 {
+            break;
+        }
+        bytes += n as u64;
+        blake3.update(&buffer[..n]);
+        sha256.update(&buffer[..n]);
+    }
+    Ok(FileHash {
+        path: path.into(),
+        bytes,
+        blake3: blake3.finalize().to_hex().to_string(),
+        sha256: sha256.finalize().iter().map(|byte| format!("{byte:02x}")).collect(),
+    })
+}
+
+/// Quotes what a POSIX shell would not take as it is.
+fn shell_line(words: &[String]) -> String {
+    let plain = |c: char| c.is_ascii_alphanumeric() || "-_./:=+,@%".contains(c);
+    let quoted: Vec<String> = words
+        .iter()
+        .map(|word| {
+            if !word.is_empty() && word.chars().all(plain) {
+                word.clone()
+            } else {
+                format!("'{}'", word.replace('\'', r"'\''"))
+            }
+        })
+        .collect();
+    quoted.join(" ")
+}
+
+fn system<T>(action: &'static str, path: &Path, result: io::Result<T>) -> Result<T, ManifestError> {
+    result.map_err(|source| ManifestError::System { action, path: path.into(), source })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn facts() -> RunFacts {
+        RunFacts {
+            seed: Some(7),
+            started: SystemTime::UNIX_EPOCH,
+            ended: SystemTime::UNIX_EPOCH + std::time::Duration::from_millis(86_400_250),
+            command_line: ["octant", "run", "my run.toml", "--set", "imu.x='1 ug'"]
+                .map(String::from)
+                .to_vec(),
+        }
+    }
+
+    #[test]
+    fn a_manifest_has_the_hashes_and_finds_every_change() {
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::write(folder.path().join("a.txt"), "abc").unwrap();
+        std::fs::create_dir(folder.path().join("sub")).unwrap();
+        std::fs::write(folder.path().join("sub/b.txt"), "").unwrap();
+        let written = Manifest::write(folder.path(), &facts()).unwrap();
+        let manifest = Manifest::read(folder.path()).unwrap();
+        assert_eq!(manifest, written);
+        // FIPS 180-4 and the BLAKE3 paper give these for "abc".
+        assert_eq!(
+            manifest.files[0].sha256,
+            "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad"
+        );
+        assert_eq!(
+            manifest.files[0].blake3,
+            "6437b3ac38465133ffb63b75273a8db548c558465d79db03fd359c6cd5bd9d85"
+        );
+        assert_eq!(manifest.files[1].path, "sub/b.txt");
+        assert_eq!(manifest.ended, "1970-01-02T00:00:00.250Z");
+        assert_eq!(manifest.rerun, r"octant run 'my run.toml' --set 'imu.x='\''1 ug'\'''");
+        let text = std::fs::read_to_string(folder.path().join(FILE_NAME)).unwrap();
+        assert!(text.contains("\"signature\": null"));
+
+        assert_eq!(manifest.verify(folder.path()).unwrap(), []);
+        std::fs::write(folder.path().join("a.txt"), "abd").unwrap();
+        std::fs::remove_file(folder.path().join("sub/b.txt")).unwrap();
+        std::fs::write(folder.path().join("c.txt"), "").unwrap();
+        assert_eq!(
+            manifest.verify(folder.path()).unwrap(),
+            [
+                Difference::Changed("a.txt".into()),
+                Difference::Missing("sub/b.txt".into()),
+                Difference::Unknown("c.txt".into()),
+            ]
+        );
+    }
+
+    #[test]
+    fn a_manifest_of_another_version_is_refused_by_its_version() {
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::write(folder.path().join(FILE_NAME), r#"{"schema": 2, "all": "new"}"#).unwrap();
+        let error = Manifest::read(folder.path()).unwrap_err().to_string();
+        assert!(error.contains("schema 2, this octant reads 1"), "{error}");
+    }
+}

@@ -1,0 +1,338 @@
+//! The recorder as the run loop sees it: a place to put epochs, at a few nanoseconds each.
+//!
+//! Epochs are collected in a block; a full block goes to the recorder's thread over a bounded
+//! queue, and an empty one comes back. Nothing is allocated in steady state. When all blocks are
+//! on their way the loop waits: in simulated time nothing is dropped. The thread asks for an
+//! unfinished block from time to time ([`FLUSH_INTERVAL`]), so that a slow run, too, gets into the
+//! file; the asking is one relaxed load of the loop.
+
+use super::block::Block;
+use super::writer::{RecordingWriter, next_on_grid};
+use super::{
+    Counts, Event, Extra, FLUSH_INTERVAL, Frame, RecorderError, RecorderOptions, StreamHash,
+};
+use std::fs::File;
+use std::io::Write;
+use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, sync_channel};
+use std::thread::JoinHandle;
+
+/// What a recorder leaves.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct RecorderSummary {
+    /// Hash of the whole stream ([`StreamHash`]); empty from a recorder that does nothing.
+    pub stream_hash: String,
+    /// Epochs that passed.
+    pub epochs: u64,
+    /// Aiding messages that reached the core.
+    pub aiding: u64,
+    /// Epochs in which the core got something else than the source delivered.
+    pub altered: u64,
+    /// Messages in the file, by topic.
+    pub messages: Counts,
+    /// Bytes of the file.
+    pub bytes: u64,
+}
+
+/// Takes epochs from the run loop.
+///
+/// Dropped without [`Recorder::finish`] it still writes what it was given; errors are then lost.
+#[derive(Debug)]
+pub struct Recorder {
+    /// The block being filled.
+    block: Block,
+    epochs_per_block: usize,
+    next_due_ns: u64,
+    period_ns: u64,
+    truth_due: bool,
+    records_truth: bool,
+    revision: u32,
+    parameters_due: bool,
+    worker: Option<Worker>,
+}
+
+#[derive(Debug)]
+struct Worker {
+    full: SyncSender<Block>,
+    empty: Receiver<Block>,
+    /// Set by the thread: it wants the unfinished block.
+    wanted: Arc<AtomicBool>,
+    thread: JoinHandle<Result<RecorderSummary, RecorderError>>,
+}
+
+impl Recorder {
+    /// Records into a new file.
+    ///
+    /// # Errors
+    /// If the file exists or can't be written.
+    pub fn to_file(path: &Path, options: &RecorderOptions) -> Result<Self, RecorderError> {
+        let file = File::create_new(path)
+            .map_err(|source| RecorderError::Create { path: path.display().to_string(), source })?;
+        let kept = file
+            .try_clone()
+            .map_err(|source| RecorderError::Create { path: path.display().to_string(), source })?;
+        let writer = RecordingWriter::new(file, options)?;
+        Self::start(options, Some(writer), Some(kept))
+    }
+
+    /// Records into anything that takes bytes.
+    ///
+    /// # Errors
+    /// If the first bytes can't be written.
+    pub fn to_writer<W: Write + Send + 'static>(
+        inner: W,
+        options: &RecorderOptions,
+    ) -> Result<Self, RecorderError> {
+        Self::start(options, Some(RecordingWriter::new(inner, options)?), None)
+    }
+
+    /// Takes the stream hash and writes no file.
+    ///
+    /// # Errors
+    /// If the system gives no thread.
+    pub fn hash_only(options: &RecorderOptions) -> Result<Self, RecorderError> {
+        Self::start::<std::io::Sink>(options, None, None)
+    }
+
+    /// Does nothing: what a run costs without a recorder.
+    #[must_use]
+    pub fn none() -> Self {
+        Self {
+            block: Block::default(),
+            epochs_per_block: 0,
+            next_due_ns: u64::MAX,
+            period_ns: 1,
+            truth_due: false,
+            records_truth: false,
+            revision: 0,
+            parameters_due: false,
+            worker: None,
+        }
+    }
+
+    fn start<W: Write + Send + 'static>(
+        options: &RecorderOptions,
+        writer: Option<RecordingWriter<W>>,
+        sync: Option<File>,
+    ) -> Result<Self, RecorderError> {
+        let epochs_per_block = options.epochs_per_block.clamp(1, 1 << 20);
+        let blocks = options.blocks.clamp(2, 1024);
+        let records_truth = writer.is_some();
+        let (full, full_receiver) = sync_channel(blocks);
+        let (empty_sender, empty) = sync_channel(blocks);
+        for _ in 1..blocks {
+            // The queue has room for every block, so this can't wait.
+            let _ = empty_sender.send(Block::new(epochs_per_block));
+        }
+        let wanted = Arc::new(AtomicBool::new(false));
+        let wanted_here = Arc::clone(&wanted);
+        let thread = std::thread::Builder::new()
+            .name("recorder".into())
+            .spawn(move || work(writer, sync, &full_receiver, &empty_sender, &wanted_here))
+            .map_err(|error| RecorderError::Format {
+                reason: format!("no thread for the recorder: {error}"),
+            })?;
+        Ok(Self {
+            block: Block::new(epochs_per_block),
+            epochs_per_block,
+            next_due_ns: 0,
+            period_ns: options.policy.period_ns.max(1),
+            truth_due: false,
+            records_truth,
+            revision: 0,
+            parameters_due: false,
+            worker: Some(Worker { full, empty, wanted, thread }),
+        })
+    }
+
+    /// Takes one epoch.
+    ///
+    /// # Errors
+    /// If the recorder failed (the error is that of its thread), or the parameters that the frame
+    /// before announced did not come.
+    #[inline]
+    pub fn push(&mut self, frame: Frame<'_>) -> Result<(), RecorderError> {
+        let Some(worker) = &self.worker else { return Ok(()) };
+        if self.parameters_due {
+            return Err(RecorderError::ParametersMissing {
+                sequence: frame.output.sequence,
+                revision: self.revision,
+            });
+        }
+        // Before the frame and not after it, so that truth and parameters, which come after their
+        // frame, are in the same block.
+        if self.block.len() >= self.epochs_per_block || worker.wanted.load(Ordering::Relaxed) {
+            self.hand_over()?;
+        }
+        let time_ns = frame.clean.sample.device_time.ns;
+        let due = time_ns >= self.next_due_ns;
+        if due {
+            self.next_due_ns = next_on_grid(time_ns, self.period_ns);
+        }
+        self.truth_due = due;
+        if frame.output.parameters_revision != self.revision {
+            self.revision = frame.output.parameters_revision;
+            self.parameters_due = true;
+        }
+        self.block.push(&frame, due);
+        Ok(())
+    }
+
+    /// Truth at the frame just given will be kept: ask the source for it.
+    #[must_use]
+    #[inline]
+    pub fn truth_due(&self) -> bool {
+        self.truth_due && self.records_truth
+    }
+
+    /// The output just given announced new parameters: they have to come before the next frame.
+    #[must_use]
+    #[inline]
+    pub fn parameters_due(&self) -> bool {
+        self.parameters_due
+    }
+
+    /// Takes what rides along with the frame just given. Parameters that the frame did not announce
+    /// are not recorded.
+    pub fn extra(&mut self, extra: &Extra) {
+        if self.worker.is_none() {
+            return;
+        }
+        if let Extra::Parameters(_) = extra {
+            if !self.parameters_due {
+                return;
+            }
+            self.parameters_due = false;
+        }
+        self.block.extra(extra);
+    }
+
+    /// Takes an event at the time of the frame just given.
+    pub fn event(&mut self, event: Event) {
+        if self.worker.is_some() {
+            self.block.event(event);
+        }
+    }
+
+    /// Hands the unfinished block to the recorder's thread. Of use before a long wait.
+    ///
+    /// # Errors
+    /// If the recorder failed.
+    #[cold]
+    pub fn hand_over(&mut self) -> Result<(), RecorderError> {
+        let Some(worker) = &self.worker else { return Ok(()) };
+        worker.wanted.store(false, Ordering::Relaxed);
+        if self.block.is_empty() {
+            return Ok(());
+        }
+        let handed = worker.empty.recv().ok().is_some_and(|empty| {
+            worker.full.send(std::mem::replace(&mut self.block, empty)).is_ok()
+        });
+        if handed { Ok(()) } else { Err(self.failure()) }
+    }
+
+    /// Ends the recording.
+    ///
+    /// # Errors
+    /// If the recording could not be written to its end.
+    pub fn finish(mut self) -> Result<RecorderSummary, RecorderError> {
+        if self.parameters_due {
+            return Err(RecorderError::ParametersMissing {
+                sequence: self.block.outputs.last().map_or(0, |output| output.sequence),
+                revision: self.revision,
+            });
+        }
+        self.hand_over()?;
+        self.join()
+    }
+
+    /// Why the thread ended before it was told to.
+    fn failure(&mut self) -> RecorderError {
+        match self.join() {
+            Err(error) => error,
+            Ok(_) => RecorderError::Gone,
+        }
+    }
+
+    fn join(&mut self) -> Result<RecorderSummary, RecorderError> {
+        match self.worker.take() {
+            None => Ok(RecorderSummary::default()),
+            Some(Worker { full, empty, thread, .. }) => {
+                drop((full, empty));
+                thread.join().unwrap_or(Err(RecorderError::Gone))
+            }
+        }
+    }
+}
+
+impl Drop for Recorder {
+    fn drop(&mut self) {
+        // Errors can't be told from here; `finish` tells them.
+        let _ = self.hand_over();
+        let _ = self.join();
+    }
+}
+
+/// The recorder's thread.
+fn work<W: Write>(
+    mut writer: Option<RecordingWriter<W>>,
+    sync: Option<File>,
+    full: &Receiver<Block>,
+    empty: &SyncSender<Block>,
+    wanted: &AtomicBool,
+) -> Result<RecorderSummary, RecorderError> {
+    let mut hash = StreamHash::new();
+    let mut summary = RecorderSummary::default();
+    let mut asked = std::time::Instant::now();
+    loop {
+        match full.recv_timeout(FLUSH_INTERVAL) {
+            Ok(mut block) => {
+                hash_block(&mut hash, &block);
+                summary.epochs += block.len() as u64;
+                summary.aiding += block.aiding.len() as u64;
+                summary.altered += block.altered.len() as u64;
+                if let Some(writer) = &mut writer {
+                    writer.block(&block)?;
+                }
+                block.clear();
+                // The loop may be gone already; then nobody needs the block.
+                let _ = empty.try_send(block);
+            }
+            Err(RecvTimeoutError::Timeout) => {}
+            Err(RecvTimeoutError::Disconnected) => break,
+        }
+        if let Some(writer) = &mut writer {
+            writer.flush_if_due()?;
+            if asked.elapsed() >= FLUSH_INTERVAL {
+                wanted.store(true, Ordering::Relaxed);
+                asked = std::time::Instant::now();
+            }
+        }
+    }
+    summary.stream_hash = hash.hex();
+    if let Some(writer) = writer {
+        (summary.messages, summary.bytes) = writer.finish()?;
+    }
+    if let Some(file) = sync {
+        file.sync_all()
+            .map_err(|source| RecorderError::Write { written_bytes: summary.bytes, source })?;
+    }
+    Ok(summary)
+}
+
+fn hash_block(hash: &mut StreamHash, block: &Block) {
+    let mut aiding = block.aiding.iter().peekable();
+    let mut parameters = block.parameters.iter().peekable();
+    for position in 0..=block.len() as u32 {
+        while let Some((_, estimate)) = parameters.next_if(|(at, _)| *at == position) {
+            hash.parameters(estimate);
+        }
+        let index = position as usize;
+        if let (Some(sample), Some(output)) = (block.samples.get(index), block.outputs.get(index)) {
+            let aiding = aiding.next_if(|(at, _)| *at == position).map(|(_, aiding)| aiding);
+            hash.epoch(sample, aiding, output);
+        }
+    }
+}

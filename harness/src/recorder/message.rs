@@ -1,0 +1,516 @@
+//! The messages of a recording: topics, schemas and byte layouts.
+//!
+//! CDR, little-endian, the way ROS 2 stores it (OMG DDS-XTypes, plain CDR version 1): four bytes of
+//! encapsulation, then the fields, each aligned to its size. The fields are in an order that needs
+//! no padding, so a message is a fixed number of bytes. Numbers travel as their bits: NaN payloads
+//! and signed zeros survive.
+
+use crate::endpoint::ParameterEstimate;
+use octant_plant::Truth;
+use octant_sample::parameters::{NAMES, PARAMETER_COUNT};
+use octant_sample::time::SimulatedTime;
+use octant_sample::{
+    Aiding, DeviceTime, GimbalAngles, GimbalCommand, Health, Mode, Navigation, Output, Parameters,
+    Reference, Sample, Status,
+};
+
+/// What a channel of a recording carries.
+///
+/// The order is that of the messages of one epoch in the file: an item of lower or equal rank
+/// begins the next epoch.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Topic {
+    /// The sample that the source delivered, only where it differs from [`Topic::Imu`].
+    ImuClean,
+    /// The aiding that the source delivered, only where it differs from [`Topic::Aiding`].
+    AidingClean,
+    /// The aiding that reached the core.
+    Aiding,
+    /// The sample that reached the core.
+    Imu,
+    /// What the core answered.
+    Output,
+    /// Estimated parameters with their σ.
+    Parameters,
+    /// Truth.
+    Truth,
+    /// Rare events, JSON.
+    Event,
+}
+
+impl Topic {
+    /// All topics.
+    pub const ALL: [Self; 8] = [
+        Self::ImuClean,
+        Self::AidingClean,
+        Self::Aiding,
+        Self::Imu,
+        Self::Output,
+        Self::Parameters,
+        Self::Truth,
+        Self::Event,
+    ];
+
+    /// Name of the topic in the file.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::ImuClean => "/imu/clean",
+            Self::AidingClean => "/aiding/clean",
+            Self::Aiding => "/aiding",
+            Self::Imu => "/imu",
+            Self::Output => "/output",
+            Self::Parameters => "/parameters",
+            Self::Truth => "/truth",
+            Self::Event => "/event",
+        }
+    }
+
+    /// The topic of this name.
+    #[must_use]
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|topic| topic.name() == name)
+    }
+
+    /// Name of the schema.
+    #[must_use]
+    pub const fn schema_name(self) -> &'static str {
+        match self {
+            Self::ImuClean | Self::Imu => "octant_msgs/msg/InertialSample",
+            Self::AidingClean | Self::Aiding => "octant_msgs/msg/Aiding",
+            Self::Output => "octant_msgs/msg/Output",
+            Self::Parameters => "octant_msgs/msg/Parameters",
+            Self::Truth => "octant_msgs/msg/Truth",
+            Self::Event => "octant.Event",
+        }
+    }
+
+    /// Encoding of the schema and of the messages.
+    #[must_use]
+    pub const fn encodings(self) -> (&'static str, &'static str) {
+        match self {
+            Self::Event => ("jsonschema", "json"),
+            _ => ("ros2msg", "cdr"),
+        }
+    }
+
+    /// Text of the schema.
+    #[must_use]
+    pub fn schema(self) -> String {
+        match self {
+            Self::ImuClean | Self::Imu => IMU_SCHEMA.into(),
+            Self::AidingClean | Self::Aiding => AIDING_SCHEMA.into(),
+            Self::Output => OUTPUT_SCHEMA.into(),
+            Self::Parameters => parameters_schema(),
+            Self::Truth => TRUTH_SCHEMA.into(),
+            Self::Event => EVENT_SCHEMA.into(),
+        }
+    }
+}
+
+const IMU_SCHEMA: &str = "\
+# Increments over the interval that ends at device_time_ns, body axes x y z, as integer counts.
+# delta_theta: 2^-36 rad per count; delta_velocity: 2^-30 m/s per count; gimbals: 2^-27 rad.
+uint64 sequence
+uint64 device_time_ns
+int32[3] delta_theta
+int32[3] delta_velocity
+int32 gimbal_azimuth
+int32 gimbal_roll
+# bit 0 gyro saturated, 1 accelerometer saturated, 2 gimbal invalid, 3 inertial invalid
+uint16 status
+";
+
+const AIDING_SCHEMA: &str = "\
+# kind 0: velocity north, east, down, m/s. kind 1: latitude rad, longitude rad, height m.
+# kind 255 (only on /aiding/clean): the source delivered none.
+uint8 VELOCITY=0
+uint8 POSITION=1
+uint8 NONE=255
+uint64 device_time_ns
+float64[3] value
+uint8 kind
+";
+
+const OUTPUT_SCHEMA: &str = "\
+# What the core answered. q_nb: w, x, y, z, takes a vector in body axes into north-east-down.
+# nis is NaN where there was no measurement. Commands: 2^-27 rad per count.
+uint8 ALIGNING=0
+uint8 CALIBRATING=1
+uint8 REFUSED=2
+uint8 NAVIGATING=3
+uint8 DONE=4
+uint64 sequence
+uint64 device_time_ns
+float64 latitude_rad
+float64 longitude_rad
+float64 height_m
+float64[3] velocity_mps
+float64[4] q_nb
+float64 nis
+int32 command_azimuth
+int32 command_roll
+uint32 health
+uint32 parameters_revision
+uint16 stop
+uint8 mode
+bool moving
+";
+
+const TRUTH_SCHEMA: &str = "\
+# Truth at the stamp of the sample. q_nb: w, x, y, z.
+uint64 time_ns
+float64 latitude_rad
+float64 longitude_rad
+float64 height_m
+float64[3] velocity_mps
+float64[4] q_nb
+float64 gimbal_azimuth_rad
+float64 gimbal_roll_rad
+";
+
+const EVENT_SCHEMA: &str = r#"{
+  "type": "object",
+  "properties": {
+    "kind": { "type": "string" },
+    "detail": {}
+  },
+  "required": ["kind", "detail"]
+}
+"#;
+
+/// One field per parameter, so that a plotting tool shows them by name.
+fn parameters_schema() -> String {
+    let mut text = String::from(
+        "# Coefficients of the error, measured minus true, SI: rad/s, rad, (rad/s)/(m/s^2), m/s^2.\n\
+         # sigma_*: 1 sigma of each.\nuint64 sequence\n",
+    );
+    for prefix in ["", "sigma_"] {
+        for name in NAMES {
+            text.push_str("float64 ");
+            text.push_str(prefix);
+            text.push_str(name);
+            text.push('\n');
+        }
+    }
+    text.push_str("uint32 revision\n");
+    text
+}
+
+/// Encapsulation of little-endian plain CDR.
+const ENCAPSULATION: [u8; 4] = [0, 1, 0, 0];
+
+/// Appends fields to a message.
+struct Encoder<'a>(&'a mut Vec<u8>);
+
+impl<'a> Encoder<'a> {
+    fn new(bytes: &'a mut Vec<u8>) -> Self {
+        bytes.clear();
+        bytes.extend_from_slice(&ENCAPSULATION);
+        Self(bytes)
+    }
+
+    #[inline]
+    fn put<const N: usize>(&mut self, bytes: [u8; N]) {
+        self.0.extend_from_slice(&bytes);
+    }
+
+    #[inline]
+    fn f64s(&mut self, values: &[f64]) {
+        for value in values {
+            self.put(value.to_bits().to_le_bytes());
+        }
+    }
+}
+
+/// Takes fields from a message.
+struct Decoder<'a>(&'a [u8]);
+
+/// A message whose bytes are not what its topic promises.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum MessageError {
+    /// The message has another length than its layout.
+    #[error("message of {found} bytes, expected {expected}")]
+    Length {
+        /// Bytes found.
+        found: usize,
+        /// Bytes of the layout.
+        expected: usize,
+    },
+    /// The message is not little-endian plain CDR.
+    #[error("message begins with {found:02x?}, expected little-endian CDR (00, 01)")]
+    Encapsulation {
+        /// The first two bytes.
+        found: [u8; 2],
+    },
+    /// A field has a value that has no meaning.
+    #[error("field {field} is {found}, expected {expected}")]
+    Value {
+        /// The field.
+        field: &'static str,
+        /// The value found.
+        found: u64,
+        /// What it may be.
+        expected: &'static str,
+    },
+    /// JSON that can't be read.
+    #[error("event is not the expected JSON: {reason}")]
+    Json {
+        /// What the parser said.
+        reason: String,
+    },
+}
+
+impl<'a> Decoder<'a> {
+    fn new(bytes: &'a [u8], expected: usize) -> Result<Self, MessageError> {
+        if bytes.len() != expected {
+            return Err(MessageError::Length { found: bytes.len(), expected });
+        }
+        match bytes.split_first_chunk::<4>() {
+            Some(([0, 1, _, _], rest)) => Ok(Self(rest)),
+            _ => {
+                let first = |i: usize| bytes.get(i).copied().unwrap_or(0);
+                Err(MessageError::Encapsulation { found: [first(0), first(1)] })
+            }
+        }
+    }
+
+    /// The next `N` bytes. The length was checked as a whole; a layout error reads zeros.
+    #[inline]
+    fn take<const N: usize>(&mut self) -> [u8; N] {
+        match self.0.split_first_chunk::<N>() {
+            Some((head, rest)) => {
+                self.0 = rest;
+                *head
+            }
+            None => {
+                debug_assert!(false, "layout and length disagree");
+                [0; N]
+            }
+        }
+    }
+
+    fn u16(&mut self) -> u16 {
+        u16::from_le_bytes(self.take())
+    }
+    fn u32(&mut self) -> u32 {
+        u32::from_le_bytes(self.take())
+    }
+    fn i32(&mut self) -> i32 {
+        i32::from_le_bytes(self.take())
+    }
+    fn u64(&mut self) -> u64 {
+        u64::from_le_bytes(self.take())
+    }
+    fn f64(&mut self) -> f64 {
+        f64::from_bits(self.u64())
+    }
+    fn f64s<const N: usize>(&mut self) -> [f64; N] {
+        std::array::from_fn(|_| self.f64())
+    }
+}
+
+const IMU_LENGTH: usize = 4 + 16 + 24 + 8 + 2;
+const AIDING_LENGTH: usize = 4 + 8 + 24 + 1;
+const OUTPUT_LENGTH: usize = 4 + 16 + 11 * 8 + 8 + 8 + 4;
+const PARAMETERS_LENGTH: usize = 4 + 8 + 2 * PARAMETER_COUNT * 8 + 4;
+const TRUTH_LENGTH: usize = 4 + 8 + 12 * 8;
+
+/// Encodes a sample.
+pub fn encode_sample(sample: &Sample, bytes: &mut Vec<u8>) {
+    let mut e = Encoder::new(bytes);
+    e.put(sample.sequence.to_le_bytes());
+    e.put(sample.device_time.ns.to_le_bytes());
+    for count in sample.delta_theta.iter().chain(&sample.delta_velocity) {
+        e.put(count.to_le_bytes());
+    }
+    e.put(sample.gimbal.azimuth.to_le_bytes());
+    e.put(sample.gimbal.roll.to_le_bytes());
+    e.put(sample.status.bits().to_le_bytes());
+}
+
+/// Decodes a sample.
+///
+/// # Errors
+/// If the bytes are not those of a sample.
+pub fn decode_sample(bytes: &[u8]) -> Result<Sample, MessageError> {
+    let mut d = Decoder::new(bytes, IMU_LENGTH)?;
+    Ok(Sample {
+        sequence: d.u64(),
+        device_time: DeviceTime::from_ns(d.u64()),
+        delta_theta: std::array::from_fn(|_| d.i32()),
+        delta_velocity: std::array::from_fn(|_| d.i32()),
+        gimbal: GimbalAngles { azimuth: d.i32(), roll: d.i32() },
+        // Bits that this version has no name for are kept.
+        status: Status::from_bits_retain(d.u16()),
+    })
+}
+
+const KIND_VELOCITY: u8 = 0;
+const KIND_POSITION: u8 = 1;
+const KIND_NONE: u8 = 255;
+
+/// Stamp, kind and the bits of the values.
+pub(super) fn aiding_bits(aiding: &Aiding) -> (u64, u8, [u64; 3]) {
+    let (kind, values) = match aiding.reference {
+        Reference::Velocity(velocity) => (KIND_VELOCITY, velocity),
+        Reference::Position { latitude_rad, longitude_rad, height_m } => {
+            (KIND_POSITION, [latitude_rad, longitude_rad, height_m])
+        }
+    };
+    (aiding.device_time.ns, kind, values.map(f64::to_bits))
+}
+
+/// Encodes aiding; `None` says that there was none.
+pub fn encode_aiding(aiding: Option<&Aiding>, bytes: &mut Vec<u8>) {
+    let (ns, kind, values) = aiding.map_or((0, KIND_NONE, [0; 3]), aiding_bits);
+    let mut e = Encoder::new(bytes);
+    e.put(ns.to_le_bytes());
+    for value in values {
+        e.put(value.to_le_bytes());
+    }
+    e.put([kind]);
+}
+
+/// Decodes aiding.
+///
+/// # Errors
+/// If the bytes are not those of aiding.
+pub fn decode_aiding(bytes: &[u8]) -> Result<Option<Aiding>, MessageError> {
+    let mut d = Decoder::new(bytes, AIDING_LENGTH)?;
+    let device_time = DeviceTime::from_ns(d.u64());
+    let value: [f64; 3] = d.f64s();
+    let reference = match d.take::<1>()[0] {
+        KIND_VELOCITY => Reference::Velocity(value),
+        KIND_POSITION => Reference::Position {
+            latitude_rad: value[0],
+            longitude_rad: value[1],
+            height_m: value[2],
+        },
+        KIND_NONE => return Ok(None),
+        kind => {
+            return Err(MessageError::Value {
+                field: "kind",
+                found: kind.into(),
+                expected: "0 (velocity), 1 (position) or 255 (none)",
+            });
+        }
+    };
+    Ok(Some(Aiding { device_time, reference }))
+}
+
+/// Encodes an output.
+pub fn encode_output(output: &Output, bytes: &mut Vec<u8>) {
+    let navigation = &output.navigation;
+    let mut e = Encoder::new(bytes);
+    e.put(output.sequence.to_le_bytes());
+    e.put(output.device_time.ns.to_le_bytes());
+    e.f64s(&[navigation.latitude_rad, navigation.longitude_rad, navigation.height_m]);
+    e.f64s(&navigation.velocity_mps);
+    e.f64s(&navigation.q_nb);
+    e.f64s(&[output.nis]);
+    e.put(output.gimbal_command.target.azimuth.to_le_bytes());
+    e.put(output.gimbal_command.target.roll.to_le_bytes());
+    e.put(output.health.bits().to_le_bytes());
+    e.put(output.parameters_revision.to_le_bytes());
+    e.put(output.stop.to_le_bytes());
+    e.put([output.mode as u8]);
+    e.put([u8::from(output.moving)]);
+}
+
+/// Decodes an output.
+///
+/// # Errors
+/// If the bytes are not those of an output.
+pub fn decode_output(bytes: &[u8]) -> Result<Output, MessageError> {
+    let mut d = Decoder::new(bytes, OUTPUT_LENGTH)?;
+    let (sequence, device_time) = (d.u64(), DeviceTime::from_ns(d.u64()));
+    let navigation = Navigation {
+        latitude_rad: d.f64(),
+        longitude_rad: d.f64(),
+        height_m: d.f64(),
+        velocity_mps: d.f64s(),
+        q_nb: d.f64s(),
+    };
+    let nis = d.f64();
+    let target = GimbalAngles { azimuth: d.i32(), roll: d.i32() };
+    let health = Health::from_bits_retain(d.u32());
+    let (parameters_revision, stop) = (d.u32(), d.u16());
+    let [mode, moving] = d.take();
+    let mode = *Mode::ALL.get(usize::from(mode)).ok_or(MessageError::Value {
+        field: "mode",
+        found: mode.into(),
+        expected: "0 to 4",
+    })?;
+    let moving = match moving {
+        0 => false,
+        1 => true,
+        other => {
+            return Err(MessageError::Value {
+                field: "moving",
+                found: other.into(),
+                expected: "0 or 1",
+            });
+        }
+    };
+    Ok(Output {
+        sequence,
+        device_time,
+        mode,
+        stop,
+        moving,
+        gimbal_command: GimbalCommand { target },
+        navigation,
+        health,
+        nis,
+        parameters_revision,
+    })
+}
+
+/// Encodes parameters with their σ and the sequence number of their epoch.
+pub fn encode_parameters(sequence: u64, estimate: &ParameterEstimate, bytes: &mut Vec<u8>) {
+    let mut e = Encoder::new(bytes);
+    e.put(sequence.to_le_bytes());
+    e.f64s(&estimate.parameters.to_array());
+    e.f64s(&estimate.sigma);
+    e.put(estimate.revision.to_le_bytes());
+}
+
+/// Decodes parameters with the sequence number of their epoch.
+///
+/// # Errors
+/// If the bytes are not those of parameters.
+pub fn decode_parameters(bytes: &[u8]) -> Result<(u64, ParameterEstimate), MessageError> {
+    let mut d = Decoder::new(bytes, PARAMETERS_LENGTH)?;
+    let sequence = d.u64();
+    let parameters = Parameters::from_array(&d.f64s());
+    let sigma = d.f64s();
+    Ok((sequence, ParameterEstimate { revision: d.u32(), parameters, sigma }))
+}
+
+/// Encodes truth.
+pub fn encode_truth(truth: &Truth, bytes: &mut Vec<u8>) {
+    let mut e = Encoder::new(bytes);
+    e.put(truth.time.ns.to_le_bytes());
+    e.f64s(&[truth.latitude_rad, truth.longitude_rad, truth.height_m]);
+    e.f64s(&truth.velocity_mps);
+    e.f64s(&truth.q_nb);
+    e.f64s(&truth.gimbal_rad);
+}
+
+/// Decodes truth.
+///
+/// # Errors
+/// If the bytes are not those of truth.
+pub fn decode_truth(bytes: &[u8]) -> Result<Truth, MessageError> {
+    let mut d = Decoder::new(bytes, TRUTH_LENGTH)?;
+    Ok(Truth {
+        time: SimulatedTime::from_ns(d.u64()),
+        latitude_rad: d.f64(),
+        longitude_rad: d.f64(),
+        height_m: d.f64(),
+        velocity_mps: d.f64s(),
+        q_nb: d.f64s(),
+        gimbal_rad: d.f64s(),
+    })
+}

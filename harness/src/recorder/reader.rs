@@ -1,0 +1,458 @@
+//! Reads recordings back: message by message, or epoch by epoch for replay and scoring.
+
+use super::message::{self, MessageError, Topic};
+use super::records::{End, Records, RecordsError};
+use super::writer::{FORMAT_METADATA, RUN_METADATA, SCENARIO_ATTACHMENT};
+use super::{Event, FORMAT_VERSION, Samples, StreamHash};
+use crate::endpoint::ParameterEstimate;
+use mcap::records::{Record, op};
+use octant_plant::Truth;
+use octant_sample::{Aiding, Output, Sample};
+use std::collections::{BTreeMap, HashMap};
+use std::fs::File;
+use std::io::{BufReader, Read};
+use std::path::Path;
+
+/// Why a recording could not be read.
+#[derive(Debug, thiserror::Error)]
+pub enum ReadError {
+    /// The file can't be opened.
+    #[error("open: {0}")]
+    Open(std::io::Error),
+    /// The container is broken, or none.
+    #[error(transparent)]
+    Records(#[from] RecordsError),
+    /// An MCAP file of somebody else.
+    #[error(
+        "MCAP file without the metadata `{FORMAT_METADATA}`: not a recording of octant (to use its \
+         messages as a source, name topic and fields in a mapping)"
+    )]
+    Foreign,
+    /// A recording of a later octant.
+    #[error(
+        "recording of format version {found}, this octant reads versions up to {FORMAT_VERSION}: \
+         read it with the octant that wrote it or a later one"
+    )]
+    NewerVersion {
+        /// The version found.
+        found: u32,
+    },
+    /// The metadata lacks something.
+    #[error("metadata `{FORMAT_METADATA}`: {key} is {found}, expected {expected}")]
+    Metadata {
+        /// The key.
+        key: &'static str,
+        /// What stands there.
+        found: String,
+        /// What should.
+        expected: &'static str,
+    },
+    /// A message is not what its topic promises.
+    #[error("message on {topic} at {log_time_ns} ns: {source}")]
+    Message {
+        /// The topic.
+        topic: &'static str,
+        /// Log time of the message.
+        log_time_ns: u64,
+        /// What is wrong.
+        source: MessageError,
+    },
+}
+
+/// What a recording says about itself.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Info {
+    /// Version of the format.
+    pub version: u32,
+    /// Version of the octant that wrote it.
+    pub octant: String,
+    /// Which samples and outputs it keeps.
+    pub samples: Samples,
+    /// Period of truth and of decimated samples and outputs, ns.
+    pub period_ns: u64,
+    /// The resolved scenario, TOML.
+    pub scenario: String,
+    /// Metadata of the run.
+    pub run: BTreeMap<String, String>,
+}
+
+/// One message of a recording.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Item {
+    /// The sample that the source delivered, where it differs from the one that reached the core.
+    CleanSample(Sample),
+    /// The aiding that the source delivered, where it differs from what reached the core.
+    CleanAiding(Option<Aiding>),
+    /// Aiding that reached the core.
+    Aiding(Aiding),
+    /// A sample that reached the core.
+    Sample(Sample),
+    /// An output of the core.
+    Output(Output),
+    /// Parameters with the sequence number of their epoch.
+    Parameters(u64, ParameterEstimate),
+    /// Truth.
+    Truth(Truth),
+    /// An event.
+    Event(Event),
+}
+
+impl Item {
+    fn decode(topic: Topic, data: &[u8]) -> Result<Self, MessageError> {
+        Ok(match topic {
+            Topic::ImuClean => Self::CleanSample(message::decode_sample(data)?),
+            Topic::Imu => Self::Sample(message::decode_sample(data)?),
+            Topic::AidingClean => Self::CleanAiding(message::decode_aiding(data)?),
+            Topic::Aiding => match message::decode_aiding(data)? {
+                Some(aiding) => Self::Aiding(aiding),
+                None => {
+                    return Err(MessageError::Value {
+                        field: "kind",
+                        found: 255,
+                        expected: "0 (velocity) or 1 (position)",
+                    });
+                }
+            },
+            Topic::Output => Self::Output(message::decode_output(data)?),
+            Topic::Parameters => {
+                let (sequence, estimate) = message::decode_parameters(data)?;
+                Self::Parameters(sequence, estimate)
+            }
+            Topic::Truth => Self::Truth(message::decode_truth(data)?),
+            Topic::Event => Self::Event(
+                serde_json::from_slice(data)
+                    .map_err(|error| MessageError::Json { reason: error.to_string() })?,
+            ),
+        })
+    }
+
+    /// The topic that it came on.
+    #[must_use]
+    pub const fn topic(&self) -> Topic {
+        match self {
+            Self::CleanSample(_) => Topic::ImuClean,
+            Self::CleanAiding(_) => Topic::AidingClean,
+            Self::Aiding(_) => Topic::Aiding,
+            Self::Sample(_) => Topic::Imu,
+            Self::Output(_) => Topic::Output,
+            Self::Parameters(..) => Topic::Parameters,
+            Self::Truth(_) => Topic::Truth,
+            Self::Event(_) => Topic::Event,
+        }
+    }
+}
+
+/// What one record of the container means here.
+enum Step {
+    Nothing,
+    Metadata(BTreeMap<String, String>),
+    Run(BTreeMap<String, String>),
+    Scenario(String),
+    Channel { id: u16, topic: Option<Topic> },
+    Message { time_ns: u64, item: Result<Option<Item>, (Topic, MessageError)> },
+    Damaged(String),
+}
+
+/// A recording, read from first to last in bounded memory.
+pub struct Recording<R> {
+    records: Records<R>,
+    info: Info,
+    channels: HashMap<u16, Option<Topic>>,
+    /// A message read while looking for the head.
+    pending: Option<(u64, Item)>,
+}
+
+impl Recording<BufReader<File>> {
+    /// Opens a recording and reads its head.
+    ///
+    /// # Errors
+    /// If it isn't one, or of a newer version.
+    pub fn open(path: &Path) -> Result<Self, ReadError> {
+        Self::new(BufReader::new(File::open(path).map_err(ReadError::Open)?))
+    }
+}
+
+impl<R: Read> Recording<R> {
+    /// Reads the head of a recording.
+    ///
+    /// # Errors
+    /// If it isn't one, or of a newer version.
+    pub fn new(source: R) -> Result<Self, ReadError> {
+        let mut recording = Self {
+            records: Records::new(source),
+            info: Info {
+                version: 0,
+                octant: String::new(),
+                samples: Samples::Decimated,
+                period_ns: 0,
+                scenario: String::new(),
+                run: BTreeMap::new(),
+            },
+            channels: HashMap::new(),
+            pending: None,
+        };
+        // The head ends with the first message, or with the file.
+        recording.pending = recording.advance()?;
+        if recording.info.version == 0 {
+            return Err(ReadError::Foreign);
+        }
+        Ok(recording)
+    }
+
+    /// What the recording says about itself.
+    pub fn info(&self) -> &Info {
+        &self.info
+    }
+
+    /// The recording ends in the middle (killed, or a copy that isn't complete). Known once
+    /// [`Recording::next_item`] has returned `None`.
+    pub fn truncated(&self) -> bool {
+        self.records.end() == Some(End::Truncated)
+    }
+
+    /// The next message with its log time (simulated time, ns), `None` at the end.
+    ///
+    /// # Errors
+    /// If the file is damaged or a message is not what its topic promises.
+    pub fn next_item(&mut self) -> Result<Option<(u64, Item)>, ReadError> {
+        match self.pending.take() {
+            Some(item) => Ok(Some(item)),
+            None => self.advance(),
+        }
+    }
+
+    fn advance(&mut self) -> Result<Option<(u64, Item)>, ReadError> {
+        loop {
+            let channels = &self.channels;
+            let step = self.records.next(|opcode, data| read_step(channels, opcode, data))?;
+            match step {
+                None => return Ok(None),
+                Some(Step::Nothing) => {}
+                Some(Step::Metadata(metadata)) => self.head(&metadata)?,
+                Some(Step::Run(run)) => self.info.run = run,
+                Some(Step::Scenario(scenario)) => self.info.scenario = scenario,
+                Some(Step::Channel { id, topic }) => {
+                    self.channels.insert(id, topic);
+                }
+                Some(Step::Damaged(reason)) => {
+                    return Err(
+                        RecordsError::Damaged { offset: self.records.offset(), reason }.into()
+                    );
+                }
+                Some(Step::Message { .. }) if self.info.version == 0 => {
+                    return Err(ReadError::Foreign);
+                }
+                Some(Step::Message { time_ns, item }) => match item {
+                    Ok(Some(item)) => return Ok(Some((time_ns, item))),
+                    // A topic that somebody added.
+                    Ok(None) => {}
+                    Err((topic, source)) => {
+                        return Err(ReadError::Message {
+                            topic: topic.name(),
+                            log_time_ns: time_ns,
+                            source,
+                        });
+                    }
+                },
+            }
+        }
+    }
+
+    fn head(&mut self, metadata: &BTreeMap<String, String>) -> Result<(), ReadError> {
+        let get = |key: &'static str| metadata.get(key).map_or("", String::as_str);
+        let wrong = |key: &'static str, expected: &'static str| ReadError::Metadata {
+            key,
+            found: metadata.get(key).map_or("missing".into(), |found| format!("{found:?}")),
+            expected,
+        };
+        // The version first: nothing else can be relied on in a newer one.
+        let version: u32 =
+            get("version").parse().map_err(|_| wrong("version", "a number from 1"))?;
+        if version > FORMAT_VERSION {
+            return Err(ReadError::NewerVersion { found: version });
+        }
+        if version == 0 {
+            return Err(wrong("version", "a number from 1"));
+        }
+        self.info.samples = match get("samples") {
+            "full" => Samples::Full,
+            "decimated" => Samples::Decimated,
+            _ => return Err(wrong("samples", "full or decimated")),
+        };
+        self.info.period_ns =
+            get("period_ns").parse().map_err(|_| wrong("period_ns", "nanoseconds"))?;
+        self.info.octant = get("octant").into();
+        self.info.version = version;
+        Ok(())
+    }
+}
+
+fn read_step(channels: &HashMap<u16, Option<Topic>>, opcode: u8, data: &[u8]) -> Step {
+    // The indexes repeat what was read; only these kinds matter, and messages are most of them.
+    match opcode {
+        op::MESSAGE | op::METADATA | op::ATTACHMENT | op::CHANNEL => {}
+        _ => return Step::Nothing,
+    }
+    match mcap::parse_record(opcode, data) {
+        Err(error) => Step::Damaged(error.to_string()),
+        Ok(Record::Metadata(record)) if record.name == FORMAT_METADATA => {
+            Step::Metadata(record.metadata)
+        }
+        Ok(Record::Metadata(record)) if record.name == RUN_METADATA => Step::Run(record.metadata),
+        Ok(Record::Attachment { header, data, .. }) if header.name == SCENARIO_ATTACHMENT => {
+            match std::str::from_utf8(&data) {
+                Ok(text) => Step::Scenario(text.into()),
+                Err(error) => Step::Damaged(format!("scenario.toml: {error}")),
+            }
+        }
+        Ok(Record::Channel(channel)) => {
+            Step::Channel { id: channel.id, topic: Topic::from_name(&channel.topic) }
+        }
+        Ok(Record::Message { header, data }) => match channels.get(&header.channel_id) {
+            None => Step::Damaged(format!("message of unknown channel {}", header.channel_id)),
+            Some(topic) => Step::Message {
+                time_ns: header.log_time,
+                item: topic
+                    .map(|topic| Item::decode(topic, &data).map_err(|error| (topic, error)))
+                    .transpose(),
+            },
+        },
+        Ok(_) => Step::Nothing,
+    }
+}
+
+/// What a recording has of one epoch. With decimation any part can be missing.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct RecordedEpoch {
+    /// Simulated time, ns.
+    pub time_ns: u64,
+    /// The sample that reached the core.
+    pub sample: Option<Sample>,
+    /// The aiding that reached the core.
+    pub aiding: Option<Aiding>,
+    /// The sample that the source delivered, where it differs from `sample`.
+    pub clean_sample: Option<Sample>,
+    /// The aiding that the source delivered (`Some(None)`: none), where it differs from `aiding`.
+    pub clean_aiding: Option<Option<Aiding>>,
+    /// The output.
+    pub output: Option<Output>,
+    /// The parameters that are recorded with this epoch.
+    pub parameters: Option<ParameterEstimate>,
+    /// Truth.
+    pub truth: Option<Truth>,
+}
+
+/// The epochs of a recording in order: time, truth, output and parameters for scoring, samples and
+/// aiding for replay. Events are passed over.
+pub struct Epochs<R> {
+    recording: Recording<R>,
+    /// The first message of the next epoch.
+    next: Option<(u64, Item)>,
+}
+
+impl<R: Read> Epochs<R> {
+    /// Groups the messages of a recording.
+    pub fn new(recording: Recording<R>) -> Self {
+        Self { recording, next: None }
+    }
+
+    /// The recording behind.
+    pub fn recording(&self) -> &Recording<R> {
+        &self.recording
+    }
+
+    /// The next epoch of which anything is recorded, `None` at the end.
+    ///
+    /// # Errors
+    /// As [`Recording::next_item`].
+    pub fn next_epoch(&mut self) -> Result<Option<RecordedEpoch>, ReadError> {
+        let mut epoch = RecordedEpoch::default();
+        let mut last: Option<Topic> = None;
+        loop {
+            let Some((time_ns, item)) = (match self.next.take() {
+                Some(item) => Some(item),
+                None => self.recording.next_item()?,
+            }) else {
+                return Ok(last.map(|_| epoch));
+            };
+            let topic = item.topic();
+            if topic == Topic::Event {
+                continue;
+            }
+            if last.is_some_and(|last| time_ns != epoch.time_ns || topic <= last) {
+                self.next = Some((time_ns, item));
+                return Ok(Some(epoch));
+            }
+            last = Some(topic);
+            epoch.time_ns = time_ns;
+            match item {
+                Item::CleanSample(sample) => epoch.clean_sample = Some(sample),
+                Item::CleanAiding(aiding) => epoch.clean_aiding = Some(aiding),
+                Item::Aiding(aiding) => epoch.aiding = Some(aiding),
+                Item::Sample(sample) => epoch.sample = Some(sample),
+                Item::Output(output) => epoch.output = Some(output),
+                Item::Parameters(_, estimate) => epoch.parameters = Some(estimate),
+                Item::Truth(truth) => epoch.truth = Some(truth),
+                Item::Event(_) => {}
+            }
+        }
+    }
+}
+
+/// What a recording holds, counted.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Contents {
+    /// What it says about itself.
+    pub info: Info,
+    /// Messages by topic.
+    pub messages: BTreeMap<&'static str, u64>,
+    /// It ends in the middle.
+    pub truncated: bool,
+}
+
+/// Reads a recording from memory to its end, checking every CRC and message. Never panics, and
+/// allocates no more than a constant and a small multiple of the bytes given.
+///
+/// # Errors
+/// If it isn't a recording, or damaged.
+pub fn read_bytes(bytes: &[u8]) -> Result<Contents, ReadError> {
+    contents(Recording::new(bytes)?)
+}
+
+/// Reads a recording to its end, checking every CRC and message.
+///
+/// # Errors
+/// If it is damaged.
+pub fn contents<R: Read>(mut recording: Recording<R>) -> Result<Contents, ReadError> {
+    let mut counts = [0u64; Topic::ALL.len()];
+    while let Some((_, item)) = recording.next_item()? {
+        counts[item.topic() as usize] += 1;
+    }
+    Ok(Contents {
+        truncated: recording.truncated(),
+        info: recording.info,
+        messages: Topic::ALL.iter().map(|topic| (topic.name(), counts[*topic as usize])).collect(),
+    })
+}
+
+/// The stream hash of a full recording, computed again from its messages; `None` for a decimated
+/// one, which doesn't hold the stream.
+///
+/// # Errors
+/// If the recording is damaged.
+pub fn stream_hash<R: Read>(recording: Recording<R>) -> Result<Option<String>, ReadError> {
+    if recording.info.samples != Samples::Full {
+        return Ok(None);
+    }
+    let mut epochs = Epochs::new(recording);
+    let mut hash = StreamHash::new();
+    while let Some(epoch) = epochs.next_epoch()? {
+        if let (Some(sample), Some(output)) = (&epoch.sample, &epoch.output) {
+            hash.epoch(sample, epoch.aiding.as_ref(), output);
+        }
+        if let Some(estimate) = &epoch.parameters {
+            hash.parameters(estimate);
+        }
+    }
+    Ok(Some(hash.hex()))
+}

@@ -1,0 +1,134 @@
+//! The records of an MCAP file from first to last, in bounded memory.
+
+use mcap::sans_io::linear_reader::{LinearReadEvent, LinearReader, LinearReaderOptions};
+use std::io::Read;
+
+/// Largest record or chunk that is read, compressed or not. Files that claim more are refused
+/// before anything of that size is allocated.
+pub const RECORD_BYTES_MAX: usize = 32 * 1024 * 1024;
+/// Bytes asked of the file at a time: memory grows with what is there, not with what is claimed.
+const READ_BYTES: usize = 64 * 1024;
+
+/// Why a file could not be read on.
+#[derive(Debug, thiserror::Error)]
+pub enum RecordsError {
+    /// The system failed to read.
+    #[error("{0}")]
+    Io(std::io::Error),
+    /// The file does not begin as MCAP does.
+    #[error("not an MCAP file: it does not begin with the magic bytes of MCAP")]
+    NotMcap,
+    /// A record is damaged.
+    #[error("damaged after byte {offset}: {reason}")]
+    Damaged {
+        /// Bytes read up to the damage.
+        offset: u64,
+        /// What is wrong.
+        reason: String,
+    },
+}
+
+/// Reads record by record. Chunks are unpacked, and their CRC is checked before any of their
+/// records is given out.
+pub struct Records<R> {
+    source: R,
+    reader: LinearReader,
+    offset: u64,
+    started: bool,
+    /// What the file ended with, once it has.
+    end: Option<End>,
+}
+
+/// How a file ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum End {
+    /// As it should.
+    Whole,
+    /// In the middle: the writer was killed, or the copy is not complete.
+    Truncated,
+}
+
+impl<R: Read> Records<R> {
+    /// Reads from the start of a file.
+    pub fn new(source: R) -> Self {
+        let reader = LinearReader::new_with_options(
+            LinearReaderOptions::default()
+                .with_prevalidate_chunk_crcs(true)
+                .with_validate_data_section_crc(true)
+                .with_validate_summary_section_crc(true)
+                .with_record_length_limit(RECORD_BYTES_MAX),
+        );
+        Self { source, reader, offset: 0, started: false, end: None }
+    }
+
+    /// How the file ended, once [`Records::next`] has returned `None`.
+    pub fn end(&self) -> Option<End> {
+        self.end
+    }
+
+    /// Bytes read from the file so far.
+    pub fn offset(&self) -> u64 {
+        self.offset
+    }
+
+    /// Gives the next record (opcode and content) to `take`; `None` at the end of the file.
+    ///
+    /// # Errors
+    /// If the file can't be read or is damaged. After an error there are no more records.
+    pub fn next<T>(
+        &mut self,
+        take: impl FnOnce(u8, &[u8]) -> T,
+    ) -> Result<Option<T>, RecordsError> {
+        while self.end.is_none() {
+            let wanted = match self.reader.next_event() {
+                Some(Ok(LinearReadEvent::Record { opcode, data })) => {
+                    self.started = true;
+                    return Ok(Some(take(opcode, data)));
+                }
+                Some(Ok(LinearReadEvent::ReadRequest(wanted))) => wanted,
+                Some(Err(mcap::McapError::UnexpectedEof)) if self.started => {
+                    self.end = Some(End::Truncated);
+                    break;
+                }
+                Some(Err(error)) => {
+                    self.end = Some(End::Truncated);
+                    return Err(match error {
+                        mcap::McapError::BadMagic | mcap::McapError::UnexpectedEof
+                            if !self.started =>
+                        {
+                            RecordsError::NotMcap
+                        }
+                        error => {
+                            RecordsError::Damaged { offset: self.offset, reason: error.to_string() }
+                        }
+                    });
+                }
+                None => {
+                    self.end = Some(End::Whole);
+                    break;
+                }
+            };
+            self.fill(wanted)?;
+        }
+        Ok(None)
+    }
+
+    /// Reads from the file into the reader's buffer.
+    fn fill(&mut self, wanted: usize) -> Result<(), RecordsError> {
+        let buffer = self.reader.insert(wanted.clamp(1, READ_BYTES));
+        loop {
+            match self.source.read(buffer) {
+                Ok(n) => {
+                    self.reader.notify_read(n);
+                    self.offset += n as u64;
+                    return Ok(());
+                }
+                Err(error) if error.kind() == std::io::ErrorKind::Interrupted => {}
+                Err(error) => {
+                    self.end = Some(End::Truncated);
+                    return Err(RecordsError::Io(error));
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,108 @@
+//! The stream hash: one number that says whether two runs were the same.
+//!
+//! BLAKE3 over the canonical bytes ([`octant_sample::canonical`]) of what the core got and gave,
+//! epoch by epoch: the faulted sample, the aiding if there was any, the output, and the parameters
+//! with their σ when the output's revision changed. It is taken at full rate, before any
+//! decimation, and holds no host time: recording policy, block size and realisation don't move it.
+
+use crate::endpoint::ParameterEstimate;
+use octant_sample::canonical::{self, AIDING_BYTES, OUTPUT_BYTES, PARAMETERS_BYTES, SAMPLE_BYTES};
+use octant_sample::{Aiding, Output, Sample};
+
+/// Bytes gathered before the hash function is called: BLAKE3 is several times faster on pieces of
+/// many kilobytes (it hashes 1 KiB blocks side by side) than on the 50 bytes of a sample.
+const GATHER_BYTES: usize = 128 * 1024;
+
+/// Hash of a stream so far.
+#[derive(Debug)]
+pub struct StreamHash {
+    hasher: blake3::Hasher,
+    gathered: Vec<u8>,
+}
+
+impl Default for StreamHash {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl StreamHash {
+    /// Hash of an empty stream.
+    #[must_use]
+    pub fn new() -> Self {
+        Self { hasher: blake3::Hasher::new(), gathered: Vec::with_capacity(GATHER_BYTES) }
+    }
+
+    /// Adds one epoch: what reached the core and what it answered.
+    #[inline]
+    pub fn epoch(&mut self, sample: &Sample, aiding: Option<&Aiding>, output: &Output) {
+        self.put::<SAMPLE_BYTES>(|bytes| canonical::sample(sample, bytes));
+        if let Some(aiding) = aiding {
+            self.put::<AIDING_BYTES>(|bytes| canonical::aiding(aiding, bytes));
+        }
+        self.put::<OUTPUT_BYTES>(|bytes| canonical::output(output, bytes));
+    }
+
+    /// Adds the parameters that changed with the epoch just added.
+    pub fn parameters(&mut self, estimate: &ParameterEstimate) {
+        self.put::<PARAMETERS_BYTES>(|bytes| {
+            canonical::parameters(&estimate.parameters, &estimate.sigma, bytes);
+        });
+    }
+
+    /// The hash of everything added, 64 hexadecimal digits.
+    #[must_use]
+    pub fn hex(&mut self) -> String {
+        self.drain();
+        self.hasher.finalize().to_hex().to_string()
+    }
+
+    #[inline]
+    fn put<const N: usize>(&mut self, write: impl FnOnce(&mut [u8; N])) {
+        if self.gathered.len() + N > GATHER_BYTES {
+            self.drain();
+        }
+        let mut bytes = [0; N];
+        write(&mut bytes);
+        self.gathered.extend_from_slice(&bytes);
+    }
+
+    fn drain(&mut self) {
+        self.hasher.update(&self.gathered);
+        self.gathered.clear();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use octant_sample::{DeviceTime, Reference};
+
+    #[test]
+    fn the_hash_is_blake3_of_the_canonical_bytes_in_order() {
+        let mut hash = StreamHash::new();
+        let mut bytes = Vec::new();
+        for k in 1..5000u64 {
+            let sample =
+                Sample { sequence: k, delta_theta: [k as i32, -1, 7], ..Default::default() };
+            let output = Output { sequence: k, nis: f64::NAN, ..Default::default() };
+            let aiding = (k % 200 == 0).then_some(Aiding {
+                device_time: DeviceTime::from_ns(k),
+                reference: Reference::Velocity([1.0, -0.0, f64::INFINITY]),
+            });
+            hash.epoch(&sample, aiding.as_ref(), &output);
+            let mut b = [0; SAMPLE_BYTES];
+            canonical::sample(&sample, &mut b);
+            bytes.extend_from_slice(&b);
+            if let Some(aiding) = aiding {
+                let mut b = [0; AIDING_BYTES];
+                canonical::aiding(&aiding, &mut b);
+                bytes.extend_from_slice(&b);
+            }
+            let mut b = [0; OUTPUT_BYTES];
+            canonical::output(&output, &mut b);
+            bytes.extend_from_slice(&b);
+        }
+        assert_eq!(hash.hex(), blake3::hash(&bytes).to_hex().to_string());
+    }
+}

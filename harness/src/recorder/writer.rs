@@ -1,0 +1,301 @@
+//! Writes blocks of epochs into an MCAP file. Runs on the recorder's thread.
+//!
+//! # Recovery model
+//!
+//! - The file is append-only: header, metadata (`octant.recording`, `octant.run`), the scenario,
+//!   then chunks, and at the end of a run the summary with its indexes.
+//! - A chunk is built in memory and handed to the operating system whole, with a CRC over its
+//!   content. What a kill leaves is therefore a run of whole records and at most one torn one at
+//!   the end; a reader takes everything before it.
+//! - The open chunk is closed when it is large, and whenever [`FLUSH_INTERVAL`] of wall time has
+//!   passed: what the run loop handed over earlier than that is in the file. The loop is asked for
+//!   its unfinished block as often (see the handle), so that a kill costs less than a second of a
+//!   loop that steps.
+//! - The operating system's cache survives the kill of a process, not of the machine: the file is
+//!   synced to the disk once, at the end.
+//! - After a write failed nothing more is written; what stands before the failure is readable.
+
+use super::block::Block;
+use super::message::{self, Topic};
+use super::sink::Sink;
+use super::{
+    Counts, Event, FLUSH_INTERVAL, FORMAT_VERSION, Policy, RecorderError, RecorderOptions, Samples,
+};
+use crate::endpoint::ParameterEstimate;
+use mcap::records::{MessageHeader, Metadata};
+use mcap::write::NoSeek;
+use octant_sample::{Mode, Output};
+use std::borrow::Cow;
+use std::collections::BTreeMap;
+use std::io::{BufWriter, Write};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::Instant;
+
+/// Name of the metadata record with the format version.
+pub(super) const FORMAT_METADATA: &str = "octant.recording";
+/// Name of the metadata record about the run.
+pub(super) const RUN_METADATA: &str = "octant.run";
+/// Name of the attachment with the resolved scenario.
+pub(super) const SCENARIO_ATTACHMENT: &str = "scenario.toml";
+/// Size at which a chunk is closed, uncompressed.
+const CHUNK_BYTES: u64 = 512 * 1024;
+
+/// The file side of a recorder.
+pub(super) struct RecordingWriter<W: Write> {
+    mcap: mcap::Writer<NoSeek<BufWriter<Sink<W>>>>,
+    written: Arc<AtomicU64>,
+    channels: [u16; Topic::ALL.len()],
+    counts: [u64; Topic::ALL.len()],
+    policy: Policy,
+    bytes: Vec<u8>,
+    last_flush: Instant,
+    dirty: bool,
+    /// Mode of the last output, none before the first.
+    mode: Option<Mode>,
+    /// Log time and sequence number of the last frame.
+    last_time_ns: u64,
+    last_sequence: u64,
+    /// The last parameters, while they are not in the file.
+    unwritten_parameters: Option<(u64, ParameterEstimate)>,
+    next_parameters_ns: u64,
+}
+
+impl<W: Write> RecordingWriter<W> {
+    /// Writes everything that stands before the first epoch.
+    pub(super) fn new(inner: W, options: &RecorderOptions) -> Result<Self, RecorderError> {
+        let (sink, written) = Sink::new(inner);
+        let policy = options.policy;
+        let fail = |error| error_of(error, &written);
+        let mut mcap = mcap::WriteOptions::new()
+            .profile("octant")
+            .library(concat!("octant ", env!("CARGO_PKG_VERSION")))
+            .compression(Some(mcap::Compression::Zstd))
+            .compression_level(1)
+            // The bytes differ with the number of threads; none keeps them on this thread.
+            .compression_threads(0)
+            .chunk_size(Some(CHUNK_BYTES))
+            // Without seeking a chunk is buffered and written whole: see the recovery model.
+            .disable_seeking(true)
+            .create(NoSeek::new(BufWriter::new(sink)))
+            .map_err(fail)?;
+        mcap.write_metadata(&Metadata {
+            name: FORMAT_METADATA.into(),
+            metadata: BTreeMap::from([
+                ("version".into(), FORMAT_VERSION.to_string()),
+                ("octant".into(), env!("CARGO_PKG_VERSION").into()),
+                ("samples".into(), policy.samples.name().into()),
+                ("period_ns".into(), policy.period_ns.to_string()),
+                ("parameters_period_ns".into(), policy.parameters_period_ns.to_string()),
+                ("log_time".into(), "simulated time, ns since the start of the run".into()),
+                (
+                    "clean".into(),
+                    "/imu/clean and /aiding/clean hold only what differs from /imu and /aiding"
+                        .into(),
+                ),
+            ]),
+        })
+        .map_err(fail)?;
+        mcap.write_metadata(&Metadata {
+            name: RUN_METADATA.into(),
+            metadata: options.metadata.clone(),
+        })
+        .map_err(fail)?;
+        mcap.attach(&mcap::Attachment {
+            log_time: 0,
+            create_time: 0,
+            name: SCENARIO_ATTACHMENT.into(),
+            media_type: "application/toml".into(),
+            data: Cow::Borrowed(options.scenario.as_bytes()),
+        })
+        .map_err(fail)?;
+        let mut channels = [0; Topic::ALL.len()];
+        for topic in Topic::ALL {
+            let (schema_encoding, message_encoding) = topic.encodings();
+            let schema = mcap
+                .add_schema(topic.schema_name(), schema_encoding, topic.schema().as_bytes())
+                .map_err(fail)?;
+            channels[topic as usize] = mcap
+                .add_channel(schema, topic.name(), message_encoding, &BTreeMap::new())
+                .map_err(fail)?;
+        }
+        mcap.flush().map_err(fail)?;
+        Ok(Self {
+            mcap,
+            written,
+            channels,
+            counts: [0; Topic::ALL.len()],
+            policy,
+            bytes: Vec::with_capacity(1024),
+            last_flush: Instant::now(),
+            dirty: false,
+            mode: None,
+            last_time_ns: 0,
+            last_sequence: 0,
+            unwritten_parameters: None,
+            next_parameters_ns: 0,
+        })
+    }
+
+    /// Writes what the policy keeps of a block.
+    pub(super) fn block(&mut self, block: &Block) -> Result<(), RecorderError> {
+        let mut aiding = block.aiding.iter().peekable();
+        let mut altered = block.altered.iter().peekable();
+        let mut due = block.due.iter().peekable();
+        let mut truth = block.truth.iter().peekable();
+        let mut parameters = block.parameters.iter().peekable();
+        let mut events = block.events.iter().peekable();
+        for position in 0..=block.len() as u32 {
+            // First what was said after the frame before, in the order of the topics.
+            while let Some((_, estimate)) = parameters.next_if(|(at, _)| *at == position) {
+                self.parameters_changed(estimate)?;
+            }
+            while let Some((_, truth)) = truth.next_if(|(at, _)| *at == position) {
+                message::encode_truth(truth, &mut self.bytes);
+                self.put(Topic::Truth)?;
+            }
+            while let Some((_, event)) = events.next_if(|(at, _)| *at == position) {
+                self.event(event)?;
+            }
+            let index = position as usize;
+            let (Some(sample), Some(output)) = (block.samples.get(index), block.outputs.get(index))
+            else {
+                break;
+            };
+            let clean = altered.next_if(|(at, _)| *at == position).map(|(_, epoch)| epoch);
+            let aiding = aiding.next_if(|(at, _)| *at == position).map(|(_, aiding)| aiding);
+            let on_grid = due.next_if(|at| **at == position).is_some();
+            let keep = on_grid || self.policy.samples == Samples::Full;
+
+            self.last_time_ns = clean.map_or(sample, |epoch| &epoch.sample).device_time.ns;
+            self.last_sequence = sample.sequence;
+            if let Some(epoch) = clean {
+                if keep && epoch.sample != *sample {
+                    message::encode_sample(&epoch.sample, &mut self.bytes);
+                    self.put(Topic::ImuClean)?;
+                }
+                if epoch.aiding.as_ref().map(message::aiding_bits)
+                    != aiding.map(message::aiding_bits)
+                {
+                    message::encode_aiding(epoch.aiding.as_ref(), &mut self.bytes);
+                    self.put(Topic::AidingClean)?;
+                }
+            }
+            if let Some(aiding) = aiding {
+                message::encode_aiding(Some(aiding), &mut self.bytes);
+                self.put(Topic::Aiding)?;
+            }
+            if keep {
+                message::encode_sample(sample, &mut self.bytes);
+                self.put(Topic::Imu)?;
+            }
+            let mode_changed = self.mode != Some(output.mode);
+            if keep || mode_changed {
+                message::encode_output(output, &mut self.bytes);
+                self.put(Topic::Output)?;
+            }
+            if mode_changed {
+                self.mode_changed(output)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn parameters_changed(&mut self, estimate: &ParameterEstimate) -> Result<(), RecorderError> {
+        self.unwritten_parameters = Some((self.last_sequence, *estimate));
+        if self.policy.samples == Samples::Full || self.last_time_ns >= self.next_parameters_ns {
+            self.write_parameters()?;
+        }
+        Ok(())
+    }
+
+    fn write_parameters(&mut self) -> Result<(), RecorderError> {
+        if let Some((sequence, estimate)) = self.unwritten_parameters.take() {
+            message::encode_parameters(sequence, &estimate, &mut self.bytes);
+            self.put(Topic::Parameters)?;
+            self.next_parameters_ns =
+                next_on_grid(self.last_time_ns, self.policy.parameters_period_ns);
+        }
+        Ok(())
+    }
+
+    fn mode_changed(&mut self, output: &Output) -> Result<(), RecorderError> {
+        let from = self.mode.replace(output.mode);
+        self.write_parameters()?;
+        // The parameters that come with the change itself are kept too.
+        self.next_parameters_ns = 0;
+        self.event(&Event {
+            kind: "mode".into(),
+            detail: serde_json::json!({
+                "from": from.map(Mode::name),
+                "to": output.mode.name(),
+                "sequence": output.sequence,
+            }),
+        })
+    }
+
+    fn event(&mut self, event: &Event) -> Result<(), RecorderError> {
+        self.bytes.clear();
+        serde_json::to_writer(&mut self.bytes, event)
+            .map_err(|error| RecorderError::Format { reason: error.to_string() })?;
+        self.put(Topic::Event)
+    }
+
+    /// Writes the message in `self.bytes`.
+    fn put(&mut self, topic: Topic) -> Result<(), RecorderError> {
+        let header = MessageHeader {
+            channel_id: self.channels[topic as usize],
+            // The sequence number of MCAP is of 32 bits and only informs.
+            sequence: self.last_sequence as u32,
+            log_time: self.last_time_ns,
+            publish_time: self.last_time_ns,
+        };
+        self.mcap
+            .write_to_known_channel(&header, &self.bytes)
+            .map_err(|error| error_of(error, &self.written))?;
+        self.counts[topic as usize] += 1;
+        self.dirty = true;
+        Ok(())
+    }
+
+    /// Hands the open chunk to the operating system if it was open for long.
+    pub(super) fn flush_if_due(&mut self) -> Result<(), RecorderError> {
+        if self.last_flush.elapsed() >= FLUSH_INTERVAL {
+            if self.dirty {
+                self.mcap.flush().map_err(|error| error_of(error, &self.written))?;
+                self.dirty = false;
+            }
+            self.last_flush = Instant::now();
+        }
+        Ok(())
+    }
+
+    /// Writes the summary. Returns the messages by topic, the bytes of the file, and the file.
+    pub(super) fn finish(mut self) -> Result<(Counts, u64), RecorderError> {
+        self.write_parameters()?;
+        self.mcap.finish().map_err(|error| error_of(error, &self.written))?;
+        let counts =
+            Topic::ALL.iter().map(|topic| (topic.name(), self.counts[*topic as usize])).collect();
+        let written = Arc::clone(&self.written);
+        let mut buffer = self.mcap.into_inner().into_inner();
+        buffer.flush().map_err(|source| RecorderError::Write {
+            written_bytes: written.load(Ordering::Relaxed),
+            source,
+        })?;
+        Ok((counts, written.load(Ordering::Relaxed)))
+    }
+}
+
+/// First multiple of the period after a time.
+pub(super) fn next_on_grid(time_ns: u64, period_ns: u64) -> u64 {
+    let period_ns = period_ns.max(1);
+    (time_ns / period_ns).saturating_add(1).saturating_mul(period_ns)
+}
+
+fn error_of(error: mcap::McapError, written: &AtomicU64) -> RecorderError {
+    let written_bytes = written.load(Ordering::Relaxed);
+    match error {
+        mcap::McapError::Io(source) => RecorderError::Write { written_bytes, source },
+        other => RecorderError::Format { reason: other.to_string() },
+    }
+}

@@ -1,0 +1,305 @@
+//! An MCAP file that octant did not write, as a source: topic and fields named by a mapping.
+
+use super::counting::{Counting, Measured, Quantity};
+use super::fields::{Definition, FieldDecoder, FieldPath, Number};
+use super::{Epoch, SourceError};
+use crate::recorder::records::{End, Records};
+use mcap::records::{Record, op};
+use std::collections::{BTreeSet, HashMap};
+use std::io::Read;
+
+/// A field of a message and what turns it into SI.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MappedField {
+    /// Path of the field: `angular_velocity.x`, `axes[2].rate`.
+    pub path: String,
+    /// SI units per unit of the field; negative turns the axis around.
+    pub scale: f64,
+}
+
+impl MappedField {
+    fn si(path: &str) -> Self {
+        Self { path: path.into(), scale: 1.0 }
+    }
+}
+
+/// Where the stamp of a message comes from.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum MappedStamp {
+    /// Log time of the message.
+    LogTime,
+    /// Publish time of the message.
+    PublishTime,
+    /// Integer fields of the message.
+    Fields {
+        /// Path of the whole seconds, if there are any.
+        seconds: Option<String>,
+        /// Path of the nanoseconds.
+        nanoseconds: String,
+    },
+}
+
+/// How the messages of a foreign MCAP file become samples. Encodings: JSON, and CDR with a
+/// `ros2msg` schema.
+#[derive(Clone, Debug, PartialEq)]
+pub struct McapMapping {
+    /// Topic of the inertial messages.
+    pub topic: String,
+    /// Gyros x y z of the body: rad/s (rad, for increments) after scaling.
+    pub gyro: [MappedField; 3],
+    /// Accelerometers x y z of the body: m/s² (m/s) after scaling.
+    pub accelerometer: [MappedField; 3],
+    /// What these fields are.
+    pub quantity: Quantity,
+    /// Stamps.
+    pub stamp: MappedStamp,
+    /// Nominal rate, Hz: gives the interval of the first sample.
+    pub nominal_rate_hz: f64,
+    /// Gimbal azimuth and roll, rad after scaling, where the messages have them.
+    pub gimbal: Option<[MappedField; 2]>,
+}
+
+impl McapMapping {
+    /// The mapping of `sensor_msgs/msg/Imu`, stamped by its header.
+    #[must_use]
+    pub fn ros_imu(topic: &str, nominal_rate_hz: f64) -> Self {
+        let axes =
+            |name: &str| ["x", "y", "z"].map(|axis| MappedField::si(&format!("{name}.{axis}")));
+        Self {
+            topic: topic.into(),
+            gyro: axes("angular_velocity"),
+            accelerometer: axes("linear_acceleration"),
+            quantity: Quantity::Rates,
+            stamp: MappedStamp::Fields {
+                seconds: Some("header.stamp.sec".into()),
+                nanoseconds: "header.stamp.nanosec".into(),
+            },
+            nominal_rate_hz,
+            gimbal: None,
+        }
+    }
+}
+
+/// Paths in the order in which the numbers come back: gyro, accelerometer, gimbal, stamp.
+struct Plan {
+    paths: Vec<FieldPath>,
+    scales: Vec<f64>,
+    stamp_seconds: bool,
+}
+
+impl Plan {
+    fn new(mapping: &McapMapping) -> Result<Self, String> {
+        let fields: Vec<&MappedField> = mapping
+            .gyro
+            .iter()
+            .chain(&mapping.accelerometer)
+            .chain(mapping.gimbal.iter().flatten())
+            .collect();
+        let mut paths = fields
+            .iter()
+            .map(|field| FieldPath::parse(&field.path))
+            .collect::<Result<Vec<_>, _>>()?;
+        let mut stamp_seconds = false;
+        if let MappedStamp::Fields { seconds, nanoseconds } = &mapping.stamp {
+            if let Some(seconds) = seconds {
+                stamp_seconds = true;
+                paths.push(FieldPath::parse(seconds)?);
+            }
+            paths.push(FieldPath::parse(nanoseconds)?);
+        }
+        Ok(Self { paths, scales: fields.iter().map(|field| field.scale).collect(), stamp_seconds })
+    }
+}
+
+/// One record of the container, as far as it matters here.
+enum Step {
+    Nothing,
+    Schema { id: u16, name: String, encoding: String, text: Vec<u8> },
+    Channel { id: u16, schema: u16, topic: String, encoding: String },
+    Message { log_ns: u64, publish_ns: u64, numbers: Result<Vec<Number>, String> },
+    Damaged(String),
+}
+
+/// Streams a foreign MCAP file.
+pub(super) struct Foreign<R> {
+    path: String,
+    records: Records<R>,
+    mapping: McapMapping,
+    plan: Plan,
+    schemas: HashMap<u16, (String, String, Vec<u8>)>,
+    decoders: HashMap<u16, FieldDecoder>,
+    topics: BTreeSet<String>,
+    counting: Counting,
+    messages: u64,
+}
+
+impl<R: Read> Foreign<R> {
+    pub(super) fn new(source: R, path: &str, mapping: McapMapping) -> Result<Self, SourceError> {
+        let fail = |reason: String| SourceError::Read { path: path.into(), reason };
+        let plan = Plan::new(&mapping).map_err(fail)?;
+        let nominal_ns = super::nominal_period_ns(mapping.nominal_rate_hz).map_err(fail)?;
+        Ok(Self {
+            path: path.into(),
+            records: Records::new(source),
+            counting: Counting::new(mapping.quantity, nominal_ns),
+            mapping,
+            plan,
+            schemas: HashMap::new(),
+            decoders: HashMap::new(),
+            topics: BTreeSet::new(),
+            messages: 0,
+        })
+    }
+
+    pub(super) fn truncated(&self) -> bool {
+        self.records.end() == Some(End::Truncated)
+    }
+
+    pub(super) fn saturated(&self) -> u64 {
+        self.counting.saturated()
+    }
+
+    pub(super) fn next(&mut self) -> Result<Option<Epoch>, SourceError> {
+        self.advance().map_err(|reason| SourceError::Read { path: self.path.clone(), reason })
+    }
+
+    fn advance(&mut self) -> Result<Option<Epoch>, String> {
+        loop {
+            let (decoders, plan) = (&self.decoders, &self.plan);
+            let step = self
+                .records
+                .next(|opcode, data| read_step(decoders, plan, opcode, data))
+                .map_err(|error| error.to_string())?;
+            match step {
+                None if self.decoders.is_empty() => return Err(self.topic_missing()),
+                None => return Ok(None),
+                Some(Step::Nothing) => {}
+                Some(Step::Damaged(reason)) => return Err(reason),
+                Some(Step::Schema { id, name, encoding, text }) => {
+                    self.schemas.insert(id, (name, encoding, text));
+                }
+                Some(Step::Channel { id, schema, topic, encoding }) => {
+                    if topic == self.mapping.topic {
+                        let decoder = self.decoder(schema, &encoding)?;
+                        self.decoders.insert(id, decoder);
+                    } else if self.topics.len() < 20 {
+                        self.topics.insert(topic);
+                    }
+                }
+                Some(Step::Message { log_ns, publish_ns, numbers }) => {
+                    self.messages += 1;
+                    return numbers
+                        .and_then(|numbers| self.sample(log_ns, publish_ns, &numbers))
+                        .map(Some)
+                        .map_err(|reason| {
+                            format!("message {} on {}: {reason}", self.messages, self.mapping.topic)
+                        });
+                }
+            }
+        }
+    }
+
+    fn topic_missing(&self) -> String {
+        let found: Vec<&str> = self.topics.iter().map(String::as_str).collect();
+        format!(
+            "no topic {:?}; the file has {}",
+            self.mapping.topic,
+            if found.is_empty() { "none".into() } else { found.join(", ") }
+        )
+    }
+
+    fn decoder(&self, schema: u16, encoding: &str) -> Result<FieldDecoder, String> {
+        let topic = &self.mapping.topic;
+        match (encoding, self.schemas.get(&schema)) {
+            ("json", _) => Ok(FieldDecoder::Json),
+            ("cdr", Some((name, schema_encoding, text))) if schema_encoding == "ros2msg" => {
+                let text = std::str::from_utf8(text)
+                    .map_err(|error| format!("schema of {topic}: {error}"))?;
+                Definition::parse(name, text).map(FieldDecoder::Cdr)
+            }
+            ("cdr", Some((_, schema_encoding, _))) => {
+                Err(format!("topic {topic} has a schema in {schema_encoding}, expected ros2msg"))
+            }
+            ("cdr", None) => Err(format!("topic {topic} has no schema, expected ros2msg")),
+            (other, _) => Err(format!("topic {topic} is in {other}, expected json or cdr")),
+        }
+    }
+
+    fn sample(
+        &mut self,
+        log_ns: u64,
+        publish_ns: u64,
+        numbers: &[Number],
+    ) -> Result<Epoch, String> {
+        // The plan put nine numbers or more in this order.
+        let value = |i: usize| numbers[i].real() * self.plan.scales[i];
+        for (i, path) in self.plan.paths.iter().enumerate().take(self.plan.scales.len()) {
+            if !value(i).is_finite() {
+                return Err(format!(
+                    "field {path} is {}, expected a finite number",
+                    numbers[i].real()
+                ));
+            }
+        }
+        let stamps = &numbers[self.plan.scales.len()..];
+        let time_ns = match self.mapping.stamp {
+            MappedStamp::LogTime => log_ns,
+            MappedStamp::PublishTime => publish_ns,
+            MappedStamp::Fields { .. } => stamp_ns(stamps, self.plan.stamp_seconds)?,
+        };
+        let row = Measured {
+            time_ns,
+            gyro: [value(0), value(1), value(2)],
+            accel: [value(3), value(4), value(5)],
+            gimbal_rad: self.mapping.gimbal.is_some().then(|| [value(6), value(7)]),
+        };
+        let previous = self.counting.previous_ns();
+        let sample = self.counting.sample(&row).ok_or_else(|| {
+            format!("stamp {time_ns} ns is not after the one before, {} ns", previous.unwrap_or(0))
+        })?;
+        Ok(Epoch { sample, aiding: None })
+    }
+}
+
+fn stamp_ns(stamps: &[Number], with_seconds: bool) -> Result<u64, String> {
+    let integer = |number: Option<&Number>| match number {
+        Some(Number::Integer(value)) => Ok(*value),
+        other => Err(format!("stamp is {other:?}, expected whole numbers")),
+    };
+    let ns = if with_seconds {
+        integer(stamps.first())?.saturating_mul(1_000_000_000) + integer(stamps.get(1))?
+    } else {
+        integer(stamps.first())?
+    };
+    u64::try_from(ns).map_err(|_| format!("stamp is {ns} ns, expected 0 to 2^64 ns"))
+}
+
+fn read_step(decoders: &HashMap<u16, FieldDecoder>, plan: &Plan, opcode: u8, data: &[u8]) -> Step {
+    if !matches!(opcode, op::SCHEMA | op::CHANNEL | op::MESSAGE) {
+        return Step::Nothing;
+    }
+    match mcap::parse_record(opcode, data) {
+        Err(error) => Step::Damaged(error.to_string()),
+        Ok(Record::Schema { header, data }) => Step::Schema {
+            id: header.id,
+            name: header.name,
+            encoding: header.encoding,
+            text: data.into_owned(),
+        },
+        Ok(Record::Channel(channel)) => Step::Channel {
+            id: channel.id,
+            schema: channel.schema_id,
+            topic: channel.topic,
+            encoding: channel.message_encoding,
+        },
+        Ok(Record::Message { header, data }) => match decoders.get(&header.channel_id) {
+            None => Step::Nothing,
+            Some(decoder) => Step::Message {
+                log_ns: header.log_time,
+                publish_ns: header.publish_time,
+                numbers: decoder.numbers(&plan.paths, &data),
+            },
+        },
+        Ok(_) => Step::Nothing,
+    }
+}

@@ -1,0 +1,162 @@
+//! A recording as a source: one of ours, or an MCAP file of somebody else.
+//!
+//! Read from first to last in bounded memory, whatever the length. The gimbal commands of the core
+//! are ignored: what was recorded has happened.
+
+use super::foreign::{Foreign, McapMapping};
+use super::{Epoch, Source, SourceError};
+use crate::recorder::Samples;
+use crate::recorder::reader::{Epochs, Info, ReadError, RecordedEpoch, Recording};
+use octant_plant::Truth;
+use octant_sample::GimbalCommand;
+use std::fs::File;
+use std::io::{BufReader, Read};
+use std::path::Path;
+
+/// Replays an MCAP file.
+pub struct Replay {
+    path: String,
+    kind: Kind,
+    last: RecordedEpoch,
+}
+
+enum Kind {
+    Octant { epochs: Epochs<BufReader<File>>, total: Option<u64> },
+    Foreign(Box<Foreign<BufReader<File>>>),
+}
+
+impl Replay {
+    /// Opens a recording. With a mapping the file is read by it, whoever wrote it; without, it has
+    /// to be a full recording of octant.
+    ///
+    /// # Errors
+    /// If the file can't be read, is of a newer version, or is decimated.
+    pub fn open(path: &Path, mapping: Option<&McapMapping>) -> Result<Self, SourceError> {
+        let name = path.display().to_string();
+        let kind = match mapping {
+            Some(mapping) => {
+                let file = File::open(path).map_err(|e| read_error(&name, &ReadError::Open(e)))?;
+                Kind::Foreign(Box::new(Foreign::new(BufReader::new(file), &name, mapping.clone())?))
+            }
+            None => {
+                let recording = Recording::open(path).map_err(|e| read_error(&name, &e))?;
+                require_full(&name, recording.info())?;
+                Kind::Octant { epochs: Epochs::new(recording), total: samples_in_summary(path) }
+            }
+        };
+        Ok(Self { path: name, kind, last: RecordedEpoch::default() })
+    }
+
+    /// The file ends in the middle; what stands before was delivered. Known at the end.
+    #[must_use]
+    pub fn truncated(&self) -> bool {
+        match &self.kind {
+            Kind::Octant { epochs, .. } => epochs.recording().truncated(),
+            Kind::Foreign(foreign) => foreign.truncated(),
+        }
+    }
+
+    /// Samples so far in which a count saturated when a foreign file's quantities were turned into
+    /// counts.
+    #[must_use]
+    pub fn saturated(&self) -> u64 {
+        match &self.kind {
+            Kind::Octant { .. } => 0,
+            Kind::Foreign(foreign) => foreign.saturated(),
+        }
+    }
+
+    /// What the recording says about itself; a foreign file says nothing.
+    #[must_use]
+    pub fn info(&self) -> Option<&Info> {
+        match &self.kind {
+            Kind::Octant { epochs, .. } => Some(epochs.recording().info()),
+            Kind::Foreign(_) => None,
+        }
+    }
+
+    /// Everything recorded of the epoch last delivered: the output of the recorded core, clean
+    /// sample, parameters.
+    #[must_use]
+    pub fn recorded(&self) -> &RecordedEpoch {
+        &self.last
+    }
+}
+
+impl Source for Replay {
+    /// The epoch as it reached the recorded core, faults included.
+    fn next(&mut self, _command: &GimbalCommand) -> Result<Option<Epoch>, SourceError> {
+        match &mut self.kind {
+            Kind::Foreign(foreign) => foreign.next(),
+            Kind::Octant { epochs, .. } => loop {
+                match epochs.next_epoch().map_err(|e| read_error(&self.path, &e))? {
+                    None => return Ok(None),
+                    Some(epoch) => {
+                        // Aiding without its sample is where a torn file ends.
+                        if let Some(sample) = epoch.sample {
+                            let aiding = epoch.aiding;
+                            self.last = epoch;
+                            return Ok(Some(Epoch { sample, aiding }));
+                        }
+                    }
+                }
+            },
+        }
+    }
+
+    fn truth(&self) -> Option<Truth> {
+        self.last.truth
+    }
+
+    fn samples_total(&self) -> Option<u64> {
+        match &self.kind {
+            Kind::Octant { total, .. } => *total,
+            Kind::Foreign(_) => None,
+        }
+    }
+}
+
+fn require_full(path: &str, info: &Info) -> Result<(), SourceError> {
+    if info.samples == Samples::Full {
+        return Ok(());
+    }
+    Err(SourceError::Read {
+        path: path.into(),
+        reason: format!(
+            "the recording keeps a sample every {} s, and a replay needs every sample: record the \
+             run again with record.samples = \"full\"",
+            info.period_ns as f64 * 1e-9
+        ),
+    })
+}
+
+/// Number of samples, where the file has its summary. A truncated file has none.
+fn samples_in_summary(path: &Path) -> Option<u64> {
+    use mcap::sans_io::summary_reader::{SummaryReadEvent, SummaryReader};
+    use std::io::Seek;
+    let mut file = File::open(path).ok()?;
+    let mut reader = SummaryReader::new();
+    while let Some(event) = reader.next_event() {
+        match event.ok()? {
+            SummaryReadEvent::ReadRequest(n) => {
+                let n = n.min(crate::recorder::records::RECORD_BYTES_MAX);
+                let read = file.read(reader.insert(n)).ok()?;
+                reader.notify_read(read);
+            }
+            SummaryReadEvent::SeekRequest(to) => {
+                let position = file.seek(to).ok()?;
+                reader.notify_seeked(position);
+            }
+        }
+    }
+    let summary = reader.finish()?;
+    let channel = summary
+        .channels
+        .values()
+        .find(|channel| channel.topic == crate::recorder::message::Topic::Imu.name())?;
+    summary.stats?.channel_message_counts.get(&channel.id).copied()
+}
+
+pub(super) fn read_error(path: &str, error: &ReadError) -> SourceError {
+    SourceError::Read { path: path.into(), reason: error.to_string() }
+}

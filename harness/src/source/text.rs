@@ -1,0 +1,370 @@
+//! Delimited text of a real instrument as a source.
+
+use super::counting::{Counting, Measured, Quantity};
+use super::rows::Rows;
+use super::{Epoch, Source, SourceError, nominal_period_ns};
+use octant_plant::Truth;
+use octant_sample::GimbalCommand;
+use std::path::{Path, PathBuf};
+
+/// A column of a file.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Column {
+    /// Its number, from 1.
+    Number(usize),
+    /// Its name in the header line.
+    Name(String),
+}
+
+/// A column and what turns it into SI: `(value − offset) · scale`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Axis {
+    /// The column. Which column serves which body axis is the order of the axes.
+    pub column: Column,
+    /// What the instrument shows at zero, in units of the file.
+    pub offset: f64,
+    /// SI units per unit of the file; negative turns the axis around.
+    pub scale: f64,
+}
+
+/// Unit of the time column.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum TimeUnit {
+    /// Seconds.
+    #[default]
+    Second,
+    /// Milliseconds.
+    Millisecond,
+    /// Microseconds.
+    Microsecond,
+    /// Nanoseconds.
+    Nanosecond,
+}
+
+impl TimeUnit {
+    /// Powers of ten from this unit to a nanosecond.
+    const fn nanosecond_exponent(self) -> i32 {
+        match self {
+            Self::Second => 9,
+            Self::Millisecond => 6,
+            Self::Microsecond => 3,
+            Self::Nanosecond => 0,
+        }
+    }
+}
+
+/// The time column.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct TimeColumn {
+    /// The column.
+    pub column: Column,
+    /// Its unit.
+    pub unit: TimeUnit,
+}
+
+/// What stands between two fields.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Delimiter {
+    /// Any run of blanks and tabs; leading ones don't count.
+    #[default]
+    Blanks,
+    /// One ASCII character. Blanks around a field don't count; a field may be quoted.
+    Character(u8),
+}
+
+/// The files.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum TextFiles {
+    /// Gyros and accelerometers in one file.
+    One(PathBuf),
+    /// In two files of the same stamps.
+    Split {
+        /// File of the gyros, and of the gimbals.
+        gyro: PathBuf,
+        /// File of the accelerometers.
+        accelerometer: PathBuf,
+    },
+}
+
+/// Gimbal angles, where the file has them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct GimbalColumns {
+    /// Inner gimbal, rad after scaling.
+    pub azimuth: Axis,
+    /// Outer gimbal, rad after scaling.
+    pub roll: Axis,
+}
+
+/// How text becomes samples.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TextMapping {
+    /// The files.
+    pub files: TextFiles,
+    /// Time; without it the stamps follow from the nominal rate.
+    pub time: Option<TimeColumn>,
+    /// Gyros of body axes x y z: rad/s (rad, for increments) after scaling.
+    pub gyro: [Axis; 3],
+    /// Accelerometers of body axes x y z: m/s² (m/s) after scaling.
+    pub accelerometer: [Axis; 3],
+    /// What these columns are.
+    pub quantity: Quantity,
+    /// Nominal rate, Hz: gives the interval of the first sample, and all stamps where there is no
+    /// time column.
+    pub nominal_rate_hz: f64,
+    /// Delimiter.
+    pub delimiter: Delimiter,
+    /// Lines that begin with this are passed over; empty: none.
+    pub comment: String,
+    /// Lines at the start of a file that are passed over whatever they hold.
+    pub skip_lines: usize,
+    /// Gimbal angles.
+    pub gimbal: Option<GimbalColumns>,
+}
+
+/// Streams delimited text.
+///
+/// The counts of an interval are its rate times the time since the stamp before (the nominal period
+/// for the first), with the remainder carried. What does not fit a count saturates, is flagged in
+/// the sample and counted.
+pub struct TextSource {
+    first: File,
+    /// The accelerometers' file, where it is another.
+    second: Option<File>,
+    period_ns: u64,
+    counting: Counting,
+    rows: u64,
+}
+
+/// One file with the columns that are taken from it.
+struct File {
+    rows: Rows,
+    time: Option<(usize, TimeUnit)>,
+    gyro: Option<[Resolved; 3]>,
+    accel: Option<[Resolved; 3]>,
+    gimbal: Option<[Resolved; 2]>,
+}
+
+/// An axis with its column found.
+#[derive(Clone, Copy)]
+struct Resolved {
+    index: usize,
+    offset: f64,
+    scale: f64,
+}
+
+impl TextSource {
+    /// Opens the files of a mapping.
+    ///
+    /// # Errors
+    /// If a file can't be read or has not the columns named.
+    pub fn open(mapping: &TextMapping) -> Result<Self, SourceError> {
+        let (path, second) = match &mapping.files {
+            TextFiles::One(path) => (path, None),
+            TextFiles::Split { gyro, accelerometer } => (gyro, Some(accelerometer)),
+        };
+        let period_ns = nominal_period_ns(mapping.nominal_rate_hz)
+            .map_err(|reason| SourceError::Read { path: path.display().to_string(), reason })?;
+        Ok(Self {
+            first: File::open(path, mapping, true, second.is_none())?,
+            second: second.map(|path| File::open(path, mapping, false, true)).transpose()?,
+            period_ns,
+            counting: Counting::new(mapping.quantity, period_ns),
+            rows: 0,
+        })
+    }
+
+    /// Samples so far in which at least one count saturated.
+    #[must_use]
+    pub fn saturated(&self) -> u64 {
+        self.counting.saturated()
+    }
+
+    fn advance(&mut self) -> Result<Option<Epoch>, SourceError> {
+        let more = self.first.rows.advance()?;
+        if let Some(second) = &mut self.second {
+            let more_there = second.rows.advance()?;
+            if more != more_there {
+                let (ended, other) =
+                    if more { (second, &self.first) } else { (&mut self.first, &*second) };
+                return Err(ended.rows.error(format!(
+                    "the file ends after {} rows, and {} goes on: expected the same stamps in both",
+                    self.rows,
+                    other.rows.path()
+                )));
+            }
+        }
+        if !more {
+            return Ok(None);
+        }
+        self.rows += 1;
+        let time_ns = match self.first.time_ns()? {
+            Some(time_ns) => time_ns,
+            None => self.rows.saturating_mul(self.period_ns),
+        };
+        if let Some(second) = &self.second {
+            if let Some(there) = second.time_ns()?.filter(|there| *there != time_ns) {
+                return Err(second.rows.error(format!(
+                    "stamp {there} ns, expected {time_ns} ns as in {} line {}",
+                    self.first.rows.path(),
+                    self.first.rows.line()
+                )));
+            }
+        }
+        let accel = match (&self.second, self.first.accel) {
+            (Some(second), _) => second.values(second.accel)?,
+            (None, accel) => self.first.values(accel)?,
+        };
+        let row = Measured {
+            time_ns,
+            gyro: self.first.values(self.first.gyro)?,
+            accel,
+            gimbal_rad: match self.first.gimbal {
+                Some(gimbal) => Some(self.first.values(Some(gimbal))?),
+                None => None,
+            },
+        };
+        let previous = self.counting.previous_ns();
+        let sample = self.counting.sample(&row).ok_or_else(|| {
+            self.first.rows.error(format!(
+                "stamp {time_ns} ns is not after the one before, {} ns",
+                previous.unwrap_or(0)
+            ))
+        })?;
+        Ok(Some(Epoch { sample, aiding: None }))
+    }
+}
+
+impl Source for TextSource {
+    fn next(&mut self, _command: &GimbalCommand) -> Result<Option<Epoch>, SourceError> {
+        self.advance()
+    }
+
+    fn truth(&self) -> Option<Truth> {
+        None
+    }
+
+    fn samples_total(&self) -> Option<u64> {
+        None
+    }
+}
+
+impl File {
+    fn open(
+        path: &Path,
+        mapping: &TextMapping,
+        gyro: bool,
+        accel: bool,
+    ) -> Result<Self, SourceError> {
+        let axes = mapping.gyro.iter().chain(&mapping.accelerometer);
+        let gimbal = mapping.gimbal.iter().flat_map(|gimbal| [&gimbal.azimuth, &gimbal.roll]);
+        let time = mapping.time.iter().map(|time| &time.column);
+        let named = axes
+            .chain(gimbal)
+            .map(|axis| &axis.column)
+            .chain(time)
+            .any(|column| matches!(column, Column::Name(_)));
+        let rows =
+            Rows::open(path, mapping.delimiter, &mapping.comment, mapping.skip_lines, named)?;
+        let axis = |axis: &Axis| -> Result<Resolved, SourceError> {
+            Ok(Resolved {
+                index: rows.column(&axis.column)?,
+                offset: axis.offset,
+                scale: axis.scale,
+            })
+        };
+        let three = |axes: &[Axis; 3]| -> Result<[Resolved; 3], SourceError> {
+            Ok([axis(&axes[0])?, axis(&axes[1])?, axis(&axes[2])?])
+        };
+        let time = match &mapping.time {
+            Some(time) => Some((rows.column(&time.column)?, time.unit)),
+            None => None,
+        };
+        let gimbal = match &mapping.gimbal {
+            Some(gimbal) if gyro => Some([axis(&gimbal.azimuth)?, axis(&gimbal.roll)?]),
+            _ => None,
+        };
+        let gyro = if gyro { Some(three(&mapping.gyro)?) } else { None };
+        let accel = if accel { Some(three(&mapping.accelerometer)?) } else { None };
+        Ok(Self { rows, time, gyro, accel, gimbal })
+    }
+
+    fn time_ns(&self) -> Result<Option<u64>, SourceError> {
+        let Some((index, unit)) = self.time else { return Ok(None) };
+        let text = self.rows.field(index)?;
+        match decimal_ns(text, unit) {
+            Some(time_ns) => Ok(Some(time_ns)),
+            None => Err(self
+                .rows
+                .column_error(index, format!("found {text:?}, expected a time from 0 to 2^64 ns"))),
+        }
+    }
+
+    /// The values of the axes in SI; none of no axes.
+    fn values<const N: usize>(&self, axes: Option<[Resolved; N]>) -> Result<[f64; N], SourceError> {
+        let mut values = [0.0; N];
+        if let Some(axes) = axes {
+            for (value, axis) in values.iter_mut().zip(&axes) {
+                *value = (self.rows.number(axis.index)? - axis.offset) * axis.scale;
+            }
+        }
+        Ok(values)
+    }
+}
+
+/// A decimal number as nanoseconds, exact where it has no digits beyond a nanosecond, else rounded
+/// half up. Not by way of f64, which holds an epoch of today only to 200 ns.
+fn decimal_ns(text: &str, unit: TimeUnit) -> Option<u64> {
+    let text = text.strip_prefix('+').unwrap_or(text);
+    let (mantissa, exponent) = match text.split_once(['e', 'E']) {
+        Some((mantissa, exponent)) => (mantissa, exponent.parse::<i32>().ok()?),
+        None => (text, 0),
+    };
+    let (whole, fraction) = mantissa.split_once('.').unwrap_or((mantissa, ""));
+    if whole.is_empty() && fraction.is_empty() {
+        return None;
+    }
+    let mut digits: u128 = 0;
+    for byte in whole.bytes().chain(fraction.bytes()) {
+        let digit = byte.is_ascii_digit().then(|| u128::from(byte - b'0'))?;
+        digits = digits.checked_mul(10)?.checked_add(digit)?;
+    }
+    let shift = exponent
+        .checked_add(unit.nanosecond_exponent())?
+        .checked_sub(i32::try_from(fraction.len()).ok()?)?;
+    let ns = if shift >= 0 {
+        if digits == 0 {
+            0
+        } else {
+            digits.checked_mul(10u128.checked_pow(shift.unsigned_abs())?)?
+        }
+    } else {
+        match 10u128.checked_pow(shift.unsigned_abs()) {
+            Some(power) => (digits + power / 2) / power,
+            None => 0,
+        }
+    };
+    u64::try_from(ns).ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn times_are_read_to_the_nanosecond() {
+        let ns = |text| decimal_ns(text, TimeUnit::Second);
+        assert_eq!(ns("2.9840000e-02"), Some(29_840_000));
+        assert_eq!(ns("1767225600.123456789"), Some(1_767_225_600_123_456_789));
+        assert_eq!(ns("0.0000000005"), Some(1));
+        assert_eq!(ns(".5"), Some(500_000_000));
+        assert_eq!(ns("3."), Some(3_000_000_000));
+        assert_eq!(ns("+1e1"), Some(10_000_000_000));
+        assert_eq!(ns("0e99"), Some(0));
+        assert_eq!(ns("1e-99"), Some(0));
+        assert_eq!(decimal_ns("10.5", TimeUnit::Millisecond), Some(10_500_000));
+        assert_eq!(decimal_ns("7", TimeUnit::Nanosecond), Some(7));
+        for wrong in ["", ".", "-1", "nan", "1e99", "1e", "1.2.3", "0x10", "1e99999999999"] {
+            assert_eq!(ns(wrong), None, "{wrong}");
+        }
+    }
+}
