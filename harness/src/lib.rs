@@ -3,5 +3,7 @@
 //! A sample flows one way, and the modules are named for its stations:
 //! **source → faults → endpoint → recorder → score → report**.
 
-pub mod source;
 pub mod endpoint;
+pub mod report;
+pub mod score;
+pub mod source;
