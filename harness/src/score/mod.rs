@@ -5,10 +5,12 @@
 //! - [`reference`]: what physics says the scores should be
 //! - [`floor`]: what the noise of the sensors alone does to a free inertial solution
 //! - [`ensemble`]: statistics over many runs
+//! - [`compare`]: two methods, paired
 //! - [`summary`]: `summary.json`
 //! - [`verdict`]: requirements, and the verdict that follows from them
 //! - [`junit`]: the same for CI systems
 
+pub mod compare;
 pub mod drift;
 pub mod ensemble;
 pub mod floor;
