@@ -191,14 +191,17 @@ impl Frame {
         if !(x[1] > x[0]) {
             return None;
         }
-        let x_ticks = if chart.hours { hour_ticks(x) } else { nice_ticks(x, 8, None) };
+        let x_ticks =
+            if chart.hours { hour_ticks(x, chart.width / 75.0) } else { nice_ticks(x, 8, None) };
         let (y, y_ticks) = if chart.logarithmic {
             decades(chart.y_range.unwrap_or(needed))
         } else if let Some(range) = chart.y_range {
             (range, nice_ticks(range, 5, chart.y_step))
         } else {
             let room = if needed[1] > needed[0] { 0.04 * (needed[1] - needed[0]) } else { 1.0 };
-            let range = [needed[0] - room, needed[1] + room];
+            // A bracket stands above the lines.
+            let above = if chart.bracket.is_some() { 3.5 * room } else { room };
+            let range = [needed[0] - room, needed[1] + above];
             (range, nice_ticks(range, 5, chart.y_step))
         };
         Some(Self {
@@ -245,7 +248,7 @@ impl Frame {
             @for tick in &self.x_ticks {
                 @let x = round(self.px(*tick));
                 path class="mark" d={ "M" (x) " " (self.bottom) "v5" } {}
-                text class="tick x" x=(x) y=(self.bottom + 18.0) { (number::significant(*tick, 3).trim_end_matches(".0").trim_end_matches(".00")) }
+                text class="tick x" x=(x) y=(self.bottom + 18.0) { (number::plain(*tick, 3)) }
             }
             path class="axis" d={ "M" (self.left) " " (self.bottom) "H" (self.right) } {}
             text class="tick xlabel" x=(self.right) y=(self.bottom + 33.0) { (chart.x_label) }
@@ -262,7 +265,7 @@ impl Frame {
 
     fn bracket(&self, length: f64, label: &str) -> Markup {
         let (from, to) = (self.left + 10.0, self.left + 10.0 + self.px(length) - self.px(0.0));
-        let y = self.top + 10.0;
+        let y = self.top + 6.0;
         if to > self.right {
             return html! {};
         }
@@ -356,8 +359,8 @@ fn nice_ticks(range: [f64; 2], count: u32, step: Option<f64>) -> Vec<f64> {
 }
 
 /// Ticks of an axis in hours.
-fn hour_ticks(range: [f64; 2]) -> Vec<f64> {
-    let raw = (range[1] - range[0]) / 12.0;
+fn hour_ticks(range: [f64; 2], count: f64) -> Vec<f64> {
+    let raw = (range[1] - range[0]) / count;
     let step = [1.0 / 6.0, 0.5, 1.0, 2.0, 3.0, 6.0, 12.0, 24.0, 48.0, 96.0]
         .into_iter()
         .find(|step| *step >= raw)
@@ -390,7 +393,7 @@ mod tests {
     fn ticks_are_round_and_inside() {
         assert_eq!(nice_ticks([-0.3, 1.1], 5, None), [0.0, 0.5, 1.0]);
         assert_eq!(
-            hour_ticks([0.0, 72.0]),
+            hour_ticks([0.0, 72.0], 12.0),
             (0..=12).map(|k| 6.0 * f64::from(k)).collect::<Vec<_>>()
         );
         assert_eq!(decades([0.02, 3.0]).0[1], 10.0);

@@ -34,6 +34,18 @@ pub fn significant(value: f64, digits: i32) -> String {
     format!("{}e{exponent}", fixed(mantissa, (digits - 1).max(0) as usize))
 }
 
+/// As [`significant`], without zeros at the end that say nothing: for limits and lengths that
+/// somebody wrote down.
+#[must_use]
+pub fn plain(value: f64, digits: i32) -> String {
+    let text = significant(value, digits);
+    if text.contains('.') && !text.contains('e') {
+        text.trim_end_matches('0').trim_end_matches('.').to_owned()
+    } else {
+        text
+    }
+}
+
 /// Decimals that show `value` with `digits` significant digits, at most 8.
 #[must_use]
 pub fn decimals_for(value: f64, digits: i32) -> usize {
@@ -66,6 +78,9 @@ mod tests {
         assert_eq!(significant(12_345.0, 3), "12345");
         assert_eq!(significant(2.5e-7, 2), "2.5e-7");
         assert_eq!(significant(0.0, 3), "0");
+        assert_eq!(plain(24.0, 3), "24");
+        assert_eq!(plain(0.005, 4), "0.005");
+        assert_eq!(plain(100.0, 3), "100");
         assert_eq!(decimals_for(0.00065, 2), 5);
         assert_eq!(decimals_for(14.0, 2), 0);
     }

@@ -137,20 +137,20 @@ pub fn what_was_done(summary: &Summary) -> String {
         (Some(c), Some(n)) => format!(
             "The instrument was calibrated for {} h through the {} positions and then navigated \
              free inertial for {} h with the height {}.",
-            number::significant(c.duration_h, 3),
+            number::plain(c.duration_h, 4),
             c.positions,
-            number::significant(n.duration_h, 3),
+            number::plain(n.duration_h, 4),
             height(n.height),
         ),
         (Some(c), None) => format!(
             "The instrument was calibrated for {} h through the {} positions.",
-            number::significant(c.duration_h, 3),
+            number::plain(c.duration_h, 4),
             c.positions
         ),
         (None, Some(n)) => format!(
             "The instrument navigated free inertial for {} h with the height {}, without a \
              calibration before it.",
-            number::significant(n.duration_h, 3),
+            number::plain(n.duration_h, 4),
             height(n.height),
         ),
         (None, None) => "The run gave neither a calibration nor a navigation.".to_owned(),
@@ -242,7 +242,7 @@ fn requirements(summary: &Summary) -> Markup {
                             td { strong { (r.id) } }
                             td { span.mono { (r.measure) }
                                 @if let Some(reason) = &r.reason { div.reason { (reason) } } }
-                            td.n { (sign(r.comparison.sign())) " " (number::significant(r.limit, 4)) }
+                            td.n { (sign(r.comparison.sign())) " " (number::plain(r.limit, 4)) }
                             td.n { (r.value.map_or_else(|| "–".to_owned(), |v| number::significant(v, 4))) }
                             td.n { (r.margin.map_or_else(|| "–".to_owned(), |v| number::significant(v, 3))) }
                             td.n { (badge(r.verdict)) }
