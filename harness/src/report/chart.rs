@@ -63,7 +63,7 @@ pub struct Chart {
     pub width: f64,
     /// Height of the drawing in px.
     pub height: f64,
-    /// x is in hours: ticks at 1, 2, 3, 6, 12, 24 h.
+    /// x is in hours: ticks at 1, 2, 3, 6, 12, 24 h; else it counts.
     pub hours: bool,
     /// y is logarithmic: values that aren't positive are left out.
     pub logarithmic: bool,
@@ -81,6 +81,8 @@ pub struct Chart {
     pub bracket: Option<(f64, String)>,
     /// Show a legend above.
     pub legend: bool,
+    /// Points of all lines with the same x belong together: dots, joined across the lines.
+    pub paired: bool,
 }
 
 impl Chart {
@@ -102,6 +104,7 @@ impl Chart {
             levels: Vec::new(),
             bracket: None,
             legend: true,
+            paired: false,
         }
     }
 
@@ -127,9 +130,11 @@ impl Chart {
                         path class={ "band " (band.role.class()) } d=(frame.area(band)) {}
                     }
                     @for (value, label) in &self.levels { (frame.level(*value, label)) }
-                    @for line in &self.lines {
-                        path class={ "line " (line.role.class()) } data-label=(line.label)
-                            d=(frame.path(&line.points)) {}
+                    @if self.paired { (frame.pairs(&self.lines)) } @else {
+                        @for line in &self.lines {
+                            path class={ "line " (line.role.class()) } data-label=(line.label)
+                                d=(frame.path(&line.points)) {}
+                        }
                     }
                     @if let Some((length, label)) = &self.bracket { (frame.bracket(*length, label)) }
                     line class="cursor" x1="0" x2="0" y1=(frame.top) y2=(frame.bottom) {}
@@ -139,12 +144,14 @@ impl Chart {
     }
 
     fn legend_markup(&self) -> Markup {
+        // What is drawn last, on top, is what the chart is about: it is named first.
         html! {
             span.legend {
-                @for line in &self.lines {
+                @for line in self.lines.iter().rev() {
                     span.key {
                         svg.swatch viewBox="0 0 24 8" aria-hidden="true" {
-                            path class={ "line " (line.role.class()) } d="M1 4H23" {}
+                            @if self.paired { circle class={ "dot " (line.role.class()) } cx="12" cy="4" r="4" {} }
+                            @else { path class={ "line " (line.role.class()) } d="M1 4H23" {} }
                         }
                         (line.label)
                     }
@@ -188,11 +195,11 @@ impl Frame {
         let x = span(all.iter().map(|p| p.0))?;
         let levels = chart.levels.iter().map(|l| l.0).filter(|y| usable(*y));
         let needed = span(all.iter().map(|p| p.1).chain(levels))?;
+        let x = if chart.paired { [x[0] - 0.5, x[1] + 0.5] } else { x };
         if !(x[1] > x[0]) {
             return None;
         }
-        let x_ticks =
-            if chart.hours { hour_ticks(x, chart.width / 75.0) } else { nice_ticks(x, 8, None) };
+        let x_ticks = if chart.hours { hour_ticks(x, chart.width / 75.0) } else { whole_ticks(x) };
         let (y, y_ticks) = if chart.logarithmic {
             decades(chart.y_range.unwrap_or(needed))
         } else if let Some(range) = chart.y_range {
@@ -272,6 +279,21 @@ impl Frame {
         html! {
             path class="bracket" d={ "M" (round(from)) " " (y - 4.0) "v8m0 -4H" (round(to)) "m0 -4v8" } {}
             text class="note start" x=(round(to + 7.0)) y=(y + 4.0) { (label) }
+        }
+    }
+
+    fn pairs(&self, lines: &[Line]) -> Markup {
+        let first = lines.first().map_or(&[][..], |l| &l.points[..]);
+        html! {
+            @for (i, [x, _]) in first.iter().enumerate() {
+                @let of_x = || lines.iter().filter_map(|l| l.points.get(i)).map(|p| p[1]);
+                @if let Some([low, high]) = span(of_x()) {
+                    path.pair d={ "M" (round(self.px(*x))) " " (round(self.py(low))) "V" (round(self.py(high))) } {}
+                }
+            }
+            @for line in lines { @for [x, y] in &line.points {
+                circle class={ "dot " (line.role.class()) } cx=(round(self.px(*x))) cy=(round(self.py(*y))) r="4" {}
+            } }
         }
     }
 
@@ -356,6 +378,16 @@ fn nice_ticks(range: [f64; 2], count: u32, step: Option<f64>) -> Vec<f64> {
     let power = libm::pow(10.0, libm::floor(libm::log10(raw)));
     let nice = [1.0, 2.0, 2.5, 5.0, 10.0].into_iter().find(|m| m * power >= raw).unwrap_or(10.0);
     multiples(range, step.unwrap_or(nice * power))
+}
+
+/// Whole numbers: of an axis that counts.
+fn whole_ticks(range: [f64; 2]) -> Vec<f64> {
+    let raw = (range[1] - range[0]) / 10.0;
+    let step = [1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0, 500.0]
+        .into_iter()
+        .find(|step| *step >= raw)
+        .unwrap_or(libm::ceil(raw));
+    multiples(range, step)
 }
 
 /// Ticks of an axis in hours.

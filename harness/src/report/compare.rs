@@ -67,7 +67,7 @@ pub fn render(comparison: &Comparison, provenance: &[(String, String)]) -> Strin
             noise of the sensors alone." }
         (cells(comparison))
         h2 { "Every pair" }
-        @for cell in &comparison.cells { (pairs(comparison, cell)) }
+        div.pairs { @for cell in &comparison.cells { (pairs(comparison, cell)) } }
         (runs(comparison))
         h2 { "Provenance" }
         table { tbody {
@@ -143,7 +143,8 @@ fn pairs(comparison: &Comparison, cell: &Cell) -> Markup {
     let title = format!("Largest error, {}, arcmin", cell.measure.name());
     let mut chart = Chart::new(&title, "pairs, in the order of the first method", &title);
     chart.hours = false;
-    chart.height = 180.0;
+    chart.paired = true;
+    (chart.width, chart.height) = (480.0, 215.0);
     let highest = values.iter().map(|v| v.0.max(v.1)).fold(0.0, f64::max);
     chart.y_range = Some([0.0, 1.08 * highest]);
     if let Some(floor) = cell.floor {

@@ -315,7 +315,7 @@ fn drift(summary: &Summary) -> Markup {
     html! {
         h2 { "Navigation" }
         p.hint { "Errors are navigation minus truth. The band is what the noise of the sensors would \
-            leave with exact parameters and exact initial attitude: no calibration gets below it." }
+            leave with exact parameters and exact initial attitude: on average no calibration gets below it." }
         (chart("Latitude", 1))
         (chart("Longitude", 2))
         (drift_table(summary, &all))
@@ -521,7 +521,7 @@ fn convergence(data: &ReportData) -> Markup {
         h3 { "Convergence" }
         p.hint { "Band: smallest to largest σ of the group. "
             @if data.truth.is_some() { "Line: rms of the group's true errors. " }
-            "A consistent filter keeps the line in the band." }
+            "Of a consistent filter the line lies about the band." }
         div.multiples { @for group in Group::ALL { (panel(group)) } }
     }
 }
@@ -592,15 +592,18 @@ fn gimbals(data: &ReportData) -> Markup {
     });
     chart.lines.push(Line {
         label: "roll (outer)".to_owned(),
-        role: Role::Baseline,
+        role: Role::Second,
         points: angle(&|p| p.roll_deg),
     });
-    let moves = data.gimbals.windows(2).filter(|w| !w[0].moving && w[1].moving).count();
-    let moving = data.gimbals.iter().filter(|p| p.moving).count();
+    let steps = || data.gimbals.windows(2);
+    let moves = steps().filter(|w| !w[0].moving && w[1].moving).count();
+    let moving_h: f64 = steps().filter(|w| w[1].moving).map(|w| w[1].hours - w[0].hours).sum();
+    let still =
+        1.0 - moving_h / (data.gimbals[data.gimbals.len() - 1].hours - data.gimbals[0].hours);
     html! {
         h2 { "Gimbals" }
         p.hint { (moves) " moves; the gimbals stood still "
-            (number::fixed(100.0 - 100.0 * moving as f64 / data.gimbals.len() as f64, 1))
+            (number::fixed(100.0 * still, 1))
             " % of the time shown." }
         (chart.render())
     }

@@ -250,28 +250,28 @@ fn words(first: &str, second: &str, seeds: usize, cells: &[Cell]) -> Vec<String>
         )];
     };
     let (measure, range) = (main.measure.name(), interval(&main.improvement));
-    let percent = percent(main.improvement.value);
+    let value = main.improvement.value;
+    let found = format!(
+        "the largest error in {measure} is {} % {} with {second} than with {first}, 90 % interval \
+         of the improvement {range}, {} seeds",
+        percent(value.abs()),
+        if value < 0.0 { "larger" } else { "smaller" },
+        main.runs
+    );
     let mut words = vec![match main.claim {
-        Claim::Holds => format!(
-            "the claim (more than 50 % better) holds: {second} improves {measure} on {first} by \
-             {percent} %, 90 % interval {range}, over {} seeds",
-            main.runs
-        ),
+        Claim::Holds => format!("the claim (more than 50 % better) holds: {found}"),
         Claim::Likely => format!(
-            "the claim (more than 50 % better) is likely and not shown: {measure} improves by \
-             {percent} %, and the 90 % interval {range} reaches below 50 %; more seeds would tell"
+            "the claim (more than 50 % better) is likely and not shown: {found}; the interval \
+             reaches below 50 %, and more seeds would tell"
         ),
-        Claim::BetterByLess => format!(
-            "{second} is better than {first}, and the claim of more than 50 % isn't shown: \
-             {measure} improves by {percent} %, 90 % interval {range}"
-        ),
+        Claim::BetterByLess => {
+            format!("better, and not shown to be better by more than 50 %: {found}")
+        }
         Claim::NotShown => format!(
             "no claim{}: the interval of improvement of {measure}, {range}, includes 0",
             if near_floor(main) { ": the random walk hides it" } else { "" }
         ),
-        Claim::Worse => format!(
-            "{second} is worse than {first}: {measure} changes by {percent} %, 90 % interval {range}"
-        ),
+        Claim::Worse => format!("{second} is worse than {first}: {found}"),
     }];
     if let Some(floor) = main.floor {
         words.push(format!(
@@ -279,13 +279,13 @@ fn words(first: &str, second: &str, seeds: usize, cells: &[Cell]) -> Vec<String>
              {floor:.3} arcmin; {second} has {:.3} and {first} {:.3}",
             main.second, main.first
         ));
-        // What is not noise adds in squares.
+        // A method without any error of its own would still have the floor.
         let best = 1.0 - floor / main.first;
         if best < CLAIM {
             words.push(format!(
-                "no method could improve on {first} by more than {} % here: g-dependent bias times \
+                "no method could improve on {first} by more than about {} % here: g-dependent bias times \
                  calibration time is too small against the random walk",
-                self::percent(best.max(0.0))
+                percent(best.max(0.0))
             ));
         }
     }
