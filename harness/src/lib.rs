@@ -4,8 +4,10 @@
 //! **source → faults → endpoint → recorder → score → report**.
 
 pub mod endpoint;
-pub mod observe;
-pub mod scenario;
 pub mod evidence;
+pub mod observe;
 pub mod recorder;
+pub mod report;
+pub mod scenario;
+pub mod score;
 pub mod source;

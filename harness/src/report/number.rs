@@ -1,0 +1,87 @@
+//! Numbers as people read them: a true minus sign, as many digits as mean something.
+
+/// With `decimals` digits after the point and a true minus sign; "–" if it is not finite.
+#[must_use]
+pub fn fixed(value: f64, decimals: usize) -> String {
+    if !value.is_finite() {
+        return "–".to_owned();
+    }
+    let text = format!("{value:.decimals$}");
+    match text.strip_prefix('-') {
+        Some(digits) if digits.bytes().any(|b| (b'1'..=b'9').contains(&b)) => format!("−{digits}"),
+        Some(digits) => digits.to_owned(),
+        None => text,
+    }
+}
+
+/// As [`fixed`], "–" for nothing.
+#[must_use]
+pub fn optional(value: Option<f64>, decimals: usize) -> String {
+    value.map_or_else(|| "–".to_owned(), |v| fixed(v, decimals))
+}
+
+/// With `digits` significant digits, in powers of ten outside 0.0001 to 99999.
+#[must_use]
+pub fn significant(value: f64, digits: i32) -> String {
+    if value == 0.0 || !value.is_finite() {
+        return fixed(value, 0);
+    }
+    let exponent = exponent_of(value);
+    if (-4..=4).contains(&exponent) {
+        return fixed(value, (digits - 1 - exponent).max(0) as usize);
+    }
+    let mantissa = value / libm::pow(10.0, f64::from(exponent));
+    format!("{}e{exponent}", fixed(mantissa, (digits - 1).max(0) as usize))
+}
+
+/// As [`significant`], without zeros at the end that say nothing: for limits and lengths that
+/// somebody wrote down.
+#[must_use]
+pub fn plain(value: f64, digits: i32) -> String {
+    let text = significant(value, digits);
+    if text.contains('.') && !text.contains('e') {
+        text.trim_end_matches('0').trim_end_matches('.').to_owned()
+    } else {
+        text
+    }
+}
+
+/// Decimals that show `value` with `digits` significant digits, at most 8.
+#[must_use]
+pub fn decimals_for(value: f64, digits: i32) -> usize {
+    if value == 0.0 || !value.is_finite() {
+        return 3;
+    }
+    (digits - 1 - exponent_of(value)).clamp(0, 8) as usize
+}
+
+/// Power of ten of the leading digit.
+fn exponent_of(value: f64) -> i32 {
+    libm::floor(libm::log10(value.abs())) as i32
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_minus_is_a_minus_and_zero_has_none() {
+        assert_eq!(fixed(-1.25, 1), "−1.2");
+        assert_eq!(fixed(-0.001, 2), "0.00");
+        assert_eq!(fixed(f64::NAN, 2), "–");
+        assert_eq!(optional(None, 2), "–");
+    }
+
+    #[test]
+    fn significant_digits_stay() {
+        assert_eq!(significant(0.000_512_3, 3), "0.000512");
+        assert_eq!(significant(12_345.0, 3), "12345");
+        assert_eq!(significant(2.5e-7, 2), "2.5e-7");
+        assert_eq!(significant(0.0, 3), "0");
+        assert_eq!(plain(24.0, 3), "24");
+        assert_eq!(plain(0.005, 4), "0.005");
+        assert_eq!(plain(100.0, 3), "100");
+        assert_eq!(decimals_for(0.00065, 2), 5);
+        assert_eq!(decimals_for(14.0, 2), 0);
+    }
+}

@@ -1,0 +1,304 @@
+//! Two methods on the same instruments with the same noise: `octant compare`.
+
+use super::ensemble::{Improvement, improvement, rms};
+use super::floor::MaximumFloor;
+use super::summary::Navigation;
+use serde::{Deserialize, Serialize};
+
+/// Version of the form of `compare.json`.
+pub const SCHEMA: u32 = 1;
+
+/// Improvement that the published claim is about.
+pub const CLAIM: f64 = 0.5;
+
+/// Largest errors of one navigation, arcmin; a mark that the run did not reach is null.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Maxima {
+    /// Largest latitude error to 24 h.
+    pub latitude_24h: Option<f64>,
+    /// Largest longitude error to 24 h.
+    pub longitude_24h: Option<f64>,
+    /// Largest latitude error to 72 h.
+    pub latitude_72h: Option<f64>,
+    /// Largest longitude error to 72 h.
+    pub longitude_72h: Option<f64>,
+}
+
+impl Maxima {
+    /// The maxima of a scored navigation.
+    #[must_use]
+    pub fn of(navigation: &Navigation) -> Self {
+        let mark = |name: &str| navigation.marks.get(name);
+        Self {
+            latitude_24h: mark("24h").map(|m| m.latitude_max_arcmin),
+            longitude_24h: mark("24h").map(|m| m.longitude_max_arcmin),
+            latitude_72h: mark("72h").map(|m| m.latitude_max_arcmin),
+            longitude_72h: mark("72h").map(|m| m.longitude_max_arcmin),
+        }
+    }
+
+    /// One of them.
+    #[must_use]
+    pub const fn get(&self, measure: Measure) -> Option<f64> {
+        match measure {
+            Measure::Latitude24h => self.latitude_24h,
+            Measure::Longitude24h => self.longitude_24h,
+            Measure::Latitude72h => self.latitude_72h,
+            Measure::Longitude72h => self.longitude_72h,
+        }
+    }
+}
+
+/// What is compared: the largest error of a run up to a mark.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Measure {
+    /// Largest latitude error to 24 h.
+    #[serde(rename = "latitude_24h")]
+    Latitude24h,
+    /// Largest longitude error to 24 h.
+    #[serde(rename = "longitude_24h")]
+    Longitude24h,
+    /// Largest latitude error to 72 h.
+    #[serde(rename = "latitude_72h")]
+    Latitude72h,
+    /// Largest longitude error to 72 h.
+    #[serde(rename = "longitude_72h")]
+    Longitude72h,
+}
+
+impl Measure {
+    /// All measures.
+    pub const ALL: [Self; 4] =
+        [Self::Latitude24h, Self::Longitude24h, Self::Latitude72h, Self::Longitude72h];
+
+    /// The measure in words.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Latitude24h => "latitude to 24 h",
+            Self::Longitude24h => "longitude to 24 h",
+            Self::Latitude72h => "latitude to 72 h",
+            Self::Longitude72h => "longitude to 72 h",
+        }
+    }
+
+    /// It is of longitude.
+    #[must_use]
+    pub const fn is_longitude(self) -> bool {
+        matches!(self, Self::Longitude24h | Self::Longitude72h)
+    }
+
+    const fn hours(self) -> f64 {
+        match self {
+            Self::Latitude24h | Self::Longitude24h => 24.0,
+            Self::Latitude72h | Self::Longitude72h => 72.0,
+        }
+    }
+}
+
+/// Both methods with one seed.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct PairedRun {
+    /// The seed.
+    pub seed: u64,
+    /// Of the first method, the one to be improved on.
+    pub first: Maxima,
+    /// Of the second method.
+    pub second: Maxima,
+}
+
+/// One measure over all seeds.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Cell {
+    /// What is compared.
+    pub measure: Measure,
+    /// Pairs that have it.
+    pub runs: u32,
+    /// Root mean square over seeds of the first method, arcmin.
+    pub first: f64,
+    /// Root mean square over seeds of the second method, arcmin.
+    pub second: f64,
+    /// 1 − second/first with its 90 % interval.
+    pub improvement: Improvement,
+    /// The same from the random walk alone, exact parameters and attitude, arcmin.
+    pub floor: Option<f64>,
+    /// What it comes to.
+    pub claim: Claim,
+}
+
+/// What a comparison shows of the claim that the second method is more than 50 % better.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Claim {
+    /// The whole interval of improvement is above 50 %.
+    Holds,
+    /// More than 50 % in these runs; the interval reaches below.
+    Likely,
+    /// Better for certain, and not by 50 %.
+    BetterByLess,
+    /// The interval includes 0: nothing is shown.
+    NotShown,
+    /// Worse for certain.
+    Worse,
+}
+
+impl Claim {
+    fn of(i: &Improvement) -> Self {
+        if i.high < 0.0 {
+            Self::Worse
+        } else if i.low <= 0.0 {
+            Self::NotShown
+        } else if i.low > CLAIM {
+            Self::Holds
+        } else if i.value > CLAIM {
+            Self::Likely
+        } else {
+            Self::BetterByLess
+        }
+    }
+}
+
+/// The comparison of two methods.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Comparison {
+    /// Version of this form: [`SCHEMA`].
+    pub schema: u32,
+    /// Version of the program.
+    pub octant: String,
+    /// Name of the scenario.
+    pub scenario: String,
+    /// Name of the first method.
+    pub first: String,
+    /// Name of the second method.
+    pub second: String,
+    /// Every measure that at least two pairs have.
+    pub cells: Vec<Cell>,
+    /// The claim in plain words: the verdict, then the reasons.
+    pub words: Vec<String>,
+    /// Every pair of runs.
+    pub runs: Vec<PairedRun>,
+}
+
+/// Seed of the bootstrap: one for all, so that the same runs give the same interval.
+const BOOTSTRAP_SEED: u64 = 0x0C7A_4747;
+
+/// Compares paired runs.
+///
+/// `floor` are the maxima of the random walk alone for 24 h and 72 h, from
+/// [`super::floor::Floor::maxima`].
+#[must_use]
+pub fn compare(
+    scenario: &str,
+    first: &str,
+    second: &str,
+    runs: &[PairedRun],
+    floor: &[MaximumFloor],
+) -> Comparison {
+    let cells: Vec<Cell> =
+        Measure::ALL.into_iter().filter_map(|measure| cell(measure, runs, floor)).collect();
+    Comparison {
+        schema: SCHEMA,
+        octant: env!("CARGO_PKG_VERSION").to_owned(),
+        scenario: scenario.to_owned(),
+        first: first.to_owned(),
+        second: second.to_owned(),
+        words: words(first, second, runs.len(), &cells),
+        cells,
+        runs: runs.to_vec(),
+    }
+}
+
+fn cell(measure: Measure, runs: &[PairedRun], floor: &[MaximumFloor]) -> Option<Cell> {
+    let pairs: Vec<(f64, f64)> =
+        runs.iter().filter_map(|r| r.first.get(measure).zip(r.second.get(measure))).collect();
+    let (first, second): (Vec<f64>, Vec<f64>) = pairs.into_iter().unzip();
+    let improvement = improvement(&first, &second, BOOTSTRAP_SEED)?;
+    Some(Cell {
+        measure,
+        runs: first.len() as u32,
+        first: rms(&first)?,
+        second: rms(&second)?,
+        improvement,
+        floor: floor
+            .iter()
+            .find(|f| f.hours == measure.hours())
+            .map(|f| if measure.is_longitude() { f.longitude_arcmin } else { f.latitude_arcmin }),
+        claim: Claim::of(&improvement),
+    })
+}
+
+/// `[−14 %, 1 %]` and the like.
+#[must_use]
+pub fn interval(i: &Improvement) -> String {
+    format!("[{} %, {} %]", percent(i.low), percent(i.high))
+}
+
+/// A fraction in whole per cent, with a true minus.
+#[must_use]
+pub fn percent(fraction: f64) -> String {
+    crate::report::number::fixed(100.0 * fraction, 0)
+}
+
+/// The verdict and its reasons.
+fn words(first: &str, second: &str, seeds: usize, cells: &[Cell]) -> Vec<String> {
+    // Longitude at the latest mark is what a g-dependent bias moves most.
+    let main = cells.iter().rfind(|c| c.measure.is_longitude()).or_else(|| cells.last());
+    let Some(main) = main else {
+        return vec![format!(
+            "nothing to compare: {seeds} pairs of runs, and at least 2 with 24 h of navigation are needed"
+        )];
+    };
+    let (measure, range) = (main.measure.name(), interval(&main.improvement));
+    let value = main.improvement.value;
+    let found = format!(
+        "the largest error in {measure} is {} % {} with {second} than with {first}, 90 % interval \
+         of the improvement {range}, {} seeds",
+        percent(value.abs()),
+        if value < 0.0 { "larger" } else { "smaller" },
+        main.runs
+    );
+    let mut words = vec![match main.claim {
+        Claim::Holds => format!("the claim (more than 50 % better) holds: {found}"),
+        Claim::Likely => format!(
+            "the claim (more than 50 % better) is likely and not shown: {found}; the interval \
+             reaches below 50 %, and more seeds would tell"
+        ),
+        Claim::BetterByLess => {
+            format!("better, and not shown to be better by more than 50 %: {found}")
+        }
+        Claim::NotShown => format!(
+            "no claim{}: the interval of improvement of {measure}, {range}, includes 0",
+            if near_floor(main) { ": the random walk hides it" } else { "" }
+        ),
+        Claim::Worse => format!("{second} is worse than {first}: {found}"),
+    }];
+    if let Some(floor) = main.floor {
+        words.push(format!(
+            "the noise of the sensors alone, with every parameter and the attitude exact, gives \
+             {floor:.3} arcmin; {second} has {:.3} and {first} {:.3}",
+            main.second, main.first
+        ));
+        // A method without any error of its own would still have the floor.
+        let best = 1.0 - floor / main.first;
+        if best < CLAIM {
+            words.push(format!(
+                "no method could improve on {first} by more than about {} % here: g-dependent bias times \
+                 calibration time is too small against the random walk",
+                percent(best.max(0.0))
+            ));
+        }
+    }
+    if main.runs < 20 {
+        words.push(format!(
+            "{} seeds leave a sampling error of 20 to 25 % and more in each number",
+            main.runs
+        ));
+    }
+    words
+}
+
+/// The second method is within a factor of 2 of the random walk.
+fn near_floor(cell: &Cell) -> bool {
+    cell.floor.is_some_and(|floor| cell.second < 2.0 * floor)
+}

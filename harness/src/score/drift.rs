@@ -1,0 +1,252 @@
+//! Drift of a navigation solution: maximum, rms, final value, secular slope, radial error.
+
+use super::regression::{SecularSlope, Slopes};
+use super::series::Series;
+use super::summary::{ErrorScore, HeightChannel, Mark, Navigation, RadialScore, SlopeWindow};
+use octant_earth::ellipsoid::Ellipsoid;
+use octant_earth::units::{ARCMIN, NAUTICAL_MILE_M};
+use std::collections::BTreeMap;
+
+/// Hours at which scores are also given "so far", when the run gets there.
+pub const MARKS_H: [u32; 2] = [24, 72];
+
+/// One error of the navigation solution: navigation minus truth.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DriftSample {
+    /// Time since the start of the navigation, s.
+    pub t_s: f64,
+    /// Latitude error, rad.
+    pub latitude_error_rad: f64,
+    /// Longitude error, rad.
+    pub longitude_error_rad: f64,
+    /// True geodetic latitude, rad.
+    pub latitude_rad: f64,
+    /// True height above the ellipsoid, m.
+    pub height_m: f64,
+}
+
+/// Why a drift can't be scored.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum DriftError {
+    /// No sample came.
+    #[error("score the drift: no sample of the navigation, at least 2 are needed")]
+    Empty,
+    /// A value is not a number.
+    #[error("score the drift: sample {sample} at {t_s} s has an error that is not finite")]
+    NotFinite {
+        /// Number of the sample, from 0.
+        sample: u64,
+        /// Its time, s.
+        t_s: f64,
+    },
+    /// Time stands still or runs backwards.
+    #[error("score the drift: sample {sample} is at {t_s} s, after one at {previous_s} s")]
+    Order {
+        /// Number of the sample, from 0.
+        sample: u64,
+        /// Its time, s.
+        t_s: f64,
+        /// Time of the sample before it, s.
+        previous_s: f64,
+    },
+}
+
+/// Errors at one time in the units of the scores.
+#[derive(Clone, Copy, Debug)]
+struct Errors {
+    t_s: f64,
+    latitude_arcmin: f64,
+    longitude_arcmin: f64,
+    radial_nmi: f64,
+}
+
+/// Largest magnitude and ∫x²dt of one error.
+#[derive(Clone, Copy, Debug, Default)]
+struct Extent {
+    max: f64,
+    square_integral: f64,
+}
+
+impl Extent {
+    fn take(&mut self, value: f64) {
+        self.max = self.max.max(value.abs());
+    }
+
+    /// Adds ∫x²dt of a straight line between two samples: exact for a ramp.
+    fn integrate(&mut self, from: f64, to: f64, dt_s: f64) {
+        self.square_integral += dt_s * (from * from + from * to + to * to) / 3.0;
+    }
+
+    fn rms(&self, duration_s: f64) -> f64 {
+        libm::sqrt(self.square_integral / duration_s)
+    }
+}
+
+/// Scores the drift of one navigation while it runs, at 1 Hz or any slower rate. Memory doesn't
+/// grow with the length of the run.
+#[derive(Clone, Debug)]
+pub struct DriftScorer {
+    samples: u64,
+    first_s: f64,
+    previous: Option<Errors>,
+    latitude: Extent,
+    longitude: Extent,
+    radial: Extent,
+    /// Σ r t and Σ t² of the regression through the origin.
+    radial_time: f64,
+    time_square: f64,
+    slope: Option<SecularSlope>,
+    marks: BTreeMap<String, Mark>,
+    series: Series,
+    broken: Option<DriftError>,
+}
+
+impl Default for DriftScorer {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl DriftScorer {
+    /// A scorer that has seen nothing.
+    #[must_use]
+    pub fn new() -> Self {
+        Self {
+            samples: 0,
+            first_s: 0.0,
+            previous: None,
+            latitude: Extent::default(),
+            longitude: Extent::default(),
+            radial: Extent::default(),
+            radial_time: 0.0,
+            time_square: 0.0,
+            slope: None,
+            marks: BTreeMap::new(),
+            series: Series::new(),
+            broken: None,
+        }
+    }
+
+    /// Takes one error. What is wrong with it is told by [`Self::finish`]; nothing after the first
+    /// wrong sample counts.
+    pub fn push(&mut self, sample: &DriftSample) {
+        if self.broken.is_some() {
+            return;
+        }
+        let earth = Ellipsoid::at(sample.latitude_rad, sample.height_m);
+        let north_m = sample.latitude_error_rad * earth.meridian_radius_m;
+        let east_m = sample.longitude_error_rad * earth.transverse_radius_m * earth.cos_latitude;
+        let now = Errors {
+            t_s: sample.t_s,
+            latitude_arcmin: sample.latitude_error_rad / ARCMIN,
+            longitude_arcmin: sample.longitude_error_rad / ARCMIN,
+            radial_nmi: libm::sqrt(north_m * north_m + east_m * east_m) / NAUTICAL_MILE_M,
+        };
+        let finite = [now.t_s, now.latitude_arcmin, now.longitude_arcmin, now.radial_nmi];
+        if !finite.iter().all(|x| x.is_finite()) {
+            self.broken = Some(DriftError::NotFinite { sample: self.samples, t_s: now.t_s });
+            return;
+        }
+        match self.previous {
+            None => self.first_s = now.t_s,
+            Some(before) if now.t_s > before.t_s => self.step(&before, &now),
+            Some(before) => {
+                self.broken = Some(DriftError::Order {
+                    sample: self.samples,
+                    t_s: now.t_s,
+                    previous_s: before.t_s,
+                });
+                return;
+            }
+        }
+        self.samples += 1;
+        self.latitude.take(now.latitude_arcmin);
+        self.longitude.take(now.longitude_arcmin);
+        self.radial.take(now.radial_nmi);
+        self.radial_time += now.radial_nmi * now.t_s;
+        self.time_square += now.t_s * now.t_s;
+        self.slope
+            .get_or_insert_with(|| SecularSlope::new(sample.latitude_rad, sample.height_m))
+            .push(now.t_s, now.latitude_arcmin, now.longitude_arcmin);
+        self.series.push([now.t_s / 3600.0, now.latitude_arcmin, now.longitude_arcmin]);
+        self.previous = Some(now);
+    }
+
+    /// What lies between two samples: integrals, and marks that are reached.
+    fn step(&mut self, before: &Errors, now: &Errors) {
+        let dt_s = now.t_s - before.t_s;
+        for hour in MARKS_H {
+            let mark_s = f64::from(hour) * 3600.0;
+            if before.t_s < mark_s && mark_s <= now.t_s {
+                let part = (mark_s - before.t_s) / dt_s;
+                let at = |a: f64, b: f64| a + part * (b - a);
+                let latitude = at(before.latitude_arcmin, now.latitude_arcmin);
+                let longitude = at(before.longitude_arcmin, now.longitude_arcmin);
+                let radial = at(before.radial_nmi, now.radial_nmi);
+                self.marks.insert(
+                    format!("{hour}h"),
+                    Mark {
+                        latitude_arcmin: latitude,
+                        longitude_arcmin: longitude,
+                        radial_nmi: radial,
+                        latitude_max_arcmin: self.latitude.max.max(latitude.abs()),
+                        longitude_max_arcmin: self.longitude.max.max(longitude.abs()),
+                        radial_max_nmi: self.radial.max.max(radial),
+                    },
+                );
+            }
+        }
+        self.latitude.integrate(before.latitude_arcmin, now.latitude_arcmin, dt_s);
+        self.longitude.integrate(before.longitude_arcmin, now.longitude_arcmin, dt_s);
+        self.radial.integrate(before.radial_nmi, now.radial_nmi, dt_s);
+    }
+
+    /// The scores of everything taken so far.
+    ///
+    /// `height` says what was done with the vertical channel: a free one diverges and drags the
+    /// horizontal one with it, so scores of the two can't be compared.
+    ///
+    /// # Errors
+    /// If fewer than two samples came, one was not finite, or time did not increase.
+    pub fn finish(&self, height: HeightChannel) -> Result<Navigation, DriftError> {
+        if let Some(broken) = self.broken {
+            return Err(broken);
+        }
+        let last = self.previous.filter(|_| self.samples > 1).ok_or(DriftError::Empty)?;
+        let duration_s = last.t_s - self.first_s;
+        let slopes: Option<Slopes> = self.slope.as_ref().and_then(SecularSlope::slopes);
+        let score = |extent: &Extent, last: f64, slope_per_day: Option<f64>| ErrorScore {
+            max: extent.max,
+            rms: extent.rms(duration_s),
+            r#final: last,
+            slope_per_day,
+        };
+        Ok(Navigation {
+            duration_h: duration_s / 3600.0,
+            height,
+            latitude_error_arcmin: score(
+                &self.latitude,
+                last.latitude_arcmin,
+                slopes.map(|s| s.latitude_per_day),
+            ),
+            longitude_error_arcmin: score(
+                &self.longitude,
+                last.longitude_arcmin,
+                slopes.map(|s| s.longitude_per_day),
+            ),
+            radial_error_nmi: RadialScore {
+                max: self.radial.max,
+                rms: self.radial.rms(duration_s),
+                r#final: last.radial_nmi,
+                rate_per_h: 3600.0 * self.radial_time / self.time_square,
+            },
+            slope_window: slopes.map(|s| SlopeWindow {
+                of: if s.sidereal { "sidereal days" } else { "schuler periods" }.to_owned(),
+                periods: s.periods,
+                hours: s.window_s / 3600.0,
+            }),
+            marks: self.marks.clone(),
+            series_hours: self.series.points(),
+        })
+    }
+}

@@ -1,0 +1,172 @@
+//! Estimated parameters against truth: errors, normalized by the σ that the estimator claims.
+
+use super::summary::ParameterScore;
+use nalgebra::{SMatrix, SVector};
+use octant_sample::Parameters;
+use octant_sample::parameters::{Group, NAMES, PARAMETER_COUNT};
+use std::collections::BTreeMap;
+
+/// Scores every parameter, in the units that users see. A σ that isn't positive means that the
+/// parameter was not estimated.
+#[must_use]
+pub fn score(
+    truth: Option<&Parameters>,
+    estimate: &Parameters,
+    sigma: &[f64; PARAMETER_COUNT],
+) -> BTreeMap<String, ParameterScore> {
+    let truth = truth.map(Parameters::to_array);
+    let estimate = estimate.to_array();
+    (0..PARAMETER_COUNT)
+        .map(|i| {
+            let group = Group::of(i);
+            let unit = group.si_per_unit();
+            let error_si = truth.map(|t| estimate[i] - t[i]);
+            let sigma_si = (sigma[i] > 0.0).then_some(sigma[i]);
+            let score = ParameterScore {
+                r#true: truth.map(|t| t[i] / unit),
+                estimate: estimate[i] / unit,
+                sigma: sigma_si.map(|s| s / unit),
+                error: error_si.map(|e| e / unit),
+                normalized: error_si.zip(sigma_si).map(|(e, s)| e / s),
+                unit: group.unit().to_owned(),
+            };
+            (NAMES[i].to_owned(), score)
+        })
+        .collect()
+}
+
+/// Mean of e²/σ² over the estimated parameters of each group, by the name of the group: near 1
+/// where the claimed σ is right. Correlations are left out; [`nees_full`] has them.
+#[must_use]
+pub fn nees(parameters: &BTreeMap<String, ParameterScore>) -> BTreeMap<String, f64> {
+    let mut groups = BTreeMap::new();
+    for group in Group::ALL {
+        let normalized: Vec<f64> = group
+            .range()
+            .filter_map(|i| parameters.get(NAMES[i]).and_then(|p| p.normalized))
+            .collect();
+        if !normalized.is_empty() {
+            let sum: f64 = normalized.iter().map(|n| n * n).sum();
+            groups.insert(group.name().to_owned(), sum / normalized.len() as f64);
+        }
+    }
+    groups
+}
+
+/// Parameters of the largest group.
+const GROUP_MAX: usize = 9;
+
+/// eᵀP⁻¹e of each group with its own block of the covariance, divided by the size of the group.
+///
+/// `covariance` is in SI, in the order of [`NAMES`], by rows. Groups whose block is not positive
+/// definite (not estimated) are left out.
+#[must_use]
+pub fn nees_full(
+    truth: &Parameters,
+    estimate: &Parameters,
+    covariance: &[[f64; PARAMETER_COUNT]; PARAMETER_COUNT],
+) -> BTreeMap<String, f64> {
+    let (truth, estimate) = (truth.to_array(), estimate.to_array());
+    let mut groups = BTreeMap::new();
+    for group in Group::ALL {
+        let (first, size) = (group.range().start, group.range().len());
+        // In the group's own unit: the SI values of g-dependent biases are 1e-20 when squared.
+        let unit = group.si_per_unit();
+        // Smaller groups fill the matrix up with ones on the diagonal, against errors of zero.
+        let mut block = SMatrix::<f64, GROUP_MAX, GROUP_MAX>::identity();
+        let mut error = SVector::<f64, GROUP_MAX>::zeros();
+        for i in 0..size {
+            error[i] = (estimate[first + i] - truth[first + i]) / unit;
+            for j in 0..size {
+                block[(i, j)] = covariance[first + i][first + j] / (unit * unit);
+            }
+        }
+        if let Some(factor) = block.cholesky() {
+            let whole = error.dot(&factor.solve(&error));
+            groups.insert(group.name().to_owned(), whole / size as f64);
+        }
+    }
+    groups
+}
+
+/// Names of the parameters whose error is larger than `sigmas` times their σ.
+#[must_use]
+pub fn beyond(parameters: &BTreeMap<String, ParameterScore>, sigmas: f64) -> Vec<&'static str> {
+    NAMES
+        .into_iter()
+        .filter(|name| {
+            parameters.get(*name).and_then(|p| p.normalized).is_some_and(|n| n.abs() > sigmas)
+        })
+        .collect()
+}
+
+/// Largest |error|/σ; `None` if no error is known.
+#[must_use]
+pub fn worst_normalized_error(parameters: &BTreeMap<String, ParameterScore>) -> Option<f64> {
+    parameters.values().filter_map(|p| p.normalized).map(f64::abs).reduce(f64::max)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn bias_error(error: [f64; 3]) -> (Parameters, Parameters) {
+        let truth = Parameters { gyro_bias: [1e-8, -2e-8, 3e-8], ..Parameters::default() };
+        let mut estimate = truth;
+        for i in 0..3 {
+            estimate.gyro_bias[i] += error[i];
+        }
+        (truth, estimate)
+    }
+
+    #[test]
+    fn errors_are_in_users_units_and_normalized_by_sigma() {
+        let unit = Group::GyroBias.si_per_unit();
+        let (truth, estimate) = bias_error([0.001 * unit, -0.002 * unit, 0.0]);
+        let mut sigma = [0.0; PARAMETER_COUNT];
+        sigma[..3].fill(0.0005 * unit);
+        let scores = score(Some(&truth), &estimate, &sigma);
+        let y = &scores["gyro_bias_y"];
+        assert_eq!(y.unit, "deg/h");
+        assert!((y.error.unwrap() + 0.002).abs() < 1e-12);
+        assert!((y.sigma.unwrap() - 0.0005).abs() < 1e-15);
+        assert!((y.normalized.unwrap() + 4.0).abs() < 1e-9);
+        assert_eq!(scores["g_zz"].sigma, None, "g_zz was not estimated");
+        // (2² + 4² + 0²) / 3
+        let nees = nees(&scores);
+        assert!((nees["gyro_bias"] - 20.0 / 3.0).abs() < 1e-8);
+        assert_eq!(nees.len(), 1, "only the gyro biases were estimated");
+        assert_eq!(beyond(&scores, 3.0), ["gyro_bias_y"]);
+        assert!((worst_normalized_error(&scores).unwrap() - 4.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn without_truth_there_is_no_error() {
+        let scores = score(None, &Parameters::default(), &[1.0; PARAMETER_COUNT]);
+        assert_eq!(scores.len(), PARAMETER_COUNT);
+        assert!(scores.values().all(|p| p.error.is_none() && p.r#true.is_none()));
+        assert!(nees(&scores).is_empty());
+        assert_eq!(worst_normalized_error(&scores), None);
+    }
+
+    #[test]
+    fn correlation_enters_the_full_form_alone() {
+        // Two errors of one σ each, in the direction that a correlation of 0.8 favours:
+        // eᵀP⁻¹e = 2/(1 + 0.8); and against it: 2/(1 − 0.8).
+        let unit = Group::GyroBias.si_per_unit();
+        let s = 0.001 * unit;
+        let mut covariance = [[0.0; PARAMETER_COUNT]; PARAMETER_COUNT];
+        for i in 0..3 {
+            covariance[i][i] = s * s;
+        }
+        covariance[0][1] = 0.8 * s * s;
+        covariance[1][0] = 0.8 * s * s;
+        let (truth, with) = bias_error([s, s, 0.0]);
+        let (_, against) = bias_error([s, -s, 0.0]);
+        let with = nees_full(&truth, &with, &covariance);
+        let against = nees_full(&truth, &against, &covariance);
+        assert!((with["gyro_bias"] - 2.0 / 1.8 / 3.0).abs() < 1e-6, "{with:?}");
+        assert!((against["gyro_bias"] - 2.0 / 0.2 / 3.0).abs() < 1e-6, "{against:?}");
+        assert_eq!(with.len(), 1);
+    }
+}

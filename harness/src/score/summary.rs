@@ -1,0 +1,308 @@
+//! `summary.json`: everything that a run has shown, in the units that users see.
+//!
+//! Nothing of host or clock is in it: the same scenario, seed and core give the same bytes.
+
+use super::reference::Reference;
+use super::verdict::{RequirementResult, Verdict};
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// Version of the form of `summary.json` that this program writes.
+pub const SCHEMA: u32 = 1;
+
+/// The summary of one run.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Summary {
+    /// Version of this form: [`SCHEMA`].
+    pub schema: u32,
+    /// Version of the program that made the run.
+    pub octant: String,
+    /// Name of the scenario.
+    pub scenario: String,
+    /// Seed of every random stream.
+    pub seed: u64,
+    /// The worst of everything below.
+    pub verdict: Verdict,
+    /// Why the verdict is what it is, in plain words; "no requirement checked" where none was.
+    pub reasons: Vec<String>,
+    /// Every requirement with what was found.
+    pub requirements: Vec<RequirementResult>,
+    /// Faults that were injected.
+    pub faults: Vec<FaultResult>,
+    /// Name of the method that `calibration` and `navigation` are of.
+    pub method: String,
+    /// The calibration; null if the run had none.
+    pub calibration: Option<Calibration>,
+    /// The navigation; null if the run had none, or nothing to compare it with.
+    pub navigation: Option<Navigation>,
+    /// The second method of the same run: same instrument, same noise.
+    pub baseline: Option<Baseline>,
+    /// What physics says beside the scores.
+    pub reference: Option<Reference>,
+    /// Pacing against a real clock; null in simulated time.
+    pub pacing: Option<Pacing>,
+    /// BLAKE3 of the canonical bytes of samples, aiding and outputs.
+    pub stream_hash: String,
+}
+
+impl Summary {
+    /// The bytes of `summary.json`: pretty JSON with a final newline. A number that is not finite
+    /// becomes null.
+    ///
+    /// # Errors
+    /// If the summary can't be written as JSON.
+    pub fn to_json(&self) -> Result<String, serde_json::Error> {
+        // One line for each point of the series: a pretty printer would give it five.
+        let mut value = serde_json::to_value(self)?;
+        let mut packed = Vec::new();
+        for pointer in ["/navigation/series_hours", "/baseline/navigation/series_hours"] {
+            if let Some(series) = value.pointer_mut(pointer) {
+                let rows: Vec<String> = series
+                    .as_array()
+                    .map(|rows| rows.iter().map(ToString::to_string).collect())
+                    .unwrap_or_default();
+                let token = format!("@series {}@", packed.len());
+                *series = serde_json::Value::String(token.clone());
+                packed.push((format!("\"{token}\""), format!("[{}]", rows.join(",\n"))));
+            }
+        }
+        let mut text = serde_json::to_string_pretty(&value)?;
+        for (token, rows) in packed {
+            text = text.replacen(&token, &rows, 1);
+        }
+        text.push('\n');
+        Ok(text)
+    }
+
+    /// Reads a `summary.json`.
+    ///
+    /// # Errors
+    /// If it isn't JSON, isn't a summary, or has another `schema`.
+    pub fn from_json(text: &str) -> Result<Self, SummaryError> {
+        #[derive(Deserialize)]
+        struct Version {
+            schema: u32,
+        }
+        let version: Version =
+            serde_json::from_str(text).map_err(|e| SummaryError::Form(e.to_string()))?;
+        if version.schema != SCHEMA {
+            return Err(SummaryError::Schema { found: version.schema });
+        }
+        serde_json::from_str(text).map_err(|e| SummaryError::Form(e.to_string()))
+    }
+}
+
+/// Why a summary could not be read.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum SummaryError {
+    /// Not a summary.
+    #[error("read the summary: {0}")]
+    Form(String),
+    /// Written by another version.
+    #[error("read the summary: schema {found} found, {SCHEMA} expected")]
+    Schema {
+        /// The schema found.
+        found: u32,
+    },
+}
+
+/// What became of one fault.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct FaultResult {
+    /// Its id in the scenario.
+    pub id: String,
+    /// Its kind.
+    pub kind: String,
+    /// It was armed.
+    pub armed: bool,
+    /// It altered at least one sample.
+    pub fired: bool,
+    /// First sample that it altered.
+    pub first_sample: Option<u64>,
+    /// Last sample that it altered.
+    pub last_sample: Option<u64>,
+    /// Samples that it altered.
+    pub samples_altered: u64,
+}
+
+/// The calibration of one method.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Calibration {
+    /// Name of the position sequence.
+    pub positions: String,
+    /// Name of the estimator.
+    pub estimator: String,
+    /// Length, h.
+    pub duration_h: f64,
+    /// Every parameter by its name.
+    pub parameters: BTreeMap<String, ParameterScore>,
+    /// Mean normalized innovation squared; 3 for three axes that agree with their tuning.
+    pub nis_mean: Option<f64>,
+    /// Normalized estimation error squared by group, divided by the size of the group: 1 where the
+    /// errors are as large as their σ says. Groups that were not estimated are left out.
+    pub nees: BTreeMap<String, f64>,
+    /// Largest |error| / σ over all estimated parameters.
+    pub worst_normalized_error: Option<f64>,
+    /// Why the core refused its own calibration; null if it didn't.
+    pub refused: Option<String>,
+    /// What the core saw on the way.
+    pub health: HealthCounts,
+}
+
+/// One parameter, in its unit.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ParameterScore {
+    /// True value; null where nobody knows it.
+    pub r#true: Option<f64>,
+    /// Estimate.
+    pub estimate: f64,
+    /// 1σ; null if the parameter was not estimated.
+    pub sigma: Option<f64>,
+    /// Estimate minus truth.
+    pub error: Option<f64>,
+    /// Error divided by σ.
+    pub normalized: Option<f64>,
+    /// Unit of all of them but `normalized`.
+    pub unit: String,
+}
+
+/// Counts of what the core reported, in epochs unless said otherwise.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct HealthCounts {
+    /// Measurements offered to the filter.
+    pub measurements: u64,
+    /// Measurements rejected by the innovation gate.
+    pub rejected: u64,
+    /// Recoveries of the filter.
+    pub recoveries: u64,
+    /// A gyro gave identical counts.
+    pub gyro_stuck: u64,
+    /// An accelerometer gave identical counts.
+    pub accelerometer_stuck: u64,
+    /// Samples were missing.
+    pub gaps: u64,
+    /// Samples that did not advance, not used.
+    pub out_of_order: u64,
+    /// Samples with saturated or invalid counts.
+    pub inertial_invalid: u64,
+    /// Encoders did not show the commanded position.
+    pub gimbal_disagrees: u64,
+    /// Aiding was due and did not come.
+    pub aiding_lost: u64,
+    /// Innovations contradicted the tuning.
+    pub inconsistent: u64,
+    /// Numbers that are not finite, kept out.
+    pub numeric: u64,
+}
+
+/// What was done with the vertical channel during free navigation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum HeightChannel {
+    /// Height held at its known value.
+    Held,
+    /// Height damped towards a reference.
+    Damped,
+    /// Nothing: it diverges, and the horizontal channels with it.
+    Free,
+}
+
+/// The navigation of one method.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Navigation {
+    /// Length, h.
+    pub duration_h: f64,
+    /// The vertical channel.
+    pub height: HeightChannel,
+    /// Latitude error, arcmin.
+    pub latitude_error_arcmin: ErrorScore,
+    /// Longitude error, arcmin.
+    pub longitude_error_arcmin: ErrorScore,
+    /// Horizontal distance from the true position, nmi.
+    pub radial_error_nmi: RadialScore,
+    /// What the slopes are taken over; null for runs shorter than a Schuler period.
+    pub slope_window: Option<SlopeWindow>,
+    /// Scores at 24 h and 72 h, for runs that got there, by "24h" and "72h".
+    pub marks: BTreeMap<String, Mark>,
+    /// Hours, latitude error, longitude error (arcmin): at most 2002 rows, every extreme kept.
+    pub series_hours: Vec<[f64; 3]>,
+}
+
+/// Score of one error.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ErrorScore {
+    /// Largest magnitude.
+    pub max: f64,
+    /// √(1/T ∫ x² dt).
+    pub rms: f64,
+    /// Last value, with its sign.
+    pub r#final: f64,
+    /// Secular slope per day; null for runs shorter than a Schuler period.
+    pub slope_per_day: Option<f64>,
+}
+
+/// Score of the radial error.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct RadialScore {
+    /// Largest value.
+    pub max: f64,
+    /// √(1/T ∫ r² dt): time-RMS, as marine systems state it.
+    pub rms: f64,
+    /// Last value.
+    pub r#final: f64,
+    /// Regression of radial error on time through the origin, per hour.
+    pub rate_per_h: f64,
+}
+
+/// What secular slopes are taken over.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SlopeWindow {
+    /// "schuler periods" or "sidereal days".
+    pub of: String,
+    /// How many.
+    pub periods: u32,
+    /// Their length together, h.
+    pub hours: f64,
+}
+
+/// Errors at a mark, and the largest up to it.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Mark {
+    /// Latitude error at the mark, arcmin.
+    pub latitude_arcmin: f64,
+    /// Longitude error at the mark, arcmin.
+    pub longitude_arcmin: f64,
+    /// Radial error at the mark, nmi.
+    pub radial_nmi: f64,
+    /// Largest latitude error up to the mark, arcmin.
+    pub latitude_max_arcmin: f64,
+    /// Largest longitude error up to the mark, arcmin.
+    pub longitude_max_arcmin: f64,
+    /// Largest radial error up to the mark, nmi.
+    pub radial_max_nmi: f64,
+}
+
+/// The second method of a run.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Baseline {
+    /// Name of the method.
+    pub label: String,
+    /// Its calibration.
+    pub calibration: Option<Calibration>,
+    /// Its navigation.
+    pub navigation: Option<Navigation>,
+    /// BLAKE3 of its stream.
+    pub stream_hash: String,
+}
+
+/// Pacing of a run against a real clock.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Pacing {
+    /// Epochs that were late.
+    pub overruns: u64,
+    /// Largest lateness, s.
+    pub latest_s: f64,
+    /// Records that the recorder dropped.
+    pub dropped_records: u64,
+}

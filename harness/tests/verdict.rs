@@ -1,0 +1,231 @@
+//! Verdicts, the form of the summary, JUnit.
+#![allow(clippy::unwrap_used)]
+
+use octant::score::junit::junit;
+use octant::score::summary::{
+    Calibration, ErrorScore, FaultResult, HealthCounts, HeightChannel, Navigation, RadialScore,
+    SCHEMA, Summary, SummaryError,
+};
+use octant::score::verdict::{
+    Comparison, Finding, NO_REQUIREMENT, Requirement, Verdict, judge, measure,
+};
+use proptest::prelude::*;
+use std::collections::BTreeMap;
+
+fn summary() -> Summary {
+    let score = ErrorScore { max: 0.75, rms: 0.4, r#final: -0.6, slope_per_day: None };
+    Summary {
+        schema: SCHEMA,
+        octant: "0.1.0".to_owned(),
+        scenario: "dock <&> quay".to_owned(),
+        seed: 7,
+        verdict: Verdict::Pass,
+        reasons: vec![],
+        requirements: vec![],
+        faults: vec![],
+        method: "eight".to_owned(),
+        calibration: Some(Calibration {
+            positions: "eight".to_owned(),
+            estimator: "kalman".to_owned(),
+            duration_h: 4.0,
+            parameters: BTreeMap::new(),
+            nis_mean: Some(3.01),
+            nees: BTreeMap::new(),
+            worst_normalized_error: None,
+            refused: None,
+            health: HealthCounts::default(),
+        }),
+        navigation: Some(Navigation {
+            duration_h: 1.0,
+            height: HeightChannel::Held,
+            latitude_error_arcmin: score,
+            longitude_error_arcmin: score,
+            radial_error_nmi: RadialScore { max: 1.0, rms: 0.5, r#final: 0.9, rate_per_h: 0.8 },
+            slope_window: None,
+            marks: BTreeMap::new(),
+            series_hours: vec![[0.0, 0.0, 0.0], [1.0, 0.1, -0.6]],
+        }),
+        baseline: None,
+        reference: None,
+        pacing: None,
+        stream_hash: "00".to_owned(),
+    }
+}
+
+fn requirement(measure: &str, comparison: Comparison, limit: f64) -> Requirement {
+    Requirement { id: "NAV-1".to_owned(), measure: measure.to_owned(), comparison, limit }
+}
+
+fn judged(requirements: &[Requirement], findings: &[Finding]) -> Summary {
+    let mut summary = summary();
+    judge(&mut summary, requirements, findings).unwrap();
+    summary
+}
+
+#[test]
+fn exit_codes_are_those_of_the_contract() {
+    let codes: Vec<u8> = Verdict::ALL.iter().map(|v| v.exit_code()).collect();
+    assert_eq!(codes, [0, 3, 1, 4], "pass, inconclusive, fail, error");
+}
+
+fn any_verdict() -> impl Strategy<Value = Verdict> {
+    prop::sample::select(Verdict::ALL.to_vec())
+}
+
+proptest! {
+    #[test]
+    fn the_worst_wins_in_any_order_and_grouping(
+        a in any_verdict(), b in any_verdict(), c in any_verdict(),
+    ) {
+        prop_assert_eq!(a.worst(b), b.worst(a));
+        prop_assert_eq!(a.worst(b).worst(c), a.worst(b.worst(c)));
+        prop_assert_eq!(a.worst(a), a);
+        prop_assert_eq!(a.worst(Verdict::Pass), a);
+        prop_assert_eq!(a.worst(Verdict::Error), Verdict::Error);
+    }
+
+    #[test]
+    fn findings_can_only_make_a_run_worse(
+        verdicts in prop::collection::vec(any_verdict(), 0..6), limit in 0.0..2.0f64,
+    ) {
+        let findings: Vec<Finding> = verdicts
+            .iter()
+            .map(|&verdict| Finding { verdict, reason: "so it was".to_owned() })
+            .collect();
+        let required =
+            [requirement("navigation.longitude_error_arcmin.max", Comparison::AtMost, limit)];
+        let alone = judged(&required, &[]).verdict;
+        let with = judged(&required, &findings).verdict;
+        let worst = verdicts.iter().copied().max().unwrap_or(Verdict::Pass);
+        prop_assert_eq!(with, alone.worst(worst));
+    }
+
+    #[test]
+    fn a_margin_is_positive_where_a_limit_is_kept(limit in -2.0..2.0f64, comparison in
+        prop::sample::select(vec![Comparison::AtMost, Comparison::Below, Comparison::AtLeast,
+            Comparison::Above]),
+    ) {
+        let summary =
+            judged(&[requirement("navigation.longitude_error_arcmin.final", comparison, limit)], &[]);
+        let result = &summary.requirements[0];
+        prop_assert_eq!(result.value, Some(-0.6));
+        prop_assert_eq!(result.margin.unwrap() > 0.0, result.verdict == Verdict::Pass);
+        prop_assert_eq!(summary.verdict, result.verdict);
+    }
+}
+
+#[test]
+fn on_the_limit_at_most_holds_and_below_does_not() {
+    let at = |comparison| {
+        judged(&[requirement("navigation.radial_error_nmi.rate_per_h", comparison, 0.8)], &[])
+            .verdict
+    };
+    assert_eq!(at(Comparison::AtMost), Verdict::Pass);
+    assert_eq!(at(Comparison::AtLeast), Verdict::Pass);
+    assert_eq!(at(Comparison::Below), Verdict::Fail);
+    assert_eq!(at(Comparison::Above), Verdict::Fail);
+}
+
+#[test]
+fn a_measure_that_is_not_there_is_inconclusive_and_says_what_is() {
+    let result = |path: &str| {
+        judged(&[requirement(path, Comparison::AtMost, 1.0)], &[]).requirements[0].clone()
+    };
+    for (path, reason) in [
+        (
+            "navigation.latitude_error_arcmin.maximum",
+            "navigation.latitude_error_arcmin has no `maximum`; it has final, max, rms, slope_per_day",
+        ),
+        (
+            "navigation.latitude_error_arcmin.slope_per_day",
+            "navigation.latitude_error_arcmin.slope_per_day is null: the run doesn't have it",
+        ),
+        ("baseline.navigation.radial_error_nmi.max", "baseline is null: the run doesn't have it"),
+        ("navigation.height", "navigation.height is not a number"),
+        ("seed.more", "seed is a value and has no `more`"),
+    ] {
+        let found = result(path);
+        assert_eq!(found.verdict, Verdict::Inconclusive);
+        assert_eq!(found.reason.as_deref(), Some(reason));
+        assert_eq!((found.value, found.margin), (None, None));
+    }
+    let limitless = requirement("navigation.radial_error_nmi.max", Comparison::AtMost, f64::NAN);
+    assert_eq!(judged(&[limitless], &[]).verdict, Verdict::Inconclusive);
+}
+
+#[test]
+fn bars_take_the_magnitude() {
+    let value = serde_json::to_value(summary()).unwrap();
+    assert_eq!(measure("navigation.latitude_error_arcmin.final", &value), Ok(-0.6));
+    assert_eq!(measure("|navigation.latitude_error_arcmin.final|", &value), Ok(0.6));
+}
+
+#[test]
+fn a_run_without_requirements_passes_and_says_that_nothing_was_checked() {
+    let summary = judged(&[], &[]);
+    assert_eq!(summary.verdict, Verdict::Pass);
+    assert_eq!(summary.reasons, [NO_REQUIREMENT]);
+}
+
+#[test]
+fn a_refused_calibration_fails_and_a_silent_fault_is_inconclusive() {
+    let mut refused = summary();
+    refused.calibration.as_mut().unwrap().refused = Some("mean NIS 40 is above 9".to_owned());
+    judge(&mut refused, &[], &[]).unwrap();
+    assert_eq!(refused.verdict, Verdict::Fail);
+    assert_eq!(refused.reasons[0], "calibration of eight refused: mean NIS 40 is above 9");
+
+    let mut silent = summary();
+    silent.faults.push(FaultResult {
+        id: "spike".to_owned(),
+        kind: "spike".to_owned(),
+        armed: true,
+        fired: false,
+        first_sample: None,
+        last_sample: None,
+        samples_altered: 0,
+    });
+    judge(&mut silent, &[], &[]).unwrap();
+    assert_eq!(silent.verdict, Verdict::Inconclusive);
+}
+
+#[test]
+fn a_summary_survives_its_file_and_another_schema_is_refused() {
+    let summary = judged(&[requirement("seed", Comparison::AtLeast, 1.0)], &[]);
+    let text = summary.to_json().unwrap();
+    assert_eq!(Summary::from_json(&text).unwrap(), summary);
+    assert_eq!(text, summary.to_json().unwrap());
+    let other = text.replacen("\"schema\": 1", "\"schema\": 2", 1);
+    assert_eq!(Summary::from_json(&other), Err(SummaryError::Schema { found: 2 }));
+    assert!(matches!(Summary::from_json("{}"), Err(SummaryError::Form(_))));
+}
+
+#[test]
+fn junit_names_what_each_case_verifies_and_passes_nothing_inconclusive() {
+    let xml = junit(&judged(
+        &[
+            requirement("navigation.longitude_error_arcmin.max", Comparison::AtMost, 0.5),
+            requirement("navigation.nothing", Comparison::AtMost, 0.5),
+            requirement("navigation.radial_error_nmi.max", Comparison::AtMost, 5.0),
+        ],
+        &[],
+    ))
+    .unwrap();
+    let document = roxmltree::Document::parse(&xml).unwrap();
+    let cases: Vec<_> = document.descendants().filter(|n| n.has_tag_name("testcase")).collect();
+    let kinds: Vec<Option<&str>> = cases
+        .iter()
+        .map(|case| {
+            case.children()
+                .find(|c| c.has_tag_name("failure") || c.has_tag_name("error"))
+                .and_then(|c| c.attribute("type"))
+        })
+        .collect();
+    assert_eq!(kinds, [Some("fail"), Some("inconclusive"), None, Some("fail")]);
+    let verifies: Vec<_> = document
+        .descendants()
+        .filter(|n| n.attribute("name") == Some("verifies"))
+        .map(|n| n.attribute("value").unwrap())
+        .collect();
+    assert_eq!(verifies, ["NAV-1"; 3]);
+}
