@@ -1,4 +1,4 @@
-//! What a sequence can observe and what it will reach, before anyone turns a gimbal.
+//! What a position sequence can observe and what it will reach, before anyone turns a gimbal.
 
 pub mod covariance;
 pub mod static_rank;

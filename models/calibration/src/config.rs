@@ -187,6 +187,8 @@ pub enum StaticIntervals {
 pub struct ExternalTurntable {
     /// Attitude of the table's base, `q_nc`, known from its survey.
     pub q_nc: UnitQuaternion<f64>,
+    /// 1σ of each of its angles, rad.
+    pub encoder_sigma_rad: f64,
 }
 
 /// Navigation after the calibration: free inertial, height held.

@@ -20,10 +20,12 @@ fn run(
     dwell_s: f64,
     initial: &Parameters,
 ) -> Result<Estimate, Refusal> {
-    let settings = ExternalTurntable { q_nc: quaternion_from_matrix(&c_nc(HEADING_RAD, 0.0, 0.0)) };
+    let settings = ExternalTurntable {
+        q_nc: quaternion_from_matrix(&c_nc(HEADING_RAD, 0.0, 0.0)),
+        encoder_sigma_rad: ARCSEC,
+    };
     let noise = Noise { angle_random_walk: ARW, velocity_random_walk: VRW };
-    let mut estimator =
-        ExternalTurntableEstimator::new(&settings, &SITE, &noise, ARCSEC, initial).unwrap();
+    let mut estimator = ExternalTurntableEstimator::new(&settings, &SITE, &noise, initial).unwrap();
     instrument.run(stops, dwell_s, |sample, dt_s, standing| {
         estimator.step(sample, dt_s, standing);
     });
@@ -124,11 +126,14 @@ fn too_few_positions_and_missing_encoders_are_refused() {
         run(Instrument::new(truth(), 0.0, 0.0, 1), &one_gimbal, 20.0, &Parameters::default());
     assert!(matches!(refused, Err(Refusal::Undetermined { .. })), "{refused:?}");
 
-    let settings = ExternalTurntable { q_nc: quaternion_from_matrix(&c_nc(HEADING_RAD, 0.0, 0.0)) };
+    let settings = ExternalTurntable {
+        q_nc: quaternion_from_matrix(&c_nc(HEADING_RAD, 0.0, 0.0)),
+        encoder_sigma_rad: ARCSEC,
+    };
     let noise = Noise { angle_random_walk: ARW, velocity_random_walk: VRW };
     let initial = Parameters::default();
     let mut estimator =
-        ExternalTurntableEstimator::new(&settings, &SITE, &noise, ARCSEC, &initial).unwrap();
+        ExternalTurntableEstimator::new(&settings, &SITE, &noise, &initial).unwrap();
     Instrument::new(truth(), 0.0, 0.0, 1).run(SIX, 2.0, |sample, dt_s, standing| {
         let mut sample = *sample;
         sample.status |= octant_sample::Status::GIMBAL_INVALID;

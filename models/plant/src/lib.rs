@@ -3,23 +3,27 @@
 //! The plant makes integer counts, stamped at the end of their interval, and answers to the gimbal
 //! commands of the core. It never sees what the core estimates.
 
+mod case;
 pub mod config;
+pub mod draw;
+mod encoder;
+mod gimbal;
+mod imu;
+mod increments;
+pub mod motion;
+mod normal;
+pub mod philox;
+mod plant;
+mod processes;
+mod reference;
+pub mod sea;
+pub mod stream;
+mod sway;
+mod trig;
+mod truth;
+mod validate;
+mod vibration;
 
-/// Truth at one instant.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Truth {
-    /// Simulated time, ns since the start.
-    pub time: octant_sample::time::SimulatedTime,
-    /// Geodetic latitude, rad.
-    pub latitude_rad: f64,
-    /// Longitude, rad.
-    pub longitude_rad: f64,
-    /// Height above the ellipsoid, m.
-    pub height_m: f64,
-    /// Velocity over ground in n, m/s.
-    pub velocity_mps: [f64; 3],
-    /// Attitude `q_nb` (w, x, y, z).
-    pub q_nb: [f64; 4],
-    /// True gimbal angles (azimuth, roll), rad, without encoder error.
-    pub gimbal_rad: [f64; 2],
-}
+pub use plant::{Plant, Step};
+pub use truth::Truth;
+pub use validate::ConfigError;

@@ -74,8 +74,7 @@ impl NormMoments {
 }
 
 impl ExternalTurntableEstimator {
-    /// An estimator at a site. `encoder_sigma_rad` is the standard deviation of each angle of the
-    /// external turntable; `initial` is what the equations are linearised about: zero, or the
+    /// An estimator at a site. `initial` is what the equations are linearised about: zero, or the
     /// result of an earlier calibration or pass. The sample period comes with every step.
     ///
     /// # Errors
@@ -84,9 +83,9 @@ impl ExternalTurntableEstimator {
         settings: &config::ExternalTurntable,
         site: &Site,
         noise: &Noise,
-        encoder_sigma_rad: f64,
         initial: &Parameters,
     ) -> Result<Self, Refusal> {
+        let encoder_sigma_rad = settings.encoder_sigma_rad;
         positive("encoder_sigma_rad", encoder_sigma_rad)?;
         positive("angle_random_walk", noise.angle_random_walk)?;
         positive("velocity_random_walk", noise.velocity_random_walk)?;

@@ -1,25 +1,30 @@
 //! The procedure: alignment, calibration through the stops, compensation, navigation.
 
+mod check;
+mod estimation;
+mod judgement;
+
+pub use check::ConfigError;
+pub use judgement::Refusal;
+
+use crate::alignment::CoarseAlignment;
 use crate::compensation::Compensation;
-use crate::config::{AidingMode, Alignment, Calibration, Config, Estimator, Site};
+use crate::config::{Alignment, Calibration, Config, Estimator, Kalman, Site};
+use crate::covariance::PARAMETERS;
 use crate::filter::CalibrationFilter;
 use crate::monitor::{Monitor, MonitorTally, Order};
-use crate::schedule::{Cursor, DoesNotFit, dwell_s};
+use crate::schedule::{Cursor, dwell_s};
 use crate::strapdown::{Strapdown, Vertical};
 use crate::table::{CalibrationTable, Provenance, Quality};
-use nalgebra::Vector3;
+use estimation::{Estimation, Standstill};
+use judgement::{judge, quality_of};
+use nalgebra::{UnitQuaternion, Vector3};
 use octant_sample::counts::{DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS};
 use octant_sample::parameters::PARAMETER_COUNT;
 use octant_sample::{
     Aiding, GimbalAngles, GimbalCommand, Health, Mode, Output, Parameters, Sample, Status,
 };
 
-/// Share of measurements that the gate may reject before a calibration is refused.
-const REJECTED_SHARE_MAX: f64 = 0.02;
-/// Recoveries that a calibration may need before it is refused.
-const RECOVERIES_MAX: u32 = 10;
-/// Share of the expected measurements that a calibration needs.
-const MEASURED_SHARE_MIN: f64 = 0.5;
 /// Missing samples over which the last increments are held; what is longer is lost.
 const HOLD_MAX_SAMPLES: u64 = 400;
 /// Difference of encoder and set point in a dwell that is called a disagreement, counts (0.5°).
@@ -28,81 +33,6 @@ const GIMBAL_TOLERANCE: i32 = (0.5 * core::f64::consts::PI / 180.0 * (1u64 << 27
 const GIMBAL_SETTLE_S: f64 = 1.0;
 /// Memory of the running mean of NIS, measurements.
 const NIS_MEMORY: f64 = 64.0;
-
-/// Why a configuration can't be run.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-pub enum ConfigError {
-    /// The sequence doesn't fit into the calibration time.
-    #[error(transparent)]
-    DoesNotFit(#[from] DoesNotFit),
-    /// A period is not usable.
-    #[error("{field} is {found_ns} ns, {expected} is expected")]
-    Period {
-        /// Name of the field.
-        field: &'static str,
-        /// Value found, ns.
-        found_ns: u64,
-        /// What is expected.
-        expected: &'static str,
-    },
-    /// A number that must be positive and finite isn't.
-    #[error("{field} is {found}, a positive number is expected")]
-    NotPositive {
-        /// Name of the field.
-        field: &'static str,
-        /// Value found.
-        found: f64,
-    },
-    /// The latitude is too close to a pole for a local-level frame.
-    #[error("latitude is {found_rad} rad, within ±1.56 (±89.4 deg) is expected")]
-    Latitude {
-        /// Value found, rad.
-        found_rad: f64,
-    },
-    /// Neither a calibration nor navigation: there is nothing to do.
-    #[error("neither a calibration nor a navigation is configured")]
-    Nothing,
-}
-
-/// Why a calibration was refused.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-pub enum Refusal {
-    /// The innovations are not of the size that the tuning says.
-    #[error("the mean NIS of {mean:.1} is above {limit}: the innovations contradict the tuning")]
-    Inconsistent {
-        /// Mean NIS.
-        mean: f64,
-        /// Limit.
-        limit: f64,
-    },
-    /// The gate rejected too much.
-    #[error(
-        "{rejected} of {total} measurements were rejected: the innovations contradict the tuning"
-    )]
-    Rejected {
-        /// Measurements rejected.
-        rejected: u64,
-        /// All measurements.
-        total: u64,
-    },
-    /// The filter had to recover too often.
-    #[error("the filter had to recover {recoveries} times, at most {RECOVERIES_MAX} are accepted")]
-    Recoveries {
-        /// Recoveries.
-        recoveries: u32,
-    },
-    /// The reference did not come.
-    #[error("only {used} of {expected} measurements of the reference came")]
-    AidingLost {
-        /// Measurements used.
-        used: u64,
-        /// Measurements expected.
-        expected: u64,
-    },
-    /// The filter's numbers are not finite.
-    #[error("the covariance is not finite")]
-    Numeric,
-}
 
 /// Counts and means over the run, for reports.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -120,25 +50,34 @@ pub struct Diagnostics {
 pub struct Core {
     config: Config,
     sample_s: f64,
+    /// Samples of the calibration, and of the navigation after it.
     calibration_ticks: u64,
     navigation_ticks: u64,
     settle_ticks: u64,
 
+    /// Samples so far, missing ones included.
     tick: u64,
+    /// Tick at which the present schedule started.
+    phase_start: u64,
     mode: Mode,
     cursor: Option<Cursor>,
     monitor: Monitor,
+    alignment: Option<(CoarseAlignment, u64)>,
+    estimation: Estimation,
+    standstill: Standstill,
     parameters: Parameters,
     sigma: [f64; PARAMETER_COUNT],
     revision: u32,
     compensation: Compensation,
     strapdown: Strapdown,
-    filter: Option<CalibrationFilter>,
+    /// Last raw increments, for bridging a gap.
     held: (Vector3<f64>, Vector3<f64>),
     last_measured_tick: u64,
     nis_running: f64,
     gimbal_disagreements: u64,
     refusal: Option<Refusal>,
+    /// Quality of a filter that was refused.
+    last_quality: Quality,
     table: Option<CalibrationTable>,
     last_output: Output,
 }
@@ -147,52 +86,9 @@ fn ticks(duration_s: f64, sample_s: f64) -> u64 {
     (duration_s / sample_s + 0.5) as u64
 }
 
-fn check(config: &Config) -> Result<(), ConfigError> {
-    let period_ns = config.sample_period_ns;
-    if period_ns == 0 || period_ns > 1_000_000_000 {
-        return Err(ConfigError::Period {
-            field: "sample period",
-            found_ns: period_ns,
-            expected: "1 ns to 1 s",
-        });
-    }
-    if !(config.site.latitude_rad.abs() <= 1.56) {
-        return Err(ConfigError::Latitude { found_rad: config.site.latitude_rad });
-    }
-    let positive = |field, found: f64| {
-        if found > 0.0 && found.is_finite() {
-            Ok(())
-        } else {
-            Err(ConfigError::NotPositive { field, found })
-        }
-    };
-    positive("turntable rate", config.turntable.rate_radps)?;
-    positive("turntable acceleration", config.turntable.acceleration_radps2)?;
-    if let Some(calibration) = &config.calibration {
-        positive("calibration duration", calibration.duration_s)?;
-        if let Estimator::Kalman(kalman) = &calibration.estimator {
-            if kalman.aiding_period_ns == 0 || !kalman.aiding_period_ns.is_multiple_of(period_ns) {
-                return Err(ConfigError::Period {
-                    field: "aiding period",
-                    found_ns: kalman.aiding_period_ns,
-                    expected: "a multiple of the sample period",
-                });
-            }
-            let (AidingMode::Velocity { sigma_mps: sigma }
-            | AidingMode::Position { sigma_m: sigma }) = kalman.aiding;
-            positive("aiding sigma", sigma)?;
-        }
-    }
-    if let Some(navigation) = &config.navigation {
-        positive("navigation dwell", navigation.dwell_s)?;
-        if let Some(duration_s) = navigation.duration_s {
-            positive("navigation duration", duration_s)?;
-        }
-    }
-    if config.calibration.is_none() && config.navigation.is_none() {
-        return Err(ConfigError::Nothing);
-    }
-    Ok(())
+fn strapdown_at(site: &Site, q_nb: &UnitQuaternion<f64>, velocity: Vector3<f64>) -> Strapdown {
+    let Site { latitude_rad, longitude_rad, height_m } = *site;
+    Strapdown::new(q_nb, velocity, latitude_rad, longitude_rad, height_m, Vertical::Free)
 }
 
 impl Core {
@@ -201,12 +97,15 @@ impl Core {
     /// # Errors
     /// If the configuration contradicts itself: see [`ConfigError`].
     pub fn new(config: &Config) -> Result<Self, ConfigError> {
-        check(config)?;
+        check::check(config)?;
         let sample_s = config.sample_period_ns as f64 * 1e-9;
-        let Site { latitude_rad, longitude_rad, height_m } = config.site;
-        let (q_nb, velocity) = match &config.alignment {
-            Alignment::Given { q_nb, velocity_mps } => (*q_nb, *velocity_mps),
-            Alignment::Coarse { .. } => Default::default(),
+        let (q_nb, velocity, alignment) = match &config.alignment {
+            Alignment::Given { q_nb, velocity_mps } => (*q_nb, *velocity_mps, None),
+            Alignment::Coarse { duration_s } => (
+                UnitQuaternion::identity(),
+                Vector3::zeros(),
+                Some((CoarseAlignment::new(&config.site), ticks(*duration_s, sample_s))),
+            ),
         };
         let sqrt_s = libm::sqrt(sample_s);
         let sigmas =
@@ -218,27 +117,24 @@ impl Core {
             navigation_ticks: u64::MAX,
             settle_ticks: ticks(GIMBAL_SETTLE_S, sample_s),
             tick: 0,
+            phase_start: 0,
             mode: Mode::Aligning,
             cursor: None,
             monitor: Monitor::new(config.sample_period_ns, sigmas, config.screening.stuck_samples),
+            alignment,
+            estimation: Estimation::Idle,
+            standstill: Standstill::default(),
             parameters: config.initial_parameters,
             sigma: [0.0; PARAMETER_COUNT],
             revision: 0,
             compensation: Compensation::new(&config.initial_parameters),
-            strapdown: Strapdown::new(
-                &q_nb,
-                velocity,
-                latitude_rad,
-                longitude_rad,
-                height_m,
-                Vertical::Free,
-            ),
-            filter: None,
+            strapdown: strapdown_at(&config.site, &q_nb, velocity),
             held: Default::default(),
             last_measured_tick: 0,
             nis_running: 0.0,
             gimbal_disagreements: 0,
             refusal: None,
+            last_quality: Quality { nis_mean: f64::NAN, ..Quality::default() },
             table: None,
             last_output: Output { nis: f64::NAN, ..Output::default() },
         };
@@ -247,47 +143,55 @@ impl Core {
         }
         if let Some(calibration) = &config.calibration {
             core.start_calibration(calibration)?;
-        } else {
-            core.start_navigation();
+        }
+        if core.alignment.is_none() {
+            core.leave_alignment();
         }
         Ok(core)
     }
 
+    /// Plans the stops. The clock of the calibration starts with the first sample: a coarse
+    /// alignment takes its time from the first dwell.
     fn start_calibration(&mut self, calibration: &Calibration) -> Result<(), ConfigError> {
         let rates = self.config.turntable;
         let dwell = dwell_s(&calibration.sequence, calibration.duration_s, &rates)?;
         self.calibration_ticks = ticks(calibration.duration_s, self.sample_s);
-        self.cursor = Some(Cursor::new(
-            calibration.sequence.clone(),
-            GimbalAngles::default(),
-            rates,
-            dwell,
-            self.sample_s,
-            false,
-        ));
-        if let Estimator::Kalman(kalman) = &calibration.estimator {
-            let filter = CalibrationFilter::new(
-                kalman,
-                &self.config.noise,
-                self.config.screening.gate,
-                self.config.sample_period_ns,
-            );
-            self.sigma = filter.parameter_sigmas();
-            self.filter = Some(filter);
+        let home = GimbalAngles::default();
+        let sequence = calibration.sequence.clone();
+        let cursor = Cursor::new(sequence, home, rates, dwell, self.sample_s, false);
+        if let Alignment::Coarse { duration_s: alignment_s } = self.config.alignment {
+            let dwell_s = cursor.departure_s();
+            if cursor.arrival_s() > 0.0 || alignment_s > dwell_s {
+                return Err(ConfigError::Alignment { alignment_s, dwell_s });
+            }
         }
-        self.mode = Mode::Calibrating;
+        self.cursor = Some(cursor);
+        self.estimation = Estimation::new(&self.config, calibration)?;
+        if let Estimation::Kalman(filter) = &self.estimation {
+            self.sigma = filter.parameter_sigmas();
+        }
         Ok(())
     }
 
+    fn leave_alignment(&mut self) {
+        self.alignment = None;
+        if self.config.calibration.is_some() {
+            self.mode = Mode::Calibrating;
+        } else {
+            self.start_navigation();
+        }
+    }
+
     fn start_navigation(&mut self) {
+        self.estimation = Estimation::Idle;
+        self.phase_start = self.tick;
         let Some(plan) = &self.config.navigation else {
             self.mode = Mode::Done;
             return;
         };
-        let from = self.last_output.gimbal_command.target;
         self.cursor = Some(Cursor::new(
             plan.rotation.clone(),
-            from,
+            self.last_output.gimbal_command.target,
             self.config.turntable,
             plan.dwell_s,
             self.sample_s,
@@ -295,7 +199,6 @@ impl Core {
         ));
         let Site { latitude_rad, longitude_rad, height_m } = self.config.site;
         self.strapdown.start_free(latitude_rad, longitude_rad, height_m);
-        self.filter = None;
         self.mode = Mode::Navigating;
     }
 
@@ -315,24 +218,18 @@ impl Core {
             }
         };
         self.tick += 1;
-        if matches!(self.mode, Mode::Calibrating | Mode::Navigating) {
-            let interval_s = interval_ns as f64 * 1e-9;
-            let raw = |counts: &[i32; 3], lsb: f64| {
-                Vector3::new(f64::from(counts[0]), f64::from(counts[1]), f64::from(counts[2])) * lsb
-            };
-            let measured = (
-                raw(&sample.delta_theta, DELTA_THETA_LSB_RAD),
-                raw(&sample.delta_velocity, DELTA_VELOCITY_LSB_MPS),
-            );
-            self.integrate(&measured, interval_s);
-        }
-        if self.mode == Mode::Calibrating {
-            self.measure(aiding, &mut health, &mut nis);
-            if self.tick >= self.calibration_ticks {
-                self.finish_calibration(sample);
+        self.take(sample, interval_ns as f64 * 1e-9);
+        match self.mode {
+            Mode::Calibrating => {
+                self.measure(aiding, &mut health, &mut nis);
+                if self.tick >= self.calibration_ticks {
+                    self.finish_calibration(sample);
+                }
             }
-        } else if self.mode == Mode::Navigating && self.phase_tick() >= self.navigation_ticks {
-            self.mode = Mode::Done;
+            Mode::Navigating if self.phase_tick() >= self.navigation_ticks => {
+                self.mode = Mode::Done;
+            }
+            _ => {}
         }
         let phase_tick = self.phase_tick();
         if let Some(cursor) = &mut self.cursor {
@@ -343,24 +240,93 @@ impl Core {
     }
 
     /// Samples since the start of the present phase.
+    #[inline]
     fn phase_tick(&self) -> u64 {
-        if self.mode == Mode::Calibrating { self.tick } else { self.tick - self.calibration_ticks }
+        self.tick - self.phase_start
     }
 
+    /// Takes the increments of a sample into whatever runs.
+    #[inline]
+    fn take(&mut self, sample: &Sample, interval_s: f64) {
+        let increments = |counts: &[i32; 3], lsb: f64| {
+            Vector3::new(f64::from(counts[0]), f64::from(counts[1]), f64::from(counts[2])) * lsb
+        };
+        let measured = (
+            increments(&sample.delta_theta, DELTA_THETA_LSB_RAD),
+            increments(&sample.delta_velocity, DELTA_VELOCITY_LSB_MPS),
+        );
+        match (self.mode, &self.estimation) {
+            (Mode::Navigating, _) | (Mode::Calibrating, Estimation::Kalman(_)) => {
+                self.integrate(&measured, interval_s);
+            }
+            (Mode::Aligning, _) => self.align(&measured, interval_s),
+            (Mode::Calibrating, _) => self.watch(sample, &measured, interval_s),
+            (Mode::Refused | Mode::Done, _) => {}
+        }
+    }
+
+    #[inline]
     fn integrate(&mut self, measured: &(Vector3<f64>, Vector3<f64>), interval_s: f64) {
         let (dtheta, dv) = self.compensation.apply(&measured.0, &measured.1, interval_s);
         self.strapdown.step(&dtheta, &dv, interval_s);
-        if let Some(filter) = &mut self.filter {
+        if let Estimation::Kalman(filter) = &mut self.estimation {
             filter.accumulate(&self.strapdown, &dtheta, &dv, interval_s);
         }
         self.held = *measured;
+    }
+
+    #[cold]
+    fn align(&mut self, measured: &(Vector3<f64>, Vector3<f64>), interval_s: f64) {
+        let Some((alignment, until)) = &mut self.alignment else { return };
+        let (dtheta, dv) = self.compensation.apply(&measured.0, &measured.1, interval_s);
+        alignment.step(&dtheta, &dv, interval_s);
+        if self.tick < *until {
+            return;
+        }
+        match alignment.finish() {
+            Some(q_nb) => {
+                self.strapdown = strapdown_at(&self.config.site, &q_nb, Vector3::zeros());
+                self.leave_alignment();
+            }
+            None => self.refuse(Refusal::Alignment),
+        }
+    }
+
+    /// A least-squares calibration doesn't navigate: it looks at standstills and at the moves
+    /// between them.
+    #[inline(never)]
+    fn watch(&mut self, sample: &Sample, measured: &(Vector3<f64>, Vector3<f64>), interval_s: f64) {
+        let Some(cursor) = &self.cursor else { return };
+        let tick = self.tick;
+        let standing = tick > cursor.arrival_tick() + self.settle_ticks;
+        if standing {
+            self.standstill.add(measured, interval_s);
+        } else {
+            self.standstill = Standstill::default();
+        }
+        self.estimation.raw_sample(sample, interval_s, standing);
+    }
+
+    fn refuse(&mut self, refusal: Refusal) {
+        if let Some(filter) = self.filter() {
+            self.last_quality = quality_of(filter);
+        }
+        self.refusal = Some(refusal);
+        self.estimation = Estimation::Idle;
+        self.alignment = None;
+        self.mode = Mode::Refused;
     }
 
     /// Bridges missing samples by holding the last increments, up to a bound: a hold without one
     /// makes a fault at the start of a move worse.
     fn bridge(&mut self, missing: u64) {
         let measured = self.held;
-        if matches!(self.mode, Mode::Calibrating | Mode::Navigating) {
+        let integrates = match self.mode {
+            Mode::Navigating => true,
+            Mode::Calibrating => matches!(self.estimation, Estimation::Kalman(_)),
+            _ => false,
+        };
+        if integrates {
             for _ in 0..missing.min(HOLD_MAX_SAMPLES) {
                 self.integrate(&measured, self.sample_s);
             }
@@ -370,9 +336,8 @@ impl Core {
     }
 
     fn measure(&mut self, aiding: Option<&Aiding>, health: &mut Health, nis: &mut f64) {
-        let Some(filter) = &mut self.filter else { return };
-        let Some(Calibration { estimator: Estimator::Kalman(kalman), .. }) =
-            &self.config.calibration
+        let (Estimation::Kalman(filter), Some(kalman)) =
+            (&mut self.estimation, kalman_of(&self.config))
         else {
             return;
         };
@@ -411,13 +376,8 @@ impl Core {
     }
 
     fn finish_calibration(&mut self, sample: &Sample) {
-        let verdict = self.judge();
-        match verdict {
-            Err(refusal) => {
-                self.refusal = Some(refusal);
-                self.filter = None;
-                self.mode = Mode::Refused;
-            }
+        match self.conclude() {
+            Err(refusal) => self.refuse(refusal),
             Ok(quality) => {
                 self.table = self.export(sample, quality);
                 self.start_navigation();
@@ -425,46 +385,45 @@ impl Core {
         }
     }
 
-    /// Can this calibration be vouched for?
-    fn judge(&self) -> Result<Quality, Refusal> {
-        let (Some(filter), Some(Calibration { estimator: Estimator::Kalman(kalman), .. })) =
-            (&self.filter, &self.config.calibration)
-        else {
-            return Ok(Quality::default());
-        };
-        let (tally, quality) = (filter.tally(), quality_of(filter));
-        let expected =
-            self.calibration_ticks * self.config.sample_period_ns / kalman.aiding_period_ns;
-        let total = tally.used + tally.rejected;
-        if !filter.covariance().is_finite()
-            || self.parameters.to_array().iter().any(|value| !value.is_finite())
+    /// Brings the estimation to its end: judged, parameters and attitude in place.
+    fn conclude(&mut self) -> Result<Quality, Refusal> {
+        if let (Estimation::Kalman(filter), Some(kalman)) =
+            (&self.estimation, kalman_of(&self.config))
         {
-            return Err(Refusal::Numeric);
+            let period = kalman.aiding_period_ns;
+            let expected = self.calibration_ticks * self.config.sample_period_ns / period;
+            return judge(filter, kalman, expected);
         }
-        if (total as f64) < MEASURED_SHARE_MIN * expected as f64 {
-            return Err(Refusal::AidingLost { used: total, expected });
+        let Some(adjusted) = self.estimation.adjust() else { return Err(Refusal::Numeric) };
+        let estimate = adjusted?;
+        self.parameters = estimate.parameters;
+        self.sigma = estimate.sigma;
+        self.revision += 1;
+        self.compensation = Compensation::new(&self.parameters);
+        if self.config.navigation.is_some() {
+            let still = self.standstill;
+            let (dtheta, dv) =
+                self.compensation.apply(&still.delta_theta, &still.delta_velocity, still.elapsed_s);
+            let mut alignment = CoarseAlignment::new(&self.config.site);
+            alignment.step(&dtheta, &dv, still.elapsed_s);
+            let q_nb = alignment.finish().ok_or(Refusal::Alignment)?;
+            self.strapdown = strapdown_at(&self.config.site, &q_nb, Vector3::zeros());
         }
-        if tally.rejected as f64 > REJECTED_SHARE_MAX * total as f64 {
-            return Err(Refusal::Rejected { rejected: tally.rejected, total });
-        }
-        if tally.recoveries > RECOVERIES_MAX {
-            return Err(Refusal::Recoveries { recoveries: tally.recoveries });
-        }
-        if !(quality.nis_mean <= kalman.refuse_above_mean_nis) {
-            return Err(Refusal::Inconsistent {
-                mean: quality.nis_mean,
-                limit: kalman.refuse_above_mean_nis,
-            });
-        }
-        Ok(quality)
+        let used = estimate.intervals as u64;
+        Ok(Quality { nis_mean: f64::NAN, used, ..Quality::default() })
     }
 
     fn export(&self, sample: &Sample, quality: Quality) -> Option<CalibrationTable> {
         let calibration = self.config.calibration.as_ref()?;
-        let filter = self.filter.as_ref()?;
-        let first = crate::covariance::PARAMETERS;
         let covariance = core::array::from_fn(|i| {
-            core::array::from_fn(|j| filter.covariance().at(first + i, first + j))
+            core::array::from_fn(|j| match &self.estimation {
+                Estimation::Kalman(filter) => {
+                    filter.covariance().at(PARAMETERS + i, PARAMETERS + j)
+                }
+                // Least squares hands over standard deviations alone.
+                _ if i == j => self.sigma[i] * self.sigma[i],
+                _ => 0.0,
+            })
         });
         let Site { latitude_rad, longitude_rad, height_m } = self.config.site;
         Some(CalibrationTable {
@@ -479,7 +438,11 @@ impl Core {
                 latitude_rad,
                 longitude_rad,
                 height_m,
-                method: 0,
+                method: match calibration.estimator {
+                    Estimator::Kalman(_) => 0,
+                    Estimator::LeastSquares(_) => 1,
+                    Estimator::ExternalTurntable(_) => 2,
+                },
             },
         })
     }
@@ -549,16 +512,19 @@ impl Core {
     /// The filter, while it runs.
     #[must_use]
     pub fn filter(&self) -> Option<&CalibrationFilter> {
-        self.filter.as_ref()
+        match &self.estimation {
+            Estimation::Kalman(filter) => Some(filter),
+            _ => None,
+        }
     }
 
     /// Counts so far.
     #[must_use]
     pub fn diagnostics(&self) -> Diagnostics {
-        let quality = match (&self.filter, &self.table) {
+        let quality = match (self.filter(), &self.table) {
             (Some(filter), _) => quality_of(filter),
             (None, Some(table)) => table.quality,
-            (None, None) => Quality { nis_mean: f64::NAN, ..Quality::default() },
+            (None, None) => self.last_quality,
         };
         Diagnostics {
             monitor: *self.monitor.tally(),
@@ -568,12 +534,9 @@ impl Core {
     }
 }
 
-fn quality_of(filter: &CalibrationFilter) -> Quality {
-    let tally = filter.tally();
-    Quality {
-        nis_mean: tally.nis_sum / (tally.used - tally.held) as f64,
-        used: tally.used,
-        rejected: tally.rejected,
-        recoveries: u64::from(tally.recoveries),
+fn kalman_of(config: &Config) -> Option<&Kalman> {
+    match &config.calibration {
+        Some(Calibration { estimator: Estimator::Kalman(kalman), .. }) => Some(kalman),
+        _ => None,
     }
 }

@@ -1,0 +1,103 @@
+//! What a configuration has to keep before a core is made from it.
+
+use crate::config::{AidingMode, Alignment, Config, Estimator};
+use crate::schedule::DoesNotFit;
+
+/// Why a configuration can't be run.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum ConfigError {
+    /// The sequence doesn't fit into the calibration time.
+    #[error(transparent)]
+    DoesNotFit(#[from] DoesNotFit),
+    /// A period is not usable.
+    #[error("{field} is {found_ns} ns, {expected} is expected")]
+    Period {
+        /// Name of the field.
+        field: &'static str,
+        /// Value found, ns.
+        found_ns: u64,
+        /// What is expected.
+        expected: &'static str,
+    },
+    /// A number that must be positive and finite isn't.
+    #[error("{field} is {found}, a positive number is expected")]
+    NotPositive {
+        /// Name of the field.
+        field: &'static str,
+        /// Value found.
+        found: f64,
+    },
+    /// The latitude is too close to a pole for a local-level frame.
+    #[error("latitude is {found_rad} rad, within ±1.56 (±89.4 deg) is expected")]
+    Latitude {
+        /// Value found, rad.
+        found_rad: f64,
+    },
+    /// The estimator can't be set up.
+    #[error("set up the estimator: {0}")]
+    Estimator(#[from] crate::least_squares::Refusal),
+    /// Coarse alignment takes longer than the instrument stands.
+    #[error(
+        "coarse alignment takes {alignment_s} s, and the first stop is held for {dwell_s} s only"
+    )]
+    Alignment {
+        /// Time of the alignment, s.
+        alignment_s: f64,
+        /// Dwell at the first stop, s.
+        dwell_s: f64,
+    },
+    /// Neither a calibration nor navigation: there is nothing to do.
+    #[error("neither a calibration nor a navigation is configured")]
+    Nothing,
+}
+
+pub(super) fn check(config: &Config) -> Result<(), ConfigError> {
+    let period_ns = config.sample_period_ns;
+    if period_ns == 0 || period_ns > 1_000_000_000 {
+        return Err(ConfigError::Period {
+            field: "sample period",
+            found_ns: period_ns,
+            expected: "1 ns to 1 s",
+        });
+    }
+    if !(config.site.latitude_rad.abs() <= 1.56) {
+        return Err(ConfigError::Latitude { found_rad: config.site.latitude_rad });
+    }
+    let positive = |field, found: f64| {
+        if found > 0.0 && found.is_finite() {
+            Ok(())
+        } else {
+            Err(ConfigError::NotPositive { field, found })
+        }
+    };
+    positive("turntable rate", config.turntable.rate_radps)?;
+    positive("turntable acceleration", config.turntable.acceleration_radps2)?;
+    if let Alignment::Coarse { duration_s } = config.alignment {
+        positive("coarse alignment duration", duration_s)?;
+    }
+    if let Some(calibration) = &config.calibration {
+        positive("calibration duration", calibration.duration_s)?;
+        if let Estimator::Kalman(kalman) = &calibration.estimator {
+            if kalman.aiding_period_ns == 0 || !kalman.aiding_period_ns.is_multiple_of(period_ns) {
+                return Err(ConfigError::Period {
+                    field: "aiding period",
+                    found_ns: kalman.aiding_period_ns,
+                    expected: "a multiple of the sample period",
+                });
+            }
+            let (AidingMode::Velocity { sigma_mps: sigma }
+            | AidingMode::Position { sigma_m: sigma }) = kalman.aiding;
+            positive("aiding sigma", sigma)?;
+        }
+    }
+    if let Some(navigation) = &config.navigation {
+        positive("navigation dwell", navigation.dwell_s)?;
+        if let Some(duration_s) = navigation.duration_s {
+            positive("navigation duration", duration_s)?;
+        }
+    }
+    if config.calibration.is_none() && config.navigation.is_none() {
+        return Err(ConfigError::Nothing);
+    }
+    Ok(())
+}

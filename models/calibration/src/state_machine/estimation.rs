@@ -1,0 +1,81 @@
+//! Which estimator runs, and what it needs beside the samples.
+
+use crate::config::{Calibration, Config, Estimator};
+use crate::external_turntable::ExternalTurntableEstimator;
+use crate::filter::CalibrationFilter;
+use crate::least_squares::{Estimate, LeastSquaresEstimator, Refusal};
+use nalgebra::Vector3;
+use octant_sample::Sample;
+
+/// The estimator of a calibration. All of it is in place: the core doesn't allocate.
+#[derive(Clone, Debug)]
+#[allow(clippy::large_enum_variant, reason = "no_std without alloc: there is no box to put it in")]
+pub(super) enum Estimation {
+    /// None runs.
+    Idle,
+    Kalman(CalibrationFilter),
+    LeastSquares(LeastSquaresEstimator),
+    ExternalTurntable(ExternalTurntableEstimator),
+}
+
+impl Estimation {
+    pub(super) fn new(config: &Config, calibration: &Calibration) -> Result<Self, Refusal> {
+        Ok(match &calibration.estimator {
+            Estimator::Kalman(kalman) => Self::Kalman(CalibrationFilter::new(
+                kalman,
+                &config.noise,
+                config.screening.gate,
+                config.sample_period_ns,
+            )),
+            Estimator::LeastSquares(settings) => Self::LeastSquares(LeastSquaresEstimator::new(
+                settings,
+                &config.site,
+                config.sample_period_ns,
+                &config.initial_parameters,
+            )?),
+            Estimator::ExternalTurntable(settings) => {
+                Self::ExternalTurntable(ExternalTurntableEstimator::new(
+                    settings,
+                    &config.site,
+                    &config.noise,
+                    &config.initial_parameters,
+                )?)
+            }
+        })
+    }
+
+    /// Hands a raw sample to an estimator that works on those.
+    pub(super) fn raw_sample(&mut self, sample: &Sample, interval_s: f64, standing: bool) {
+        match self {
+            Self::LeastSquares(estimator) => estimator.step(sample, interval_s, Some(standing)),
+            Self::ExternalTurntable(estimator) => estimator.step(sample, interval_s, standing),
+            Self::Idle | Self::Kalman(_) => {}
+        }
+    }
+
+    /// Adjusts, if this is an estimator that does so at the end.
+    pub(super) fn adjust(&self) -> Option<Result<Estimate, Refusal>> {
+        match self {
+            Self::LeastSquares(estimator) => Some(estimator.clone().finish()),
+            Self::ExternalTurntable(estimator) => Some(estimator.clone().finish()),
+            Self::Idle | Self::Kalman(_) => None,
+        }
+    }
+}
+
+/// Sums of raw increments over the present standstill: from these, and parameters that are known
+/// only at its end, the attitude can still be found.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Standstill {
+    pub(super) delta_theta: Vector3<f64>,
+    pub(super) delta_velocity: Vector3<f64>,
+    pub(super) elapsed_s: f64,
+}
+
+impl Standstill {
+    pub(super) fn add(&mut self, measured: &(Vector3<f64>, Vector3<f64>), interval_s: f64) {
+        self.delta_theta += measured.0;
+        self.delta_velocity += measured.1;
+        self.elapsed_s += interval_s;
+    }
+}

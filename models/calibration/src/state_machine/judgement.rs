@@ -1,0 +1,98 @@
+//! Can a calibration be vouched for? If not, why.
+
+use crate::config::Kalman;
+use crate::filter::CalibrationFilter;
+use crate::table::Quality;
+
+/// Share of measurements that the gate may reject before a calibration is refused.
+const REJECTED_SHARE_MAX: f64 = 0.02;
+/// Recoveries that a calibration may need before it is refused.
+const RECOVERIES_MAX: u32 = 10;
+/// Share of the expected measurements that a calibration needs.
+const MEASURED_SHARE_MIN: f64 = 0.5;
+
+/// Why a calibration was refused.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum Refusal {
+    /// The innovations are not of the size that the tuning says.
+    #[error("the mean NIS of {mean:.1} is above {limit}: the innovations contradict the tuning")]
+    Inconsistent {
+        /// Mean NIS.
+        mean: f64,
+        /// Limit.
+        limit: f64,
+    },
+    /// The gate rejected too much.
+    #[error(
+        "{rejected} of {total} measurements were rejected: the innovations contradict the tuning"
+    )]
+    Rejected {
+        /// Measurements rejected.
+        rejected: u64,
+        /// All measurements.
+        total: u64,
+    },
+    /// The filter had to recover too often.
+    #[error("the filter had to recover {recoveries} times, at most {RECOVERIES_MAX} are accepted")]
+    Recoveries {
+        /// Recoveries.
+        recoveries: u32,
+    },
+    /// The reference did not come.
+    #[error("only {used} of {expected} measurements of the reference came")]
+    AidingLost {
+        /// Measurements used.
+        used: u64,
+        /// Measurements expected.
+        expected: u64,
+    },
+    /// The least-squares adjustment gave no result.
+    #[error("{0}")]
+    Adjustment(#[from] crate::least_squares::Refusal),
+    /// Attitude could not be found from gravity and Earth rate.
+    #[error("no attitude could be found from gravity and Earth rate: did the instrument stand?")]
+    Alignment,
+    /// The filter's numbers are not finite.
+    #[error("the covariance is not finite")]
+    Numeric,
+}
+
+/// Quality of a filter's calibration so far.
+pub(super) fn quality_of(filter: &CalibrationFilter) -> Quality {
+    let tally = filter.tally();
+    Quality {
+        nis_mean: tally.nis_sum / (tally.used - tally.held) as f64,
+        used: tally.used,
+        rejected: tally.rejected,
+        recoveries: u64::from(tally.recoveries),
+    }
+}
+
+/// Judges a filter at the end of its calibration, in which `expected` measurements were due.
+pub(super) fn judge(
+    filter: &CalibrationFilter,
+    kalman: &Kalman,
+    expected: u64,
+) -> Result<Quality, Refusal> {
+    let (tally, quality) = (filter.tally(), quality_of(filter));
+    let total = tally.used + tally.rejected;
+    if !filter.covariance().is_finite() {
+        return Err(Refusal::Numeric);
+    }
+    if (total as f64) < MEASURED_SHARE_MIN * expected as f64 {
+        return Err(Refusal::AidingLost { used: total, expected });
+    }
+    if tally.rejected as f64 > REJECTED_SHARE_MAX * total as f64 {
+        return Err(Refusal::Rejected { rejected: tally.rejected, total });
+    }
+    if tally.recoveries > RECOVERIES_MAX {
+        return Err(Refusal::Recoveries { recoveries: tally.recoveries });
+    }
+    if !(quality.nis_mean <= kalman.refuse_above_mean_nis) {
+        return Err(Refusal::Inconsistent {
+            mean: quality.nis_mean,
+            limit: kalman.refuse_above_mean_nis,
+        });
+    }
+    Ok(quality)
+}

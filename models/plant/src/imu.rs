@@ -1,0 +1,246 @@
+//! The sensors: true increments to integer counts.
+//!
+//! ```text
+//! Δθ̃ = (I + M_g) Δθ + b_g dt + G Δv + noise        Δṽ = (I + M_a) Δv + b_a dt + noise
+//! ```
+//!
+//! Everything is computed in counts of the format; their sizes are powers of two, so that changes
+//! no digit.
+
+use crate::config::{Imu, Temperature};
+use crate::increments::Increments;
+use crate::processes::Wander;
+use crate::stream::Triad;
+use nalgebra::{Matrix3, Vector3};
+use octant_sample::Status;
+use octant_sample::counts::{Accumulator, DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS};
+
+fn rows(m: [[f64; 3]; 3]) -> Matrix3<f64> {
+    Matrix3::from_fn(|row, column| m[row][column])
+}
+
+/// What a triad measures without noise, in counts.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Reading {
+    gyro: Vector3<f64>,
+    accelerometer: Vector3<f64>,
+}
+
+/// Counts of a sample and the flags that go with them.
+pub(crate) type Counts = ([i32; 3], [i32; 3], Status);
+
+/// Noise and digitisation of one triad.
+#[derive(Clone, Debug)]
+struct Triple {
+    lsb: f64,
+    sigma_counts: f64,
+    noise: Triad,
+    wanders: Vec<Wander>,
+    /// Range in counts per interval; infinite: that of the format.
+    limit_counts: f64,
+    /// Coarser quantum in counts; 0: none.
+    quantum_counts: f64,
+    /// No range and no coarser quantum.
+    plain: bool,
+    quantizers: [Accumulator; 3],
+    accumulators: [Accumulator; 3],
+}
+
+impl Triple {
+    #[inline(always)]
+    fn count(
+        &mut self,
+        mut reading: Vector3<f64>,
+        sample: u64,
+        words: &[u64; 4],
+    ) -> ([i32; 3], bool) {
+        for wander in &mut self.wanders {
+            reading += Vector3::from(wander.increment(sample)) / self.lsb;
+        }
+        if self.sigma_counts > 0.0 {
+            let noise = self.noise.of(sample, words);
+            for axis in 0..3 {
+                reading[axis] += self.sigma_counts * noise[axis];
+            }
+        }
+        let mut saturated = false;
+        if !self.plain {
+            saturated = self.limit_and_quantize(&mut reading);
+        }
+        let mut counts = [0; 3];
+        for axis in 0..3 {
+            let count = self.accumulators[axis].count(reading[axis]);
+            counts[axis] = count.value;
+            saturated |= count.saturated;
+        }
+        (counts, saturated)
+    }
+
+    #[inline(never)]
+    fn limit_and_quantize(&mut self, reading: &mut Vector3<f64>) -> bool {
+        let mut saturated = false;
+        for axis in 0..3 {
+            if reading[axis].abs() > self.limit_counts {
+                reading[axis] = self.limit_counts.copysign(reading[axis]);
+                saturated = true;
+            }
+            if self.quantum_counts > 0.0 {
+                let count = self.quantizers[axis].count(reading[axis] / self.quantum_counts);
+                reading[axis] = f64::from(count.value) * self.quantum_counts;
+                saturated |= count.saturated;
+            }
+        }
+        saturated
+    }
+
+    fn navigate(&mut self) {
+        self.noise.navigate();
+        for wander in &mut self.wanders {
+            wander.stream.navigate();
+        }
+    }
+}
+
+/// Both triads.
+#[derive(Clone, Debug)]
+pub(crate) struct Sensors {
+    dt: f64,
+    gyro_matrix: Matrix3<f64>,
+    g_matrix: Matrix3<f64>,
+    gyro_bias: Vector3<f64>,
+    accel_matrix: Matrix3<f64>,
+    accel_bias: Vector3<f64>,
+    temperature: Option<Temperature>,
+    gyro: Triple,
+    accelerometer: Triple,
+}
+
+impl Sensors {
+    pub(crate) fn new(imu: &Imu, dt: f64, seed: u64) -> Self {
+        let (p, e) = (&imu.parameters, &imu.extensions);
+        let (rad, mps) = (DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS);
+        let root_dt = libm::sqrt(dt);
+        let mut gyro_wanders = Vec::new();
+        if let Some(process) = &e.gyro_gauss_markov {
+            let stream = Triad::new(seed, "gyro.gauss_markov");
+            gyro_wanders.push(Wander::gauss_markov(process, dt, stream));
+        }
+        if e.gyro_rate_random_walk > 0.0 {
+            let stream = Triad::new(seed, "gyro.rate_random_walk");
+            gyro_wanders.push(Wander::random_walk(e.gyro_rate_random_walk, dt, stream));
+        }
+        let mut accel_wanders = Vec::new();
+        if let Some(process) = &e.accel_gauss_markov {
+            let stream = Triad::new(seed, "accelerometer.gauss_markov");
+            accel_wanders.push(Wander::gauss_markov(process, dt, stream));
+        }
+        let triple = |lsb: f64, density: f64, name, wanders, range: f64, quantum: f64| Triple {
+            lsb,
+            sigma_counts: density * root_dt / lsb,
+            noise: Triad::new(seed, name),
+            wanders,
+            limit_counts: if range > 0.0 { range * dt / lsb } else { f64::INFINITY },
+            quantum_counts: quantum / lsb,
+            plain: range == 0.0 && quantum == 0.0,
+            quantizers: Default::default(),
+            accumulators: Default::default(),
+        };
+        Self {
+            dt,
+            gyro_matrix: (Matrix3::identity() + rows(p.gyro_matrix())) / rad,
+            g_matrix: rows(p.g_matrix()) / rad,
+            gyro_bias: Vector3::from(p.gyro_bias) * dt / rad,
+            accel_matrix: (Matrix3::identity() + rows(p.accel_matrix())) / mps,
+            accel_bias: Vector3::from(p.accel_bias) * dt / mps,
+            temperature: e.temperature,
+            gyro: triple(
+                rad,
+                imu.angle_random_walk,
+                "gyro.noise",
+                gyro_wanders,
+                e.gyro_range_radps,
+                e.gyro_quantization_rad,
+            ),
+            accelerometer: triple(
+                mps,
+                imu.velocity_random_walk,
+                "accelerometer.noise",
+                accel_wanders,
+                e.accel_range_mps2,
+                e.accel_quantization_mps,
+            ),
+        }
+    }
+
+    /// From here on the random numbers are those of navigation.
+    pub(crate) fn navigate(&mut self) {
+        self.gyro.navigate();
+        self.accelerometer.navigate();
+    }
+
+    /// The error model without noise and temperature.
+    pub(crate) fn read(&self, increments: &Increments) -> Reading {
+        let (theta, velocity) = (&increments.delta_theta, &increments.delta_velocity);
+        Reading {
+            gyro: self.gyro_matrix * theta + self.g_matrix * velocity + self.gyro_bias,
+            accelerometer: self.accel_matrix * velocity + self.accel_bias,
+        }
+    }
+
+    /// Temperature, noise and digitisation. `sample` is the number in the phase from 0, `start_s`
+    /// the start of the interval.
+    #[inline]
+    pub(crate) fn count(
+        &mut self,
+        mut reading: Reading,
+        increments: &Increments,
+        sample: u64,
+        start_s: f64,
+    ) -> Counts {
+        if let Some(temperature) = &self.temperature {
+            warm(temperature, &mut reading, increments, start_s, self.dt);
+        }
+        // Both blocks before either is used: their chains of multiplications overlap.
+        let gyro_words = self.gyro.noise.words(sample);
+        let accelerometer_words = self.accelerometer.noise.words(sample);
+        let (gyro, gyro_saturated) = self.gyro.count(reading.gyro, sample, &gyro_words);
+        let (accelerometer, accelerometer_saturated) =
+            self.accelerometer.count(reading.accelerometer, sample, &accelerometer_words);
+        let mut status = Status::empty();
+        status.set(Status::GYRO_SATURATED, gyro_saturated);
+        status.set(Status::ACCELEROMETER_SATURATED, accelerometer_saturated);
+        (gyro, accelerometer, status)
+    }
+}
+
+/// Mean temperature change over an interval, K: a ramp from 0 that ends at a plateau.
+fn mean_change_k(temperature: &Temperature, start_s: f64, dt: f64) -> f64 {
+    if temperature.ramp_kps == 0.0 {
+        return 0.0;
+    }
+    let knee_s = temperature.plateau_k / temperature.ramp_kps;
+    let rising = (knee_s - start_s).clamp(0.0, dt);
+    let on_ramp = temperature.ramp_kps * (start_s + 0.5 * rising) * rising;
+    (on_ramp + temperature.plateau_k * (dt - rising)) / dt
+}
+
+#[inline(never)]
+fn warm(
+    temperature: &Temperature,
+    reading: &mut Reading,
+    increments: &Increments,
+    start_s: f64,
+    dt: f64,
+) {
+    let change = mean_change_k(temperature, start_s, dt);
+    for axis in 0..3 {
+        reading.gyro[axis] += change
+            * (temperature.gyro_bias_per_k[axis] * dt
+                + temperature.gyro_scale_per_k[axis] * increments.delta_theta[axis])
+            / DELTA_THETA_LSB_RAD;
+        reading.accelerometer[axis] += change
+            * (temperature.accel_bias_per_k[axis] * dt
+                + temperature.accel_scale_per_k[axis] * increments.delta_velocity[axis])
+            / DELTA_VELOCITY_LSB_MPS;
+    }
+}

@@ -1,0 +1,192 @@
+//! The plant, stepped one sample at a time.
+
+use crate::config::Config;
+use crate::encoder::ErrorCurve;
+use crate::imu::{Reading, Sensors};
+use crate::increments::{Body, Increments};
+use crate::reference::Aider;
+use crate::truth::Truth;
+use crate::validate::{ConfigError, validate};
+use nalgebra::Quaternion;
+use octant_sample::time::SimulatedTime;
+use octant_sample::{Aiding, DeviceTime, GimbalAngles, GimbalCommand, Sample};
+
+/// What one step gives.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Step {
+    /// The sample of the interval.
+    pub sample: Sample,
+    /// The reference, when due, with the stamp of the sample.
+    pub aiding: Option<Aiding>,
+}
+
+/// Motion, turntable, sensors and reference of one run.
+///
+/// A clone goes on exactly as the original would.
+#[derive(Clone, Debug)]
+pub struct Plant {
+    sequence: u64,
+    time_ns: u64,
+    calibration_samples: u64,
+    /// Number of the next sample in its phase, from 0.
+    in_phase: u64,
+    body: Body,
+    sensors: Sensors,
+    encoders: [ErrorCurve; 2],
+    aider: Aider,
+    /// Samples until the reference is due.
+    until_aiding: u64,
+    non_orthogonality_rad: f64,
+    saturated_samples: u64,
+    /// Increments and reading of every sample, while nothing moves.
+    still: Option<(Increments, Reading)>,
+    /// Encoder angles, while the drives rest.
+    resting: Option<GimbalAngles>,
+}
+
+impl Plant {
+    /// A plant at time 0, gimbals at rest at (0, 0).
+    ///
+    /// # Errors
+    /// If a field of the configuration is out of its range.
+    pub fn new(config: &Config) -> Result<Self, ConfigError> {
+        validate(config)?;
+        let dt = config.sample_period_ns as f64 * 1e-9;
+        let sigma_rad = config.turntable.encoder_sigma_rad;
+        let aider = Aider::new(config);
+        Ok(Self {
+            sequence: 0,
+            time_ns: 0,
+            calibration_samples: config.calibration_samples,
+            in_phase: 0,
+            body: Body::new(config),
+            sensors: Sensors::new(&config.imu, dt, config.seed),
+            encoders: ["turntable.encoder.azimuth", "turntable.encoder.roll"]
+                .map(|name| ErrorCurve::new(config.seed, name, sigma_rad)),
+            until_aiding: aider.period_samples(),
+            aider,
+            non_orthogonality_rad: config.turntable.non_orthogonality_rad,
+            saturated_samples: 0,
+            still: None,
+            resting: None,
+        })
+    }
+
+    /// The next sample.
+    ///
+    /// `command` is what the core answered to the sample before; it acts from the end of the
+    /// interval that this call delivers, and is first felt in the one after.
+    #[inline]
+    pub fn step(&mut self, command: &GimbalCommand) -> Step {
+        let start_ns = self.time_ns;
+        if self.sequence == self.calibration_samples {
+            self.in_phase = 0;
+            self.sensors.navigate();
+        }
+        let sample = self.in_phase;
+        self.in_phase += 1;
+        self.sequence += 1;
+        self.time_ns += self.body.period_ns();
+
+        let (increments, reading) = match self.still {
+            Some(still) => still,
+            None => self.move_on(start_ns),
+        };
+        let start_s = start_ns as f64 * 1e-9;
+        let (delta_theta, delta_velocity, status) =
+            self.sensors.count(reading, &increments, sample, start_s);
+        self.saturated_samples += u64::from(!status.is_empty());
+        let gimbal = match self.resting {
+            Some(angles) => angles,
+            None => self.read_encoders(),
+        };
+        let device_time = DeviceTime::from_ns(self.time_ns);
+        self.until_aiding -= 1;
+        let aiding = if self.until_aiding == 0 { self.aid(device_time, sample) } else { None };
+
+        if self.body.command(command, self.time_ns) {
+            self.still = None;
+            self.resting = None;
+        }
+        Step {
+            sample: Sample {
+                sequence: self.sequence,
+                device_time,
+                delta_theta,
+                delta_velocity,
+                gimbal,
+                status,
+            },
+            aiding,
+        }
+    }
+
+    #[inline(never)]
+    fn move_on(&mut self, start_ns: u64) -> (Increments, Reading) {
+        let increments = self.body.increments(start_ns);
+        let reading = self.sensors.read(&increments);
+        if self.body.is_constant(start_ns) {
+            self.still = Some((increments, reading));
+        }
+        (increments, reading)
+    }
+
+    #[inline(never)]
+    fn read_encoders(&mut self) -> GimbalAngles {
+        let [azimuth, roll] = [&self.body.azimuth, &self.body.roll]
+            .map(|gimbal| gimbal.drive.at(gimbal.drive.seconds(self.time_ns)).angle);
+        let [azimuth_curve, roll_curve] = &mut self.encoders;
+        let angles =
+            GimbalAngles::from_rad(azimuth + azimuth_curve.at(azimuth), roll + roll_curve.at(roll));
+        if self.body.azimuth.rests(self.time_ns) && self.body.roll.rests(self.time_ns) {
+            self.resting = Some(angles);
+        }
+        angles
+    }
+
+    #[inline(never)]
+    fn aid(&mut self, device_time: DeviceTime, sample: u64) -> Option<Aiding> {
+        self.until_aiding = self.aider.period_samples();
+        (self.sequence <= self.calibration_samples).then(|| {
+            self.aider.measure(device_time, sample, || self.body.case.whereabouts(self.seconds()))
+        })
+    }
+
+    fn seconds(&self) -> f64 {
+        self.time_ns as f64 * 1e-9
+    }
+
+    /// Truth at the stamp of the last step; before the first, at time 0.
+    #[must_use]
+    pub fn truth(&self) -> Truth {
+        let at = self.body.case.whereabouts(self.seconds());
+        let gimbal_rad = self.body.gimbal_rad(self.time_ns);
+        let about = |angle_rad: f64, axis: usize| {
+            let (s, c) = libm::sincos(0.5 * angle_rad);
+            let mut q = [c, 0.0, 0.0, 0.0];
+            q[axis] = s;
+            Quaternion::new(q[0], q[1], q[2], q[3])
+        };
+        let q = about(at.heading_rad, 3)
+            * about(at.pitch_rad, 2)
+            * about(at.roll_rad, 1)
+            * about(gimbal_rad[1], 1)
+            * about(self.non_orthogonality_rad, 2)
+            * about(gimbal_rad[0], 3);
+        Truth {
+            time: SimulatedTime::from_ns(self.time_ns),
+            latitude_rad: at.latitude_rad,
+            longitude_rad: at.longitude_rad,
+            height_m: at.height_m,
+            velocity_mps: at.velocity_mps.into(),
+            q_nb: [q.w, q.i, q.j, q.k],
+            gimbal_rad,
+        }
+    }
+
+    /// Samples so far in which a count or a sensor's range saturated.
+    #[must_use]
+    pub fn saturated_samples(&self) -> u64 {
+        self.saturated_samples
+    }
+}

@@ -1,0 +1,104 @@
+//! Named random streams. A stream's key depends on the seed, its name and the phase alone, its
+//! counter is the sample number in the phase: adding a stream, or lengthening the calibration,
+//! moves no number of any other.
+
+use crate::normal::{self, Ziggurat};
+use crate::philox::Key;
+
+/// The part of a run that a stream counts in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[repr(u8)]
+pub enum Phase {
+    /// Drawn once, before the run: true parameters, phases, initial states.
+    Draw = 0,
+    /// Calibration, counted from its first sample.
+    Calibration = 1,
+    /// Navigation, counted from its first sample.
+    Navigation = 2,
+}
+
+/// Key of a stream: the first 16 bytes, as two little-endian words, of the BLAKE3 hash of
+/// `"octant stream 1\0"`, the seed (u64, little-endian), the phase (u8) and the name (UTF-8).
+#[must_use]
+pub fn key(seed: u64, name: &str, phase: Phase) -> Key {
+    let mut hasher = blake3::Hasher::new();
+    hasher.update(b"octant stream 1\0");
+    hasher.update(&seed.to_le_bytes());
+    hasher.update(&[phase as u8]);
+    hasher.update(name.as_bytes());
+    let hash = hasher.finalize();
+    let word = |at: usize| {
+        let mut bytes = [0; 8];
+        bytes.copy_from_slice(&hash.as_bytes()[at..at + 8]);
+        u64::from_le_bytes(bytes)
+    };
+    [word(0), word(8)]
+}
+
+/// Three standard normals per sample: one triad's noise.
+#[derive(Clone, Debug)]
+pub(crate) struct Triad {
+    current: Key,
+    navigation: Key,
+    initial: Key,
+    ziggurat: &'static Ziggurat,
+}
+
+impl Triad {
+    pub(crate) fn new(seed: u64, name: &str) -> Self {
+        Self {
+            current: key(seed, name, Phase::Calibration),
+            navigation: key(seed, name, Phase::Navigation),
+            initial: key(seed, name, Phase::Draw),
+            ziggurat: Ziggurat::shared(),
+        }
+    }
+
+    /// From here on the numbers are those of navigation.
+    pub(crate) fn navigate(&mut self) {
+        self.current = self.navigation;
+    }
+
+    /// The numbers of a sample of the present phase.
+    #[inline(always)]
+    pub(crate) fn at(&self, sample: u64) -> [f64; 3] {
+        self.ziggurat.three(self.current, sample)
+    }
+
+    /// The random words of a sample of the present phase.
+    #[inline(always)]
+    pub(crate) fn words(&self, sample: u64) -> [u64; 4] {
+        normal::words(self.current, sample)
+    }
+
+    /// The numbers of a sample of the present phase, from its words.
+    #[inline(always)]
+    pub(crate) fn of(&self, sample: u64, words: &[u64; 4]) -> [f64; 3] {
+        self.ziggurat.three_of(self.current, sample, words)
+    }
+
+    /// The numbers drawn once, for an initial state.
+    pub(crate) fn initial(&self) -> [f64; 3] {
+        self.ziggurat.three(self.initial, 0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn keys_differ_in_seed_name_and_phase() {
+        let keys = [
+            key(1, "gyro.noise", Phase::Calibration),
+            key(2, "gyro.noise", Phase::Calibration),
+            key(1, "gyro.noise", Phase::Navigation),
+            key(1, "accelerometer.noise", Phase::Calibration),
+        ];
+        for i in 0..keys.len() {
+            for j in 0..i {
+                assert_ne!(keys[i], keys[j]);
+            }
+        }
+    }
+}

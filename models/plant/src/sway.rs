@@ -1,0 +1,153 @@
+//! Sums of sinusoids in six degrees of freedom, advanced from sample to sample by a rotation of
+//! each phasor instead of a sine and cosine.
+
+use crate::config::{Dockside, Sinusoid};
+
+/// Value, rate and acceleration of one degree of freedom.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Dof {
+    pub(crate) value: f64,
+    pub(crate) rate: f64,
+    pub(crate) acceleration: f64,
+}
+
+/// Roll, pitch, yaw (rad), surge, sway, heave (m).
+pub(crate) type SixDof = [Dof; 6];
+
+/// Samples after which the phasors are set anew from the time, before rounding adds up.
+const RESET_SAMPLES: u32 = 256;
+
+#[derive(Clone, Copy, Debug)]
+struct Component {
+    dof: usize,
+    amplitude: f64,
+    frequency_hz: f64,
+    omega: f64,
+    phase_rad: f64,
+    /// Sine and cosine of the phase at the middle of the present interval.
+    sin: f64,
+    cos: f64,
+    /// Sine and cosine of the phase gained in a sample period.
+    step: (f64, f64),
+}
+
+impl Component {
+    fn phase_at(&self, time_s: f64) -> (f64, f64) {
+        let cycles = time_s * self.frequency_hz;
+        let turn = 2.0 * core::f64::consts::PI * (cycles - libm::floor(cycles));
+        libm::sincos(turn + self.phase_rad)
+    }
+
+    #[inline]
+    fn add_to(&self, six: &mut SixDof, (s, c): (f64, f64)) {
+        let dof = &mut six[self.dof];
+        let (sin, cos) = (self.amplitude * s, self.amplitude * c);
+        dof.value += sin;
+        dof.rate += self.omega * cos;
+        dof.acceleration -= self.omega * self.omega * sin;
+    }
+}
+
+#[derive(Clone, Debug)]
+pub(crate) struct Sway {
+    components: Vec<Component>,
+    /// Phase gained from the middle of the interval to each regular node, by node and component.
+    to_node: Vec<(f64, f64)>,
+    period_s: f64,
+    until_reset: u32,
+}
+
+impl Sway {
+    /// `nodes_s`: the regular nodes, s from the start of an interval.
+    pub(crate) fn new(dockside: &Dockside, period_s: f64, nodes_s: &[f64]) -> Self {
+        let groups: [&[Sinusoid]; 6] = [
+            &dockside.roll,
+            &dockside.pitch,
+            &dockside.yaw,
+            &dockside.surge,
+            &dockside.sway,
+            &dockside.heave,
+        ];
+        let mut components = Vec::new();
+        for (dof, group) in groups.into_iter().enumerate() {
+            for sinusoid in group {
+                let omega = 2.0 * core::f64::consts::PI / sinusoid.period_s;
+                components.push(Component {
+                    dof,
+                    amplitude: sinusoid.amplitude,
+                    frequency_hz: 1.0 / sinusoid.period_s,
+                    omega,
+                    phase_rad: sinusoid.phase_rad,
+                    sin: 0.0,
+                    cos: 0.0,
+                    step: libm::sincos(omega * period_s),
+                });
+            }
+        }
+        let mut to_node = Vec::with_capacity(nodes_s.len() * components.len());
+        for node in nodes_s {
+            for component in &components {
+                to_node.push(libm::sincos(component.omega * (node - 0.5 * period_s)));
+            }
+        }
+        Self { components, to_node, period_s, until_reset: 0 }
+    }
+
+    /// Goes to the interval that starts at `start_s`; intervals follow each other.
+    pub(crate) fn enter(&mut self, start_s: f64) {
+        if self.until_reset == 0 {
+            self.until_reset = RESET_SAMPLES;
+            for component in &mut self.components {
+                (component.sin, component.cos) = component.phase_at(start_s + 0.5 * self.period_s);
+            }
+        } else {
+            for component in &mut self.components {
+                let (s, c) = component.step;
+                (component.sin, component.cos) =
+                    (component.sin * c + component.cos * s, component.cos * c - component.sin * s);
+            }
+        }
+        self.until_reset -= 1;
+    }
+
+    /// At a regular node of the present interval.
+    #[inline]
+    pub(crate) fn at_node(&self, node: usize) -> SixDof {
+        let mut six = SixDof::default();
+        let n = self.components.len();
+        for (component, (s, c)) in self.components.iter().zip(&self.to_node[node * n..]) {
+            let (sin, cos) = (component.sin, component.cos);
+            component.add_to(&mut six, (sin * c + cos * s, cos * c - sin * s));
+        }
+        six
+    }
+
+    /// At `offset_s` after the start of the present interval.
+    pub(crate) fn at_offset(&self, offset_s: f64) -> SixDof {
+        let mut six = SixDof::default();
+        for component in &self.components {
+            let (s, c) = libm::sincos(component.omega * (offset_s - 0.5 * self.period_s));
+            let (sin, cos) = (component.sin, component.cos);
+            component.add_to(&mut six, (sin * c + cos * s, cos * c - sin * s));
+        }
+        six
+    }
+
+    /// At any time, s since the start.
+    pub(crate) fn at_time(&self, time_s: f64) -> SixDof {
+        let mut six = SixDof::default();
+        for component in &self.components {
+            component.add_to(&mut six, component.phase_at(time_s));
+        }
+        six
+    }
+}
+
+/// Shortest period of all sinusoids, s.
+pub(crate) fn shortest_period_s(dockside: &Dockside) -> f64 {
+    let d = dockside;
+    [&d.roll, &d.pitch, &d.yaw, &d.surge, &d.sway, &d.heave]
+        .into_iter()
+        .flatten()
+        .fold(f64::INFINITY, |shortest, sinusoid| shortest.min(sinusoid.period_s))
+}
