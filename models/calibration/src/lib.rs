@@ -21,9 +21,6 @@
 //! | [`least_squares`] | the second estimator: static attitudes and the moves between them |
 //! | [`external_turntable`] | the third: an external turntable's angles are the reference |
 //! | [`state_machine`] | the procedure, and [`Core`] |
-//! | [`alignment`] | attitude from gravity and Earth rate |
-//! | [`least_squares`] | the second estimator: norms over static intervals |
-//! | [`external_turntable`] | the third: a precise turntable's angles as the reference |
 //! | [`table`] | a finished calibration that can be exported and loaded |
 #![no_std]
 

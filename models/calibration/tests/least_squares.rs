@@ -346,3 +346,10 @@ fn settings_out_of_range_are_refused_before_the_first_sample() {
     let text = Refusal::Undetermined { parameter: 29 }.to_string();
     assert_eq!(text, "the positions do not determine accel_misalignment_zy");
 }
+
+#[test]
+fn the_estimator_keeps_the_size_that_a_controller_can_hold() {
+    let size = size_of::<LeastSquaresEstimator>();
+    println!("{size} bytes");
+    assert!(size <= 110 * 1024, "{size} bytes");
+}

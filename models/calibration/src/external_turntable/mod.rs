@@ -110,7 +110,7 @@ impl ExternalTurntableEstimator {
         })
     }
 
-    /// Takes one sample over `dt_s`, and whether the table stood through it.
+    /// Takes one sample over `dt_s`, as measured (not compensated), and whether the table stood through it.
     pub fn step(&mut self, sample: &Sample, dt_s: f64, standing: bool) {
         if !(dt_s > 0.0 && dt_s.is_finite()) {
             return;

@@ -46,7 +46,7 @@ pub(crate) fn estimate(
     Err(Refusal::Diverged)
 }
 
-/// From a start within 10 % Gauss-Newton needs five.
+/// From biases wrong by 0.1 g Gauss-Newton needs six.
 const ITERATIONS_MAX: usize = 30;
 
 /// `g − |f|` of an interval, and the gradient of `|f|` with respect to the nine parameters:

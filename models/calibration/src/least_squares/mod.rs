@@ -51,7 +51,8 @@ pub use interval::Interval;
 pub const INTERVALS_MAX: usize = 128;
 
 /// Residuals in units of their noise above which the adjustment against Earth rate, or an external
-/// turntable, is refused. An unknown G of 5e-3 °/h/g reaches 3 to 5 in 4 h; sway reaches thousands.
+/// turntable, is refused. An unknown G of 5e-3 °/h/g reaches 2.7 in 4 h
+/// and 5.6 in 24 h.
 pub const RESIDUAL_RMS_MAX: f64 = 10.0;
 
 /// Shortest standstill to use when the procedure commands it, s.
@@ -168,7 +169,8 @@ pub struct Estimate {
     pub moves: usize,
 }
 
-/// The streaming estimator: fixed size, one step a sample.
+/// The streaming estimator: fixed size (some 100 kB, most of it the store of intervals and moves),
+/// one step a sample.
 #[derive(Clone, Debug)]
 pub struct LeastSquaresEstimator {
     gyro: GyroReference,
@@ -222,7 +224,8 @@ impl LeastSquaresEstimator {
         })
     }
 
-    /// Takes one sample over `dt_s`. `standing` says whether the gimbals stood through it; it is
+    /// Takes one sample over `dt_s`, as measured: what comes out are whole parameters, not
+    /// corrections to compensated samples. `standing` says whether the gimbals stood through it; it is
     /// used where intervals are commanded (`None`: they did not), and ignored where they are
     /// detected.
     pub fn step(&mut self, sample: &Sample, dt_s: f64, standing: Option<bool>) {

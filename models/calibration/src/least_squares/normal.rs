@@ -3,9 +3,10 @@
 use nalgebra::{Cholesky, SMatrix, SVector};
 
 /// Largest variance inflation: how many times the variance of a parameter may grow because the
-/// others are unknown too. Well-posed position sequences stay below 1e6; a direction that nothing
-/// determines shows 1e13, the rounding of the sums.
-const INFLATION_MAX: f64 = 1e10;
+/// others are unknown too. Sequences made for the purpose stay below 10. A direction that nothing
+/// determines shows 1e7 and more: 1e13 is the rounding of the sums, less is what noise and errors
+/// at the point of linearisation feign.
+const INFLATION_MAX: f64 = 1e6;
 
 /// Solution of the normal equations and its covariance, for the `estimated` entries; the others are
 /// zero.

@@ -58,5 +58,6 @@ pub(crate) fn estimate(
     Err(Refusal::Diverged)
 }
 
-/// A start with scale factors wrong by a quarter needs about fifteen.
+/// Scale factors wrong by a quarter need sixteen: the residuals stay large while the moves are
+/// linearised about such values.
 const ITERATIONS_MAX: usize = 50;
