@@ -96,6 +96,45 @@ fn a_resolved_scenario_makes_the_same_run_and_resolves_to_itself() {
 }
 
 #[test]
+fn what_no_shipped_scenario_has_resolves_to_the_same_run_too() {
+    let head = "schema = 1\n[procedure.calibration]\n";
+    let texts = [
+        "[motion]\nkind = \"dockside\"\nheading = \"30 deg\"\n\
+         [motion.ship]\nheave = [{ amplitude = \"0.1 m\", period = \"7 s\", phase = \"1 rad\" }]\n\
+         spectrum = { peak_period = \"9 s\", roll = \"2 deg\", components = 5 }\n".to_owned(),
+        "[procedure.alignment]\nmethod = \"coarse\"\n".to_owned(),
+        "error_model = \"psi\"\nnot_estimated = [\"accel_scale\"]\n[screening.gate]\n\
+         recovery = { attitude = \"3600 arcsec\" }\n[imu.extensions.vibration]\nfrequency = \"35 Hz\"\n\
+         [imu.extensions.temperature]\nramp = \"5 K/h\"\nplateau = \"20 K\"\n"
+            .to_owned(),
+        "estimator = \"external-turntable\"\n[screening]\ngate = \"off\"\n".to_owned(),
+        "[procedure.calibration.least_squares]\ngravity = \"9.79 m/s^2\"\n\
+         [baseline]\nestimator = \"least-squares\"\nstops = [{ roll = \"90 deg\" }, {}]\n"
+            .to_owned(),
+        "[source]\nuri = \"text:data/gyro.csv\"\n[source.text]\ndelimiter = \"comma\"\nheader = true\n\
+         [source.text.gyro]\nx = \"gx\"\ny = 3\nz = 4\nunit = \"deg/s\"\naxes = [\"y\", \"x\", \"-z\"]\n\
+         [source.text.accelerometer]\nfile = \"/data/a.csv\"\nx = 2\ny = 3\nz = 4\nunit = \"g\"\n"
+            .to_owned(),
+    ];
+    for text in texts {
+        let text = format!("{head}{text}");
+        let parse = |text: &str, folder: &str| {
+            Scenario::parse(text, "f", Path::new(folder), &[])
+                .unwrap_or_else(|error| panic!("{error}\n{text}"))
+        };
+        let scenario = parse(&text, "/runs");
+        let resolved = scenario.to_resolved_toml(1, &Draws::of(&scenario, &Numbers));
+        let again = parse(&resolved, "/elsewhere");
+        let place = |text: String| text.replace("\"data/gyro.csv\"", "\"/runs/data/gyro.csv\"");
+        assert_eq!(
+            both_configurations(&again),
+            place(both_configurations(&scenario)),
+            "{resolved}"
+        );
+    }
+}
+
+#[test]
 fn the_quick_scenario_is_what_its_header_says() {
     let file = files().into_iter().find(|file| file.ends_with("quick.toml")).unwrap();
     let scenario = Scenario::load(&file, &[]).unwrap();
