@@ -1,25 +1,50 @@
 //! The scenarios that ship with Octant: each is read, resolved and read again.
 #![allow(clippy::unwrap_used)]
 
-use octant::scenario::resolve::{Draws, Variates};
-use octant::scenario::{Method, Scenario};
+use octant::scenario::resolve::{Drawing, Draws};
+use octant::scenario::{Distribution, Method, Scenario};
 use octant_earth::Vector3;
+use octant_sample::Parameters;
+use octant_sample::parameters::{Group, PARAMETER_COUNT};
 use std::path::{Path, PathBuf};
 
 /// Numbers that depend on stream and index, and look drawn.
 struct Numbers;
 
-impl Variates for Numbers {
-    fn normal(&mut self, stream: &str, index: u64) -> f64 {
-        6.0 * self.uniform(stream, index) - 3.0
-    }
-
-    fn uniform(&mut self, stream: &str, index: u64) -> f64 {
-        let start = 0x9E37_79B9_7F4A_7C15u64 ^ index;
+impl Numbers {
+    /// Even in [-1, 1).
+    fn of(stream: &str, index: usize) -> f64 {
+        let start = 0x9E37_79B9_7F4A_7C15u64 ^ index as u64;
         let hash = stream.bytes().fold(start, |hash, byte| {
             (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01B3).rotate_left(23)
         });
-        (hash >> 11) as f64 / (1u64 << 53) as f64
+        (hash >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+    }
+}
+
+impl Drawing for Numbers {
+    fn parameters(&self, distributions: &[Distribution; 7]) -> Parameters {
+        let mut all = [0.0; PARAMETER_COUNT];
+        for (group, distribution) in Group::ALL.into_iter().zip(distributions) {
+            for (index, value) in all[group.range()].iter_mut().enumerate() {
+                *value = match distribution {
+                    Distribution::Normal(width) | Distribution::Uniform(width) => {
+                        width * Self::of(group.name(), index)
+                    }
+                    Distribution::Constant(values) => values[index],
+                };
+            }
+        }
+        Parameters::from_array(&all)
+    }
+
+    fn alignment_error(&self, tilt: f64, azimuth: f64, velocity: f64) -> ([f64; 3], [f64; 3]) {
+        let [a, b, c] = [0, 1, 2].map(|index| Self::of("alignment", index));
+        ([tilt * a, tilt * b, azimuth * c], [velocity * b, velocity * c, velocity * a])
+    }
+
+    fn phases(&self, motion: &str, count: usize) -> Vec<f64> {
+        (0..count).map(|index| 3.0 * Self::of(motion, index)).collect()
     }
 }
 
@@ -28,12 +53,12 @@ fn files() -> Vec<PathBuf> {
     let mut files: Vec<PathBuf> =
         std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
     files.sort();
-    assert!(files.len() >= 6);
+    assert!(files.len() >= 7);
     files
 }
 
 fn both_configurations(scenario: &Scenario) -> String {
-    let draws = Draws::of(scenario, &mut Numbers);
+    let draws = Draws::of(scenario, &Numbers);
     let plant = scenario.plant(scenario.seed, &draws);
     let core = |method| scenario.core(method, &draws, &scenario.mean_attitude(), &Vector3::zeros());
     // Debug prints every field, and floats so that they read back to the same bits.
@@ -60,12 +85,66 @@ fn every_shipped_scenario_is_one() {
 fn a_resolved_scenario_makes_the_same_run_and_resolves_to_itself() {
     for file in files() {
         let scenario = Scenario::load(&file, &[]).unwrap();
-        let draws = Draws::of(&scenario, &mut Numbers);
+        let draws = Draws::of(&scenario, &Numbers);
         let resolved = scenario.to_resolved_toml(scenario.seed, &draws);
         let again = Scenario::parse(&resolved, "resolved", Path::new("/elsewhere"), &[])
             .unwrap_or_else(|error| panic!("{error}\n{resolved}"));
         assert_eq!(both_configurations(&again), both_configurations(&scenario), "{resolved}");
-        let draws = Draws::of(&again, &mut Numbers);
+        let draws = Draws::of(&again, &Numbers);
         assert_eq!(again.to_resolved_toml(again.seed, &draws), resolved);
     }
+}
+
+#[test]
+fn what_no_shipped_scenario_has_resolves_to_the_same_run_too() {
+    let head = "schema = 1\n[procedure.calibration]\n";
+    let texts = [
+        "[motion]\nkind = \"dockside\"\nheading = \"30 deg\"\n\
+         [motion.ship]\nheave = [{ amplitude = \"0.1 m\", period = \"7 s\", phase = \"1 rad\" }]\n\
+         spectrum = { peak_period = \"9 s\", roll = \"2 deg\", components = 5 }\n".to_owned(),
+        "[procedure.alignment]\nmethod = \"coarse\"\n".to_owned(),
+        "error_model = \"psi\"\nnot_estimated = [\"accel_scale\"]\n[screening.gate]\n\
+         recovery = { attitude = \"3600 arcsec\" }\n[imu.extensions.vibration]\nfrequency = \"35 Hz\"\n\
+         [imu.extensions.temperature]\nramp = \"5 K/h\"\nplateau = \"20 K\"\n"
+            .to_owned(),
+        "estimator = \"external-turntable\"\n[screening]\ngate = \"off\"\n".to_owned(),
+        "[procedure.calibration.least_squares]\ngravity = \"9.79 m/s^2\"\n\
+         [baseline]\nestimator = \"least-squares\"\nstops = [{ roll = \"90 deg\" }, {}]\n"
+            .to_owned(),
+        "[source]\nuri = \"text:data/gyro.csv\"\n[source.text]\ndelimiter = \"comma\"\nheader = true\n\
+         [source.text.gyro]\nx = \"gx\"\ny = 3\nz = 4\nunit = \"deg/s\"\naxes = [\"y\", \"x\", \"-z\"]\n\
+         [source.text.accelerometer]\nfile = \"/data/a.csv\"\nx = 2\ny = 3\nz = 4\nunit = \"g\"\n"
+            .to_owned(),
+    ];
+    for text in texts {
+        let text = format!("{head}{text}");
+        let parse = |text: &str, folder: &str| {
+            Scenario::parse(text, "f", Path::new(folder), &[])
+                .unwrap_or_else(|error| panic!("{error}\n{text}"))
+        };
+        let scenario = parse(&text, "/runs");
+        let resolved = scenario.to_resolved_toml(1, &Draws::of(&scenario, &Numbers));
+        let again = parse(&resolved, "/elsewhere");
+        let place = |text: String| text.replace("\"data/gyro.csv\"", "\"/runs/data/gyro.csv\"");
+        assert_eq!(
+            both_configurations(&again),
+            place(both_configurations(&scenario)),
+            "{resolved}"
+        );
+    }
+}
+
+#[test]
+fn the_quick_scenario_is_what_its_header_says() {
+    let file = files().into_iter().find(|file| file.ends_with("quick.toml")).unwrap();
+    let scenario = Scenario::load(&file, &[]).unwrap();
+    assert_eq!(scenario.calibration_samples(), 4 * 3600 * 200);
+    assert_eq!(scenario.samples(), Some(28 * 3600 * 200));
+    let (eight, six) = (scenario.calibration.unwrap(), scenario.baseline.unwrap());
+    assert!(eight.estimates(Group::GDependent) && !six.estimates(Group::GDependent));
+    assert_eq!((eight.sequence.stops().len(), six.sequence.stops().len()), (19, 17));
+    // 16 moves of 90°: 10 s each; 17 equal dwells fill the rest.
+    assert!((six.dwell_s - (14400.0 - 160.0) / 17.0).abs() < 1e-9, "{}", six.dwell_s);
+    // 14 moves of 90° and four of 45°, 5.5 s each; two of the dwells are double.
+    assert!((eight.dwell_s - (14400.0 - 162.0) / 21.0).abs() < 1e-9, "{}", eight.dwell_s);
 }

@@ -1,6 +1,6 @@
 //! A scenario: what is run, as a TOML file that an engineer can read.
 //!
-//! [`Scenario::load`] parses and checks it against one table of keys ([`keys`]), fills in every
+//! [`Scenario::load`] parses and checks it against one table of keys, fills in every
 //! default and turns every quantity into SI. What is drawn from the seed is drawn once
 //! ([`resolve`]) and put into the configurations of plant and core, so that two methods compared
 //! on one seed meet the same instrument.

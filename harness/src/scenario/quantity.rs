@@ -38,7 +38,7 @@ impl Dimension {
     /// Frequency or rate of samples.
     pub const FREQUENCY: Self = dimension([0, -2, 0, 0], "a frequency", "200 Hz", "Hz", "Hz");
     /// Angle.
-    pub const ANGLE: Self = dimension([0, 0, 2, 0], "an angle", "18 arcsec", "deg", "rad");
+    pub const ANGLE: Self = dimension([0, 0, 2, 0], "an angle", "30.5 deg", "deg", "rad");
     /// Small angle, written in arcsec.
     pub const SMALL_ANGLE: Self = dimension([0, 0, 2, 0], "an angle", "40 arcsec", "arcsec", "rad");
     /// Angular rate of a motion.

@@ -1,23 +1,31 @@
 //! From a scenario to the configurations of plant and core, with what is drawn from the seed.
 //!
-//! Drawing is in [`Draws::of`] alone, through the two functions of [`Variates`]; all else takes the
-//! drawn values. Both methods of a scenario take the same draws.
+//! Drawing is behind [`Drawing`] alone; all else takes the drawn values. Both methods of a scenario
+//! take the same draws.
 
 use super::read::case_attitude;
-use super::{Alignment, Component, Distribution, Method, Motion, Scenario};
+use super::{Alignment, Distribution, Method, Motion, Scenario};
 use octant_calibration::config as core;
 use octant_earth::{UnitQuaternion, Vector3, rotation};
 use octant_plant::config as plant;
 use octant_sample::Parameters;
-use octant_sample::parameters::{Group, PARAMETER_COUNT};
+#[cfg(doc)]
+use octant_sample::parameters::Group;
 
-/// Where random numbers come from. A stream is named, and `index` counts in it: no number depends
-/// on whether another one was drawn.
-pub trait Variates {
-    /// Standard normal.
-    fn normal(&mut self, stream: &str, index: u64) -> f64;
-    /// Even in [0, 1).
-    fn uniform(&mut self, stream: &str, index: u64) -> f64;
+/// What draws from the seed. No number depends on whether another one was drawn.
+pub trait Drawing {
+    /// True parameters from the distribution of each group, in the order of [`Group::ALL`].
+    fn parameters(&self, distributions: &[Distribution; 7]) -> Parameters;
+    /// Attitude error φ (rad) and velocity error (m/s) from the 1σ of tilt (rad), azimuth (rad) and
+    /// velocity (m/s).
+    fn alignment_error(
+        &self,
+        tilt_rad: f64,
+        azimuth_rad: f64,
+        velocity_mps: f64,
+    ) -> ([f64; 3], [f64; 3]);
+    /// So many phases of a motion (`roll`, `pitch`, `yaw`, `surge`, `sway`, `heave`), rad.
+    fn phases(&self, motion: &str, count: usize) -> Vec<f64>;
 }
 
 /// What is drawn from the seed before a run.
@@ -36,58 +44,33 @@ pub struct Draws {
 
 impl Draws {
     /// Draws what the scenario leaves open and takes over what it gives.
-    pub fn of(scenario: &Scenario, variates: &mut impl Variates) -> Self {
-        let mut all = [0.0; PARAMETER_COUNT];
-        for (group, distribution) in Group::ALL.into_iter().zip(&scenario.parameters) {
-            let stream = format!("parameters.{}", group.name());
-            for (index, value) in all[group.range()].iter_mut().enumerate() {
-                *value = match distribution {
-                    Distribution::Normal(sigma) => sigma * variates.normal(&stream, index as u64),
-                    Distribution::Uniform(half_width) => {
-                        half_width * (2.0 * variates.uniform(&stream, index as u64) - 1.0)
-                    }
-                    Distribution::Constant(values) => values[index],
-                };
-            }
-        }
+    pub fn of(scenario: &Scenario, drawing: &impl Drawing) -> Self {
         let mut phases: [Vec<f64>; 6] = Default::default();
         if let Motion::Dockside(ship) = &scenario.motion {
             for ((phases, components), name) in
                 phases.iter_mut().zip(&ship.components).zip(super::read::MOTIONS)
             {
-                let stream = format!("motion.{name}");
-                let mut draw =
-                    |index: usize| std::f64::consts::TAU * variates.uniform(&stream, index as u64);
-                let phase =
-                    |(index, c): (usize, &Component)| c.phase_rad.unwrap_or_else(|| draw(index));
-                *phases = components.iter().enumerate().map(phase).collect();
+                // A phase that is given takes no other component's draw.
+                let drawn = drawing.phases(name, components.len());
+                let pairs = components.iter().zip(drawn);
+                *phases = pairs.map(|(c, drawn)| c.phase_rad.unwrap_or(drawn)).collect();
             }
         }
-        let (mut attitude_error_rad, mut velocity_error_mps) = ([0.0; 3], [0.0; 3]);
-        if let Alignment::Given {
-            tilt_rad,
-            azimuth_rad,
-            velocity_mps,
-            attitude_error_rad: attitude,
-            velocity_error_mps: velocity,
-        } = scenario.alignment
-        {
-            let mut normal = |stream: &str, index: u64| variates.normal(stream, index);
-            let sigma = [tilt_rad, tilt_rad, azimuth_rad];
-            for axis in 0..3 {
-                let index = axis as u64;
-                attitude_error_rad[axis] = attitude.map_or_else(
-                    || sigma[axis] * normal("alignment.attitude", index),
-                    |error| error[axis],
-                );
-                velocity_error_mps[axis] = velocity.map_or_else(
-                    || velocity_mps * normal("alignment.velocity", index),
-                    |error| error[axis],
-                );
+        let (attitude_error_rad, velocity_error_mps) = match scenario.alignment {
+            Alignment::Coarse { .. } => ([0.0; 3], [0.0; 3]),
+            Alignment::Given {
+                tilt_rad,
+                azimuth_rad,
+                velocity_mps,
+                attitude_error_rad,
+                velocity_error_mps,
+            } => {
+                let drawn = drawing.alignment_error(tilt_rad, azimuth_rad, velocity_mps);
+                (attitude_error_rad.unwrap_or(drawn.0), velocity_error_mps.unwrap_or(drawn.1))
             }
-        }
+        };
         Self {
-            parameters: Parameters::from_array(&all),
+            parameters: drawing.parameters(&scenario.parameters),
             phases,
             attitude_error_rad,
             velocity_error_mps,

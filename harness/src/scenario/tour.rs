@@ -98,6 +98,7 @@ fn table(section: &Section, path: &str, open: bool, out: &mut String) {
             Default::Value(text) => Some(text),
             _ => None,
         };
+        let open = open && !CLOSED.contains(&path.as_str());
         let mark = if open && set.or(default).is_some() { "" } else { "#: " };
         let value = set.or(default).map_or_else(|| example_at(&path, &key.kind), written);
         *out += &format!("{mark}{} = {value}\n", key.name);
@@ -253,19 +254,29 @@ mod tests {
         assert!(all.len() > 150, "{} keys", all.len());
         for (path, _) in all {
             let (parent, name) = path.rsplit_once('.').unwrap_or(("", &path));
-            // Under the parent's header, or in the parent's line where that is an inline table.
-            let header = format!("[{path}]");
-            let parent_header = format!("[{parent}]");
-            let block = if parent.is_empty() {
-                &tour[..]
-            } else if let Some(at) = tour.find(&parent_header) {
-                &tour[at..]
+            // Under the parent's header, or beside the parent where that is an inline table.
+            let from = if parent.is_empty() {
+                0
+            } else if let Some(at) = tour.find(&format!("[{parent}]")) {
+                at
             } else {
-                let inline = parent.rsplit('.').next().unwrap();
-                let at = tour.find(&format!("{inline} = ")).unwrap_or_else(|| panic!("{path}"));
-                let from = tour[..at].rfind("\n\n").unwrap_or(0);
-                &tour[from..]
+                let (grandparent, inline) = parent.rsplit_once('.').unwrap();
+                let header = tour.find(&format!("[{grandparent}]")).unwrap();
+                // The comment above the line tells of the keys that the line doesn't use.
+                let line = header
+                    + tour[header..].find(&format!("\n{inline} = ")).unwrap_or_else(|| {
+                        tour[header..].find(&format!("\n#: {inline} = ")).unwrap()
+                    });
+                let above = tour[header..line].lines().rev();
+                line - above.take_while(|l| l.starts_with("# ")).map(|l| l.len() + 1).sum::<usize>()
             };
+            let block = &tour[from..];
+            // The root's own values end at the first header as well.
+            let skip = if parent.is_empty() { block.find("schema = ").unwrap() } else { 0 };
+            let end = block[skip..].find("\n\n").map_or(block.len(), |at| skip + at);
+            // Comments are wrapped anywhere.
+            let block = block[..end].replace("\n# ", " ");
+            let header = format!("[{path}]");
             let named = tour.contains(&header) || block.contains(&format!("{name} = "));
             assert!(named, "{path} is not in the tour");
         }
@@ -278,18 +289,15 @@ mod tests {
         // A table's example is the sum of those of its keys.
         all.retain(|(_, key)| key.kind.section().is_none_or(|section| section.one_of));
         for (path, key) in all {
-            let mut values = vec![example_at(&path, &key.kind)];
-            if let Default::Value(text) = key.default {
-                values.push(written(text));
-            }
-            for value in values {
-                let text = format!("x = {value}");
-                let mut table = document::parse(&text).unwrap_or_else(|e| panic!("{path}: {e:?}"));
-                let mut problems = Vec::new();
-                let node = table.get_mut("x").unwrap();
-                super::super::complete::check(node, key, &key.kind, &path, &mut problems);
-                assert!(problems.is_empty(), "{path}: {text}: {problems:?}");
-            }
+            let text = match key.default {
+                Default::Value(text) => format!("x = {}", written(text)),
+                _ => format!("x = {}", example_at(&path, &key.kind)),
+            };
+            let mut table = document::parse(&text).unwrap_or_else(|e| panic!("{path}: {e:?}"));
+            let mut problems = Vec::new();
+            let node = table.get_mut("x").unwrap();
+            super::super::complete::check(node, key, &key.kind, &path, &mut problems);
+            assert!(problems.is_empty(), "{path}: {text}: {problems:?}");
         }
         let mut table = document::parse("").unwrap();
         let mut problems = Vec::new();

@@ -165,7 +165,7 @@ fn calibration(table: &Reader<'_>, setting: &Setting<'_>) -> Result<Calibration,
         sequence.stops().iter().map(|stop| stop.weight).sum::<f64>() * f64::from(passes);
     let dwell_s = (duration_s - moves_s) / weights;
     let shortest_s = aiding.source.period_ns as f64 * 1e-9;
-    if !(dwell_s >= shortest_s) {
+    if dwell_s < shortest_s {
         return Err(table.problem(
             "duration",
             format!(

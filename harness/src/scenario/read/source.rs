@@ -2,6 +2,7 @@
 
 use super::Reader;
 use crate::scenario::error::Problem;
+use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
 /// The variable that a file name may start with.
@@ -34,6 +35,10 @@ impl FileName {
     /// If the variable is used and not set, or another one is used; a fragment that fits after
     /// "failed to …".
     pub fn path(&self, folder: &Path) -> Result<PathBuf, String> {
+        self.path_with(folder, std::env::var_os(VARIABLE))
+    }
+
+    fn path_with(&self, folder: &Path, recordings: Option<OsString>) -> Result<PathBuf, String> {
         let Some(rest) = self.0.strip_prefix("${") else { return Ok(folder.join(&self.0)) };
         let Some(rest) = rest.strip_prefix(VARIABLE).and_then(|rest| rest.strip_prefix('}')) else {
             return Err(format!(
@@ -41,7 +46,7 @@ impl FileName {
                 self.0
             ));
         };
-        match std::env::var_os(VARIABLE) {
+        match recordings {
             Some(value) => Ok(Path::new(&value).join(rest.trim_start_matches('/'))),
             None => Err(format!(
                 "expand {:?}: the environment variable {VARIABLE} is not set; set it to the \
@@ -307,5 +312,24 @@ fn axes(table: &Reader<'_>) -> Result<[Axis; 3], Problem> {
                 "found {texts:?}, expected x, y and z once each, such as [\"y\", \"x\", \"-z\"]"
             ),
         )),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn file_names_start_at_the_scenario_or_at_the_recordings() {
+        let path = |name: &str, recordings: Option<&str>| {
+            FileName(name.to_owned()).path_with(Path::new("/runs"), recordings.map(OsString::from))
+        };
+        assert_eq!(path("a.txt", None), Ok(PathBuf::from("/runs/a.txt")));
+        assert_eq!(path("/b/a.txt", None), Ok(PathBuf::from("/b/a.txt")));
+        let recorded = "${OCTANT_RECORDINGS}/x/a.txt";
+        assert_eq!(path(recorded, Some("/data")), Ok(PathBuf::from("/data/x/a.txt")));
+        assert!(path(recorded, None).unwrap_err().contains("OCTANT_RECORDINGS is not set"));
+        let other = path("${HOME}/a.txt", Some("/data")).unwrap_err();
+        assert!(other.contains("the one variable"), "{other}");
     }
 }
