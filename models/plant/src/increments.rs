@@ -57,7 +57,7 @@ struct Lag {
 struct Turn {
     roll: Arc,
     azimuth: Arc,
-    /// Sine and cosine at the start of the interval: all that is needed of one that rests.
+    /// Sine and cosine of a gimbal that rests on this stretch.
     roll_sincos: (f64, f64),
     azimuth_sincos: (f64, f64),
 }
@@ -139,7 +139,7 @@ impl Body {
     fn fill_lag(&mut self, skew_s: f64) {
         let whole = libm::floor(skew_s / self.period_s + 1e-9);
         let cut_s = (self.period_s - (skew_s - whole * self.period_s)).min(self.period_s);
-        let mut queue = VecDeque::with_capacity(whole as usize + 1);
+        let mut queue = VecDeque::with_capacity(whole as usize);
         let mut late = Increments::default();
         let before = whole as i64 + 1;
         self.begin(-(before as f64) * self.period_s);
@@ -193,8 +193,11 @@ impl Body {
         if let Some(lag) = &mut self.lag {
             now.add(&lag.late);
             lag.late = late;
-            lag.queue.push_back(now);
-            now = lag.queue.pop_front().unwrap_or(now);
+            // Out before in: the queue never grows, not even a clone's.
+            if let Some(oldest) = lag.queue.pop_front() {
+                lag.queue.push_back(now);
+                now = oldest;
+            }
         }
         now
     }
@@ -255,9 +258,13 @@ impl Body {
     fn turn(&mut self, start_ns: u64, inside_s: f64) -> Turn {
         let roll = self.roll.body.arc(start_ns, inside_s);
         let azimuth = self.azimuth.body.arc(start_ns, inside_s);
+        // Of a gimbal that moves these are not used; each node takes its own.
+        let sincos = |arc: &Arc, near: &mut Near| {
+            if arc.rests() { near.sincos(arc.origin.angle) } else { (0.0, 1.0) }
+        };
         Turn {
-            roll_sincos: self.roll_near.sincos(roll.origin.angle),
-            azimuth_sincos: self.azimuth_near.sincos(azimuth.origin.angle),
+            roll_sincos: sincos(&roll, &mut self.roll_near),
+            azimuth_sincos: sincos(&azimuth, &mut self.azimuth_near),
             roll,
             azimuth,
         }
@@ -280,7 +287,7 @@ impl Body {
         }
     }
 
-    #[inline]
+    #[inline(always)]
     fn add_node(
         &mut self,
         sum: &mut Increments,
