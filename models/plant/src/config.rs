@@ -72,7 +72,8 @@ pub struct Dockside {
     pub sway: Vec<Sinusoid>,
     /// Heave, positive down, m.
     pub heave: Vec<Sinusoid>,
-    /// Constant offset from the dock's reference position, north, east, down, m.
+    /// Constant offset of the instrument from the site, the dock's reference position that
+    /// [`AidingKind::DockPosition`] measures; north, east, down, m.
     pub mooring_offset_m: [f64; 3],
 }
 
@@ -94,12 +95,14 @@ pub struct Turntable {
     pub rate_radps: f64,
     /// Acceleration of a move, rad/s².
     pub acceleration_radps2: f64,
-    /// Encoder error, 1σ, rad: a constant of each gimbal and each angle (drawn per stop angle from
-    /// a periodic error curve), not white noise.
+    /// Encoder error, 1σ, rad: a constant of each gimbal and each angle, not white noise. It is
+    /// the rms over a turn of a periodic curve, four harmonics drawn from the seed.
     pub encoder_sigma_rad: f64,
-    /// Angle by which the two gimbal axes miss a right angle, rad.
+    /// Angle η by which the two gimbal axes miss a right angle, rad: the inner axis leans towards
+    /// the outer, `c_cb = Rx(roll) · Ry(η) · Rz(azimuth)`.
     pub non_orthogonality_rad: f64,
     /// Play of each gear, rad: the body lags the command by half of it, on the side it came from.
+    /// The encoders sit on the drives and don't see it.
     pub backlash_rad: f64,
 }
 
@@ -119,7 +122,8 @@ pub struct Imu {
 /// What the sensors have and the filter doesn't model. The default is none of it.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Extensions {
-    /// First-order Gauss-Markov gyro bias: σ (rad/s) and correlation time (s).
+    /// First-order Gauss-Markov gyro bias: σ (rad/s) and correlation time (s). Like the random
+    /// walk it goes on from calibration into navigation; what drives it is counted by phase.
     pub gyro_gauss_markov: Option<GaussMarkov>,
     /// First-order Gauss-Markov accelerometer bias: σ (m/s²) and correlation time (s).
     pub accel_gauss_markov: Option<GaussMarkov>,
@@ -140,7 +144,8 @@ pub struct Extensions {
     /// Position of each accelerometer's proof mass from the centre of rotation, in b, m (size
     /// effect): row i is that of axis i.
     pub lever_arm_m: [[f64; 3]; 3],
-    /// Stamp minus true time of validity, s: the gyros and accelerometers lag the gimbal angles.
+    /// Stamp minus true time of validity, s, 0 to 1: the gyros and accelerometers lag the gimbal
+    /// angles.
     pub time_skew_s: f64,
 }
 

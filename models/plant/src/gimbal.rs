@@ -31,6 +31,28 @@ impl Segment {
     }
 }
 
+/// Motion of an axis over a stretch without a knot.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Arc {
+    /// State at the start of the interval, on the parabola of the stretch.
+    pub(crate) origin: AxisState,
+}
+
+impl Arc {
+    /// State at a time after the start of the interval, s.
+    #[inline(always)]
+    pub(crate) fn at(&self, time_s: f64) -> (f64, f64) {
+        let AxisState { angle, rate, acceleration } = self.origin;
+        (angle + time_s * (rate + 0.5 * acceleration * time_s), rate + acceleration * time_s)
+    }
+
+    /// Nothing moves.
+    #[inline(always)]
+    pub(crate) fn rests(&self) -> bool {
+        self.origin.rate == 0.0 && self.origin.acceleration == 0.0
+    }
+}
+
 /// Pieces that a drive profile can have: brake, accelerate, cruise, decelerate. The play of the
 /// gear can cut each in two.
 const SEGMENTS_MAX: usize = 8;
@@ -74,12 +96,26 @@ impl Profile {
     /// State at a time since the profile's origin, s.
     #[inline]
     pub(crate) fn at(&self, time_s: f64) -> AxisState {
-        if time_s >= self.end_s {
+        self.state(time_s, time_s)
+    }
+
+    /// The arc of the interval that starts at `start_ns`, on the piece that holds `inside_s`
+    /// after it.
+    #[inline]
+    pub(crate) fn arc(&self, start_ns: u64, inside_s: f64) -> Arc {
+        let start_s = self.seconds(start_ns);
+        Arc { origin: self.state(start_s + inside_s, start_s) }
+    }
+
+    /// State at `time_s` on the piece that holds `inside_s`.
+    #[inline]
+    fn state(&self, inside_s: f64, time_s: f64) -> AxisState {
+        if inside_s >= self.end_s {
             return AxisState { angle: self.end_angle, ..AxisState::default() };
         }
         let mut segment = &self.segments[0];
         for later in &self.segments[1..self.len] {
-            if later.start_s <= time_s {
+            if later.start_s <= inside_s {
                 segment = later;
             }
         }

@@ -6,7 +6,7 @@
 
 use crate::case::{Case, Node};
 use crate::config::{Config, Motion, Vibration};
-use crate::gimbal::Gimbal;
+use crate::gimbal::{Arc, Gimbal};
 use crate::trig::{Near, rx_t, ry_t, rz_t};
 use crate::vibration::shaken;
 use nalgebra::Vector3;
@@ -52,6 +52,16 @@ struct Lag {
     queue: VecDeque<Increments>,
 }
 
+/// What the gimbals do on a stretch without a knot.
+#[derive(Clone, Copy, Debug)]
+struct Turn {
+    roll: Arc,
+    azimuth: Arc,
+    /// Sine and cosine of a gimbal that rests on this stretch.
+    roll_sincos: (f64, f64),
+    azimuth_sincos: (f64, f64),
+}
+
 /// The moving body: case, gimbals, sensor block.
 #[derive(Clone, Debug)]
 pub(crate) struct Body {
@@ -93,7 +103,8 @@ impl Body {
         }
         let nodes_s: Vec<f64> = nodes.iter().map(|node| node.0).collect();
         let gimbal = Gimbal::new(table.rate_radps, table.acceleration_radps2, table.backlash_rad);
-        let case = Case::new(&config.motion, config.site, period_s, &nodes_s);
+        let shaken = extensions.vibration.is_some();
+        let case = Case::new(&config.motion, config.site, period_s, &nodes_s, shaken);
         let lever_arm = (extensions.lever_arm_m != [[0.0; 3]; 3])
             .then(|| extensions.lever_arm_m.map(Vector3::from));
         let constant =
@@ -128,7 +139,7 @@ impl Body {
     fn fill_lag(&mut self, skew_s: f64) {
         let whole = libm::floor(skew_s / self.period_s + 1e-9);
         let cut_s = (self.period_s - (skew_s - whole * self.period_s)).min(self.period_s);
-        let mut queue = VecDeque::with_capacity(whole as usize + 1);
+        let mut queue = VecDeque::with_capacity(whole as usize);
         let mut late = Increments::default();
         let before = whole as i64 + 1;
         self.begin(-(before as f64) * self.period_s);
@@ -151,7 +162,8 @@ impl Body {
         if self.lever_arm.is_some() {
             let mut before = self.clone();
             before.case.enter(start_s);
-            self.rate_at_end = before.feel(start_s, 0, 0.0, Node::Offset(0.0)).0;
+            let turn = before.turn(0, 0.0);
+            self.rate_at_end = before.feel(start_s, 0.0, Node::Offset(0.0), &turn).0;
         }
     }
 
@@ -181,8 +193,11 @@ impl Body {
         if let Some(lag) = &mut self.lag {
             now.add(&lag.late);
             lag.late = late;
-            lag.queue.push_back(now);
-            now = lag.queue.pop_front().unwrap_or(now);
+            // Out before in: the queue never grows, not even a clone's.
+            if let Some(oldest) = lag.queue.pop_front() {
+                lag.queue.push_back(now);
+                now = oldest;
+            }
         }
         now
     }
@@ -211,20 +226,24 @@ impl Body {
         }
         if self.is_constant(start_ns) {
             // One node: the rule is exact for a constant, and this way to the last bit.
-            self.add_node(&mut sum, start_s, start_ns, from_s, Node::Offset(from_s), to_s - from_s);
+            let turn = self.turn(start_ns, from_s);
+            let weight = to_s - from_s;
+            self.add_node(&mut sum, start_s, from_s, Node::Offset(from_s), weight, &turn);
         } else if count == 1 && from_s == 0.0 && to_s == self.period_s {
+            let turn = self.turn(start_ns, 0.5 * self.period_s);
             for index in 0..self.nodes.len() {
                 let (at, weight) = self.nodes[index];
-                self.add_node(&mut sum, start_s, start_ns, at, Node::Regular(index), weight);
+                self.add_node(&mut sum, start_s, at, Node::Regular(index), weight, &turn);
             }
         } else {
             cuts[1..count].sort_unstable_by(f64::total_cmp);
             for pair in 0..count {
-                self.add_piece(&mut sum, start_s, start_ns, cuts[pair], cuts[pair + 1]);
+                self.add_stretch(&mut sum, start_s, start_ns, cuts[pair], cuts[pair + 1]);
             }
         }
         if let Some(arms) = self.lever_arm {
-            let (rate, _) = self.feel(start_s, start_ns, to_s, Node::Offset(to_s));
+            let turn = self.turn(start_ns, to_s);
+            let (rate, _) = self.feel(start_s, to_s, Node::Offset(to_s), &turn);
             let change = rate - self.rate_at_end;
             self.rate_at_end = rate;
             for axis in 0..3 {
@@ -234,32 +253,51 @@ impl Body {
         sum
     }
 
-    fn add_piece(&mut self, sum: &mut Increments, start_s: f64, start_ns: u64, a: f64, b: f64) {
+    /// The gimbals' arcs on the stretch that holds `inside_s` after the start of the interval.
+    #[inline]
+    fn turn(&mut self, start_ns: u64, inside_s: f64) -> Turn {
+        let roll = self.roll.body.arc(start_ns, inside_s);
+        let azimuth = self.azimuth.body.arc(start_ns, inside_s);
+        // Of a gimbal that moves these are not used; each node takes its own.
+        let sincos = |arc: &Arc, near: &mut Near| {
+            if arc.rests() { near.sincos(arc.origin.angle) } else { (0.0, 1.0) }
+        };
+        Turn {
+            roll_sincos: sincos(&roll, &mut self.roll_near),
+            azimuth_sincos: sincos(&azimuth, &mut self.azimuth_near),
+            roll,
+            azimuth,
+        }
+    }
+
+    /// Adds a stretch without a knot inside.
+    fn add_stretch(&mut self, sum: &mut Increments, start_s: f64, start_ns: u64, a: f64, b: f64) {
         if b - a < PIECE_MIN_S {
             return;
         }
+        let turn = self.turn(start_ns, 0.5 * (a + b));
         let pieces = libm::ceil((b - a) / self.piece_s - 1e-9).max(1.0);
         let width = (b - a) / pieces;
         for piece in 0..pieces as u64 {
             let middle = a + (piece as f64 + 0.5) * width;
             for (x, w) in GAUSS {
                 let at = middle + 0.5 * width * x;
-                self.add_node(sum, start_s, start_ns, at, Node::Offset(at), w * width);
+                self.add_node(sum, start_s, at, Node::Offset(at), w * width, &turn);
             }
         }
     }
 
-    #[inline]
+    #[inline(always)]
     fn add_node(
         &mut self,
         sum: &mut Increments,
         start_s: f64,
-        start_ns: u64,
         at: f64,
         node: Node,
         weight: f64,
+        turn: &Turn,
     ) {
-        let (rate, mut force) = self.feel(start_s, start_ns, at, node);
+        let (rate, mut force) = self.feel(start_s, at, node, turn);
         if let Some(arms) = &self.lever_arm {
             for axis in 0..3 {
                 force[axis] += rate.cross(&rate.cross(&arms[axis]))[axis];
@@ -274,31 +312,36 @@ impl Body {
     fn feel(
         &mut self,
         start_s: f64,
-        start_ns: u64,
         at: f64,
         node: Node,
+        turn: &Turn,
     ) -> (Vector3<f64>, Vector3<f64>) {
         let case = self.case.motion(node);
-        let roll = self.roll.body.at(self.roll.body.seconds(start_ns) + at);
-        let azimuth = self.azimuth.body.at(self.azimuth.body.seconds(start_ns) + at);
-        let roll_sincos = self.roll_near.sincos(roll.angle);
-        let azimuth_sincos = self.azimuth_near.sincos(azimuth.angle);
+        let (roll, roll_rate) = turn.roll.at(at);
+        let (azimuth, azimuth_rate) = turn.azimuth.at(at);
+        let (mut roll_sincos, mut azimuth_sincos) = (turn.roll_sincos, turn.azimuth_sincos);
+        if !turn.roll.rests() {
+            roll_sincos = self.roll_near.sincos(roll);
+        }
+        if !turn.azimuth.rests() {
+            azimuth_sincos = self.azimuth_near.sincos(azimuth);
+        }
         let x = Vector3::x();
         let z = Vector3::z();
         let turned = rx_t(&case.rate, roll_sincos);
-        let inner = ry_t(&(turned + x * roll.rate), self.tilt_sincos);
+        let inner = ry_t(&(turned + x * roll_rate), self.tilt_sincos);
         let turned_inner = rz_t(&inner, azimuth_sincos);
-        let rate = turned_inner + z * azimuth.rate;
+        let rate = turned_inner + z * azimuth_rate;
         let force = rz_t(&ry_t(&rx_t(&case.force, roll_sincos), self.tilt_sincos), azimuth_sincos);
         let Some(vibration) = &self.vibration else {
             return (rate, force);
         };
         let outer_acceleration = rx_t(&case.acceleration, roll_sincos)
-            - x.cross(&turned) * roll.rate
-            + x * roll.acceleration;
+            - x.cross(&turned) * roll_rate
+            + x * turn.roll.origin.acceleration;
         let acceleration = rz_t(&ry_t(&outer_acceleration, self.tilt_sincos), azimuth_sincos)
-            - z.cross(&turned_inner) * azimuth.rate
-            + z * azimuth.acceleration;
+            - z.cross(&turned_inner) * azimuth_rate
+            + z * turn.azimuth.origin.acceleration;
         shaken(vibration, start_s + at, &rate, &acceleration, &force)
     }
 

@@ -2,6 +2,16 @@
 //!
 //! The plant makes integer counts, stamped at the end of their interval, and answers to the gimbal
 //! commands of the core. It never sees what the core estimates.
+//!
+//! A sample comes about in this order: the case moves (fixed, or on a moored ship), the gimbals
+//! turn the body in it, the body's angular rate and specific force are integrated over the
+//! interval, the sensors distort the integrals and add their noise, and counters digitise them.
+//! The reference that aids a calibration is made at the same stamp.
+//!
+//! Random numbers come from named streams ([`stream`]): `gyro.noise`, `accelerometer.noise`,
+//! `gyro.gauss_markov`, `gyro.rate_random_walk`, `accelerometer.gauss_markov`, `aiding.noise`,
+//! `turntable.encoder.azimuth`, `turntable.encoder.roll`, and `draw.*` for what is drawn before a
+//! run ([`draw`]). None of them moves another.
 
 mod case;
 pub mod config;

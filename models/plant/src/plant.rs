@@ -40,8 +40,10 @@ pub struct Plant {
     saturated_samples: u64,
     /// Increments and reading of every sample, while nothing moves.
     still: Option<(Increments, Reading)>,
-    /// Encoder angles, while the drives rest.
-    resting: Option<GimbalAngles>,
+    /// Encoder angles; those of a drive that rests are not read again.
+    angles: GimbalAngles,
+    /// Whether the drives of azimuth and roll rest, and their angles are read.
+    resting: [bool; 2],
 }
 
 impl Plant {
@@ -68,7 +70,8 @@ impl Plant {
             non_orthogonality_rad: config.turntable.non_orthogonality_rad,
             saturated_samples: 0,
             still: None,
-            resting: None,
+            angles: GimbalAngles::default(),
+            resting: [false; 2],
         })
     }
 
@@ -96,17 +99,17 @@ impl Plant {
         let (delta_theta, delta_velocity, status) =
             self.sensors.count(reading, &increments, sample, start_s);
         self.saturated_samples += u64::from(!status.is_empty());
-        let gimbal = match self.resting {
-            Some(angles) => angles,
-            None => self.read_encoders(),
-        };
+        if self.resting != [true; 2] {
+            self.read_encoders();
+        }
+        let gimbal = self.angles;
         let device_time = DeviceTime::from_ns(self.time_ns);
         self.until_aiding -= 1;
         let aiding = if self.until_aiding == 0 { self.aid(device_time, sample) } else { None };
 
         if self.body.command(command, self.time_ns) {
             self.still = None;
-            self.resting = None;
+            self.resting = [false; 2];
         }
         Step {
             sample: Sample {
@@ -132,16 +135,17 @@ impl Plant {
     }
 
     #[inline(never)]
-    fn read_encoders(&mut self) -> GimbalAngles {
-        let [azimuth, roll] = [&self.body.azimuth, &self.body.roll]
-            .map(|gimbal| gimbal.drive.at(gimbal.drive.seconds(self.time_ns)).angle);
-        let [azimuth_curve, roll_curve] = &mut self.encoders;
-        let angles =
-            GimbalAngles::from_rad(azimuth + azimuth_curve.at(azimuth), roll + roll_curve.at(roll));
-        if self.body.azimuth.rests(self.time_ns) && self.body.roll.rests(self.time_ns) {
-            self.resting = Some(angles);
+    fn read_encoders(&mut self) {
+        let mut read = [self.angles.azimuth, self.angles.roll];
+        for (axis, gimbal) in [&self.body.azimuth, &self.body.roll].into_iter().enumerate() {
+            if !self.resting[axis] {
+                let angle = gimbal.drive.at(gimbal.drive.seconds(self.time_ns)).angle;
+                let measured = angle + self.encoders[axis].at(angle);
+                read[axis] = GimbalAngles::from_rad(measured, 0.0).azimuth;
+                self.resting[axis] = gimbal.rests(self.time_ns);
+            }
         }
-        angles
+        self.angles = GimbalAngles { azimuth: read[0], roll: read[1] };
     }
 
     #[inline(never)]

@@ -19,7 +19,6 @@ const RESET_SAMPLES: u32 = 256;
 
 #[derive(Clone, Copy, Debug)]
 struct Component {
-    dof: usize,
     amplitude: f64,
     frequency_hz: f64,
     omega: f64,
@@ -38,9 +37,14 @@ impl Component {
         libm::sincos(turn + self.phase_rad)
     }
 
-    #[inline]
-    fn add_to(&self, six: &mut SixDof, (s, c): (f64, f64)) {
-        let dof = &mut six[self.dof];
+    /// Sine and cosine of the phase that is a rotation away from that at the middle.
+    #[inline(always)]
+    fn turned(&self, (s, c): (f64, f64)) -> (f64, f64) {
+        (self.sin * c + self.cos * s, self.cos * c - self.sin * s)
+    }
+
+    #[inline(always)]
+    fn add_to(&self, dof: &mut Dof, (s, c): (f64, f64)) {
         let (sin, cos) = (self.amplitude * s, self.amplitude * c);
         dof.value += sin;
         dof.rate += self.omega * cos;
@@ -51,6 +55,8 @@ impl Component {
 #[derive(Clone, Debug)]
 pub(crate) struct Sway {
     components: Vec<Component>,
+    /// Where the components of each degree of freedom end.
+    ends: [usize; 6],
     /// Phase gained from the middle of the interval to each regular node, by node and component.
     to_node: Vec<(f64, f64)>,
     period_s: f64,
@@ -69,11 +75,11 @@ impl Sway {
             &dockside.heave,
         ];
         let mut components = Vec::new();
+        let mut ends = [0; 6];
         for (dof, group) in groups.into_iter().enumerate() {
             for sinusoid in group {
                 let omega = 2.0 * core::f64::consts::PI / sinusoid.period_s;
                 components.push(Component {
-                    dof,
                     amplitude: sinusoid.amplitude,
                     frequency_hz: 1.0 / sinusoid.period_s,
                     omega,
@@ -83,6 +89,7 @@ impl Sway {
                     step: libm::sincos(omega * period_s),
                 });
             }
+            ends[dof] = components.len();
         }
         let mut to_node = Vec::with_capacity(nodes_s.len() * components.len());
         for node in nodes_s {
@@ -90,7 +97,7 @@ impl Sway {
                 to_node.push(libm::sincos(component.omega * (node - 0.5 * period_s)));
             }
         }
-        Self { components, to_node, period_s, until_reset: 0 }
+        Self { components, ends, to_node, period_s, until_reset: 0 }
     }
 
     /// Goes to the interval that starts at `start_s`; intervals follow each other.
@@ -110,36 +117,37 @@ impl Sway {
         self.until_reset -= 1;
     }
 
+    /// Sums the components of each degree of freedom, each at the phase that `phase` gives.
+    #[inline(always)]
+    fn sum(&self, phase: impl Fn(usize, &Component) -> (f64, f64)) -> SixDof {
+        let mut begin = 0;
+        self.ends.map(|end| {
+            let mut dof = Dof::default();
+            for (i, component) in self.components[begin..end].iter().enumerate() {
+                component.add_to(&mut dof, phase(begin + i, component));
+            }
+            begin = end;
+            dof
+        })
+    }
+
     /// At a regular node of the present interval.
     #[inline]
     pub(crate) fn at_node(&self, node: usize) -> SixDof {
-        let mut six = SixDof::default();
         let n = self.components.len();
-        for (component, (s, c)) in self.components.iter().zip(&self.to_node[node * n..]) {
-            let (sin, cos) = (component.sin, component.cos);
-            component.add_to(&mut six, (sin * c + cos * s, cos * c - sin * s));
-        }
-        six
+        let to_node = &self.to_node[node * n..(node + 1) * n];
+        self.sum(|i, component| component.turned(to_node[i]))
     }
 
     /// At `offset_s` after the start of the present interval.
     pub(crate) fn at_offset(&self, offset_s: f64) -> SixDof {
-        let mut six = SixDof::default();
-        for component in &self.components {
-            let (s, c) = libm::sincos(component.omega * (offset_s - 0.5 * self.period_s));
-            let (sin, cos) = (component.sin, component.cos);
-            component.add_to(&mut six, (sin * c + cos * s, cos * c - sin * s));
-        }
-        six
+        let from_middle_s = offset_s - 0.5 * self.period_s;
+        self.sum(|_, component| component.turned(libm::sincos(component.omega * from_middle_s)))
     }
 
     /// At any time, s since the start.
     pub(crate) fn at_time(&self, time_s: f64) -> SixDof {
-        let mut six = SixDof::default();
-        for component in &self.components {
-            component.add_to(&mut six, component.phase_at(time_s));
-        }
-        six
+        self.sum(|_, component| component.phase_at(time_s))
     }
 }
 

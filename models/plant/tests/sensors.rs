@@ -179,7 +179,7 @@ fn temperature_ramps_to_its_plateau_and_acts_on_bias_and_scale() {
     let temperature = Temperature {
         ramp_kps: 0.5,
         plateau_k: 10.0,
-        gyro_bias_per_k: [1.0 * DEG_PER_HOUR, 2.0 * DEG_PER_HOUR, -1.0 * DEG_PER_HOUR],
+        gyro_bias_per_k: [DEG_PER_HOUR, 2.0 * DEG_PER_HOUR, -DEG_PER_HOUR],
         accel_bias_per_k: [100.0 * MICRO_G, 0.0, 0.0],
         gyro_scale_per_k: [0.0, 0.0, 1e-3],
         accel_scale_per_k: [0.0, 0.0, 10.0 * PPM],
@@ -384,7 +384,8 @@ fn a_clone_goes_on_as_the_original() {
 
 #[test]
 fn what_can_not_be_computed_is_refused_by_name() {
-    let refused = |change: fn(&mut Config)| {
+    type Change = fn(&mut Config);
+    let refused = |change: Change| {
         let mut config = noisy();
         change(&mut config);
         Plant::new(&config).unwrap_err()
@@ -394,7 +395,7 @@ fn what_can_not_be_computed_is_refused_by_name() {
         error.to_string(),
         "aiding.period_ns is 7000000, expected a multiple of the sample period, 5000000 ns"
     );
-    let cases: [(fn(&mut Config), &str); 12] = [
+    let cases: [(Change, &str); 12] = [
         (|c| c.sample_period_ns = 0, "sample_period_ns"),
         (|c| c.site.latitude_rad = 90.0 * DEG, "site.latitude_rad"),
         (|c| c.site.latitude_rad = f64::NAN, "site.latitude_rad"),

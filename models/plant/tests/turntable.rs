@@ -41,7 +41,9 @@ fn moves_take_the_time_of_their_trapezoid() {
 fn a_command_is_first_felt_two_samples_later() {
     let mut plant = Plant::new(&perfect()).unwrap();
     let level = command(0.0, 0.0);
-    let quiet = run(&mut plant, &level, 10)[9].sample;
+    let first = plant.step(&level).sample;
+    assert_eq!((first.sequence, first.device_time.ns), (1, PERIOD_NS));
+    let quiet = run(&mut plant, &level, 9)[8].sample;
     // Computed from sample 10, so handed over with the call that delivers sample 11.
     let go = command(0.0, 90.0);
     let eleventh = plant.step(&go).sample;
