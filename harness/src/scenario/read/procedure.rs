@@ -334,7 +334,10 @@ fn external_turntable(
              turntable's base is surveyed on the ground",
         ));
     };
-    Ok(core::ExternalTurntable { q_nc: case_attitude(mean) })
+    Ok(core::ExternalTurntable {
+        q_nc: case_attitude(mean),
+        encoder_sigma_rad: setting.turntable.encoder_sigma_rad,
+    })
 }
 
 /// Attitude of the case `q_nc`.
