@@ -268,10 +268,10 @@ fn navigations(summary: &Summary) -> Vec<(&str, Role, &Navigation)> {
     if let Some(n) = &summary.navigation {
         all.push((summary.method.as_str(), Role::Primary, n));
     }
-    if let Some(baseline) = &summary.baseline {
-        if let Some(n) = &baseline.navigation {
-            all.push((baseline.label.as_str(), Role::Baseline, n));
-        }
+    if let Some(baseline) = &summary.baseline
+        && let Some(n) = &baseline.navigation
+    {
+        all.push((baseline.label.as_str(), Role::Baseline, n));
     }
     all
 }
@@ -455,7 +455,7 @@ fn calibration(data: &ReportData) -> Markup {
         h2 { "Calibrated parameters" }
         p.hint {
             "Estimates by " (calibration.estimator) ". The strip shows the error in units of the claimed σ: "
-            "the dark field is ±1σ, the light one ±3σ, "
+            "the inner field is ±1σ, the outer one ±3σ, "
             span.primary-text { "●" } " " (summary.method)
             @if let Some(b) = baseline { ", " span.baseline-text { "○" } " " (b.label) }
             ". "
