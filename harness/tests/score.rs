@@ -141,8 +141,10 @@ fn what_is_not_a_drift_is_told() {
     );
 }
 
-/// Golden error growth: `(latitude, name, value, unit, rows of hours, latitude, longitude)`.
-fn golden() -> Vec<(f64, String, f64, String, Vec<[f64; 3]>)> {
+/// One golden row: latitude (deg), error, value, unit, rows of hours, latitude, longitude (arcmin).
+type Growth = (f64, String, f64, String, Vec<[f64; 3]>);
+
+fn golden() -> Vec<Growth> {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/golden/static_free_inertial.json");
     let text = std::fs::read_to_string(path).unwrap();
     let value: serde_json::Value = serde_json::from_str(&text).unwrap();
