@@ -4,12 +4,14 @@
 //! - [`parameters`] holds estimates against truth, normalized by their σ
 //! - [`mod@reference`] and [`floor`] say what physics lets the scores be
 //! - [`ensemble`] has the statistics over many runs, [`compare`] those of two methods in pairs
+//! - [`health`] counts what the core reported on the way
 //! - [`summary`] is `summary.json`, [`verdict`] holds it against requirements, [`junit`] tells CI
 
 pub mod compare;
 pub mod drift;
 pub mod ensemble;
 pub mod floor;
+pub mod health;
 pub mod junit;
 pub mod parameters;
 pub mod reference;
