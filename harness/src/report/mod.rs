@@ -5,8 +5,10 @@
 //! - [`chart`] draws lines as inline SVG that follows the colours of the page
 //! - [`number`] writes numbers as people read them
 
+mod calibration;
 pub mod chart;
 pub mod compare;
+mod drift;
 pub mod number;
 mod page;
 mod parameters;
