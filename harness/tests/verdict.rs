@@ -191,10 +191,15 @@ fn a_refused_calibration_fails_and_a_silent_fault_is_inconclusive() {
 
 #[test]
 fn a_summary_survives_its_file_and_another_schema_is_refused() {
-    let summary = judged(&[requirement("seed", Comparison::AtLeast, 1.0)], &[]);
+    let mut summary = judged(&[requirement("seed", Comparison::AtLeast, 1.0)], &[]);
+    summary.scenario = "a \"[1, 2]\" \\ [3, 4]".to_owned();
     let text = summary.to_json().unwrap();
     assert_eq!(Summary::from_json(&text).unwrap(), summary);
     assert_eq!(text, summary.to_json().unwrap());
+    assert!(text.contains("[0.0,0.0,0.0],\n"), "a point of the series has one line");
+    let order = ["schema", "octant", "scenario", "seed", "verdict", "requirements", "stream_hash"];
+    let places: Vec<_> = order.map(|key| text.find(&format!("\n  \"{key}\"")).unwrap()).into();
+    assert!(places.is_sorted(), "the order of the fields is that of the type");
     let other = text.replacen("\"schema\": 1", "\"schema\": 2", 1);
     assert_eq!(Summary::from_json(&other), Err(SummaryError::Schema { found: 2 }));
     assert!(matches!(Summary::from_json("{}"), Err(SummaryError::Form(_))));

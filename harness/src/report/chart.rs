@@ -196,7 +196,7 @@ impl Frame {
         let levels = chart.levels.iter().map(|l| l.0).filter(|y| usable(*y));
         let needed = span(all.iter().map(|p| p.1).chain(levels))?;
         let x = if chart.paired { [x[0] - 0.5, x[1] + 0.5] } else { x };
-        if !(x[1] > x[0]) {
+        if x[1] <= x[0] {
             return None;
         }
         let x_ticks = if chart.hours { hour_ticks(x, chart.width / 75.0) } else { whole_ticks(x) };

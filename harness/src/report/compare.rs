@@ -78,7 +78,9 @@ pub fn render(comparison: &Comparison, provenance: &[(String, String)]) -> Strin
     page(&format!("{}: comparison", comparison.scenario), &body)
 }
 
+/// With a capital letter, and numbers kept on one line with their per cent.
 fn capital(words: &str) -> String {
+    let words = words.replace(" %", "\u{a0}%");
     let mut letters = words.chars();
     letters.next().map_or_else(String::new, |c| c.to_uppercase().chain(letters).collect())
 }
@@ -112,9 +114,9 @@ fn cells(comparison: &Comparison) -> Markup {
     }
 }
 
-/// Place of an improvement on a strip of 200 px from −60 % to 110 %.
+/// Place of an improvement on a strip of 200 px from −60 % to 120 %.
 fn place(fraction: f64) -> f64 {
-    libm::round((fraction.clamp(-0.6, 1.0) + 0.6) / 1.7 * 2000.0) / 10.0
+    libm::round((fraction.clamp(-0.6, 1.0) + 0.6) / 1.8 * 2000.0) / 10.0
 }
 
 fn whisker(cell: &Cell) -> Markup {

@@ -1,12 +1,14 @@
 //! What a person reads: one HTML file without network, and the comparison of two methods.
 //!
-//! - [`run`]: `report.html` of one run
-//! - [`compare`]: `compare.html` and the plain text of `octant compare`
-//! - [`chart`]: line charts as inline SVG that follow the colours of the page
-//! - [`number`]: numbers as people read them
+//! - [`run`] makes `report.html` of one run
+//! - [`compare`] makes `compare.html` and the plain text of `octant compare`
+//! - [`chart`] draws lines as inline SVG that follows the colours of the page
+//! - [`number`] writes numbers as people read them
 
+mod calibration;
 pub mod chart;
 pub mod compare;
+mod drift;
 pub mod number;
 mod page;
 mod parameters;

@@ -108,7 +108,7 @@ pub struct Improvement {
 pub fn improvement(first: &[f64], second: &[f64], seed: u64) -> Option<Improvement> {
     let pairs = first.len();
     let (whole, other) = (rms(first)?, rms(second)?);
-    if second.len() != pairs || pairs < 2 || !(whole > 0.0) || !other.is_finite() {
+    if second.len() != pairs || pairs < 2 || whole == 0.0 || !(whole + other).is_finite() {
         return None;
     }
     let mut random = Philox::from_u64_seed(seed);

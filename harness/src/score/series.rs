@@ -59,12 +59,12 @@ impl Series {
     pub(super) fn push(&mut self, point: Point) {
         self.first.get_or_insert(point);
         self.last = Some(point);
-        if self.in_last > 0 && self.in_last < self.per_bucket {
-            if let Some(bucket) = self.buckets.last_mut() {
-                bucket.take(point);
-                self.in_last += 1;
-                return;
-            }
+        if self.in_last < self.per_bucket
+            && let Some(bucket) = self.buckets.last_mut()
+        {
+            bucket.take(point);
+            self.in_last += 1;
+            return;
         }
         if self.buckets.len() == BUCKETS_MAX {
             for i in 0..BUCKETS_MAX / 2 {

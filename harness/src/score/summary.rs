@@ -52,24 +52,7 @@ impl Summary {
     /// # Errors
     /// If the summary can't be written as JSON.
     pub fn to_json(&self) -> Result<String, serde_json::Error> {
-        // One line for each point of the series: a pretty printer would give it five.
-        let mut value = serde_json::to_value(self)?;
-        let mut packed = Vec::new();
-        for pointer in ["/navigation/series_hours", "/baseline/navigation/series_hours"] {
-            if let Some(series) = value.pointer_mut(pointer) {
-                let rows: Vec<String> = series
-                    .as_array()
-                    .map(|rows| rows.iter().map(ToString::to_string).collect())
-                    .unwrap_or_default();
-                let token = format!("@series {}@", packed.len());
-                *series = serde_json::Value::String(token.clone());
-                packed.push((format!("\"{token}\""), format!("[{}]", rows.join(",\n"))));
-            }
-        }
-        let mut text = serde_json::to_string_pretty(&value)?;
-        for (token, rows) in packed {
-            text = text.replacen(&token, &rows, 1);
-        }
+        let mut text = rows_on_one_line(&serde_json::to_string_pretty(self)?);
         text.push('\n');
         Ok(text)
     }
@@ -90,6 +73,35 @@ impl Summary {
         }
         serde_json::from_str(text).map_err(|e| SummaryError::Form(e.to_string()))
     }
+}
+
+/// Arrays of plain numbers on one line each: a pretty printer gives every point of a series five.
+fn rows_on_one_line(pretty: &str) -> String {
+    let mut text = String::with_capacity(pretty.len());
+    let mut rest = pretty;
+    let mut in_string = false;
+    while let Some(c) = rest.chars().next() {
+        if in_string && c == '\\' {
+            // An escaped character may be a quotation mark.
+            let end = rest.char_indices().nth(2).map_or(rest.len(), |(i, _)| i);
+            text.push_str(&rest[..end]);
+            rest = &rest[end..];
+            continue;
+        }
+        in_string ^= c == '"';
+        if c == '['
+            && !in_string
+            && let Some(end) = rest.find(']')
+            && rest[1..end].bytes().all(|b| b"0123456789+-.eE, \n".contains(&b))
+        {
+            text.extend(rest[..=end].chars().filter(|c| !c.is_whitespace()));
+            rest = &rest[end + 1..];
+            continue;
+        }
+        text.push(c);
+        rest = &rest[c.len_utf8()..];
+    }
+    text
 }
 
 /// Why a summary could not be read.

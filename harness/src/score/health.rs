@@ -1,0 +1,236 @@
+//! What the core reported over a run: counts, episodes, mean NIS.
+
+use super::summary::HealthCounts;
+use octant_sample::time::DeviceTime;
+use octant_sample::{Health, Mode, Output};
+
+/// Episodes kept; more are only counted.
+pub const EPISODES_MAX: usize = 1000;
+
+/// Flags of one cause that are closer than this are one episode: measurements come once a second.
+const JOIN_NS: u64 = 2_500_000_000;
+
+/// A stretch in which the core reported one cause.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Episode {
+    /// The cause: one flag.
+    pub cause: Health,
+    /// First epoch that reported it.
+    pub start: DeviceTime,
+    /// Last epoch that reported it.
+    pub end: DeviceTime,
+    /// Epochs that reported it.
+    pub epochs: u64,
+}
+
+impl Episode {
+    /// The cause in words.
+    #[must_use]
+    pub fn name(&self) -> &'static str {
+        name(self.cause)
+    }
+}
+
+/// A flag in words.
+#[must_use]
+pub fn name(cause: Health) -> &'static str {
+    match cause {
+        Health::INNOVATION_REJECTED => "measurement rejected",
+        Health::RECOVERING => "filter recovering",
+        Health::GYRO_STUCK => "gyro stuck",
+        Health::ACCELEROMETER_STUCK => "accelerometer stuck",
+        Health::GAP => "samples missing",
+        Health::OUT_OF_ORDER => "sample out of order",
+        Health::INERTIAL_INVALID => "inertial counts invalid",
+        Health::GIMBAL_DISAGREES => "gimbal not at its position",
+        Health::AIDING_LOST => "aiding lost",
+        Health::INCONSISTENT => "innovations contradict the tuning",
+        Health::NUMERIC => "number kept out of the state",
+        _ => "several causes",
+    }
+}
+
+/// Watches the outputs of one run. Takes no memory while it watches.
+#[derive(Clone, Debug)]
+pub struct HealthMonitor {
+    counts: HealthCounts,
+    /// The last epoch that reported each flag, and the index of its episode if it is listed.
+    last: [Option<(DeviceTime, Option<usize>)>; 32],
+    episodes: Vec<Episode>,
+    unlisted: u64,
+    nis_sum: f64,
+    nis_count: u64,
+}
+
+impl Default for HealthMonitor {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl HealthMonitor {
+    /// A monitor that has seen nothing.
+    #[must_use]
+    pub fn new() -> Self {
+        Self {
+            counts: HealthCounts::default(),
+            last: [None; 32],
+            episodes: Vec::with_capacity(EPISODES_MAX),
+            unlisted: 0,
+            nis_sum: 0.0,
+            nis_count: 0,
+        }
+    }
+
+    /// Takes the output of one epoch.
+    pub fn push(&mut self, output: &Output) {
+        let rejected = output.health.contains(Health::INNOVATION_REJECTED);
+        if output.nis.is_finite() || rejected {
+            self.counts.measurements += 1;
+        }
+        if output.nis.is_finite() && !rejected && output.mode == Mode::Calibrating {
+            self.nis_sum += output.nis;
+            self.nis_count += 1;
+        }
+        if output.health.is_empty() {
+            return;
+        }
+        for cause in output.health.iter() {
+            self.count(cause, output.device_time);
+        }
+    }
+
+    fn count(&mut self, cause: Health, now: DeviceTime) {
+        let bit = cause.bits().trailing_zeros() as usize;
+        let joins = self.last[bit].filter(|(last, _)| now.ns.saturating_sub(last.ns) <= JOIN_NS);
+        let listed = match joins {
+            Some((_, listed)) => {
+                if let Some(episode) = listed.and_then(|i| self.episodes.get_mut(i)) {
+                    episode.end = now;
+                    episode.epochs += 1;
+                }
+                listed
+            }
+            None if self.episodes.len() < EPISODES_MAX => {
+                self.episodes.push(Episode { cause, start: now, end: now, epochs: 1 });
+                Some(self.episodes.len() - 1)
+            }
+            None => {
+                self.unlisted += 1;
+                None
+            }
+        };
+        self.last[bit] = Some((now, listed));
+        let counts = &mut self.counts;
+        let count = match cause {
+            Health::INNOVATION_REJECTED => &mut counts.rejected,
+            Health::RECOVERING => {
+                // A recovery is one event, however long it lasts.
+                counts.recoveries += u64::from(joins.is_none());
+                return;
+            }
+            Health::GYRO_STUCK => &mut counts.gyro_stuck,
+            Health::ACCELEROMETER_STUCK => &mut counts.accelerometer_stuck,
+            Health::GAP => &mut counts.gaps,
+            Health::OUT_OF_ORDER => &mut counts.out_of_order,
+            Health::INERTIAL_INVALID => &mut counts.inertial_invalid,
+            Health::GIMBAL_DISAGREES => &mut counts.gimbal_disagrees,
+            Health::AIDING_LOST => &mut counts.aiding_lost,
+            Health::INCONSISTENT => &mut counts.inconsistent,
+            Health::NUMERIC => &mut counts.numeric,
+            _ => return,
+        };
+        *count += 1;
+    }
+
+    /// Counts so far.
+    #[must_use]
+    pub fn counts(&self) -> &HealthCounts {
+        &self.counts
+    }
+
+    /// Mean NIS of the measurements used in the calibration; `None` if there was none.
+    #[must_use]
+    pub fn nis_mean(&self) -> Option<f64> {
+        (self.nis_count > 0).then(|| self.nis_sum / self.nis_count as f64)
+    }
+
+    /// Episodes in the order in which they began, at most [`EPISODES_MAX`].
+    #[must_use]
+    pub fn episodes(&self) -> &[Episode] {
+        &self.episodes
+    }
+
+    /// Episodes that found no place in the list.
+    #[must_use]
+    pub fn unlisted(&self) -> u64 {
+        self.unlisted
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn output(second: u64, health: Health, nis: f64) -> Output {
+        Output {
+            device_time: DeviceTime::from_ns(second * 1_000_000_000),
+            mode: Mode::Calibrating,
+            health,
+            nis,
+            ..Output::default()
+        }
+    }
+
+    #[test]
+    fn flags_close_together_are_one_episode_and_one_recovery() {
+        let mut monitor = HealthMonitor::new();
+        let rejected = Health::INNOVATION_REJECTED;
+        for (second, health, nis) in [
+            (1, Health::empty(), 2.0),
+            (2, rejected, f64::NAN),
+            (3, rejected, 40.0),
+            (4, Health::RECOVERING, 4.0),
+            (5, Health::RECOVERING, f64::NAN),
+            (60, Health::RECOVERING | Health::GAP, f64::NAN),
+        ] {
+            monitor.push(&output(second, health, nis));
+        }
+        let counts = monitor.counts();
+        assert_eq!((counts.measurements, counts.rejected), (4, 2));
+        assert_eq!((counts.recoveries, counts.gaps), (2, 1));
+        assert_eq!(monitor.nis_mean(), Some(3.0), "a rejected measurement is no innovation used");
+        let names: Vec<_> = monitor.episodes().iter().map(|e| (e.name(), e.epochs)).collect();
+        assert_eq!(
+            names,
+            [
+                ("measurement rejected", 2),
+                ("filter recovering", 2),
+                ("filter recovering", 1),
+                ("samples missing", 1),
+            ]
+        );
+    }
+
+    #[test]
+    fn episodes_are_bounded() {
+        let mut monitor = HealthMonitor::new();
+        for k in 0..2000 {
+            monitor.push(&output(10 * k, Health::GAP, f64::NAN));
+        }
+        assert_eq!(monitor.episodes().len(), EPISODES_MAX);
+        assert_eq!(monitor.unlisted(), 1000);
+        assert_eq!(monitor.counts().gaps, 2000);
+        for second in 50_000..50_010 {
+            monitor.push(&output(second, Health::RECOVERING, f64::NAN));
+        }
+        assert_eq!(monitor.counts().recoveries, 1, "one recovery of ten seconds, listed or not");
+    }
+
+    #[test]
+    fn every_flag_has_words() {
+        for cause in Health::all().iter() {
+            assert_ne!(name(cause), "several causes", "{cause:?}");
+        }
+    }
+}
