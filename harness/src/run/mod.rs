@@ -1,0 +1,14 @@
+//! A run: epochs driven from source to endpoint to recorder, watched on the way, then scored.
+//!
+//! [`drive`] is the loop; [`watch`] what is noticed while it runs; [`method`] one method from its
+//! scenario to its scores; [`assemble`] the summary and report of a run of one or two methods.
+
+pub mod assemble;
+pub mod drive;
+pub mod method;
+pub mod watch;
+
+pub use assemble::{Run, assemble};
+pub use drive::{Control, Ended, RunError, drive};
+pub use method::{MethodRun, Recording, run_method};
+pub use watch::Watcher;

@@ -1,0 +1,216 @@
+//! What is noticed of a run while it goes by: drift, health, and the series of the report.
+//!
+//! The same watcher sees a run live and a recording afterwards ([`Watcher::epoch`], then
+//! [`Watcher::parameters`] and [`Watcher::truth`] where there are any).
+
+use crate::endpoint::ParameterEstimate;
+use crate::report::{GimbalPoint, HealthEvent, NisPoint, ParameterPoint};
+use crate::score::drift::{DriftSample, DriftScorer};
+use crate::score::health::HealthMonitor;
+use octant_plant::Truth;
+use octant_sample::{Health, Mode, Output};
+
+/// Grid on which truth is compared with the navigation solution, ns.
+const SCORE_PERIOD_NS: u64 = 1_000_000_000;
+/// Points of the parameters' convergence that a report draws well.
+const CONVERGENCE_POINTS: u64 = 400;
+/// Period in which a gimbal that stands is still drawn, ns.
+const STANDING_PERIOD_NS: u64 = 60_000_000_000;
+/// NIS points kept; beyond, every second one is dropped.
+const NIS_POINTS_MAX: usize = 50_000;
+/// Gimbal points kept: days of the rotation in navigation are all alike.
+const GIMBAL_POINTS_MAX: usize = 40_000;
+
+/// Watches one run.
+#[derive(Debug)]
+pub struct Watcher {
+    next_score_ns: u64,
+    convergence_period_ns: u64,
+    next_convergence_ns: u64,
+    next_standing_ns: u64,
+    nis_stride: u64,
+    measurements: u64,
+    was_moving: bool,
+    troubled: bool,
+    /// Device time at which the present navigation began.
+    navigation_start_ns: Option<u64>,
+    last_ns: u64,
+    drift: DriftScorer,
+    drift_samples: u64,
+    /// Health and NIS over the run.
+    pub health: HealthMonitor,
+    /// How the parameters came about.
+    pub convergence: Vec<ParameterPoint>,
+    /// NIS of the measurements.
+    pub nis: Vec<NisPoint>,
+    /// Gimbal angles.
+    pub gimbals: Vec<GimbalPoint>,
+    /// Parameters as last reported.
+    pub last_parameters: Option<ParameterEstimate>,
+    /// Mode after the last epoch.
+    pub last_mode: Mode,
+}
+
+impl Watcher {
+    /// A watcher for a calibration of this length, s.
+    #[must_use]
+    pub fn new(calibration_s: f64) -> Self {
+        Self {
+            next_score_ns: 0,
+            convergence_period_ns: (calibration_s * 1e9) as u64 / CONVERGENCE_POINTS,
+            next_convergence_ns: 0,
+            next_standing_ns: 0,
+            nis_stride: 1,
+            measurements: 0,
+            was_moving: false,
+            troubled: false,
+            navigation_start_ns: None,
+            last_ns: 0,
+            drift: DriftScorer::new(),
+            drift_samples: 0,
+            health: HealthMonitor::new(),
+            convergence: Vec::new(),
+            nis: Vec::new(),
+            gimbals: Vec::new(),
+            last_parameters: None,
+            last_mode: Mode::default(),
+        }
+    }
+
+    /// Takes the output of an epoch; true if the truth of it is wanted.
+    #[inline]
+    pub fn epoch(&mut self, output: &Output) -> bool {
+        let now_ns = output.device_time.ns;
+        self.last_ns = now_ns;
+        if output.mode != self.last_mode {
+            self.change_mode(output);
+        }
+        if !output.health.is_empty() || self.troubled || output.nis.is_finite() {
+            self.troubled = !output.health.is_empty();
+            self.measurement(output);
+        }
+        if output.moving != self.was_moving || now_ns >= self.next_standing_ns {
+            self.gimbals(output);
+        }
+        let due = now_ns >= self.next_score_ns;
+        if due {
+            self.next_score_ns = (now_ns / SCORE_PERIOD_NS + 1) * SCORE_PERIOD_NS;
+        }
+        due
+    }
+
+    #[cold]
+    fn change_mode(&mut self, output: &Output) {
+        // The output in which navigation begins holds the state at its start.
+        if output.mode == Mode::Navigating {
+            self.navigation_start_ns = Some(output.device_time.ns);
+            self.next_score_ns = output.device_time.ns;
+        }
+        if output.mode == Mode::Done {
+            self.next_score_ns = 0;
+        }
+        self.last_mode = output.mode;
+    }
+
+    #[inline(never)]
+    fn measurement(&mut self, output: &Output) {
+        self.health.push(output);
+        if output.nis.is_finite() {
+            self.measurements += 1;
+            if self.nis.len() >= NIS_POINTS_MAX {
+                let mut odd = false;
+                self.nis.retain(|_| {
+                    odd = !odd;
+                    odd
+                });
+                self.nis_stride *= 2;
+            }
+            // What the gate rejected is always drawn.
+            let rejected = output.health.contains(Health::INNOVATION_REJECTED);
+            if rejected || self.measurements.is_multiple_of(self.nis_stride) {
+                self.nis.push(NisPoint { hours: hours(output), nis: output.nis });
+            }
+        }
+    }
+
+    #[inline(never)]
+    fn gimbals(&mut self, output: &Output) {
+        let now_ns = output.device_time.ns;
+        // A move is drawn as a line between its ends.
+        self.next_standing_ns = now_ns + STANDING_PERIOD_NS;
+        self.was_moving = output.moving;
+        if self.gimbals.len() < GIMBAL_POINTS_MAX {
+            let target = output.gimbal_command.target;
+            let (azimuth_deg, roll_deg) =
+                (target.azimuth_rad().to_degrees(), target.roll_rad().to_degrees());
+            // Until the gimbals arrive they are drawn where they were.
+            let (azimuth_deg, roll_deg) = match self.gimbals.last() {
+                Some(last) if output.moving => (last.azimuth_deg, last.roll_deg),
+                _ => (azimuth_deg, roll_deg),
+            };
+            let moving = output.moving;
+            self.gimbals.push(GimbalPoint { hours: hours(output), azimuth_deg, roll_deg, moving });
+        }
+    }
+
+    /// Takes the parameters that came with the epoch just given.
+    #[inline]
+    pub fn parameters(&mut self, output: &Output, estimate: &ParameterEstimate) {
+        self.last_parameters = Some(*estimate);
+        if output.device_time.ns >= self.next_convergence_ns {
+            self.next_convergence_ns = output.device_time.ns + self.convergence_period_ns.max(1);
+            self.convergence.push(ParameterPoint {
+                hours: hours(output),
+                estimate: estimate.parameters,
+                sigma: estimate.sigma,
+            });
+        }
+    }
+
+    /// Takes the truth of the epoch just given.
+    pub fn truth(&mut self, output: &Output, truth: &Truth) {
+        let Some(start_ns) = self.navigation_start_ns else { return };
+        self.drift_samples += 1;
+        self.drift.push(&DriftSample {
+            t_s: (output.device_time.ns - start_ns) as f64 * 1e-9,
+            latitude_error_rad: output.navigation.latitude_rad - truth.latitude_rad,
+            longitude_error_rad: output.navigation.longitude_rad - truth.longitude_rad,
+            latitude_rad: truth.latitude_rad,
+            height_m: truth.height_m,
+        });
+    }
+
+    /// The drift so far; `None` without navigation or without truth.
+    #[must_use]
+    pub fn drift(&self) -> Option<&DriftScorer> {
+        (self.drift_samples >= 2).then_some(&self.drift)
+    }
+
+    /// Length of the run so far, s of device time.
+    #[must_use]
+    pub fn elapsed_s(&self) -> f64 {
+        self.last_ns as f64 * 1e-9
+    }
+
+    /// The core's reports, in order of time.
+    #[must_use]
+    pub fn events(&self) -> Vec<HealthEvent> {
+        let mut events: Vec<HealthEvent> = self
+            .health
+            .episodes()
+            .iter()
+            .map(|episode| HealthEvent {
+                hours: episode.start.seconds() / 3600.0,
+                duration_s: (episode.end.ns - episode.start.ns) as f64 * 1e-9,
+                name: episode.name().to_owned(),
+                detail: format!("{} epochs", episode.epochs),
+            })
+            .collect();
+        events.sort_by(|a, b| a.hours.total_cmp(&b.hours));
+        events
+    }
+}
+
+fn hours(output: &Output) -> f64 {
+    output.device_time.seconds() / 3600.0
+}
