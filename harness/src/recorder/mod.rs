@@ -45,6 +45,8 @@ pub struct Frame<'a> {
 
 /// What rides along with some frames only.
 #[derive(Clone, Copy, Debug)]
+// Passed by reference and copied into its own list: a box would be an allocation per second.
+#[allow(clippy::large_enum_variant)]
 pub enum Extra {
     /// Truth at the stamp of the frame just given.
     Truth(Truth),
