@@ -78,10 +78,11 @@ fn recorder(c: &mut Criterion) {
 /// a run.
 fn loop_thread(steps: &[Step]) {
     let few = &steps[..64];
-    let (blocks, block) = (20, 1024);
+    let (blocks, block) = (20, 256);
     let mut shortest = f64::INFINITY;
     for _ in 0..50 {
-        let options = RecorderOptions { blocks, ..options(Samples::Decimated) };
+        let options =
+            RecorderOptions { blocks, epochs_per_block: block, ..options(Samples::Decimated) };
         let mut recorder = Recorder::hash_only(&options).unwrap();
         // Every buffer is touched once before: steady state.
         for round in 0..2 {

@@ -128,7 +128,7 @@ impl Default for RecorderOptions {
             policy: Policy::default(),
             scenario: String::new(),
             metadata: BTreeMap::new(),
-            epochs_per_block: 1024,
+            epochs_per_block: 256,
             blocks: 4,
         }
     }
