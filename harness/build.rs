@@ -15,10 +15,10 @@ fn main() {
         println!("cargo:rerun-if-changed={path}");
     }
     for name in ["HEAD", "index"] {
-        if let Some(path) = output("git", &["rev-parse", "--git-path", name]) {
-            if std::path::Path::new(&path).exists() {
-                println!("cargo:rerun-if-changed={path}");
-            }
+        if let Some(path) = output("git", &["rev-parse", "--git-path", name])
+            && std::path::Path::new(&path).exists()
+        {
+            println!("cargo:rerun-if-changed={path}");
         }
     }
     let commit = output("git", &["rev-parse", "HEAD"]).unwrap_or_default();

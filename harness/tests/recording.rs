@@ -178,6 +178,29 @@ proptest! {
     }
 }
 
+/// A small whole recording, made once.
+fn small() -> &'static [u8] {
+    static BYTES: std::sync::OnceLock<Vec<u8>> = std::sync::OnceLock::new();
+    BYTES.get_or_init(|| record(&stream(100), &full()).0)
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(2000))]
+
+    #[test]
+    fn a_damaged_recording_is_read_without_panic(
+        damage in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..6),
+        head in any::<bool>(),
+    ) {
+        let mut bytes = small().to_vec();
+        let range = if head { 1000 } else { bytes.len() };
+        for (at, value) in damage {
+            bytes[at.index(range)] = value;
+        }
+        let _ = reader::read_bytes(&bytes);
+    }
+}
+
 #[test]
 fn the_stream_hash_is_the_same_for_every_block_size_and_policy() {
     let steps = stream(3000);

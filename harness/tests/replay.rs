@@ -54,6 +54,7 @@ fn a_full_recording_gives_every_epoch_again() {
     let mut replay = Replay::open(&path, None).unwrap();
     assert_eq!(replay.samples_total(), Some(2500));
     let mut hash = StreamHash::new();
+    let mut truths = 0;
     for step in &steps {
         let epoch = replay.next(&GimbalCommand::default()).unwrap().unwrap();
         assert_eq!(epoch, step.faulted, "what reached the core, faults included");
@@ -62,6 +63,7 @@ fn a_full_recording_gives_every_epoch_again() {
         assert_eq!(recorded.clean_aiding.unwrap_or(epoch.aiding), step.clean.aiding);
         if let Some(truth) = replay.truth() {
             assert_eq!(truth, truth_of(step));
+            truths += 1;
         }
         // A core that gives the same outputs has the same hash.
         hash.epoch(&epoch.sample, epoch.aiding.as_ref(), &step.output);
@@ -72,6 +74,7 @@ fn a_full_recording_gives_every_epoch_again() {
     assert_eq!(replay.next(&GimbalCommand::default()).unwrap(), None);
     assert!(!replay.truncated());
     assert_eq!(hash.hex(), summary.stream_hash);
+    assert_eq!(truths, 13, "the first epoch and twelve whole seconds");
     // A run is never overwritten.
     let error = Recorder::to_file(&path, &full()).unwrap_err();
     assert!(error.to_string().contains("recording.mcap"), "{error}");

@@ -45,6 +45,8 @@ pub struct Frame<'a> {
 
 /// What rides along with some frames only.
 #[derive(Clone, Copy, Debug)]
+// Passed by reference and copied into its own list: a box would be an allocation per second.
+#[allow(clippy::large_enum_variant)]
 pub enum Extra {
     /// Truth at the stamp of the frame just given.
     Truth(Truth),
@@ -126,7 +128,7 @@ impl Default for RecorderOptions {
             policy: Policy::default(),
             scenario: String::new(),
             metadata: BTreeMap::new(),
-            epochs_per_block: 1024,
+            epochs_per_block: 256,
             blocks: 4,
         }
     }

@@ -90,7 +90,7 @@ pub enum Item {
     /// An output of the core.
     Output(Output),
     /// Parameters with the sequence number of their epoch.
-    Parameters(u64, ParameterEstimate),
+    Parameters(u64, Box<ParameterEstimate>),
     /// Truth.
     Truth(Truth),
     /// An event.
@@ -116,7 +116,7 @@ impl Item {
             Topic::Output => Self::Output(message::decode_output(data)?),
             Topic::Parameters => {
                 let (sequence, estimate) = message::decode_parameters(data)?;
-                Self::Parameters(sequence, estimate)
+                Self::Parameters(sequence, Box::new(estimate))
             }
             Topic::Truth => Self::Truth(message::decode_truth(data)?),
             Topic::Event => Self::Event(
@@ -391,7 +391,7 @@ impl<R: Read> Epochs<R> {
                 Item::Aiding(aiding) => epoch.aiding = Some(aiding),
                 Item::Sample(sample) => epoch.sample = Some(sample),
                 Item::Output(output) => epoch.output = Some(output),
-                Item::Parameters(_, estimate) => epoch.parameters = Some(estimate),
+                Item::Parameters(_, estimate) => epoch.parameters = Some(*estimate),
                 Item::Truth(truth) => epoch.truth = Some(truth),
                 Item::Event(_) => {}
             }

@@ -70,6 +70,7 @@ impl<W: Write> RecordingWriter<W> {
         let mut mcap = mcap::WriteOptions::new()
             .profile("octant")
             .library(concat!("octant ", env!("CARGO_PKG_VERSION")))
+            // At level 1 it takes 15 % more time than LZ4 for files 15 % smaller.
             .compression(Some(mcap::Compression::Zstd))
             .compression_level(1)
             // The bytes differ with the number of threads; none keeps them on this thread.

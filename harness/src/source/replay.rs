@@ -21,7 +21,7 @@ pub struct Replay {
 }
 
 enum Kind {
-    Octant { epochs: Epochs<BufReader<File>>, total: Option<u64> },
+    Octant { epochs: Box<Epochs<BufReader<File>>>, total: Option<u64> },
     Foreign(Box<Foreign<BufReader<File>>>),
 }
 
@@ -41,7 +41,10 @@ impl Replay {
             None => {
                 let recording = Recording::open(path).map_err(|e| read_error(&name, &e))?;
                 require_full(&name, recording.info())?;
-                Kind::Octant { epochs: Epochs::new(recording), total: samples_in_summary(path) }
+                Kind::Octant {
+                    epochs: Box::new(Epochs::new(recording)),
+                    total: samples_in_summary(path),
+                }
             }
         };
         Ok(Self { path: name, kind, last: RecordedEpoch::default() })

@@ -1,0 +1,265 @@
+//! One method of a scenario, from its configuration to its scores.
+
+use super::drive::{Control, Ended, RunError, drive};
+use super::watch::Watcher;
+use crate::endpoint::{Endpoint, InProcess};
+use crate::recorder::{
+    Event, Policy, Recorder, RecorderError, RecorderOptions, RecorderSummary, Samples,
+};
+use crate::scenario::resolve::{Draws, Seeded};
+use crate::scenario::{Method, Scenario, Source as SourceKind};
+use crate::score::parameters::{nees, score, worst_normalized_error};
+use crate::score::summary::{Calibration, HeightChannel, Navigation};
+use crate::source::plant::PlantSource;
+use crate::source::{Source, SourceError};
+use nalgebra::{Quaternion, UnitQuaternion, Vector3};
+use octant_calibration::config as core;
+use octant_calibration::state_machine::ConfigError;
+use octant_calibration::table::CalibrationTable;
+use octant_plant::Plant;
+use octant_sample::Parameters;
+use std::path::Path;
+
+/// What is kept of a method's stream.
+#[derive(Clone, Copy, Debug)]
+pub enum Recording<'a> {
+    /// A file, by the scenario's policy.
+    File(&'a Path),
+    /// The hash of the stream alone.
+    Hash,
+    /// Nothing: for ensembles.
+    None,
+}
+
+/// Why a method could not be set up.
+#[derive(Debug, thiserror::Error)]
+pub enum SetupError {
+    /// The plant's configuration contradicts itself.
+    #[error("set up the plant: {0}")]
+    Plant(#[from] octant_plant::ConfigError),
+    /// The core's configuration contradicts itself.
+    #[error("set up the core: {0}")]
+    Core(#[from] ConfigError),
+    /// A source could not be opened.
+    #[error(transparent)]
+    Source(#[from] SourceError),
+    /// The scenario has no second method.
+    #[error("run the baseline: the scenario has no [baseline]")]
+    NoBaseline,
+    /// The recorder could not be set up.
+    #[error(transparent)]
+    Recorder(#[from] RecorderError),
+}
+
+/// Why a method gave no result.
+#[derive(Debug, thiserror::Error)]
+pub enum MethodError {
+    /// It could not be set up: the input is bad.
+    #[error(transparent)]
+    Setup(#[from] SetupError),
+    /// It broke off: the bench failed.
+    #[error(transparent)]
+    Run(#[from] RunError),
+}
+
+/// One method, run.
+#[derive(Debug)]
+pub struct MethodRun {
+    /// Name of the method, as in "eight positions with G".
+    pub label: String,
+    /// How the loop ended.
+    pub ended: Ended,
+    /// Its calibration.
+    pub calibration: Option<Calibration>,
+    /// Its navigation.
+    pub navigation: Option<Navigation>,
+    /// What the recorder left.
+    pub recorder: RecorderSummary,
+    /// What was noticed.
+    pub watcher: Watcher,
+    /// True parameters, where the source knows them.
+    pub truth: Option<Parameters>,
+    /// The calibration table, where the calibration was accepted.
+    pub table: Option<CalibrationTable>,
+}
+
+/// Name of a method, for people.
+#[must_use]
+pub fn label(scenario: &Scenario, method: Method) -> String {
+    let calibration = match method {
+        Method::Primary => scenario.calibration.as_ref(),
+        Method::Baseline => scenario.baseline.as_ref(),
+    };
+    let Some(calibration) = calibration else { return "navigation alone".to_owned() };
+    let estimator = match &calibration.estimator {
+        core::Estimator::Kalman(_) => {
+            let g = octant_sample::parameters::Group::GDependent;
+            if calibration.estimates(g) { "with G states" } else { "without G states" }
+        }
+        core::Estimator::LeastSquares(_) => "by least squares",
+        core::Estimator::ExternalTurntable(_) => "on an external turntable",
+    };
+    format!("{} positions {estimator}", calibration.name)
+}
+
+/// Configurations of plant and core of one method of a scenario.
+///
+/// # Errors
+/// If they contradict themselves.
+pub fn configurations(
+    scenario: &Scenario,
+    method: Method,
+    seed: u64,
+) -> Result<(octant_plant::config::Config, core::Config, Draws), SetupError> {
+    let draws = Draws::of(scenario, &Seeded(seed));
+    let plant = scenario.plant(seed, &draws);
+    let (q_nb, velocity) = match &scenario.source {
+        // On a ship the attitude at the start depends on the phases that were drawn.
+        SourceKind::Plant => {
+            let truth = Plant::new(&plant)?.truth();
+            let [w, x, y, z] = truth.q_nb;
+            let q_nb = UnitQuaternion::new_unchecked(Quaternion::new(w, x, y, z));
+            (q_nb, Vector3::from(truth.velocity_mps))
+        }
+        _ => (scenario.mean_attitude(), Vector3::zeros()),
+    };
+    let core = scenario.core(method, &draws, &q_nb, &velocity).ok_or(SetupError::NoBaseline)?;
+    Ok((plant, core, draws))
+}
+
+/// Runs one method of a scenario with a seed.
+///
+/// # Errors
+/// If it can't be set up, or source, endpoint or recorder fail.
+pub fn run_method(
+    scenario: &Scenario,
+    method: Method,
+    seed: u64,
+    recording: Recording<'_>,
+    control: &Control,
+) -> Result<MethodRun, MethodError> {
+    let (plant, core, draws) = configurations(scenario, method, seed)?;
+    let mut endpoint = InProcess::new(&core).map_err(SetupError::Core)?;
+    let options = recorder_options(scenario, seed, &draws, method);
+    let mut recorder = match recording {
+        Recording::File(path) => Recorder::to_file(path, &options).map_err(SetupError::Recorder)?,
+        Recording::Hash => Recorder::hash_only(&options).map_err(SetupError::Recorder)?,
+        Recording::None => Recorder::none(),
+    };
+    let calibration_s = core.calibration.as_ref().map_or(0.0, |c| c.duration_s);
+    let mut watcher = Watcher::new(calibration_s);
+    let simulated = scenario.source == SourceKind::Plant;
+    let ended = if simulated {
+        // Statically dispatched: this loop passes ten million samples a second.
+        let samples = scenario.samples().unwrap_or(u64::MAX);
+        let plant = Plant::new(&plant).map_err(SetupError::Plant)?;
+        let mut source = PlantSource::new(plant, samples);
+        drive(&mut source, &mut endpoint, &mut recorder, &mut watcher, control)?
+    } else {
+        let mut source = crate::source::open(scenario).map_err(SetupError::Source)?;
+        drive::<dyn Source, _>(
+            source.as_mut(),
+            &mut endpoint,
+            &mut recorder,
+            &mut watcher,
+            control,
+        )?
+    };
+    let truth = simulated.then_some(draws.parameters);
+    finish(scenario, method, ended, endpoint, recorder, watcher, truth)
+}
+
+/// What is recorded of a method, by the scenario.
+fn recorder_options(
+    scenario: &Scenario,
+    seed: u64,
+    draws: &Draws,
+    method: Method,
+) -> RecorderOptions {
+    let record = &scenario.record;
+    let method = match method {
+        Method::Primary => "primary",
+        Method::Baseline => "baseline",
+    };
+    RecorderOptions {
+        policy: Policy {
+            samples: if record.full_samples { Samples::Full } else { Samples::Decimated },
+            period_ns: record.every_samples * scenario.sample_period_ns,
+            parameters_period_ns: record.parameters_period_ns,
+        },
+        scenario: scenario.to_resolved_toml(seed, draws),
+        metadata: [("method", method.to_owned()), ("seed", seed.to_string())]
+            .map(|(key, value)| (key.to_owned(), value))
+            .into(),
+        ..RecorderOptions::default()
+    }
+}
+
+/// Scores what was watched and closes the recording.
+fn finish(
+    scenario: &Scenario,
+    method: Method,
+    ended: Ended,
+    mut endpoint: InProcess,
+    mut recorder: Recorder,
+    mut watcher: Watcher,
+    truth: Option<Parameters>,
+) -> Result<MethodRun, MethodError> {
+    if ended == Ended::SourceEnded {
+        endpoint.end_of_stream();
+        watcher.last_parameters = Some(endpoint.parameters());
+    }
+    let core = endpoint.core();
+    let refused = core.refusal().map(ToString::to_string);
+    if let Some(reason) = &refused {
+        recorder.event(Event {
+            kind: "refused".to_owned(),
+            detail: serde_json::json!({ "reason": reason }),
+        });
+    }
+    let calibration = match method {
+        Method::Primary => scenario.calibration.as_ref(),
+        Method::Baseline => scenario.baseline.as_ref(),
+    }
+    .map(|plan| {
+        let parameters = score(truth.as_ref(), core.parameters(), core.sigma());
+        let diagnostics = core.diagnostics();
+        let mut health = watcher.health.counts().clone();
+        health.measurements = diagnostics.quality.used + diagnostics.quality.rejected;
+        Calibration {
+            positions: plan.name.clone(),
+            estimator: estimator_name(&plan.estimator).to_owned(),
+            duration_h: plan.duration_s / 3600.0,
+            nis_mean: Some(diagnostics.quality.nis_mean).filter(|nis| nis.is_finite()),
+            nees: nees(&parameters),
+            worst_normalized_error: worst_normalized_error(&parameters),
+            parameters,
+            refused: refused.clone(),
+            health,
+        }
+    });
+    let navigation = match watcher.drift() {
+        Some(drift) => Some(drift.finish(HeightChannel::Held).map_err(RunError::from)?),
+        None => None,
+    };
+    let table = core.table().cloned();
+    let recorder = recorder.finish().map_err(RunError::from)?;
+    Ok(MethodRun {
+        label: label(scenario, method),
+        ended,
+        calibration,
+        navigation,
+        recorder,
+        watcher,
+        truth,
+        table,
+    })
+}
+
+fn estimator_name(estimator: &core::Estimator) -> &'static str {
+    match estimator {
+        core::Estimator::Kalman(_) => "kalman",
+        core::Estimator::LeastSquares(_) => "least-squares",
+        core::Estimator::ExternalTurntable(_) => "external-turntable",
+    }
+}
