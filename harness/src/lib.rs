@@ -3,11 +3,13 @@
 //! A sample flows one way, and the modules are named for its stations:
 //! **source → faults → endpoint → recorder → score → report**.
 
+pub mod cli;
 pub mod endpoint;
 pub mod evidence;
 pub mod observe;
 pub mod recorder;
 pub mod report;
+pub mod run;
 pub mod scenario;
 pub mod score;
 pub mod source;

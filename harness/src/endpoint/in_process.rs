@@ -21,6 +21,12 @@ impl InProcess {
         Ok(Self { core: Core::new(config)?, revision: 0 })
     }
 
+    /// Tells the core that no sample will come any more: a calibration that still runs is concluded
+    /// with what it has.
+    pub fn end_of_stream(&mut self) {
+        self.core.end_of_stream();
+    }
+
     /// The core behind the endpoint, for what no wire carries: diagnostics and table.
     #[must_use]
     pub fn core(&self) -> &Core {

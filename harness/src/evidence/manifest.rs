@@ -127,13 +127,11 @@ pub enum Difference {
 }
 
 impl Manifest {
-    /// Hashes everything in the folder of a run and writes its manifest.
-    ///
-    /// # Errors
-    /// If a file can't be read or the manifest not written.
-    pub fn write(folder: &Path, facts: &RunFacts) -> Result<Self, ManifestError> {
+    /// What is known of a run before its files are.
+    #[must_use]
+    pub fn of(facts: &RunFacts) -> Self {
         let some = |text: &str| (!text.is_empty()).then(|| text.to_owned());
-        let manifest = Self {
+        Self {
             schema: SCHEMA,
             octant: env!("CARGO_PKG_VERSION").into(),
             git: some(env!("OCTANT_GIT_COMMIT"))
@@ -145,11 +143,43 @@ impl Manifest {
             ended: humantime::format_rfc3339_millis(facts.ended).to_string(),
             rerun: shell_line(&facts.command_line),
             command_line: facts.command_line.clone(),
+            files: Vec::new(),
+            signature: None,
+        }
+    }
+
+    /// Name and value of what a report says about its origin.
+    #[must_use]
+    pub fn entries(&self) -> Vec<(String, String)> {
+        let git = self.git.as_ref().map_or("not known".to_owned(), |git| {
+            format!("{}{}", git.commit, if git.dirty { ", with local changes" } else { "" })
+        });
+        let host = &self.host;
+        let cpu = host.cpu.as_deref().unwrap_or(&host.arch);
+        [
+            ("octant", self.octant.clone()),
+            ("source revision", git),
+            ("compiler", self.rustc.clone().unwrap_or_else(|| "not known".to_owned())),
+            ("host", format!("{}, {}, {cpu}, {} processors", host.name, host.os, host.cpus)),
+            ("started", self.started.clone()),
+            ("ended", self.ended.clone()),
+            ("signature", self.signature.clone().unwrap_or_else(|| "unsigned".to_owned())),
+        ]
+        .map(|(name, value)| (name.to_owned(), value))
+        .into()
+    }
+
+    /// Hashes everything in the folder of a run and writes its manifest.
+    ///
+    /// # Errors
+    /// If a file can't be read or the manifest not written.
+    pub fn write(folder: &Path, facts: &RunFacts) -> Result<Self, ManifestError> {
+        let manifest = Self {
             files: files(folder)?
                 .iter()
                 .map(|path| hash_file(folder, path))
                 .collect::<Result<_, _>>()?,
-            signature: None,
+            ..Self::of(facts)
         };
         let path = folder.join(FILE_NAME);
         let mut text = serde_json::to_string_pretty(&manifest).map_err(|error| {

@@ -204,3 +204,37 @@ mod tests {
         assert!((frames::phi_of(&computed, &truth) - Vector3::from(phi)).norm() < 1e-12);
     }
 }
+
+/// Draws from the plant's streams: the seed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Seeded(pub u64);
+
+fn of_group<const N: usize>(d: &Distribution) -> octant_plant::draw::Draw<N> {
+    use octant_plant::draw::Draw;
+    match d {
+        Distribution::Normal(sigma) => Draw::Normal { sigma: *sigma },
+        Distribution::Uniform(half_width) => Draw::Uniform { half_width: *half_width },
+        Distribution::Constant(values) => Draw::Constant(std::array::from_fn(|i| values[i])),
+    }
+}
+impl Drawing for Seeded {
+    fn parameters(&self, d: &[Distribution; 7]) -> Parameters {
+        let draws = octant_plant::draw::ParameterDraws {
+            gyro_bias: of_group(&d[0]),
+            gyro_scale: of_group(&d[1]),
+            gyro_misalignment: of_group(&d[2]),
+            g_dependent: of_group(&d[3]),
+            accel_bias: of_group(&d[4]),
+            accel_scale: of_group(&d[5]),
+            accel_misalignment: of_group(&d[6]),
+        };
+        octant_plant::draw::parameters(self.0, &draws)
+    }
+    fn alignment_error(&self, t: f64, a: f64, v: f64) -> ([f64; 3], [f64; 3]) {
+        let e = octant_plant::draw::alignment_error(self.0, t, a, v);
+        (e.phi_rad, e.velocity_mps)
+    }
+    fn phases(&self, motion: &str, count: usize) -> Vec<f64> {
+        octant_plant::draw::phases(self.0, motion, count)
+    }
+}

@@ -239,6 +239,9 @@ impl Core {
         self.answer(sample, health, nis)
     }
 
+    /// temp
+    pub fn end_of_stream(&mut self) {}
+
     /// Samples since the start of the present phase.
     #[inline]
     fn phase_tick(&self) -> u64 {

@@ -1,0 +1,146 @@
+//! The command line: results on stdout, progress and diagnostics on stderr.
+//!
+//! Exit status: 0 pass, 1 fail, 2 bad input or usage, 3 inconclusive, 4 error (the bench failed).
+#![allow(clippy::print_stdout, reason = "results go to stdout")]
+
+mod compare;
+mod observe;
+mod progress;
+mod replay;
+mod report;
+mod run;
+mod score;
+
+use crate::score::verdict::Verdict;
+use clap::{Args, Parser, Subcommand};
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+/// Test harness for the self-calibration of dual-axis rotational inertial navigation systems.
+#[derive(Debug, Parser)]
+#[command(name = "octant", version, max_term_width = 100, propagate_version = true)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Run a scenario: calibrate, navigate, score, and write a folder of evidence.
+    Run(run::Arguments),
+    /// Compare two methods over many seeds, on the same instruments with the same noise.
+    Compare(compare::Arguments),
+    /// Put a recorded stream through the core again.
+    Replay(replay::Arguments),
+    /// Score a recording.
+    Score(score::Arguments),
+    /// Tell what a sequence can observe and reach, before anything is run.
+    Observe(observe::Arguments),
+    /// Write the report of a finished run again.
+    Report(report::Arguments),
+    /// Print the JSON Schema of scenarios, for completion in editors.
+    Schema,
+}
+
+/// What every command that takes a scenario has.
+#[derive(Debug, Args)]
+struct ScenarioArguments {
+    /// The scenario, a TOML file.
+    #[arg(value_name = "SCENARIO")]
+    scenario: PathBuf,
+    /// Change one key of the scenario, such as procedure.calibration.duration="12 h".
+    #[arg(long, value_name = "KEY=VALUE")]
+    set: Vec<String>,
+}
+
+/// Why a command ended without a verdict.
+#[derive(Debug)]
+struct Failure {
+    status: u8,
+    message: String,
+}
+
+impl Failure {
+    /// Bad input or usage.
+    fn input(error: impl std::fmt::Display) -> Self {
+        Self { status: 2, message: error.to_string() }
+    }
+
+    /// The bench failed.
+    fn bench(error: impl std::fmt::Display) -> Self {
+        Self { status: Verdict::Error.exit_code(), message: error.to_string() }
+    }
+}
+
+impl From<crate::run::method::MethodError> for Failure {
+    fn from(error: crate::run::method::MethodError) -> Self {
+        use crate::run::RunError;
+        use crate::run::method::{MethodError, SetupError};
+        use crate::source::SourceError;
+        match &error {
+            MethodError::Setup(SetupError::Recorder(_)) => Self::bench(error),
+            // A file that can't be read to its end is bad input, not a bench that failed.
+            MethodError::Setup(_)
+            | MethodError::Run(RunError::Source(SourceError::Read { .. })) => Self::input(error),
+            MethodError::Run(_) => Self::bench(error),
+        }
+    }
+}
+
+/// Runs the program and returns its exit status.
+#[must_use]
+pub fn main() -> ExitCode {
+    let cli = Cli::parse();
+    let outcome = match cli.command {
+        Command::Run(arguments) => run::command(&arguments),
+        Command::Compare(arguments) => compare::command(&arguments),
+        Command::Replay(arguments) => replay::command(&arguments),
+        Command::Score(arguments) => score::command(&arguments),
+        Command::Observe(arguments) => observe::command(&arguments),
+        Command::Report(arguments) => report::command(&arguments),
+        Command::Schema => {
+            print(&format!("{:#}\n", crate::scenario::schema())).map(|()| Verdict::Pass)
+        }
+    };
+    match outcome {
+        Ok(verdict) => ExitCode::from(verdict.exit_code()),
+        Err(failure) => {
+            eprintln!("octant: {}", failure.message);
+            ExitCode::from(failure.status)
+        }
+    }
+}
+
+/// Writes a result to stdout. A reader that has gone (`| head`) is no failure.
+fn print(text: &str) -> Result<(), Failure> {
+    use std::io::Write;
+    match std::io::stdout().write_all(text.as_bytes()) {
+        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
+            Err(Failure::bench(format!("failed to write to stdout: {error}")))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Writes a file of a run.
+fn write(path: &std::path::Path, contents: impl AsRef<[u8]>) -> Result<(), Failure> {
+    std::fs::write(path, contents)
+        .map_err(|error| Failure::bench(format!("failed to write {}: {error}", path.display())))
+}
+
+/// One JSON value and a newline on stdout.
+fn print_json(value: &impl serde::Serialize) -> Result<(), Failure> {
+    let text = serde_json::to_string_pretty(value)
+        .map_err(|error| Failure::bench(format!("failed to write the result as JSON: {error}")))?;
+    print(&(text + "\n"))
+}
+
+/// Reads a scenario with what the command line changes in it.
+fn load(
+    arguments: &ScenarioArguments,
+    more: &[String],
+) -> Result<crate::scenario::Scenario, Failure> {
+    let mut overrides = arguments.set.clone();
+    overrides.extend_from_slice(more);
+    crate::scenario::Scenario::load(&arguments.scenario, &overrides).map_err(Failure::input)
+}

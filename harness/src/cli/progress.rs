@@ -1,0 +1,89 @@
+//! Progress on a terminal: simulated time, speed and time left. Silent elsewhere.
+
+use crate::run::Control;
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use std::sync::atomic::Ordering;
+use std::time::{Duration, Instant};
+
+/// Shows the progress of some runs while `work` does them, and passes Ctrl-C on.
+///
+/// `epochs` is what the controls will count in all, `sample_s` the length of one.
+pub(super) fn with_progress<T>(
+    controls: &[Control],
+    epochs: Option<u64>,
+    sample_s: f64,
+    work: impl FnOnce() -> T,
+) -> T {
+    interrupts::watch();
+    let done = std::sync::atomic::AtomicBool::new(false);
+    std::thread::scope(|scope| {
+        scope.spawn(|| show(controls, epochs, sample_s, &done));
+        let result = work();
+        done.store(true, Ordering::Relaxed);
+        result
+    })
+}
+
+fn show(
+    controls: &[Control],
+    epochs: Option<u64>,
+    sample_s: f64,
+    done: &std::sync::atomic::AtomicBool,
+) {
+    let bar = ProgressBar::with_draw_target(epochs, ProgressDrawTarget::stderr_with_hz(10));
+    if let Ok(style) = ProgressStyle::with_template("{wide_bar} {percent:>3} %  {msg}") {
+        bar.set_style(style);
+    }
+    let started = Instant::now();
+    while !done.load(Ordering::Relaxed) {
+        std::thread::sleep(Duration::from_millis(20));
+        if interrupts::seen() {
+            for control in controls {
+                control.cancel.store(true, Ordering::Relaxed);
+            }
+        }
+        let passed: u64 = controls.iter().map(|c| c.epochs.load(Ordering::Relaxed)).sum();
+        let wall_s = started.elapsed().as_secs_f64();
+        let simulated_s = passed as f64 * sample_s;
+        let left = match epochs {
+            Some(epochs) if passed > 0 => {
+                let left_s = wall_s * (epochs as f64 / passed as f64 - 1.0).max(0.0);
+                format!(", {left_s:.0} s left")
+            }
+            _ => String::new(),
+        };
+        bar.set_position(passed);
+        bar.set_message(format!(
+            "{:.1} h simulated, {:.0} times real time{left}",
+            simulated_s / 3600.0,
+            simulated_s / wall_s.max(1e-3)
+        ));
+    }
+    bar.finish_and_clear();
+}
+
+/// Ctrl-C: the first ends the run in order, the second at once.
+mod interrupts {
+    use std::sync::Once;
+    use std::sync::atomic::{AtomicBool, Ordering};
+
+    static SEEN: AtomicBool = AtomicBool::new(false);
+    static WATCHING: Once = Once::new();
+
+    pub(super) fn watch() {
+        WATCHING.call_once(|| {
+            // Where no handler can be set, Ctrl-C ends the program at once; the recording survives.
+            let _ = ctrlc::set_handler(|| {
+                if SEEN.swap(true, Ordering::Relaxed) {
+                    std::process::exit(i32::from(
+                        crate::score::verdict::Verdict::Error.exit_code(),
+                    ));
+                }
+            });
+        });
+    }
+
+    pub(super) fn seen() -> bool {
+        SEEN.load(Ordering::Relaxed)
+    }
+}

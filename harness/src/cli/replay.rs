@@ -1,0 +1,116 @@
+//! `octant replay`: the core again, on a recorded stream.
+
+use super::{Failure, print, print_json};
+use crate::endpoint::{Endpoint, InProcess};
+use crate::recorder::StreamHash;
+use crate::run::method::configurations;
+use crate::scenario::Scenario;
+use crate::score::verdict::Verdict;
+use crate::source::Source;
+use crate::source::replay::Replay;
+use clap::Args;
+use octant_sample::GimbalCommand;
+use serde::Serialize;
+use std::path::PathBuf;
+
+#[derive(Debug, Args)]
+pub(super) struct Arguments {
+    /// A full-rate recording of a run; or, with --scenario, the file that the scenario's source
+    /// section describes.
+    #[arg(value_name = "RECORDING")]
+    recording: PathBuf,
+    /// Run this scenario on the recorded samples instead of the one inside the recording.
+    #[arg(long, value_name = "SCENARIO")]
+    scenario: Option<PathBuf>,
+    /// Change one key of that scenario.
+    #[arg(long, value_name = "KEY=VALUE", requires = "scenario")]
+    set: Vec<String>,
+    /// Folder of the run that a scenario makes.
+    #[arg(long, value_name = "DIR", requires = "scenario")]
+    out: Option<PathBuf>,
+    /// Print one JSON object.
+    #[arg(long)]
+    json: bool,
+}
+
+/// How a replay compares with what was recorded.
+#[derive(Serialize)]
+struct Comparison {
+    samples: u64,
+    stream_hash: String,
+    outputs_equal: bool,
+    first_difference_sample: Option<u64>,
+    truncated: bool,
+}
+
+pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
+    if let Some(scenario) = &arguments.scenario {
+        return super::run::on_recording(
+            scenario,
+            &arguments.recording,
+            &arguments.set,
+            arguments.out.as_deref(),
+            arguments.json,
+        );
+    }
+    let path = &arguments.recording;
+    let (scenario, method, seed) = super::score::scenario_of(path)?;
+    let scenario: Scenario = scenario;
+    let bad = |error: &dyn std::fmt::Display| Failure::input(format!("failed to {error}"));
+    let (_, core, _) = configurations(&scenario, method, seed).map_err(|e| bad(&e))?;
+    let mut endpoint = InProcess::new(&core).map_err(|e| bad(&format!("set up the core: {e}")))?;
+    let mut source = Replay::open(path, None).map_err(|e| bad(&e))?;
+    let (mut hash, mut samples, mut revision) = (StreamHash::new(), 0u64, 0);
+    let mut first_difference_sample = None;
+    while let Some(epoch) = source.next(&GimbalCommand::default()).map_err(|e| bad(&e))? {
+        let output = endpoint.step(&epoch).map_err(|e| bad(&e))?;
+        samples += 1;
+        hash.epoch(&epoch.sample, epoch.aiding.as_ref(), &output);
+        if output.parameters_revision != revision {
+            revision = output.parameters_revision;
+            hash.parameters(&endpoint.parameters());
+        }
+        if let Some(recorded) = &source.recorded().output
+            && first_difference_sample.is_none()
+            && !same(recorded, &output)
+        {
+            first_difference_sample = Some(output.sequence);
+        }
+    }
+    let comparison = Comparison {
+        samples,
+        stream_hash: hash.hex(),
+        outputs_equal: first_difference_sample.is_none(),
+        first_difference_sample,
+        truncated: source.truncated(),
+    };
+    if arguments.json {
+        print_json(&comparison)?;
+    } else {
+        let equal = match comparison.first_difference_sample {
+            None => "every output is equal to the recorded one, bit for bit".to_owned(),
+            Some(sample) => {
+                format!("outputs differ from the recorded ones from sample {sample} on")
+            }
+        };
+        let cut = if comparison.truncated { " (the recording ends in the middle)" } else { "" };
+        print(&format!(
+            "{samples} samples{cut}: {equal}\nstream hash {}\n",
+            comparison.stream_hash
+        ))?;
+    }
+    Ok(match (comparison.outputs_equal, comparison.truncated) {
+        (false, _) => Verdict::Fail,
+        (true, true) => Verdict::Inconclusive,
+        (true, false) => Verdict::Pass,
+    })
+}
+
+/// Equality of all bits, NaN included.
+fn same(a: &octant_sample::Output, b: &octant_sample::Output) -> bool {
+    use octant_sample::canonical::{OUTPUT_BYTES, output};
+    let (mut left, mut right) = ([0; OUTPUT_BYTES], [0; OUTPUT_BYTES]);
+    output(a, &mut left);
+    output(b, &mut right);
+    left == right
+}

@@ -1,0 +1,92 @@
+//! `octant report`: the report of a finished run, again.
+
+use super::{Failure, print, write};
+use crate::evidence::Manifest;
+use crate::recorder::reader::{Epochs, Recording};
+use crate::report::{Provenance, ReportData};
+use crate::run::Watcher;
+use crate::scenario::Scenario;
+use crate::score::summary::Summary;
+use crate::score::verdict::Verdict;
+use clap::Args;
+use octant_sample::Parameters;
+use octant_sample::parameters::{Group, NAMES};
+use std::path::{Path, PathBuf};
+
+#[derive(Debug, Args)]
+pub(super) struct Arguments {
+    /// Folder of a run.
+    #[arg(value_name = "RUN")]
+    run: PathBuf,
+    /// Where the report is written; by default report.html in the current folder, since a run's own
+    /// files are named in its manifest.
+    #[arg(long, value_name = "FILE", default_value = "report.html")]
+    out: PathBuf,
+}
+
+pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
+    let read = |name: &str| {
+        let path = arguments.run.join(name);
+        std::fs::read_to_string(&path)
+            .map_err(|error| Failure::input(format!("failed to read {}: {error}", path.display())))
+    };
+    let summary = Summary::from_json(&read("summary.json")?)
+        .map_err(|error| Failure::input(format!("failed to {error}")))?;
+    let scenario_path = arguments.run.join("scenario.toml");
+    let scenario = Scenario::load(&scenario_path, &[]).map_err(Failure::input)?;
+    let manifest = Manifest::read(&arguments.run)
+        .map_err(|error| Failure::input(format!("failed to {error}")))?;
+    let watcher = watch(&arguments.run.join("recording.mcap"), &scenario)?;
+    let data = ReportData {
+        truth: truth(&summary),
+        facts: crate::run::assemble::facts(&scenario),
+        events: watcher.events(),
+        convergence: watcher.convergence,
+        nis: watcher.nis,
+        gimbals: watcher.gimbals,
+        provenance: provenance(&manifest),
+        summary,
+    };
+    write(&arguments.out, crate::report::run::render(&data))?;
+    print(&format!("{}\n", arguments.out.display()))?;
+    Ok(Verdict::Pass)
+}
+
+/// Feeds a recording to a watcher.
+pub(super) fn watch(path: &Path, scenario: &Scenario) -> Result<Watcher, Failure> {
+    let bad = |error: &dyn std::fmt::Display| {
+        Failure::input(format!("failed to read {}: {error}", path.display()))
+    };
+    let recording = Recording::open(path).map_err(|error| bad(&error))?;
+    let mut epochs = Epochs::new(recording);
+    let mut watcher = Watcher::new(scenario.calibration.as_ref().map_or(0.0, |c| c.duration_s));
+    while let Some(epoch) = epochs.next_epoch().map_err(|error| bad(&error))? {
+        let Some(output) = &epoch.output else { continue };
+        let wanted = watcher.epoch(output);
+        if let Some(estimate) = &epoch.parameters {
+            watcher.parameters(output, estimate);
+        }
+        if let (true, Some(truth)) = (wanted, &epoch.truth) {
+            watcher.truth(output, truth);
+        }
+    }
+    if epochs.recording().truncated() {
+        eprintln!("octant: {} ends in the middle; what stands before is used", path.display());
+    }
+    Ok(watcher)
+}
+
+/// True parameters, from a summary.
+fn truth(summary: &Summary) -> Option<Parameters> {
+    let calibration = summary.calibration.as_ref()?;
+    let mut all = [0.0; NAMES.len()];
+    for (i, name) in NAMES.iter().enumerate() {
+        all[i] = calibration.parameters.get(*name)?.r#true? * Group::of(i).si_per_unit();
+    }
+    Some(Parameters::from_array(&all))
+}
+
+/// Provenance of a run, from its manifest.
+pub(super) fn provenance(manifest: &Manifest) -> Provenance {
+    Provenance { entries: manifest.entries(), rerun: manifest.rerun.clone() }
+}

@@ -1,0 +1,252 @@
+//! `octant run`.
+
+use super::progress::with_progress;
+use super::{Failure, ScenarioArguments, load, print, write};
+use crate::evidence::{Existing, Manifest, RunFacts, RunFolder};
+use crate::report;
+use crate::run::assemble::{parameter_text, text};
+use crate::run::method::configurations;
+use crate::run::{Control, MethodRun, Recording, Run, assemble, run_method};
+use crate::scenario::{Method, Scenario};
+use crate::score::junit::junit;
+use crate::score::verdict::Verdict;
+use clap::Args;
+use std::path::{Path, PathBuf};
+use std::time::SystemTime;
+
+#[derive(Debug, Args)]
+pub(super) struct Arguments {
+    #[command(flatten)]
+    scenario: ScenarioArguments,
+    /// Folder of the run; by default a new one in ./runs.
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Replace the folder if it holds a run already.
+    #[arg(long, requires = "out")]
+    force: bool,
+    /// Seed of everything that is drawn, instead of the scenario's.
+    #[arg(long, value_name = "N")]
+    seed: Option<u64>,
+    /// Where samples come from, instead of the scenario's source.uri.
+    #[arg(long, value_name = "URI")]
+    source: Option<String>,
+    /// Where the core is, instead of the scenario's endpoint.
+    #[arg(long, value_name = "URI")]
+    endpoint: Option<String>,
+    /// Pace the run by the clock. Not part of this version.
+    #[arg(long)]
+    realtime: bool,
+    /// Print summary.json on stdout, and nothing else.
+    #[arg(long)]
+    json: bool,
+}
+
+pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
+    if arguments.realtime {
+        return Err(Failure::input(
+            "--realtime is not part of this version: runs are in simulated time",
+        ));
+    }
+    let mut more = Vec::new();
+    if let Some(uri) = &arguments.source {
+        more.push(format!("source.uri={uri}"));
+    }
+    if let Some(uri) = &arguments.endpoint {
+        more.push(format!("endpoint={uri}"));
+    }
+    let scenario = load(&arguments.scenario, &more)?;
+    let seed = arguments.seed.unwrap_or(scenario.seed);
+    // What contradicts itself is said before anything is written.
+    for method in methods(&scenario) {
+        let (_, core, _) = configurations(&scenario, method, seed)
+            .map_err(|e| Failure::input(format!("failed to {e}")))?;
+        octant_calibration::Core::new(&core)
+            .map_err(|e| Failure::input(format!("failed to set up the core: {e}")))?;
+    }
+    let (path, existing) = match &arguments.out {
+        Some(path) if arguments.force => (path.clone(), Existing::Replace),
+        Some(path) => (path.clone(), Existing::Refuse),
+        None => (free_name(&arguments.scenario.scenario), Existing::Refuse),
+    };
+    let folder = RunFolder::create(&path, existing)
+        .map_err(|error| Failure::input(format!("failed to {error}")))?;
+    let started = SystemTime::now();
+    let (_, _, draws) = configurations(&scenario, Method::Primary, seed)
+        .map_err(|e| Failure::input(format!("failed to {e}")))?;
+    write(&folder.path().join("scenario.toml"), scenario.to_resolved_toml(seed, &draws))?;
+
+    let runs = execute(&scenario, seed, folder.path())?;
+    let interrupted = runs.iter().any(|run| run.ended == crate::run::Ended::Cancelled);
+    let mut runs = runs.into_iter();
+    let (Some(primary), baseline) = (runs.next(), runs.next()) else {
+        return Err(Failure::bench("failed to run the scenario: no method ran"));
+    };
+    let tables = [
+        ("calibration", primary.table.clone()),
+        ("baseline", baseline.as_ref().and_then(|b| b.table.clone())),
+    ];
+    let run = assemble(&scenario, seed, primary, baseline)
+        .map_err(|error| Failure::bench(format!("failed to write the summary: {error}")))?;
+    for (name, table) in tables {
+        if let Some(table) = table {
+            write(&folder.path().join(format!("{name}.octcal")), table.to_bytes())?;
+        }
+    }
+    let facts = RunFacts {
+        seed: Some(seed),
+        started,
+        ended: SystemTime::now(),
+        command_line: rerun(arguments, seed),
+    };
+    let (verdict, json) = write_results(folder.path(), run, &facts)?;
+    let place = if interrupted {
+        // An unfinished run keeps the name of one.
+        folder.path().to_owned()
+    } else {
+        folder.finish().map_err(|error| Failure::bench(format!("failed to {error}")))?
+    };
+    if arguments.json {
+        print(&json.text)?;
+    } else {
+        print(&json.human)?;
+        print(&format!("{}\n", place.join("report.html").display()))?;
+    }
+    Ok(verdict)
+}
+
+/// What is printed of a run, by who reads it.
+struct Printed {
+    text: String,
+    human: String,
+}
+
+/// The methods of a scenario.
+fn methods(scenario: &Scenario) -> Vec<Method> {
+    let baseline = scenario.baseline.as_ref().map(|_| Method::Baseline);
+    std::iter::once(Method::Primary).chain(baseline).collect()
+}
+
+/// Runs the methods of a scenario, each on a thread of its own.
+fn execute(scenario: &Scenario, seed: u64, folder: &Path) -> Result<Vec<MethodRun>, Failure> {
+    let methods = methods(scenario);
+    let controls: Vec<Control> = methods.iter().map(|_| Control::default()).collect();
+    let epochs = scenario.samples().map(|samples| samples * methods.len() as u64);
+    let sample_s = scenario.sample_period_ns as f64 * 1e-9;
+    let results = with_progress(&controls, epochs, sample_s, || {
+        std::thread::scope(|scope| {
+            let threads: Vec<_> = methods
+                .iter()
+                .zip(&controls)
+                .map(|(method, control)| {
+                    let name = match method {
+                        Method::Primary => "recording.mcap",
+                        Method::Baseline => "baseline.mcap",
+                    };
+                    let path = folder.join(name);
+                    scope.spawn(move || {
+                        run_method(scenario, *method, seed, Recording::File(&path), control)
+                    })
+                })
+                .collect();
+            threads
+                .into_iter()
+                .map(|thread| match thread.join() {
+                    Ok(result) => result.map_err(Failure::from),
+                    Err(_) => Err(Failure::bench("failed to run a method: its thread panicked")),
+                })
+                .collect::<Vec<_>>()
+        })
+    });
+    results.into_iter().collect::<Result<_, _>>().map_err(|failure: Failure| Failure {
+        status: failure.status,
+        message: format!(
+            "failed to {}; what was recorded is in {}",
+            failure.message,
+            folder.display()
+        ),
+    })
+}
+
+/// Writes summary, JUnit, report and manifest.
+fn write_results(
+    folder: &Path,
+    mut run: Run,
+    facts: &RunFacts,
+) -> Result<(Verdict, Printed), Failure> {
+    let summary = &run.summary;
+    let text_json = summary
+        .to_json()
+        .map_err(|error| Failure::bench(format!("failed to write the summary: {error}")))?;
+    write(&folder.join("summary.json"), &text_json)?;
+    let xml = junit(summary)
+        .map_err(|error| Failure::bench(format!("failed to write junit.xml: {error}")))?;
+    write(&folder.join("junit.xml"), xml)?;
+    let mut human = text(summary);
+    if run.report.truth.is_none() {
+        human += &parameter_text(summary);
+    }
+    run.report.provenance = super::report::provenance(&Manifest::of(facts));
+    write(&folder.join("report.html"), report::run::render(&run.report))?;
+    Manifest::write(folder, facts).map_err(|error| Failure::bench(format!("failed to {error}")))?;
+    Ok((summary.verdict, Printed { text: text_json, human }))
+}
+
+/// The command line that makes the run again, with the seed that was used.
+fn rerun(arguments: &Arguments, seed: u64) -> Vec<String> {
+    let mut line = vec![
+        "octant".to_owned(),
+        "run".to_owned(),
+        arguments.scenario.scenario.display().to_string(),
+    ];
+    for set in &arguments.scenario.set {
+        line.extend(["--set".to_owned(), set.clone()]);
+    }
+    for (name, uri) in [("--source", &arguments.source), ("--endpoint", &arguments.endpoint)] {
+        if let Some(uri) = uri {
+            line.extend([name.to_owned(), uri.clone()]);
+        }
+    }
+    line.extend(["--seed".to_owned(), seed.to_string()]);
+    line
+}
+
+/// A folder in ./runs that isn't taken.
+fn free_name(scenario: &Path) -> PathBuf {
+    let stem = scenario.file_stem().map_or("run".into(), |stem| stem.to_string_lossy());
+    let name = |n: u32| {
+        Path::new("runs").join(if n == 1 { stem.to_string() } else { format!("{stem}-{n}") })
+    };
+    let taken = |path: &PathBuf| {
+        let mut partial = path.clone().into_os_string();
+        partial.push(".partial");
+        path.exists() || Path::new(&partial).exists()
+    };
+    (1..).map(name).find(|path| !taken(path)).unwrap_or_else(|| name(1))
+}
+
+/// Runs a scenario on a recording: its source section with this file.
+pub(super) fn on_recording(
+    scenario: &Path,
+    recording: &Path,
+    set: &[String],
+    out: Option<&Path>,
+    json: bool,
+) -> Result<Verdict, Failure> {
+    let kind = match recording.extension().and_then(|e| e.to_str()) {
+        Some("mcap") => "replay",
+        _ => "text",
+    };
+    let recording = std::path::absolute(recording).map_err(|error| {
+        Failure::input(format!("failed to find {}: {error}", recording.display()))
+    })?;
+    command(&Arguments {
+        scenario: ScenarioArguments { scenario: scenario.to_owned(), set: set.to_vec() },
+        out: out.map(Path::to_owned),
+        force: false,
+        seed: None,
+        source: Some(format!("{kind}:{}", recording.display())),
+        endpoint: None,
+        realtime: false,
+        json,
+    })
+}

@@ -1,0 +1,122 @@
+//! `octant score`: scoring alone, from a recording that has truth and outputs.
+
+use super::{Failure, print, print_json};
+use crate::recorder::reader::Recording;
+use crate::scenario::{Method, Scenario};
+use crate::score::parameters::{nees, score, worst_normalized_error};
+use crate::score::summary::{HeightChannel, Navigation, ParameterScore};
+use crate::score::verdict::Verdict;
+use clap::Args;
+use serde::Serialize;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+#[derive(Debug, Args)]
+pub(super) struct Arguments {
+    /// The recording, an MCAP file of a run.
+    #[arg(value_name = "RECORDING")]
+    recording: PathBuf,
+    /// Print one JSON object.
+    #[arg(long)]
+    json: bool,
+}
+
+/// What a recording scores.
+#[derive(Serialize)]
+struct Scores {
+    scenario: String,
+    method: String,
+    nis_mean: Option<f64>,
+    nees: BTreeMap<String, f64>,
+    worst_normalized_error: Option<f64>,
+    parameters: BTreeMap<String, ParameterScore>,
+    navigation: Option<Navigation>,
+}
+
+/// The scenario inside a recording.
+pub(super) fn scenario_of(path: &Path) -> Result<(Scenario, Method, u64), Failure> {
+    let recording = Recording::open(path)
+        .map_err(|error| Failure::input(format!("failed to read {}: {error}", path.display())))?;
+    let info = recording.info();
+    let name = format!("scenario.toml in {}", path.display());
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let scenario = Scenario::parse(&info.scenario, &name, folder, &[]).map_err(Failure::input)?;
+    let method = match info.run.get("method").map(String::as_str) {
+        Some("baseline") => Method::Baseline,
+        _ => Method::Primary,
+    };
+    let seed = info.run.get("seed").and_then(|seed| seed.parse().ok()).unwrap_or(scenario.seed);
+    Ok((scenario, method, seed))
+}
+
+pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
+    let path = &arguments.recording;
+    let (scenario, method, seed) = scenario_of(path)?;
+    let watcher = super::report::watch(path, &scenario)?;
+    let navigation = match watcher.drift() {
+        Some(drift) => Some(
+            drift
+                .finish(HeightChannel::Held)
+                .map_err(|error| Failure::input(format!("failed to {error}")))?,
+        ),
+        None => None,
+    };
+    let simulated = scenario.source == crate::scenario::Source::Plant;
+    let (_, _, draws) = crate::run::method::configurations(&scenario, method, seed)
+        .map_err(|error| Failure::input(format!("failed to {error}")))?;
+    let truth = simulated.then_some(draws.parameters);
+    let parameters = watcher
+        .last_parameters
+        .map(|estimate| score(truth.as_ref(), &estimate.parameters, &estimate.sigma))
+        .unwrap_or_default();
+    let scores = Scores {
+        scenario: scenario.title.clone(),
+        method: crate::run::method::label(&scenario, method),
+        nis_mean: watcher.health.nis_mean(),
+        nees: nees(&parameters),
+        worst_normalized_error: worst_normalized_error(&parameters),
+        parameters,
+        navigation,
+    };
+    if scores.navigation.is_none() && scores.parameters.is_empty() {
+        return Err(Failure::input(format!(
+            "failed to score {}: it has neither parameters nor a navigation with truth",
+            path.display()
+        )));
+    }
+    if arguments.json {
+        print_json(&scores)?;
+    } else {
+        print(&text(&scores))?;
+    }
+    Ok(Verdict::Pass)
+}
+
+fn text(scores: &Scores) -> String {
+    use std::fmt::Write as _;
+    let mut out = format!("{}: {}\n", scores.scenario, scores.method);
+    if let Some(nis) = scores.nis_mean {
+        let _ = writeln!(out, "  NIS {nis:.3} (3 is right)");
+    }
+    for (group, nees) in &scores.nees {
+        let _ = writeln!(out, "  {group:20} squared error / variance {nees:.2} (1 is right)");
+    }
+    if let Some(navigation) = &scores.navigation {
+        let (lat, lon) = (&navigation.latitude_error_arcmin, &navigation.longitude_error_arcmin);
+        let radial = &navigation.radial_error_nmi;
+        let _ = writeln!(out, "  navigation {} h, height held", navigation.duration_h);
+        for (name, error) in [("latitude", lat), ("longitude", lon)] {
+            let _ = writeln!(
+                out,
+                "    {name:10} max {:.3}, rms {:.3}, final {:+.3} arcmin",
+                error.max, error.rms, error.r#final
+            );
+        }
+        let _ = writeln!(
+            out,
+            "    radial     max {:.3}, rms {:.3} nmi, {:.4} nmi/h",
+            radial.max, radial.rms, radial.rate_per_h
+        );
+    }
+    out
+}

@@ -1,0 +1,198 @@
+//! From the methods of a run to its summary, its report and its verdict.
+
+use super::drive::Ended;
+use super::method::MethodRun;
+use crate::report::{Provenance, ReportData};
+use crate::scenario::{Motion, Scenario, Source};
+use crate::score::reference::{ReferenceInput, reference};
+use crate::score::summary::{Baseline, SCHEMA, Summary};
+use crate::score::verdict::{Finding, Verdict, judge};
+use octant_earth::units::{DEG, DEG_PER_SQRT_HOUR, MICRO_G};
+use octant_sample::parameters::NAMES;
+
+/// A run of one or two methods, scored and judged.
+#[derive(Debug)]
+pub struct Run {
+    /// What `summary.json` holds.
+    pub summary: Summary,
+    /// What the report shows; its provenance is the caller's to fill.
+    pub report: ReportData,
+}
+
+/// Puts the methods of a run together: summary, verdict, report.
+///
+/// # Errors
+/// If the summary can't be written as JSON.
+pub fn assemble(
+    scenario: &Scenario,
+    seed: u64,
+    mut primary: MethodRun,
+    baseline: Option<MethodRun>,
+) -> Result<Run, serde_json::Error> {
+    let g_zz = |run: &MethodRun| {
+        run.watcher.last_parameters.map(|estimate| estimate.parameters.g_dependent[8])
+    };
+    let references = reference(&ReferenceInput {
+        latitude_rad: scenario.site.latitude_rad,
+        height_m: scenario.site.height_m,
+        angle_random_walk: scenario.imu.angle_random_walk,
+        velocity_random_walk: scenario.imu.velocity_random_walk,
+        calibration_s: scenario.calibration.as_ref().map(|c| c.duration_s),
+        navigation_s: scenario.navigation.as_ref().and_then(|n| n.duration_s),
+        true_g_zz: primary.truth.map(|truth| truth.g_dependent[8]),
+        estimated_g_zz: g_zz(&primary),
+        baseline_estimated_g_zz: baseline.as_ref().and_then(g_zz),
+    });
+    let findings = findings(&primary);
+    let mut summary = Summary {
+        schema: SCHEMA,
+        octant: env!("CARGO_PKG_VERSION").to_owned(),
+        scenario: scenario.title.clone(),
+        seed,
+        verdict: Verdict::Pass,
+        reasons: Vec::new(),
+        requirements: Vec::new(),
+        faults: Vec::new(),
+        method: primary.label.clone(),
+        calibration: primary.calibration.take(),
+        navigation: primary.navigation.take(),
+        baseline: baseline.map(|run| Baseline {
+            label: run.label,
+            calibration: run.calibration,
+            navigation: run.navigation,
+            stream_hash: run.recorder.stream_hash,
+        }),
+        reference: Some(references),
+        pacing: None,
+        stream_hash: primary.recorder.stream_hash.clone(),
+    };
+    let requirements: Vec<crate::score::verdict::Requirement> = scenario.requirements.iter().map(|r| crate::score::verdict::Requirement { id: r.id.clone(), measure: r.measure.clone(), comparison: match r.comparison { crate::scenario::Comparison::AtMost => crate::score::verdict::Comparison::AtMost, crate::scenario::Comparison::Below => crate::score::verdict::Comparison::Below, crate::scenario::Comparison::AtLeast => crate::score::verdict::Comparison::AtLeast, crate::scenario::Comparison::Above => crate::score::verdict::Comparison::Above }, limit: r.limit }).collect();
+    judge(&mut summary, &requirements, &findings)?;
+    let report = ReportData {
+        summary: summary.clone(),
+        facts: facts(scenario),
+        truth: primary.truth,
+        events: primary.watcher.events(),
+        convergence: primary.watcher.convergence,
+        nis: primary.watcher.nis,
+        gimbals: primary.watcher.gimbals,
+        provenance: Provenance::default(),
+    };
+    Ok(Run { summary, report })
+}
+
+/// What besides requirements bears on the verdict.
+fn findings(run: &MethodRun) -> Vec<Finding> {
+    let mut findings = Vec::new();
+    let mut inconclusive =
+        |reason: String| findings.push(Finding { verdict: Verdict::Inconclusive, reason });
+    if run.ended == Ended::Cancelled {
+        inconclusive(format!("interrupted after {:.1} s of the run", run.watcher.elapsed_s()));
+    }
+    if run.watcher.health.unlisted() > 0 {
+        let unlisted = run.watcher.health.unlisted();
+        inconclusive(format!("{unlisted} reports of the core found no place in the list"));
+    }
+    findings
+}
+
+/// What a run was made on, for the head of the report.
+#[must_use]
+pub fn facts(scenario: &Scenario) -> Vec<(String, String)> {
+    let imu = &scenario.imu;
+    let mut facts = vec![
+        (
+            "site".to_owned(),
+            format!(
+                "{:.4}° latitude, {:.4}° longitude, {:.1} m",
+                scenario.site.latitude_rad / DEG,
+                scenario.site.longitude_rad / DEG,
+                scenario.site.height_m
+            ),
+        ),
+        (
+            "motion".to_owned(),
+            match &scenario.motion {
+                Motion::Static(_) => "static".to_owned(),
+                Motion::Dockside(_) => "on a moored ship".to_owned(),
+            },
+        ),
+        (
+            "sample rate".to_owned(),
+            format!("{:.6} Hz", 1e9 / scenario.sample_period_ns as f64)
+                .trim_end_matches('0')
+                .to_owned(),
+        ),
+        (
+            "gyro random walk".to_owned(),
+            format!("{:.5} deg/√h", imu.angle_random_walk / DEG_PER_SQRT_HOUR),
+        ),
+        (
+            "accelerometer noise".to_owned(),
+            format!("{:.2} µg/√Hz", imu.velocity_random_walk / MICRO_G),
+        ),
+    ];
+    if scenario.source != Source::Plant {
+        facts.push(("source".to_owned(), "recorded samples, no truth".to_owned()));
+    }
+    facts
+}
+
+/// What a person reads on the terminal at the end of a run.
+#[must_use]
+pub fn text(summary: &Summary) -> String {
+    use std::fmt::Write as _;
+    let mut out = String::new();
+    let mut line = |text: String| {
+        // Writing to a String can't fail.
+        let _ = writeln!(out, "{text}");
+    };
+    line(format!("{}: {}", summary.scenario, summary.verdict.name()));
+    for reason in &summary.reasons {
+        line(format!("  {reason}"));
+    }
+    let methods = std::iter::once((&summary.method, &summary.calibration, &summary.navigation))
+        .chain(summary.baseline.iter().map(|b| (&b.label, &b.calibration, &b.navigation)));
+    for (label, calibration, navigation) in methods {
+        line(format!("{label}, seed {}", summary.seed));
+        if let Some(calibration) = calibration {
+            let nis = calibration.nis_mean.map_or("-".to_owned(), |nis| format!("{nis:.3}"));
+            let worst = calibration
+                .worst_normalized_error
+                .map_or(String::new(), |worst| format!(", worst parameter {worst:.1} σ off"));
+            line(format!("  calibration {} h: NIS {nis}{worst}", calibration.duration_h));
+            if let Some(reason) = &calibration.refused {
+                line(format!("  refused: {reason}"));
+            }
+        }
+        if let Some(n) = navigation {
+            let error = |e: &crate::score::summary::ErrorScore| {
+                let slope =
+                    e.slope_per_day.map_or(String::new(), |s| format!(", {s:+.3} arcmin/day"));
+                format!("max {:.3}, rms {:.3} arcmin{slope}", e.max, e.rms)
+            };
+            line(format!("  navigation {} h", n.duration_h));
+            line(format!("    latitude  {}", error(&n.latitude_error_arcmin)));
+            line(format!("    longitude {}", error(&n.longitude_error_arcmin)));
+            line(format!(
+                "    radial    max {:.3}, rms {:.3} nmi, {:.4} nmi/h",
+                n.radial_error_nmi.max, n.radial_error_nmi.rms, n.radial_error_nmi.rate_per_h
+            ));
+        }
+    }
+    out
+}
+
+/// The parameters as a table, for methods that have no truth to be scored against.
+#[must_use]
+pub fn parameter_text(summary: &Summary) -> String {
+    use std::fmt::Write as _;
+    let mut out = String::new();
+    let Some(calibration) = &summary.calibration else { return out };
+    for name in NAMES {
+        let Some(p) = calibration.parameters.get(name) else { continue };
+        let sigma = p.sigma.map_or("not estimated".to_owned(), |s| format!("± {s:.6}"));
+        let _ = writeln!(out, "  {name:24} {:>16.6} {sigma} {}", p.estimate, p.unit);
+    }
+    out
+}
