@@ -66,7 +66,7 @@ pub fn assemble(
         pacing: None,
         stream_hash: primary.recorder.stream_hash.clone(),
     };
-    let requirements: Vec<crate::score::verdict::Requirement> = scenario.requirements.iter().map(|r| crate::score::verdict::Requirement { id: r.id.clone(), measure: r.measure.clone(), comparison: match r.comparison { crate::scenario::Comparison::AtMost => crate::score::verdict::Comparison::AtMost, crate::scenario::Comparison::Below => crate::score::verdict::Comparison::Below, crate::scenario::Comparison::AtLeast => crate::score::verdict::Comparison::AtLeast, crate::scenario::Comparison::Above => crate::score::verdict::Comparison::Above }, limit: r.limit }).collect();
+    let requirements: Vec<_> = scenario.requirements.iter().map(|r| r.check.clone()).collect();
     judge(&mut summary, &requirements, &findings)?;
     let report = ReportData {
         summary: summary.clone(),

@@ -10,7 +10,7 @@ use crate::scenario::resolve::{Draws, Seeded};
 use crate::scenario::{Method, Scenario, Source as SourceKind};
 use crate::score::parameters::{nees, score, worst_normalized_error};
 use crate::score::summary::{Calibration, HeightChannel, Navigation};
-use crate::source::plant::PlantSource;
+use crate::source::PlantSource;
 use crate::source::{Source, SourceError};
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use octant_calibration::config as core;

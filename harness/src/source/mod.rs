@@ -3,13 +3,14 @@
 mod counting;
 mod fields;
 mod foreign;
-pub mod plant;
-pub mod replay;
+mod plant;
+mod replay;
 mod rows;
-pub mod text;
+mod text;
 
 pub use counting::Quantity;
 pub use foreign::{MappedField, MappedStamp, McapMapping};
+pub use plant::PlantSource;
 pub use replay::Replay;
 pub use text::{
     Axis, Column, Delimiter, GimbalColumns, TextFiles, TextMapping, TextSource, TimeColumn,

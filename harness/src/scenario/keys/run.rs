@@ -169,7 +169,7 @@ static SHIP: Section = section(&[
         "spectrum",
         Kind::Table(&SPECTRUM),
         Default::Absent("sinusoids alone"),
-        "Irregular sea: sinusoids of a Bretschneider spectrum are added, with phases drawn from the seed.",
+        "Irregular sea: sinusoids of a Pierson-Moskowitz spectrum are added, with frequencies and phases drawn from the seed.",
     ),
     key(
         "mooring_offset",
@@ -228,7 +228,7 @@ static SPECTRUM: Section = section(&[
         "components",
         Kind::Integer(2, 64),
         Default::Value("16"),
-        "Sinusoids of equal energy in each motion.",
+        "Sinusoids of each motion, spread over frequency.",
     ),
     key("roll", RMS_ANGLE, Default::Value("0 deg"), "Root mean square of roll."),
     key("pitch", RMS_ANGLE, Default::Value("0 deg"), "Root mean square of pitch."),
