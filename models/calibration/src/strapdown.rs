@@ -5,6 +5,7 @@
 //! rotation carried to third order: at 10 °/s and 200 Hz the second-order form alone would leave
 //! 1e-7 of gravity in every move.
 
+use crate::config::Site;
 use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
 use octant_earth::ellipsoid::Ellipsoid;
 use octant_earth::rotation::{quaternion_of, renormalize};
@@ -147,13 +148,18 @@ impl Strapdown {
         self.height_m += dr.z;
     }
 
-    /// Sets position and vertical channel for free navigation, keeping attitude and velocity.
-    pub fn start_free(&mut self, latitude_rad: f64, longitude_rad: f64, height_m: f64) {
+    /// Sets the position, keeping attitude and velocity.
+    pub fn move_to(&mut self, site: &Site) {
         (self.latitude_rad, self.longitude_rad, self.height_m) =
-            (latitude_rad, longitude_rad, height_m);
+            (site.latitude_rad, site.longitude_rad, site.height_m);
+        self.update_earth();
+    }
+
+    /// Sets position and vertical channel for free navigation, keeping attitude and velocity.
+    pub fn start_free(&mut self, site: &Site) {
         self.vertical = Vertical::Held;
         self.velocity_mps.z = 0.0;
-        self.update_earth();
+        self.move_to(site);
     }
 
     /// Attitude as a matrix `c_nb`.

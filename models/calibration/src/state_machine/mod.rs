@@ -197,8 +197,7 @@ impl Core {
             self.sample_s,
             true,
         ));
-        let Site { latitude_rad, longitude_rad, height_m } = self.config.site;
-        self.strapdown.start_free(latitude_rad, longitude_rad, height_m);
+        self.strapdown.start_free(&self.config.site);
         self.mode = Mode::Navigating;
     }
 
