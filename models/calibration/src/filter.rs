@@ -27,6 +27,14 @@ const SETTLE_VELOCITY_MPS: f64 = 0.1;
 const RECOVERY_POSITION_M: f64 = 10.0;
 /// Smallest σ of the attitude in the first stage, rad: 600″.
 const CAPTURE_ATTITUDE_RAD: f64 = 2.9e-3;
+/// Smallest σ of azimuth there, rad: 3°. An azimuth error shows only through Earth rate: by the time
+/// that it opens the gate it may be of any size, and the innovation doesn't say.
+const CAPTURE_AZIMUTH_RAD: f64 = 0.052;
+
+/// Largest σ of velocity, m/s, and position, m, in the first stage: a reference that is farther off
+/// than this is no reference, and its square must not overflow.
+const CAPTURE_VELOCITY_MAX_MPS: f64 = 1e4;
+const CAPTURE_POSITION_MAX_M: f64 = 1e6;
 
 /// What came of a measurement.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -391,7 +399,7 @@ impl CalibrationFilter {
             AidingMode::Position { .. } => 2.0 * error.norm() / (t * t),
         };
         let attitude = (2.0 * reach / 9.8).clamp(CAPTURE_ATTITUDE_RAD, 1.0);
-        let velocity = (2.0 * reach * t).max(1.0);
+        let velocity = (2.0 * reach * t).clamp(1.0, CAPTURE_VELOCITY_MAX_MPS);
         let position = match self.aiding {
             // Velocity doesn't show how far a fault has carried the solution, and 100 m of height
             // are 30 µg of gravity. But the instrument hasn't gone anywhere.
@@ -399,9 +407,12 @@ impl CalibrationFilter {
                 strapdown.move_to(&self.site);
                 RECOVERY_POSITION_M
             }
-            AidingMode::Position { .. } => RECOVERY_POSITION_M.max(2.0 * error.norm()),
+            AidingMode::Position { .. } => {
+                (2.0 * error.norm()).clamp(RECOVERY_POSITION_M, CAPTURE_POSITION_MAX_M)
+            }
         };
-        self.reopen([attitude; 3], velocity, position);
+        let azimuth = attitude.max(CAPTURE_AZIMUTH_RAD);
+        self.reopen([attitude, attitude, azimuth], velocity, position);
         self.stage = Stage::Capture(self.time_s + CAPTURE_S);
     }
 

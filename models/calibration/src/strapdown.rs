@@ -162,6 +162,32 @@ impl Strapdown {
         self.move_to(site);
     }
 
+    /// Every number of the solution is finite.
+    #[must_use]
+    #[inline]
+    pub fn is_finite(&self) -> bool {
+        // What is not finite stays so in a sum; finite ones don't overflow: radians, and metres.
+        let (q, v) = (&self.q_nb, &self.velocity_mps);
+        ((q.w + q.i + q.j + q.k)
+            + (v.x + v.y + v.z)
+            + (self.latitude_rad + self.longitude_rad + self.height_m))
+            .is_finite()
+    }
+
+    /// The same mechanization, set to a solution.
+    #[must_use]
+    pub fn stopped_at(&self, at: &Navigation) -> Self {
+        let [w, i, j, k] = at.q_nb;
+        Self::new(
+            &UnitQuaternion::new_unchecked(Quaternion::new(w, i, j, k)),
+            Vector3::from(at.velocity_mps),
+            at.latitude_rad,
+            at.longitude_rad,
+            at.height_m,
+            self.vertical,
+        )
+    }
+
     /// Attitude as a matrix `c_nb`.
     #[must_use]
     pub fn c_nb(&self) -> Matrix3<f64> {
