@@ -32,7 +32,7 @@ const CAPTURE_ATTITUDE_RAD: f64 = 2.9e-3;
 const CAPTURE_AZIMUTH_RAD: f64 = 0.052;
 
 /// Largest σ of velocity, m/s, and position, m, in the first stage: a reference that is farther off
-/// than this is no reference, and its square must not overflow.
+/// is not followed.
 const CAPTURE_VELOCITY_MAX_MPS: f64 = 1e4;
 const CAPTURE_POSITION_MAX_M: f64 = 1e6;
 
@@ -287,6 +287,10 @@ impl CalibrationFilter {
         if let Some(gate) = self.gate
             && nis > gate.nis
         {
+            if gate.recovery == Recovery::Widening && !self.is_plausible(&error) {
+                self.tally.rejected += 1;
+                return Some(Measured { nis, rejected: true, recovery_started });
+            }
             if matches!(self.stage, Stage::Capture(_)) {
                 // What started it still lasts, or one opening was not wide enough.
                 self.open_wide(&gate, &error, strapdown);
@@ -348,6 +352,15 @@ impl CalibrationFilter {
             _ => return None,
         };
         found.2.iter().all(|value| value.is_finite()).then_some(found)
+    }
+
+    /// A reference so far off is no reference, and nothing to recover towards.
+    fn is_plausible(&self, error: &Vector3<f64>) -> bool {
+        error.norm()
+            <= match self.aiding {
+                AidingMode::Velocity { .. } => CAPTURE_VELOCITY_MAX_MPS,
+                AidingMode::Position { .. } => CAPTURE_POSITION_MAX_M,
+            }
     }
 
     fn nis(&self, first: usize, r: f64, error: &Vector3<f64>) -> Option<f64> {
