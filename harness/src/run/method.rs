@@ -152,8 +152,7 @@ pub fn run_method(
     let ended = if simulated {
         // Statically dispatched: this loop passes ten million samples a second.
         let samples = scenario.samples().unwrap_or(u64::MAX);
-        let plant = Plant::new(&plant).map_err(SetupError::Plant)?;
-        let mut source = PlantSource::new(plant, samples);
+        let mut source = PlantSource::new(&plant, samples).map_err(SetupError::Plant)?;
         drive(&mut source, &mut endpoint, &mut recorder, &mut watcher, control)?
     } else {
         let mut source = crate::source::open(scenario).map_err(SetupError::Source)?;
