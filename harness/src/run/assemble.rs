@@ -2,7 +2,7 @@
 
 use super::drive::Ended;
 use super::method::MethodRun;
-use crate::report::{Provenance, ReportData};
+use crate::report::{Provenance, ReportData, number};
 use crate::scenario::{Motion, Scenario, Source};
 use crate::score::reference::{ReferenceInput, reference};
 use crate::score::summary::{Baseline, SCHEMA, Summary};
@@ -160,7 +160,10 @@ pub fn text(summary: &Summary) -> String {
             let worst = calibration
                 .worst_normalized_error
                 .map_or(String::new(), |worst| format!(", worst parameter {worst:.1} σ off"));
-            line(format!("  calibration {} h: NIS {nis}{worst}", calibration.duration_h));
+            line(format!(
+                "  calibration {} h: NIS {nis}{worst}",
+                number::plain(calibration.duration_h, 4)
+            ));
             if let Some(reason) = &calibration.refused {
                 line(format!("  refused: {reason}"));
             }
@@ -171,7 +174,7 @@ pub fn text(summary: &Summary) -> String {
                     e.slope_per_day.map_or(String::new(), |s| format!(", {s:+.3} arcmin/day"));
                 format!("max {:.3}, rms {:.3} arcmin{slope}", e.max, e.rms)
             };
-            line(format!("  navigation {} h", n.duration_h));
+            line(format!("  navigation {} h", number::plain(n.duration_h, 4)));
             line(format!("    latitude  {}", error(&n.latitude_error_arcmin)));
             line(format!("    longitude {}", error(&n.longitude_error_arcmin)));
             line(format!(

@@ -99,7 +99,11 @@ pub fn label(scenario: &Scenario, method: Method) -> String {
         core::Estimator::LeastSquares(_) => "by least squares",
         core::Estimator::ExternalTurntable(_) => "on an external turntable",
     };
-    format!("{} positions {estimator}", calibration.name)
+    if calibration.name == "own stops" {
+        format!("own stops {estimator}")
+    } else {
+        format!("{} positions {estimator}", calibration.name)
+    }
 }
 
 /// Configurations of plant and core of one method of a scenario.
