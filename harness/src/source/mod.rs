@@ -70,7 +70,3 @@ fn nominal_period_ns(rate_hz: f64) -> Result<u64, String> {
         Err(format!("nominal rate is {rate_hz} Hz, expected 0.001 to 1e8 Hz"))
     }
 }
-/// temp
-pub fn open(_: &crate::scenario::Scenario) -> Result<Box<dyn Source>, SourceError> {
-    Err(SourceError::Read { path: String::new(), reason: "temp".into() })
-}
