@@ -21,6 +21,13 @@ impl InProcess {
         Ok(Self { core: Core::new(config)?, revision: 0 })
     }
 
+    /// The source has ended: see [`Core::end_of_stream`].
+    pub fn end_of_stream(&mut self) -> Output {
+        let output = self.core.end_of_stream();
+        self.revision = output.parameters_revision;
+        output
+    }
+
     /// The core behind the endpoint, for what no wire carries: diagnostics and table.
     #[must_use]
     pub fn core(&self) -> &Core {

@@ -21,9 +21,7 @@ mod write;
 pub use error::{Place, Problem, ScenarioError};
 pub use keys::SCHEMA;
 pub use quantity::{Dimension, Quantity};
-pub use read::source::{
-    Axis, Column, Delimiter, Fields, FileName, Mcap, Signal, SignalQuantity, Source, TextFiles,
-};
+pub use read::source::{FileName, Source};
 pub use schema::schema;
 pub use tour::tour;
 
