@@ -10,7 +10,6 @@ mod derive;
 mod document;
 mod error;
 mod keys;
-mod positions;
 mod quantity;
 mod read;
 pub mod resolve;
