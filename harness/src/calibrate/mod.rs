@@ -83,3 +83,31 @@ fn settled(before: &Config, core: &Core) -> bool {
     };
     !before.into_iter().zip(after).zip(*core.sigma()).any(moved)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scenario::resolve::{Draws, Seeded};
+    use crate::scenario::{Method, Scenario};
+    use crate::source::PlantSource;
+    use octant_earth::Vector3;
+
+    #[test]
+    fn a_source_that_ends_early_concludes_the_calibration() {
+        let text = "schema = 1\n[procedure.calibration]\nduration = \"4 h\"\n";
+        let scenario = Scenario::parse(text, "f", std::path::Path::new(""), &[]).unwrap();
+        let draws = Draws::of(&scenario, &Seeded(1));
+        let (q_nb, velocity) = (scenario.mean_attitude(), Vector3::zeros());
+        let config = scenario.core(Method::Primary, &draws, &q_nb, &velocity).unwrap();
+        // A twelfth of the calibration's time.
+        let samples = scenario.calibration_samples() / 12;
+        let mut source = PlantSource::new(&scenario.plant(1, &draws), samples).unwrap();
+        let mut core = pass(&config, &mut source).unwrap();
+        assert_eq!(core.refusal(), None);
+        let table = core.table().cloned().unwrap();
+        assert_eq!(table.provenance.ended_ns, samples * scenario.sample_period_ns);
+        assert!(table.quality.used > 1000, "{:?}", table.quality);
+        let before = core.end_of_stream();
+        assert_eq!((before.mode, core.table()), (Mode::Done, Some(&table)), "harmless again");
+    }
+}

@@ -96,6 +96,7 @@ pub enum Distribution {
 }
 
 /// How the case moves; phases that aren't given are drawn.
+#[allow(clippy::large_enum_variant, reason = "one of it in a scenario")]
 #[derive(Clone, Debug, PartialEq)]
 pub enum Motion {
     /// Fixed to the ground.

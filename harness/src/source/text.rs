@@ -217,14 +217,14 @@ impl TextSource {
             Some(time_ns) => time_ns,
             None => self.rows.saturating_mul(self.period_ns),
         };
-        if let Some(second) = &self.second {
-            if let Some(there) = second.time_ns()?.filter(|there| *there != time_ns) {
-                return Err(second.rows.error(format!(
-                    "stamp {there} ns, expected {time_ns} ns as in {} line {}",
-                    self.first.rows.path(),
-                    self.first.rows.line()
-                )));
-            }
+        if let Some(second) = &self.second
+            && let Some(there) = second.time_ns()?.filter(|there| *there != time_ns)
+        {
+            return Err(second.rows.error(format!(
+                "stamp {there} ns, expected {time_ns} ns as in {} line {}",
+                self.first.rows.path(),
+                self.first.rows.line()
+            )));
         }
         let accel = match (&self.second, self.first.accel) {
             (Some(second), _) => second.values(second.accel)?,
