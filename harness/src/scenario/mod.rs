@@ -10,7 +10,6 @@ mod derive;
 mod document;
 mod error;
 mod keys;
-mod positions;
 mod quantity;
 mod read;
 pub mod resolve;
@@ -21,9 +20,7 @@ mod write;
 pub use error::{Place, Problem, ScenarioError};
 pub use keys::SCHEMA;
 pub use quantity::{Dimension, Quantity};
-pub use read::source::{
-    Axis, Column, Delimiter, Fields, FileName, Mcap, Signal, SignalQuantity, Source, TextFiles,
-};
+pub use read::source::{FileName, Source};
 pub use schema::schema;
 pub use tour::tour;
 
@@ -99,6 +96,7 @@ pub enum Distribution {
 }
 
 /// How the case moves; phases that aren't given are drawn.
+#[allow(clippy::large_enum_variant, reason = "one of it in a scenario")]
 #[derive(Clone, Debug, PartialEq)]
 pub enum Motion {
     /// Fixed to the ground.

@@ -3,13 +3,15 @@
 mod counting;
 mod fields;
 mod foreign;
+mod from_scenario;
 mod plant;
 mod replay;
 mod rows;
 mod text;
 
-pub use counting::Quantity;
+pub use counting::{Quantity, SPLIT_MAX};
 pub use foreign::{MappedField, MappedStamp, McapMapping};
+pub use from_scenario::open;
 pub use plant::PlantSource;
 pub use replay::Replay;
 pub use text::{
@@ -49,6 +51,20 @@ pub trait Source {
     fn samples_total(&self) -> Option<u64>;
 }
 
+impl<S: Source + ?Sized> Source for Box<S> {
+    fn next(&mut self, command: &GimbalCommand) -> Result<Option<Epoch>, SourceError> {
+        (**self).next(command)
+    }
+
+    fn truth(&self) -> Option<Truth> {
+        (**self).truth()
+    }
+
+    fn samples_total(&self) -> Option<u64> {
+        (**self).samples_total()
+    }
+}
+
 /// Why a source could not go on.
 #[derive(Debug, thiserror::Error)]
 pub enum SourceError {
@@ -60,6 +76,9 @@ pub enum SourceError {
         /// What is wrong with it: found and expected, with line or offset.
         reason: String,
     },
+    /// A file name could not be expanded.
+    #[error("{0}")]
+    FileName(String),
 }
 
 /// The period of a nominal rate, rounded to a nanosecond.

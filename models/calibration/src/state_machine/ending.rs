@@ -9,14 +9,27 @@ use crate::config::{Estimator, Site};
 use crate::covariance::PARAMETERS;
 use crate::table::{CalibrationTable, Provenance, Quality};
 use nalgebra::Vector3;
-use octant_sample::Sample;
+use octant_sample::{DeviceTime, Mode, Output};
 
 impl Core {
-    pub(super) fn finish_calibration(&mut self, sample: &Sample) {
+    /// The source has ended. A calibration that still runs is concluded with what there is, as at
+    /// the end of its duration; otherwise nothing changes. Answers with the last output, mode and
+    /// revision brought up to date.
+    pub fn end_of_stream(&mut self) -> Output {
+        if self.mode == Mode::Calibrating {
+            self.finish_calibration(self.last_output.device_time);
+            self.last_output.mode = self.mode;
+            self.last_output.parameters_revision = self.revision;
+            self.last_output.navigation = self.strapdown.navigation();
+        }
+        self.last_output
+    }
+
+    pub(super) fn finish_calibration(&mut self, at: DeviceTime) {
         match self.conclude() {
             Err(refusal) => self.refuse(refusal),
             Ok(quality) => {
-                self.table = self.export(sample, quality);
+                self.table = self.export(at, quality);
                 self.start_navigation();
             }
         }
@@ -28,7 +41,9 @@ impl Core {
             (&self.estimation, kalman_of(&self.config))
         {
             let period = kalman.aiding_period_ns;
-            let expected = self.calibration_ticks * self.config.sample_period_ns / period;
+            // A stream that ended early could bring no more.
+            let ticks = self.calibration_ticks.min(self.tick);
+            let expected = ticks * self.config.sample_period_ns / period;
             return judge(filter, kalman, expected);
         }
         let Some(adjusted) = self.estimation.adjust() else { return Err(Refusal::Numeric) };
@@ -50,7 +65,7 @@ impl Core {
         Ok(Quality { nis_mean: f64::NAN, used, ..Quality::default() })
     }
 
-    fn export(&self, sample: &Sample, quality: Quality) -> Option<CalibrationTable> {
+    fn export(&self, at: DeviceTime, quality: Quality) -> Option<CalibrationTable> {
         let calibration = self.config.calibration.as_ref()?;
         let covariance = core::array::from_fn(|i| {
             core::array::from_fn(|j| match &self.estimation {
@@ -68,7 +83,7 @@ impl Core {
             covariance,
             quality,
             provenance: Provenance {
-                ended_ns: sample.device_time.ns,
+                ended_ns: at.ns,
                 duration_s: calibration.duration_s,
                 stops: calibration.sequence.stops().len() as u64
                     * u64::from(calibration.sequence.passes()),

@@ -218,7 +218,7 @@ impl Core {
             Mode::Calibrating => {
                 self.measure(aiding, &mut health, &mut nis);
                 if self.tick >= self.calibration_ticks {
-                    self.finish_calibration(sample);
+                    self.finish_calibration(sample.device_time);
                 }
             }
             Mode::Navigating if self.phase_tick() >= self.navigation_ticks => {
@@ -237,8 +237,6 @@ impl Core {
         self.answer(sample, health, nis)
     }
 
-    /// temp
-    pub fn end_of_stream(&mut self) {}
     /// A solution that is no number is not handed out: the last good one stands, and is refused.
     #[cold]
     fn stop_at_last_finite(&mut self, health: &mut Health) {
