@@ -8,7 +8,7 @@ use instrument::Case;
 use instrument::closed_loop::{ClosedLoop, on_two_threads};
 use nalgebra::{Quaternion, UnitQuaternion};
 use octant_calibration::config::*;
-use octant_calibration::positions::{EIGHT, SIX};
+use octant_calibration::positions::{Degrees, EIGHT, SIX};
 use octant_earth::units::*;
 use octant_plant::config as plant;
 use octant_plant::motion::dockside_default;
@@ -167,24 +167,23 @@ fn a_calibration_from_coarse_alignment_is_consistent() {
 #[test]
 #[ignore = "minutes: run by tests/run"]
 fn the_other_estimators_end_in_navigation() {
-    let methods: Vec<(&str, &'static [(f64, f64, f64)], Estimator)> =
-        [("six", SIX), ("eight", EIGHT)]
-            .into_iter()
-            .flat_map(|(name, positions)| {
-                [
-                    Estimator::LeastSquares(LeastSquares {
-                        gravity_mps2: None,
-                        gyro: GyroReference::EarthRate,
-                        intervals: StaticIntervals::Commanded,
-                    }),
-                    Estimator::ExternalTurntable(ExternalTurntable {
-                        q_nc: UnitQuaternion::identity(),
-                        encoder_sigma_rad: 1.0 * ARCSEC,
-                    }),
-                ]
-                .map(|estimator| (name, positions, estimator))
-            })
-            .collect();
+    let methods: Vec<(&str, &'static [Degrees], Estimator)> = [("six", SIX), ("eight", EIGHT)]
+        .into_iter()
+        .flat_map(|(name, positions)| {
+            [
+                Estimator::LeastSquares(LeastSquares {
+                    gravity_mps2: None,
+                    gyro: GyroReference::EarthRate,
+                    intervals: StaticIntervals::Commanded,
+                }),
+                Estimator::ExternalTurntable(ExternalTurntable {
+                    q_nc: UnitQuaternion::identity(),
+                    encoder_sigma_rad: 1.0 * ARCSEC,
+                }),
+            ]
+            .map(|estimator| (name, positions, estimator))
+        })
+        .collect();
     let all = on_two_threads(&methods, |(_, positions, estimator)| {
         let mut case = Case::table_1(1, positions);
         case.navigation_h = 12.0;
