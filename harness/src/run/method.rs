@@ -10,8 +10,7 @@ use crate::scenario::resolve::{Draws, Seeded};
 use crate::scenario::{Method, Scenario, Source as SourceKind};
 use crate::score::parameters::{nees, score, worst_normalized_error};
 use crate::score::summary::{Calibration, HeightChannel, Navigation};
-use crate::source::plant::PlantSource;
-use crate::source::{Source, SourceError};
+use crate::source::{PlantSource, SourceError};
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use octant_calibration::config as core;
 use octant_calibration::state_machine::ConfigError;
@@ -99,7 +98,11 @@ pub fn label(scenario: &Scenario, method: Method) -> String {
         core::Estimator::LeastSquares(_) => "by least squares",
         core::Estimator::ExternalTurntable(_) => "on an external turntable",
     };
-    format!("{} positions {estimator}", calibration.name)
+    if calibration.name == "own stops" {
+        format!("own stops {estimator}")
+    } else {
+        format!("{} positions {estimator}", calibration.name)
+    }
 }
 
 /// Configurations of plant and core of one method of a scenario.
@@ -148,22 +151,18 @@ pub fn run_method(
     };
     let calibration_s = core.calibration.as_ref().map_or(0.0, |c| c.duration_s);
     let mut watcher = Watcher::new(calibration_s);
-    let simulated = scenario.source == SourceKind::Plant;
-    let ended = if simulated {
+    let opened = crate::source::open(scenario).map_err(SetupError::Source)?;
+    let simulated = opened.is_none();
+    let ended = match opened {
         // Statically dispatched: this loop passes ten million samples a second.
-        let samples = scenario.samples().unwrap_or(u64::MAX);
-        let plant = Plant::new(&plant).map_err(SetupError::Plant)?;
-        let mut source = PlantSource::new(plant, samples);
-        drive(&mut source, &mut endpoint, &mut recorder, &mut watcher, control)?
-    } else {
-        let mut source = crate::source::open(scenario).map_err(SetupError::Source)?;
-        drive::<dyn Source, _>(
-            source.as_mut(),
-            &mut endpoint,
-            &mut recorder,
-            &mut watcher,
-            control,
-        )?
+        None => {
+            let samples = scenario.samples().unwrap_or(u64::MAX);
+            let mut source = PlantSource::new(&plant, samples).map_err(SetupError::Plant)?;
+            drive(&mut source, &mut endpoint, &mut recorder, &mut watcher, control)?
+        }
+        Some(mut source) => {
+            drive(&mut source, &mut endpoint, &mut recorder, &mut watcher, control)?
+        }
     };
     let truth = simulated.then_some(draws.parameters);
     finish(scenario, method, ended, endpoint, recorder, watcher, truth)

@@ -6,6 +6,7 @@
 pub mod assemble;
 pub mod drive;
 pub mod method;
+pub mod paired;
 pub mod watch;
 
 pub use assemble::{Run, assemble};
