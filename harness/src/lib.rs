@@ -3,6 +3,7 @@
 //! A sample flows one way, and the modules are named for its stations:
 //! **source → faults → endpoint → recorder → score → report**.
 
+pub mod calibrate;
 pub mod cli;
 pub mod endpoint;
 pub mod evidence;

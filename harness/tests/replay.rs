@@ -6,7 +6,7 @@ mod common;
 use common::{push, record, stream, truth_of};
 use octant::recorder::{Policy, Recorder, RecorderOptions, Samples, StreamHash};
 use octant::source::{
-    Epoch, MappedField, MappedStamp, McapMapping, Quantity, Replay, Source, SourceError,
+    Epoch, MappedField, MappedStamp, McapMapping, Quantity, Replay, Source, SourceError, TimeUnit,
 };
 use octant_sample::counts::DELTA_THETA_LSB_RAD;
 use octant_sample::{GimbalCommand, Status};
@@ -215,15 +215,20 @@ fn json_messages_become_samples() {
         .map(String::into_bytes)
         .collect();
     foreign(&path, None, "json", &messages);
-    let field = |path: &str, scale| MappedField { path: path.into(), scale };
+    let field = |path: &str, scale| MappedField { path: path.into(), offset: 0.0, scale };
     let degree = std::f64::consts::PI / 180.0;
     let mut mapping = McapMapping {
         topic: "/imu/data".into(),
         gyro: [field("w[1]", degree), field("w[0]", -degree), field("w[2]", degree)],
         accelerometer: [field("acc.x", 1.0), field("acc.y", 1.0), field("acc.z", 1.0)],
         quantity: Quantity::Rates,
-        stamp: MappedStamp::Fields { seconds: None, nanoseconds: "t".into() },
+        stamp: MappedStamp::Field {
+            path: "t".into(),
+            unit: TimeUnit::Nanosecond,
+            nanoseconds: None,
+        },
         nominal_rate_hz: 200.0,
+        split: 1,
         gimbal: None,
     };
     let epochs = all(&mut Replay::open(&path, Some(&mapping)).unwrap()).unwrap();

@@ -177,9 +177,9 @@ fn a_limit_is_in_the_unit_of_its_measure() {
         )
     };
     let parse = |limit| Scenario::parse(&requirement(limit), "f", Path::new(""), &[]);
-    assert_eq!(parse("0.8").unwrap().requirements[0].limit, 0.8);
-    assert_eq!(parse("\"0.8 nmi\"").unwrap().requirements[0].limit, 0.8);
-    assert_eq!(parse("\"3704 m\"").unwrap().requirements[0].limit, 2.0);
+    assert_eq!(parse("0.8").unwrap().requirements[0].check.limit, 0.8);
+    assert_eq!(parse("\"0.8 nmi\"").unwrap().requirements[0].check.limit, 0.8);
+    assert_eq!(parse("\"3704 m\"").unwrap().requirements[0].check.limit, 2.0);
     assert_says(&problem(&requirement("\"3 arcmin\"")).2, &["comparable with nmi"]);
 }
 

@@ -1,52 +1,11 @@
 //! The scenarios that ship with Octant: each is read, resolved and read again.
 #![allow(clippy::unwrap_used)]
 
-use octant::scenario::resolve::{Drawing, Draws};
-use octant::scenario::{Distribution, Method, Scenario};
+use octant::scenario::resolve::{Draws, Seeded};
+use octant::scenario::{Method, Scenario};
 use octant_earth::Vector3;
-use octant_sample::Parameters;
-use octant_sample::parameters::{Group, PARAMETER_COUNT};
+use octant_sample::parameters::Group;
 use std::path::{Path, PathBuf};
-
-/// Numbers that depend on stream and index, and look drawn.
-struct Numbers;
-
-impl Numbers {
-    /// Even in [-1, 1).
-    fn of(stream: &str, index: usize) -> f64 {
-        let start = 0x9E37_79B9_7F4A_7C15u64 ^ index as u64;
-        let hash = stream.bytes().fold(start, |hash, byte| {
-            (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01B3).rotate_left(23)
-        });
-        (hash >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-    }
-}
-
-impl Drawing for Numbers {
-    fn parameters(&self, distributions: &[Distribution; 7]) -> Parameters {
-        let mut all = [0.0; PARAMETER_COUNT];
-        for (group, distribution) in Group::ALL.into_iter().zip(distributions) {
-            for (index, value) in all[group.range()].iter_mut().enumerate() {
-                *value = match distribution {
-                    Distribution::Normal(width) | Distribution::Uniform(width) => {
-                        width * Self::of(group.name(), index)
-                    }
-                    Distribution::Constant(values) => values[index],
-                };
-            }
-        }
-        Parameters::from_array(&all)
-    }
-
-    fn alignment_error(&self, tilt: f64, azimuth: f64, velocity: f64) -> ([f64; 3], [f64; 3]) {
-        let [a, b, c] = [0, 1, 2].map(|index| Self::of("alignment", index));
-        ([tilt * a, tilt * b, azimuth * c], [velocity * b, velocity * c, velocity * a])
-    }
-
-    fn phases(&self, motion: &str, count: usize) -> Vec<f64> {
-        (0..count).map(|index| 3.0 * Self::of(motion, index)).collect()
-    }
-}
 
 fn files() -> Vec<PathBuf> {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/scenarios");
@@ -58,7 +17,7 @@ fn files() -> Vec<PathBuf> {
 }
 
 fn both_configurations(scenario: &Scenario) -> String {
-    let draws = Draws::of(scenario, &Numbers);
+    let draws = Draws::of(scenario, &Seeded(1));
     let plant = scenario.plant(scenario.seed, &draws);
     let core = |method| scenario.core(method, &draws, &scenario.mean_attitude(), &Vector3::zeros());
     // Debug prints every field, and floats so that they read back to the same bits.
@@ -85,12 +44,12 @@ fn every_shipped_scenario_is_one() {
 fn a_resolved_scenario_makes_the_same_run_and_resolves_to_itself() {
     for file in files() {
         let scenario = Scenario::load(&file, &[]).unwrap();
-        let draws = Draws::of(&scenario, &Numbers);
+        let draws = Draws::of(&scenario, &Seeded(1));
         let resolved = scenario.to_resolved_toml(scenario.seed, &draws);
         let again = Scenario::parse(&resolved, "resolved", Path::new("/elsewhere"), &[])
             .unwrap_or_else(|error| panic!("{error}\n{resolved}"));
         assert_eq!(both_configurations(&again), both_configurations(&scenario), "{resolved}");
-        let draws = Draws::of(&again, &Numbers);
+        let draws = Draws::of(&again, &Seeded(1));
         assert_eq!(again.to_resolved_toml(again.seed, &draws), resolved);
     }
 }
@@ -123,7 +82,7 @@ fn what_no_shipped_scenario_has_resolves_to_the_same_run_too() {
                 .unwrap_or_else(|error| panic!("{error}\n{text}"))
         };
         let scenario = parse(&text, "/runs");
-        let resolved = scenario.to_resolved_toml(1, &Draws::of(&scenario, &Numbers));
+        let resolved = scenario.to_resolved_toml(1, &Draws::of(&scenario, &Seeded(1)));
         let again = parse(&resolved, "/elsewhere");
         let place = |text: String| text.replace("\"data/gyro.csv\"", "\"/runs/data/gyro.csv\"");
         assert_eq!(

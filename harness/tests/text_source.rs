@@ -21,6 +21,7 @@ fn mapping(files: TextFiles) -> TextMapping {
         accelerometer: [5, 6, 7].map(|column| axis(column, 0.0, 1.0)),
         quantity: Quantity::Rates,
         nominal_rate_hz: 100.0,
+        split: 1,
         delimiter: Delimiter::Character(b','),
         comment: "#".into(),
         skip_lines: 0,

@@ -87,6 +87,19 @@ impl From<crate::run::method::MethodError> for Failure {
     }
 }
 
+impl From<crate::run::paired::PairedError> for Failure {
+    fn from(error: crate::run::paired::PairedError) -> Self {
+        use crate::run::paired::PairedError;
+        let message = format!("failed to {error}");
+        match error {
+            PairedError::Method(error) => Self::from(error),
+            PairedError::Refused { .. } => Self { status: Verdict::Fail.exit_code(), message },
+            PairedError::NoNavigation | PairedError::NotSimulated => Self::input(message),
+            PairedError::Cancelled => Self { status: Verdict::Inconclusive.exit_code(), message },
+        }
+    }
+}
+
 /// Runs the program and returns its exit status.
 #[must_use]
 pub fn main() -> ExitCode {

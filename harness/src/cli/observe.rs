@@ -3,12 +3,13 @@
 use super::{Failure, ScenarioArguments, load, print, print_json};
 use crate::observe::covariance::{AnalysisError, Drift, predict, state_name};
 use crate::observe::static_rank;
+use crate::report::number::significant;
 use crate::run::method::{configurations, label};
 use crate::scenario::{Distribution, Method, Motion, Scenario};
 use crate::score::verdict::Verdict;
 use clap::Args;
-use octant_calibration::config::{Alignment, Config, Estimator};
-use octant_calibration::covariance::{DR, DV, PARAMETERS, PHI, STATE_COUNT};
+use octant_calibration::config::{Config, Estimator};
+use octant_calibration::covariance::{DR, DV, PARAMETERS, STATE_COUNT};
 use octant_calibration::filter::prior_sigmas;
 use octant_earth::frames::c_nc;
 use octant_earth::units::ARCSEC;
@@ -161,12 +162,11 @@ fn unit_of(state: usize) -> (&'static str, f64) {
 /// Standard deviations of the truth: what the scenario draws. A constant counts with its magnitude.
 fn true_sigmas(scenario: &Scenario, config: &Config) -> [f64; STATE_COUNT] {
     let mut sigmas = [0.0; STATE_COUNT];
-    if let (Some(calibration), Alignment::Given { .. } | Alignment::Coarse { .. }) =
-        (&config.calibration, &config.alignment)
+    if let Some(calibration) = &config.calibration
         && let Estimator::Kalman(kalman) = &calibration.estimator
     {
+        // Attitude, velocity and position are handed over with errors of the size of the prior.
         sigmas = prior_sigmas(kalman);
-        sigmas[PHI..PARAMETERS].copy_from_slice(&prior_sigmas(kalman)[PHI..PARAMETERS]);
     }
     for group in Group::ALL {
         let range = group.range();
@@ -213,11 +213,16 @@ fn text(observation: &Observation) -> String {
         );
     }
     for state in &observation.states {
-        let believed = state.believed.map_or("-".to_owned(), |b| format!("{b:.4e}"));
+        let figure = |value: f64| significant(value, 4);
+        let believed = state.believed.map_or("-".to_owned(), figure);
         let _ = writeln!(
             out,
-            "  {:24} {:>12.4e} {:>12} {:>12.4e}  {}",
-            state.name, state.prior, believed, state.achieved, state.unit
+            "  {:24} {:>12} {:>12} {:>12}  {}",
+            state.name,
+            figure(state.prior),
+            believed,
+            figure(state.achieved),
+            state.unit
         );
     }
     if !observation.drift.is_empty() {

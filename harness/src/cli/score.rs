@@ -104,7 +104,11 @@ fn text(scores: &Scores) -> String {
     if let Some(navigation) = &scores.navigation {
         let (lat, lon) = (&navigation.latitude_error_arcmin, &navigation.longitude_error_arcmin);
         let radial = &navigation.radial_error_nmi;
-        let _ = writeln!(out, "  navigation {} h, height held", navigation.duration_h);
+        let _ = writeln!(
+            out,
+            "  navigation {} h, height held",
+            crate::report::number::plain(navigation.duration_h, 4)
+        );
         for (name, error) in [("latitude", lat), ("longitude", lon)] {
             let _ = writeln!(
                 out,

@@ -21,10 +21,11 @@ impl InProcess {
         Ok(Self { core: Core::new(config)?, revision: 0 })
     }
 
-    /// Tells the core that no sample will come any more: a calibration that still runs is concluded
-    /// with what it has.
-    pub fn end_of_stream(&mut self) {
-        self.core.end_of_stream();
+    /// The source has ended: see [`Core::end_of_stream`].
+    pub fn end_of_stream(&mut self) -> Output {
+        let output = self.core.end_of_stream();
+        self.revision = output.parameters_revision;
+        output
     }
 
     /// The core behind the endpoint, for what no wire carries: diagnostics and table.

@@ -264,4 +264,20 @@ mod tests {
         assert_eq!(factor(1.0 / 3.0), "1/3 ");
         assert_eq!(factor(0.123_456), "0.1235 ");
     }
+
+    #[test]
+    fn the_rank_of_the_named_sequences() {
+        use octant_calibration::positions::SEQUENCES;
+        for (name, stops, _) in SEQUENCES {
+            let stops: Vec<_> = stops.iter().map(|(a, r, _)| (a * DEG, r * DEG)).collect();
+            let found = static_rank(&stops, 30.5 * DEG, 0.0, false);
+            // Orthogonal attitudes alone leave the diagonal of G; tilts in two planes its trace.
+            let expected = match *name {
+                "six" | "twelve" | "nineteen" => 10,
+                "eight-same-plane" => 11,
+                _ => 12,
+            };
+            assert_eq!(found.rank, expected, "{name}: {:?}", found.null_space);
+        }
+    }
 }

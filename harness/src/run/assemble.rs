@@ -2,7 +2,7 @@
 
 use super::drive::Ended;
 use super::method::MethodRun;
-use crate::report::{Provenance, ReportData};
+use crate::report::{Provenance, ReportData, number};
 use crate::scenario::{Motion, Scenario, Source};
 use crate::score::reference::{ReferenceInput, reference};
 use crate::score::summary::{Baseline, SCHEMA, Summary};
@@ -66,7 +66,7 @@ pub fn assemble(
         pacing: None,
         stream_hash: primary.recorder.stream_hash.clone(),
     };
-    let requirements: Vec<crate::score::verdict::Requirement> = scenario.requirements.iter().map(|r| crate::score::verdict::Requirement { id: r.id.clone(), measure: r.measure.clone(), comparison: match r.comparison { crate::scenario::Comparison::AtMost => crate::score::verdict::Comparison::AtMost, crate::scenario::Comparison::Below => crate::score::verdict::Comparison::Below, crate::scenario::Comparison::AtLeast => crate::score::verdict::Comparison::AtLeast, crate::scenario::Comparison::Above => crate::score::verdict::Comparison::Above }, limit: r.limit }).collect();
+    let requirements: Vec<_> = scenario.requirements.iter().map(|r| r.check.clone()).collect();
     judge(&mut summary, &requirements, &findings)?;
     let report = ReportData {
         summary: summary.clone(),
@@ -160,7 +160,10 @@ pub fn text(summary: &Summary) -> String {
             let worst = calibration
                 .worst_normalized_error
                 .map_or(String::new(), |worst| format!(", worst parameter {worst:.1} σ off"));
-            line(format!("  calibration {} h: NIS {nis}{worst}", calibration.duration_h));
+            line(format!(
+                "  calibration {} h: NIS {nis}{worst}",
+                number::plain(calibration.duration_h, 4)
+            ));
             if let Some(reason) = &calibration.refused {
                 line(format!("  refused: {reason}"));
             }
@@ -171,7 +174,7 @@ pub fn text(summary: &Summary) -> String {
                     e.slope_per_day.map_or(String::new(), |s| format!(", {s:+.3} arcmin/day"));
                 format!("max {:.3}, rms {:.3} arcmin{slope}", e.max, e.rms)
             };
-            line(format!("  navigation {} h", n.duration_h));
+            line(format!("  navigation {} h", number::plain(n.duration_h, 4)));
             line(format!("    latitude  {}", error(&n.latitude_error_arcmin)));
             line(format!("    longitude {}", error(&n.longitude_error_arcmin)));
             line(format!(

@@ -19,6 +19,14 @@ pub(crate) fn derive(document: &mut Table) {
     for table in ["source.text", "source.mcap"] {
         if document.at(table).is_some() {
             let rate = text(document, "imu.rate").unwrap_or("200 Hz").to_owned();
+            let split = match document.at(&format!("{table}.split")).map(|node| &node.value) {
+                Some(Value::Integer(split)) if *split > 1 => *split as f64,
+                _ => 1.0,
+            };
+            let rate = match quantity::parse(&rate) {
+                Ok(quantity) if split > 1.0 => Dimension::FREQUENCY.write(quantity.si / split),
+                _ => rate,
+            };
             set(document, &format!("{table}.rate"), &rate);
         }
     }

@@ -10,7 +10,6 @@ mod derive;
 mod document;
 mod error;
 mod keys;
-mod positions;
 mod quantity;
 mod read;
 pub mod resolve;
@@ -21,9 +20,7 @@ mod write;
 pub use error::{Place, Problem, ScenarioError};
 pub use keys::SCHEMA;
 pub use quantity::{Dimension, Quantity};
-pub use read::source::{
-    Axis, Column, Delimiter, Fields, FileName, Mcap, Signal, SignalQuantity, Source, TextFiles,
-};
+pub use read::source::{FileName, Source};
 pub use schema::schema;
 pub use tour::tour;
 
@@ -99,6 +96,7 @@ pub enum Distribution {
 }
 
 /// How the case moves; phases that aren't given are drawn.
+#[allow(clippy::large_enum_variant, reason = "one of it in a scenario")]
 #[derive(Clone, Debug, PartialEq)]
 pub enum Motion {
     /// Fixed to the ground.
@@ -114,6 +112,8 @@ pub struct Dockside {
     pub mean: plant::CaseAttitude,
     /// Roll, pitch, yaw (rad), surge, sway, heave (m).
     pub components: [Vec<Component>; 6],
+    /// Sinusoids of a spectrum beside them, drawn.
+    pub spectrum: Option<ShipSpectrum>,
     /// Offset from the dock's reference, north, east, down, m.
     pub mooring_offset_m: [f64; 3],
 }
@@ -127,6 +127,17 @@ pub struct Component {
     pub period_s: f64,
     /// Phase at time 0, rad; `None`: drawn.
     pub phase_rad: Option<f64>,
+}
+
+/// Motions with the shape of a wave spectrum, see [`octant_plant::sea`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ShipSpectrum {
+    /// Period of the peak, s.
+    pub peak_period_s: f64,
+    /// Standard deviation of roll, pitch, yaw (rad), surge, sway, heave (m); 0: not moved by it.
+    pub sigma: [f64; 6],
+    /// Sinusoids of each motion.
+    pub components: usize,
 }
 
 /// How the core finds its attitude.
@@ -178,60 +189,17 @@ impl Calibration {
     }
 }
 
-/// A limit that a result has to keep.
+/// A limit that a result has to keep, with what the scenario says about it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Requirement {
-    /// Identifier.
-    pub id: String,
-    /// What is required.
+    /// What is checked.
+    pub check: crate::score::verdict::Requirement,
+    /// What is required, as a sentence.
     pub text: String,
-    /// Dotted path into `summary.json`.
-    pub measure: String,
-    /// The limit in the measure's unit.
-    pub limit: f64,
     /// The limit as it was written.
     pub limit_text: String,
-    /// How they are compared.
-    pub comparison: Comparison,
     /// Document and clause that it comes from.
     pub clause: Option<String>,
-}
-
-/// How a measure is compared with its limit.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Comparison {
-    /// `<=`
-    AtMost,
-    /// `<`
-    Below,
-    /// `>=`
-    AtLeast,
-    /// `>`
-    Above,
-}
-
-impl Comparison {
-    /// The sign used in scenarios.
-    #[must_use]
-    pub const fn sign(self) -> &'static str {
-        match self {
-            Self::AtMost => "<=",
-            Self::Below => "<",
-            Self::AtLeast => ">=",
-            Self::Above => ">",
-        }
-    }
-
-    /// Whether a value keeps the limit. One that isn't a number doesn't.
-    #[must_use]
-    pub fn holds(self, value: f64, limit: f64) -> bool {
-        match self {
-            Self::AtMost => value <= limit,
-            Self::Below => value < limit,
-            Self::AtLeast => value >= limit,
-            Self::Above => value > limit,
-        }
-    }
 }
 
 /// What is recorded.

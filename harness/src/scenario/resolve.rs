@@ -4,10 +4,11 @@
 //! take the same draws.
 
 use super::read::case_attitude;
-use super::{Alignment, Distribution, Method, Motion, Scenario};
+use super::{Alignment, Distribution, Dockside, Method, Motion, Scenario};
 use octant_calibration::config as core;
 use octant_earth::{UnitQuaternion, Vector3, rotation};
-use octant_plant::config as plant;
+use octant_plant::sea::Spectrum;
+use octant_plant::{config as plant, draw};
 use octant_sample::Parameters;
 #[cfg(doc)]
 use octant_sample::parameters::Group;
@@ -26,6 +27,60 @@ pub trait Drawing {
     ) -> ([f64; 3], [f64; 3]);
     /// So many phases of a motion (`roll`, `pitch`, `yaw`, `surge`, `sway`, `heave`), rad.
     fn phases(&self, motion: &str, count: usize) -> Vec<f64>;
+    /// Sinusoids of a motion with the variance and the shape of a spectrum.
+    fn spectrum(&self, motion: &str, spectrum: &Spectrum, count: usize) -> Vec<plant::Sinusoid>;
+}
+
+/// Draws from the plant's streams: the seed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Seeded(pub u64);
+
+impl Drawing for Seeded {
+    fn parameters(&self, distributions: &[Distribution; 7]) -> Parameters {
+        let [bias, scale, misalignment, g_dependent, accel_bias, accel_scale, accel_misalignment] =
+            distributions;
+        let draws = draw::ParameterDraws {
+            gyro_bias: of_group(bias),
+            gyro_scale: of_group(scale),
+            gyro_misalignment: of_group(misalignment),
+            g_dependent: of_group(g_dependent),
+            accel_bias: of_group(accel_bias),
+            accel_scale: of_group(accel_scale),
+            accel_misalignment: of_group(accel_misalignment),
+        };
+        draw::parameters(self.0, &draws)
+    }
+
+    fn alignment_error(
+        &self,
+        tilt_rad: f64,
+        azimuth_rad: f64,
+        velocity_mps: f64,
+    ) -> ([f64; 3], [f64; 3]) {
+        let error = draw::alignment_error(self.0, tilt_rad, azimuth_rad, velocity_mps);
+        (error.phi_rad, error.velocity_mps)
+    }
+
+    fn phases(&self, motion: &str, count: usize) -> Vec<f64> {
+        draw::phases(self.0, motion, count)
+    }
+
+    fn spectrum(&self, motion: &str, spectrum: &Spectrum, count: usize) -> Vec<plant::Sinusoid> {
+        // A stream of its own: single components beside it keep their phases.
+        spectrum.components(self.0, &format!("{motion}.spectrum"), count)
+    }
+}
+
+/// The plant's distribution of a group of N. The check of the scenario has counted the values; one
+/// that isn't there would be refused by the plant as not finite.
+fn of_group<const N: usize>(distribution: &Distribution) -> draw::Draw<N> {
+    match distribution {
+        Distribution::Normal(sigma) => draw::Draw::Normal { sigma: *sigma },
+        Distribution::Uniform(half_width) => draw::Draw::Uniform { half_width: *half_width },
+        Distribution::Constant(values) => draw::Draw::Constant(std::array::from_fn(|index| {
+            values.get(index).copied().unwrap_or(f64::NAN)
+        })),
+    }
 }
 
 /// What is drawn from the seed before a run.
@@ -33,9 +88,9 @@ pub trait Drawing {
 pub struct Draws {
     /// True parameters.
     pub parameters: Parameters,
-    /// Phases of the ship's components, rad: of roll, pitch, yaw, surge, sway, heave, in the order
-    /// of the components. Empty when static.
-    pub phases: [Vec<f64>; 6],
+    /// The ship's roll, pitch, yaw, surge, sway, heave: components with their phases, and those of
+    /// the spectrum after them. Empty when static.
+    pub motion: [Vec<plant::Sinusoid>; 6],
     /// Error of the attitude handed over, φ north, east, down, rad.
     pub attitude_error_rad: [f64; 3],
     /// Error of the velocity handed over, m/s.
@@ -45,15 +100,10 @@ pub struct Draws {
 impl Draws {
     /// Draws what the scenario leaves open and takes over what it gives.
     pub fn of(scenario: &Scenario, drawing: &impl Drawing) -> Self {
-        let mut phases: [Vec<f64>; 6] = Default::default();
+        let mut motion: [Vec<plant::Sinusoid>; 6] = Default::default();
         if let Motion::Dockside(ship) = &scenario.motion {
-            for ((phases, components), name) in
-                phases.iter_mut().zip(&ship.components).zip(super::read::MOTIONS)
-            {
-                // A phase that is given takes no other component's draw.
-                let drawn = drawing.phases(name, components.len());
-                let pairs = components.iter().zip(drawn);
-                *phases = pairs.map(|(c, drawn)| c.phase_rad.unwrap_or(drawn)).collect();
+            for (index, name) in super::read::MOTIONS.into_iter().enumerate() {
+                motion[index] = sinusoids(ship, index, name, drawing);
             }
         }
         let (attitude_error_rad, velocity_error_mps) = match scenario.alignment {
@@ -71,11 +121,35 @@ impl Draws {
         };
         Self {
             parameters: drawing.parameters(&scenario.parameters),
-            phases,
+            motion,
             attitude_error_rad,
             velocity_error_mps,
         }
     }
+}
+
+/// The sinusoids of one of a ship's motions.
+fn sinusoids(
+    ship: &Dockside,
+    index: usize,
+    name: &str,
+    drawing: &impl Drawing,
+) -> Vec<plant::Sinusoid> {
+    let components = &ship.components[index];
+    // A phase that is given takes no other component's draw.
+    let drawn = drawing.phases(name, components.len());
+    let single = components.iter().zip(drawn).map(|(component, drawn)| plant::Sinusoid {
+        amplitude: component.amplitude,
+        period_s: component.period_s,
+        phase_rad: component.phase_rad.unwrap_or(drawn),
+    });
+    let mut all: Vec<plant::Sinusoid> = single.collect();
+    if let Some(spectrum) = ship.spectrum.filter(|spectrum| spectrum.sigma[index] > 0.0) {
+        let significant = 4.0 * spectrum.sigma[index];
+        let shape = Spectrum::pierson_moskowitz(significant, spectrum.peak_period_s);
+        all.extend(drawing.spectrum(name, &shape, spectrum.components));
+    }
+    all
 }
 
 impl Scenario {
@@ -99,16 +173,7 @@ impl Scenario {
             Motion::Static(mean) => return plant::Motion::Static(*mean),
             Motion::Dockside(ship) => ship,
         };
-        let [roll, pitch, yaw, surge, sway, heave] = std::array::from_fn(|motion| {
-            let pairs = ship.components[motion].iter().zip(&draws.phases[motion]);
-            pairs
-                .map(|(component, phase_rad)| plant::Sinusoid {
-                    amplitude: component.amplitude,
-                    period_s: component.period_s,
-                    phase_rad: *phase_rad,
-                })
-                .collect()
-        });
+        let [roll, pitch, yaw, surge, sway, heave] = draws.motion.clone();
         let (mean, mooring_offset_m) = (ship.mean, ship.mooring_offset_m);
         plant::Motion::Dockside(plant::Dockside {
             mean,
@@ -192,6 +257,49 @@ mod tests {
     use super::*;
     use octant_earth::{Matrix3, frames, units::DEG};
 
+    fn drawn(text: &str) -> Draws {
+        let text = format!("schema = 1\n[procedure.calibration]\n{text}");
+        let scenario = Scenario::parse(&text, "f", std::path::Path::new(""), &[]).unwrap();
+        Draws::of(&scenario, &Seeded(7))
+    }
+
+    #[test]
+    fn a_changed_distribution_moves_no_other_draw() {
+        use octant_sample::parameters::Group;
+        let ship = "[motion]\nkind = \"dockside\"\n[motion.ship]\n\
+                    roll = [{ amplitude = \"1 deg\", period = \"8 s\" }]\n";
+        let all = drawn(ship);
+        let changes = [
+            "normal = \"1 deg/h\"",
+            "uniform = \"7 ppm\"",
+            "normal = \"5 arcsec\"",
+            "uniform = \"0.1 deg/h/g\"",
+            "constant = [\"1 ug\", \"2 ug\", \"3 ug\"]",
+            "normal = \"1 ppm\"",
+            "normal = \"1 arcsec\"",
+        ];
+        for (group, change) in Group::ALL.into_iter().zip(changes) {
+            let other = drawn(&format!("{ship}[imu.{}]\n{change}\n", group.name()));
+            let [before, after] = [&all, &other].map(|draws| draws.parameters.to_array());
+            for index in 0..before.len() {
+                let moved = before[index] != after[index];
+                assert_eq!(moved, group.range().contains(&index), "{change}: {index}");
+            }
+            assert_eq!(Draws { parameters: all.parameters, ..other }, all, "{change}");
+        }
+        // Nor does a spectrum beside a component, or another alignment.
+        let spectrum = "spectrum = { peak_period = \"9 s\", roll = \"2 deg\", components = 5 }\n";
+        let other = drawn(&format!("{ship}{spectrum}[procedure.alignment]\ntilt = \"0.1 deg\"\n"));
+        assert_eq!(other.parameters, all.parameters);
+        assert_eq!(other.velocity_error_mps, all.velocity_error_mps);
+        assert_eq!(other.attitude_error_rad[2], all.attitude_error_rad[2]);
+        assert_eq!(other.motion[0][0], all.motion[0][0]);
+        assert_eq!(other.motion[0].len(), 6);
+        let variance: f64 =
+            other.motion[0][1..].iter().map(|s| 0.5 * s.amplitude * s.amplitude).sum();
+        assert!((libm::sqrt(variance) / (2.0 * DEG) - 1.0).abs() < 1e-12, "{variance}");
+    }
+
     #[test]
     fn the_attitude_error_has_the_sign_of_phi() {
         let truth = frames::quaternion_from_matrix(&frames::c_nc(0.7, -0.2, 0.1));
@@ -202,39 +310,5 @@ mod tests {
         let difference = computed.to_rotation_matrix().matrix() - expected;
         assert!(difference.norm() < (0.1 * DEG).powi(2), "second order: {difference}");
         assert!((frames::phi_of(&computed, &truth) - Vector3::from(phi)).norm() < 1e-12);
-    }
-}
-
-/// Draws from the plant's streams: the seed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Seeded(pub u64);
-
-fn of_group<const N: usize>(d: &Distribution) -> octant_plant::draw::Draw<N> {
-    use octant_plant::draw::Draw;
-    match d {
-        Distribution::Normal(sigma) => Draw::Normal { sigma: *sigma },
-        Distribution::Uniform(half_width) => Draw::Uniform { half_width: *half_width },
-        Distribution::Constant(values) => Draw::Constant(std::array::from_fn(|i| values[i])),
-    }
-}
-impl Drawing for Seeded {
-    fn parameters(&self, d: &[Distribution; 7]) -> Parameters {
-        let draws = octant_plant::draw::ParameterDraws {
-            gyro_bias: of_group(&d[0]),
-            gyro_scale: of_group(&d[1]),
-            gyro_misalignment: of_group(&d[2]),
-            g_dependent: of_group(&d[3]),
-            accel_bias: of_group(&d[4]),
-            accel_scale: of_group(&d[5]),
-            accel_misalignment: of_group(&d[6]),
-        };
-        octant_plant::draw::parameters(self.0, &draws)
-    }
-    fn alignment_error(&self, t: f64, a: f64, v: f64) -> ([f64; 3], [f64; 3]) {
-        let e = octant_plant::draw::alignment_error(self.0, t, a, v);
-        (e.phi_rad, e.velocity_mps)
-    }
-    fn phases(&self, motion: &str, count: usize) -> Vec<f64> {
-        octant_plant::draw::phases(self.0, motion, count)
     }
 }

@@ -28,20 +28,20 @@ impl Scenario {
             let constant = table(vec![("constant", values)]);
             document.set_at(&format!("imu.{}", group.name()), node(constant));
         }
-        if let Motion::Dockside(ship) = &self.motion {
+        if let Motion::Dockside(_) = &self.motion {
             document.remove_at("motion.ship.spectrum");
             document.set_at("motion.ship.preset", node(Value::Text("calm".to_owned())));
             for (index, name) in MOTIONS.into_iter().enumerate() {
                 let amplitude = if index < 3 { Dimension::ANGLE } else { Dimension::LENGTH };
-                let component = |(c, phase): (&super::Component, &f64)| {
+                let component = |sinusoid: &octant_plant::config::Sinusoid| {
                     node(table(vec![
-                        ("amplitude", text(amplitude.write(c.amplitude))),
-                        ("period", text(Dimension::TIME.write(c.period_s))),
-                        ("phase", text(Dimension::ANGLE.write(*phase))),
+                        ("amplitude", text(amplitude.write(sinusoid.amplitude))),
+                        ("period", text(Dimension::TIME.write(sinusoid.period_s))),
+                        ("phase", text(Dimension::ANGLE.write(sinusoid.phase_rad))),
                     ]))
                 };
-                let pairs = ship.components[index].iter().zip(&draws.phases[index]);
-                let components = Value::Array(pairs.map(component).collect());
+                let components = draws.motion[index].iter().map(component);
+                let components = Value::Array(components.collect());
                 document.set_at(&format!("motion.ship.{name}"), node(components));
             }
         }

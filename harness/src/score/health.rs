@@ -2,7 +2,7 @@
 
 use super::summary::HealthCounts;
 use octant_sample::time::DeviceTime;
-use octant_sample::{Health, Mode, Output};
+use octant_sample::{Health, Output};
 
 /// Episodes kept; more are only counted.
 pub const EPISODES_MAX: usize = 1000;
@@ -88,7 +88,7 @@ impl HealthMonitor {
         if output.nis.is_finite() || rejected {
             self.counts.measurements += 1;
         }
-        if output.nis.is_finite() && !rejected && output.mode == Mode::Calibrating {
+        if output.nis.is_finite() && !rejected {
             self.nis_sum += output.nis;
             self.nis_count += 1;
         }
@@ -171,6 +171,7 @@ impl HealthMonitor {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use octant_sample::Mode;
 
     fn output(second: u64, health: Health, nis: f64) -> Output {
         Output {

@@ -27,30 +27,53 @@ pub(super) struct Measured {
     pub(super) gimbal_rad: Option<[f64; 2]>,
 }
 
+/// Most samples that a row may be split into.
+pub const SPLIT_MAX: u32 = 1000;
+
 /// Counts what comes and carries the remainder of each axis.
+///
+/// A row may be split into equal parts of its interval, so that counts hold faster rates.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Counting {
     quantity: Quantity,
-    /// Interval that the first sample stands for, ns.
+    /// Interval that the first row stands for, ns.
     nominal_ns: u64,
+    /// Samples of a row.
+    split: u64,
     previous_ns: Option<u64>,
+    pending: Option<Pending>,
     sequence: u64,
     gyro: [Accumulator; 3],
     accel: [Accumulator; 3],
     saturated: u64,
 }
 
+/// A row of which not all parts have been delivered.
+#[derive(Clone, Copy, Debug)]
+struct Pending {
+    row: Measured,
+    interval_ns: u64,
+    /// Parts left.
+    left: u64,
+}
+
 impl Counting {
-    pub(super) fn new(quantity: Quantity, nominal_ns: u64) -> Self {
-        Self {
+    /// `nominal_ns` is the interval of a row, `split` the samples that it becomes.
+    pub(super) fn new(quantity: Quantity, nominal_ns: u64, split: u32) -> Result<Self, String> {
+        if !(1..=SPLIT_MAX).contains(&split) {
+            return Err(format!("split is {split}, expected 1 to {SPLIT_MAX}"));
+        }
+        Ok(Self {
             quantity,
             nominal_ns,
+            split: u64::from(split),
             previous_ns: None,
+            pending: None,
             sequence: 0,
             gyro: Default::default(),
             accel: Default::default(),
             saturated: 0,
-        }
+        })
     }
 
     /// Samples in which at least one count saturated.
@@ -58,22 +81,53 @@ impl Counting {
         self.saturated
     }
 
-    /// Stamp of the last sample.
-    pub(super) fn previous_ns(&self) -> Option<u64> {
-        self.previous_ns
-    }
-
-    /// The sample of one row. `None` if its stamp is not after that of the row before.
-    pub(super) fn sample(&mut self, row: &Measured) -> Option<Sample> {
+    /// Takes a row, of which [`Self::next`] gives the samples.
+    ///
+    /// Of a first row that would begin before time 0, the parts that end after it are left.
+    pub(super) fn begin(&mut self, row: Measured) -> Result<(), String> {
+        let mut left = self.split;
         let interval_ns = match self.previous_ns {
-            None => self.nominal_ns,
-            Some(previous) => row.time_ns.checked_sub(previous).filter(|interval| *interval > 0)?,
+            None => {
+                let part_ns = (self.nominal_ns / self.split).max(1);
+                left = left.min(row.time_ns / part_ns + 1);
+                self.nominal_ns
+            }
+            Some(previous) => match row.time_ns.checked_sub(previous) {
+                Some(interval) if interval >= self.split => interval,
+                Some(interval) if interval > 0 => {
+                    return Err(format!(
+                        "stamp {} ns is {interval} ns after the one before, expected {} ns at \
+                         least, one for each part",
+                        row.time_ns, self.split
+                    ));
+                }
+                _ => {
+                    return Err(format!(
+                        "stamp {} ns is not after the one before, {previous} ns",
+                        row.time_ns
+                    ));
+                }
+            },
         };
         self.previous_ns = Some(row.time_ns);
+        self.pending = Some(Pending { row, interval_ns, left });
+        Ok(())
+    }
+
+    /// The next sample of the row taken; `None` when it has been delivered.
+    pub(super) fn next(&mut self) -> Option<Sample> {
+        let Pending { row, interval_ns, left } = self.pending?;
+        self.pending = (left > 1).then_some(Pending { row, interval_ns, left: left - 1 });
+        // Exact in integers: the parts of an interval differ by a nanosecond at most.
+        let until_end = |parts: u64| {
+            (u128::from(interval_ns) * u128::from(parts) / u128::from(self.split)) as u64
+        };
+        let time_ns = row.time_ns.saturating_sub(until_end(left - 1));
+        let part_ns = until_end(left) - until_end(left - 1);
         self.sequence += 1;
         let factor = match self.quantity {
-            Quantity::Rates => interval_ns as f64 * 1e-9,
-            Quantity::Increments => 1.0,
+            Quantity::Rates => part_ns as f64 * 1e-9,
+            Quantity::Increments => part_ns as f64 / interval_ns as f64,
         };
         let mut status = Status::empty();
         let mut count = |accumulator: &mut Accumulator, value: f64, lsb: f64, flag: Status| {
@@ -85,7 +139,7 @@ impl Counting {
         };
         let mut sample = Sample {
             sequence: self.sequence,
-            device_time: DeviceTime::from_ns(row.time_ns),
+            device_time: DeviceTime::from_ns(time_ns),
             ..Sample::default()
         };
         for axis in 0..3 {
@@ -111,5 +165,74 @@ impl Counting {
         }
         sample.status = status;
         Some(sample)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn row(time_ns: u64, rate: f64) -> Measured {
+        Measured { time_ns, gyro: [rate, 0.0, 0.0], accel: [0.0, 0.0, 9.8], gimbal_rad: None }
+    }
+
+    #[test]
+    fn parts_have_even_stamps_and_the_sum_of_the_row() {
+        for quantity in [Quantity::Rates, Quantity::Increments] {
+            let run = |split: u32| {
+                let mut counting = Counting::new(quantity, 10_000_000, split).unwrap();
+                let (mut stamps, mut sum, mut last) = (Vec::new(), 0i64, 0);
+                for (k, rate) in [1e-3, -2e-3, 3e-3].into_iter().enumerate() {
+                    counting.begin(row(20_000_000 + k as u64 * 10_000_001, rate)).unwrap();
+                    while let Some(sample) = counting.next() {
+                        last += 1;
+                        assert_eq!(sample.sequence, last);
+                        stamps.push(sample.device_time.ns);
+                        sum += i64::from(sample.delta_theta[0]);
+                    }
+                }
+                (stamps, sum)
+            };
+            let (whole, sum) = run(1);
+            let (parts, split_sum) = run(3);
+            assert_eq!((whole.len(), parts.len()), (3, 9));
+            assert_eq!(sum, split_sum, "{quantity:?}: the remainder is carried");
+            assert_eq!(parts.iter().skip(2).step_by(3).copied().collect::<Vec<_>>(), whole);
+            let steps: Vec<u64> = parts.windows(2).map(|pair| pair[1] - pair[0]).collect();
+            assert!(steps.iter().all(|step| (3_333_333..=3_333_334).contains(step)), "{steps:?}");
+        }
+    }
+
+    #[test]
+    fn a_part_holds_a_faster_rate() {
+        let flagged = |split: u32| {
+            let mut counting = Counting::new(Quantity::Rates, 10_000_000, split).unwrap();
+            // 390 °/s: 2³¹ counts in 10 ms are 179 °/s.
+            counting.begin(row(10_000_000, 6.8)).unwrap();
+            while counting.next().is_some() {}
+            counting.saturated()
+        };
+        assert_eq!((flagged(1), flagged(2), flagged(3)), (1, 2, 0));
+    }
+
+    #[test]
+    fn a_first_row_near_time_zero_has_no_stamp_before_it() {
+        let mut counting = Counting::new(Quantity::Rates, 10, 5).unwrap();
+        counting.begin(row(5, 0.0)).unwrap();
+        let stamps: Vec<u64> =
+            std::iter::from_fn(|| counting.next()).map(|sample| sample.device_time.ns).collect();
+        assert_eq!(stamps, [1, 3, 5]);
+        assert!(
+            counting.begin(row(5, 0.0)).unwrap_err().contains("not after the one before, 5 ns")
+        );
+        assert!(counting.begin(row(9, 0.0)).unwrap_err().contains("expected 5 ns at least"));
+        counting.begin(row(10, 0.0)).unwrap();
+    }
+
+    #[test]
+    fn a_split_has_bounds() {
+        for split in [0, SPLIT_MAX + 1] {
+            assert!(Counting::new(Quantity::Rates, 10, split).is_err());
+        }
     }
 }

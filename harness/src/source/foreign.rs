@@ -2,6 +2,7 @@
 
 use super::counting::{Counting, Measured, Quantity};
 use super::fields::{Definition, FieldDecoder, FieldPath, Number};
+use super::text::TimeUnit;
 use super::{Epoch, SourceError};
 use crate::recorder::records::{End, Records};
 use mcap::records::{Record, op};
@@ -13,13 +14,15 @@ use std::io::Read;
 pub struct MappedField {
     /// Path of the field: `angular_velocity.x`, `axes[2].rate`.
     pub path: String,
-    /// SI units per unit of the field; negative turns the axis around.
+    /// What the instrument shows at zero, in units of the field.
+    pub offset: f64,
+    /// SI units per unit of the field, `(value − offset) · scale`; negative turns the axis around.
     pub scale: f64,
 }
 
 impl MappedField {
     fn si(path: &str) -> Self {
-        Self { path: path.into(), scale: 1.0 }
+        Self { path: path.into(), offset: 0.0, scale: 1.0 }
     }
 }
 
@@ -30,12 +33,14 @@ pub enum MappedStamp {
     LogTime,
     /// Publish time of the message.
     PublishTime,
-    /// Integer fields of the message.
-    Fields {
-        /// Path of the whole seconds, if there are any.
-        seconds: Option<String>,
-        /// Path of the nanoseconds.
-        nanoseconds: String,
+    /// Fields of the message.
+    Field {
+        /// Path of a number. Whole numbers are exact; others are rounded to what an f64 holds.
+        path: String,
+        /// Its unit.
+        unit: TimeUnit,
+        /// Path of whole nanoseconds to add, as stamps of ROS have them.
+        nanoseconds: Option<String>,
     },
 }
 
@@ -53,8 +58,10 @@ pub struct McapMapping {
     pub quantity: Quantity,
     /// Stamps.
     pub stamp: MappedStamp,
-    /// Nominal rate, Hz: gives the interval of the first sample.
+    /// Nominal rate of the messages, Hz: gives the interval of the first.
     pub nominal_rate_hz: f64,
+    /// Samples that a message becomes, equal parts of its interval: counts then hold faster rates.
+    pub split: u32,
     /// Gimbal azimuth and roll, rad after scaling, where the messages have them.
     pub gimbal: Option<[MappedField; 2]>,
 }
@@ -70,11 +77,13 @@ impl McapMapping {
             gyro: axes("angular_velocity"),
             accelerometer: axes("linear_acceleration"),
             quantity: Quantity::Rates,
-            stamp: MappedStamp::Fields {
-                seconds: Some("header.stamp.sec".into()),
-                nanoseconds: "header.stamp.nanosec".into(),
+            stamp: MappedStamp::Field {
+                path: "header.stamp.sec".into(),
+                unit: TimeUnit::Second,
+                nanoseconds: Some("header.stamp.nanosec".into()),
             },
             nominal_rate_hz,
+            split: 1,
             gimbal: None,
         }
     }
@@ -83,8 +92,8 @@ impl McapMapping {
 /// Paths in the order in which the numbers come back: gyro, accelerometer, gimbal, stamp.
 struct Plan {
     paths: Vec<FieldPath>,
-    scales: Vec<f64>,
-    stamp_seconds: bool,
+    /// Offset and scale of each value; the stamp's paths come after them.
+    scales: Vec<(f64, f64)>,
 }
 
 impl Plan {
@@ -99,15 +108,14 @@ impl Plan {
             .iter()
             .map(|field| FieldPath::parse(&field.path))
             .collect::<Result<Vec<_>, _>>()?;
-        let mut stamp_seconds = false;
-        if let MappedStamp::Fields { seconds, nanoseconds } = &mapping.stamp {
-            if let Some(seconds) = seconds {
-                stamp_seconds = true;
-                paths.push(FieldPath::parse(seconds)?);
+        if let MappedStamp::Field { path, nanoseconds, .. } = &mapping.stamp {
+            paths.push(FieldPath::parse(path)?);
+            if let Some(nanoseconds) = nanoseconds {
+                paths.push(FieldPath::parse(nanoseconds)?);
             }
-            paths.push(FieldPath::parse(nanoseconds)?);
         }
-        Ok(Self { paths, scales: fields.iter().map(|field| field.scale).collect(), stamp_seconds })
+        let scales = fields.iter().map(|field| (field.offset, field.scale)).collect();
+        Ok(Self { paths, scales })
     }
 }
 
@@ -141,7 +149,7 @@ impl<R: Read> Foreign<R> {
         Ok(Self {
             path: path.into(),
             records: Records::new(source),
-            counting: Counting::new(mapping.quantity, nominal_ns),
+            counting: Counting::new(mapping.quantity, nominal_ns, mapping.split).map_err(fail)?,
             mapping,
             plan,
             schemas: HashMap::new(),
@@ -165,6 +173,9 @@ impl<R: Read> Foreign<R> {
 
     fn advance(&mut self) -> Result<Option<Epoch>, String> {
         loop {
+            if let Some(sample) = self.counting.next() {
+                return Ok(Some(Epoch { sample, aiding: None }));
+            }
             let (decoders, plan) = (&self.decoders, &self.plan);
             let step = self
                 .records
@@ -188,12 +199,11 @@ impl<R: Read> Foreign<R> {
                 }
                 Some(Step::Message { log_ns, publish_ns, numbers }) => {
                     self.messages += 1;
-                    return numbers
-                        .and_then(|numbers| self.sample(log_ns, publish_ns, &numbers))
-                        .map(Some)
-                        .map_err(|reason| {
+                    numbers.and_then(|numbers| self.take(log_ns, publish_ns, &numbers)).map_err(
+                        |reason| {
                             format!("message {} on {}: {reason}", self.messages, self.mapping.topic)
-                        });
+                        },
+                    )?;
                 }
             }
         }
@@ -225,14 +235,13 @@ impl<R: Read> Foreign<R> {
         }
     }
 
-    fn sample(
-        &mut self,
-        log_ns: u64,
-        publish_ns: u64,
-        numbers: &[Number],
-    ) -> Result<Epoch, String> {
+    /// Hands a message to the counting.
+    fn take(&mut self, log_ns: u64, publish_ns: u64, numbers: &[Number]) -> Result<(), String> {
         // The plan put nine numbers or more in this order.
-        let value = |i: usize| numbers[i].real() * self.plan.scales[i];
+        let value = |i: usize| {
+            let (offset, scale) = self.plan.scales[i];
+            (numbers[i].real() - offset) * scale
+        };
         for (i, path) in self.plan.paths.iter().enumerate().take(self.plan.scales.len()) {
             if !value(i).is_finite() {
                 return Err(format!(
@@ -245,7 +254,7 @@ impl<R: Read> Foreign<R> {
         let time_ns = match self.mapping.stamp {
             MappedStamp::LogTime => log_ns,
             MappedStamp::PublishTime => publish_ns,
-            MappedStamp::Fields { .. } => stamp_ns(stamps, self.plan.stamp_seconds)?,
+            MappedStamp::Field { unit, .. } => stamp_ns(stamps, unit)?,
         };
         let row = Measured {
             time_ns,
@@ -253,24 +262,23 @@ impl<R: Read> Foreign<R> {
             accel: [value(3), value(4), value(5)],
             gimbal_rad: self.mapping.gimbal.is_some().then(|| [value(6), value(7)]),
         };
-        let previous = self.counting.previous_ns();
-        let sample = self.counting.sample(&row).ok_or_else(|| {
-            format!("stamp {time_ns} ns is not after the one before, {} ns", previous.unwrap_or(0))
-        })?;
-        Ok(Epoch { sample, aiding: None })
+        self.counting.begin(row)
     }
 }
 
-fn stamp_ns(stamps: &[Number], with_seconds: bool) -> Result<u64, String> {
-    let integer = |number: Option<&Number>| match number {
-        Some(Number::Integer(value)) => Ok(*value),
-        other => Err(format!("stamp is {other:?}, expected whole numbers")),
+/// The stamp of a number in `unit`, and of whole nanoseconds where there is a second one.
+fn stamp_ns(stamps: &[Number], unit: TimeUnit) -> Result<u64, String> {
+    let unit_ns = 10i128.pow(unit.nanosecond_exponent().unsigned_abs());
+    let mut ns = match stamps.first() {
+        Some(Number::Integer(value)) => value.saturating_mul(unit_ns),
+        Some(Number::Real(value)) if value.is_finite() => (value * unit_ns as f64).round() as i128,
+        other => return Err(format!("stamp is {other:?}, expected a number")),
     };
-    let ns = if with_seconds {
-        integer(stamps.first())?.saturating_mul(1_000_000_000) + integer(stamps.get(1))?
-    } else {
-        integer(stamps.first())?
-    };
+    match stamps.get(1) {
+        None => {}
+        Some(Number::Integer(value)) => ns = ns.saturating_add(*value),
+        other => return Err(format!("nanoseconds are {other:?}, expected a whole number")),
+    }
     u64::try_from(ns).map_err(|_| format!("stamp is {ns} ns, expected 0 to 2^64 ns"))
 }
 

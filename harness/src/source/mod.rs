@@ -3,13 +3,16 @@
 mod counting;
 mod fields;
 mod foreign;
-pub mod plant;
-pub mod replay;
+mod from_scenario;
+mod plant;
+mod replay;
 mod rows;
-pub mod text;
+mod text;
 
-pub use counting::Quantity;
+pub use counting::{Quantity, SPLIT_MAX};
 pub use foreign::{MappedField, MappedStamp, McapMapping};
+pub use from_scenario::open;
+pub use plant::PlantSource;
 pub use replay::Replay;
 pub use text::{
     Axis, Column, Delimiter, GimbalColumns, TextFiles, TextMapping, TextSource, TimeColumn,
@@ -48,6 +51,20 @@ pub trait Source {
     fn samples_total(&self) -> Option<u64>;
 }
 
+impl<S: Source + ?Sized> Source for Box<S> {
+    fn next(&mut self, command: &GimbalCommand) -> Result<Option<Epoch>, SourceError> {
+        (**self).next(command)
+    }
+
+    fn truth(&self) -> Option<Truth> {
+        (**self).truth()
+    }
+
+    fn samples_total(&self) -> Option<u64> {
+        (**self).samples_total()
+    }
+}
+
 /// Why a source could not go on.
 #[derive(Debug, thiserror::Error)]
 pub enum SourceError {
@@ -59,6 +76,9 @@ pub enum SourceError {
         /// What is wrong with it: found and expected, with line or offset.
         reason: String,
     },
+    /// A file name could not be expanded.
+    #[error("{0}")]
+    FileName(String),
 }
 
 /// The period of a nominal rate, rounded to a nanosecond.
@@ -68,8 +88,4 @@ fn nominal_period_ns(rate_hz: f64) -> Result<u64, String> {
     } else {
         Err(format!("nominal rate is {rate_hz} Hz, expected 0.001 to 1e8 Hz"))
     }
-}
-/// temp
-pub fn open(_: &crate::scenario::Scenario) -> Result<Box<dyn Source>, SourceError> {
-    Err(SourceError::Read { path: String::new(), reason: "temp".into() })
 }

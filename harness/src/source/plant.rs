@@ -1,41 +1,77 @@
-//! The simulated truth as a source.
+//! The plant as a source.
 
 use super::{Epoch, Source, SourceError};
-use octant_plant::{Plant, Truth};
+use octant_plant::config::Config;
+use octant_plant::{ConfigError, Plant, Truth};
 use octant_sample::GimbalCommand;
 
-/// A plant that delivers a number of samples.
+/// The simulated instrument, for a number of samples.
 #[derive(Clone, Debug)]
 pub struct PlantSource {
     plant: Plant,
-    delivered: u64,
-    samples: u64,
+    total: u64,
+    left: u64,
 }
 
 impl PlantSource {
-    /// A source of so many samples.
+    /// A plant at time 0 that delivers `samples` samples.
+    ///
+    /// # Errors
+    /// If a field of the configuration is out of its range.
+    pub fn new(config: &Config, samples: u64) -> Result<Self, ConfigError> {
+        Ok(Self { plant: Plant::new(config)?, total: samples, left: samples })
+    }
+
+    /// The plant.
     #[must_use]
-    pub fn new(plant: Plant, samples: u64) -> Self {
-        Self { plant, delivered: 0, samples }
+    pub fn plant(&self) -> &Plant {
+        &self.plant
     }
 }
 
 impl Source for PlantSource {
     #[inline]
     fn next(&mut self, command: &GimbalCommand) -> Result<Option<Epoch>, SourceError> {
-        if self.delivered == self.samples {
+        if self.left == 0 {
             return Ok(None);
         }
-        self.delivered += 1;
+        self.left -= 1;
         let step = self.plant.step(command);
         Ok(Some(Epoch { sample: step.sample, aiding: step.aiding }))
     }
 
+    /// Truth at the stamp of the last epoch; before the first, at time 0.
     fn truth(&self) -> Option<Truth> {
         Some(self.plant.truth())
     }
 
     fn samples_total(&self) -> Option<u64> {
-        Some(self.samples)
+        Some(self.total)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scenario::Scenario;
+    use crate::scenario::resolve::{Draws, Seeded};
+
+    #[test]
+    fn it_is_the_plant_and_it_ends() {
+        let text = "schema = 1\n[procedure.calibration]\n";
+        let scenario = Scenario::parse(text, "f", std::path::Path::new(""), &[]).unwrap();
+        let config = scenario.plant(3, &Draws::of(&scenario, &Seeded(3)));
+        let mut source = PlantSource::new(&config, 450).unwrap();
+        let mut plant = Plant::new(&config).unwrap();
+        assert_eq!(source.samples_total(), Some(450));
+        let command = GimbalCommand::default();
+        for _ in 0..450 {
+            let step = plant.step(&command);
+            let epoch = Epoch { sample: step.sample, aiding: step.aiding };
+            assert_eq!(source.next(&command).unwrap(), Some(epoch));
+        }
+        assert_eq!(source.truth(), Some(plant.truth()));
+        assert_eq!(source.next(&command).unwrap(), None);
+        assert_eq!(source.truth(), Some(plant.truth()));
     }
 }

@@ -43,7 +43,7 @@ pub enum TimeUnit {
 
 impl TimeUnit {
     /// Powers of ten from this unit to a nanosecond.
-    const fn nanosecond_exponent(self) -> i32 {
+    pub(super) const fn nanosecond_exponent(self) -> i32 {
         match self {
             Self::Second => 9,
             Self::Millisecond => 6,
@@ -108,9 +108,12 @@ pub struct TextMapping {
     pub accelerometer: [Axis; 3],
     /// What these columns are.
     pub quantity: Quantity,
-    /// Nominal rate, Hz: gives the interval of the first sample, and all stamps where there is no
-    /// time column.
+    /// Nominal rate of the rows, Hz: gives the interval of the first, and all stamps where there is
+    /// no time column.
     pub nominal_rate_hz: f64,
+    /// Samples that a row becomes, equal parts of its interval: counts then hold faster rates.
+    /// Gimbal angles are those of the row.
+    pub split: u32,
     /// Delimiter.
     pub delimiter: Delimiter,
     /// Lines that begin with this are passed over; empty: none.
@@ -162,13 +165,14 @@ impl TextSource {
             TextFiles::One(path) => (path, None),
             TextFiles::Split { gyro, accelerometer } => (gyro, Some(accelerometer)),
         };
-        let period_ns = nominal_period_ns(mapping.nominal_rate_hz)
-            .map_err(|reason| SourceError::Read { path: path.display().to_string(), reason })?;
+        let fail = |reason| SourceError::Read { path: path.display().to_string(), reason };
+        let period_ns = nominal_period_ns(mapping.nominal_rate_hz).map_err(fail)?;
+        let counting = Counting::new(mapping.quantity, period_ns, mapping.split).map_err(fail)?;
         Ok(Self {
             first: File::open(path, mapping, true, second.is_none())?,
             second: second.map(|path| File::open(path, mapping, false, true)).transpose()?,
             period_ns,
-            counting: Counting::new(mapping.quantity, period_ns),
+            counting,
             rows: 0,
         })
     }
@@ -180,6 +184,18 @@ impl TextSource {
     }
 
     fn advance(&mut self) -> Result<Option<Epoch>, SourceError> {
+        loop {
+            if let Some(sample) = self.counting.next() {
+                return Ok(Some(Epoch { sample, aiding: None }));
+            }
+            if !self.read_row()? {
+                return Ok(None);
+            }
+        }
+    }
+
+    /// Hands the next row to the counting; `false` at the end.
+    fn read_row(&mut self) -> Result<bool, SourceError> {
         let more = self.first.rows.advance()?;
         if let Some(second) = &mut self.second {
             let more_there = second.rows.advance()?;
@@ -194,7 +210,7 @@ impl TextSource {
             }
         }
         if !more {
-            return Ok(None);
+            return Ok(false);
         }
         self.rows += 1;
         let time_ns = match self.first.time_ns()? {
@@ -223,14 +239,8 @@ impl TextSource {
                 None => None,
             },
         };
-        let previous = self.counting.previous_ns();
-        let sample = self.counting.sample(&row).ok_or_else(|| {
-            self.first.rows.error(format!(
-                "stamp {time_ns} ns is not after the one before, {} ns",
-                previous.unwrap_or(0)
-            ))
-        })?;
-        Ok(Some(Epoch { sample, aiding: None }))
+        self.counting.begin(row).map_err(|reason| self.first.rows.error(reason))?;
+        Ok(true)
     }
 }
 

@@ -1,5 +1,7 @@
 //! Plant and core of the reference instrument, put together without a scenario file.
-#![allow(dead_code, clippy::unwrap_used)]
+#![allow(dead_code, unreachable_pub, clippy::unwrap_used)]
+
+pub mod closed_loop;
 
 use nalgebra::UnitQuaternion;
 use octant_calibration::config::{self as core, *};

@@ -4,7 +4,7 @@
 //! when a measurement is due. Every estimate is fed back at once, so the error states are zero
 //! between measurements.
 
-use crate::config::{AidingMode, ErrorModel, Gate, Kalman, Noise, Recovery};
+use crate::config::{AidingMode, ErrorModel, Gate, Kalman, Noise, Recovery, Site};
 use crate::covariance::{Covariance, DR, DV, PARAMETERS, PHI, STATE_COUNT, Transition};
 use crate::error_model::{Interval, computer_frame_error};
 use crate::strapdown::Strapdown;
@@ -15,7 +15,8 @@ use octant_sample::{Parameters, Reference};
 /// Longest sub-step of the transition, ns.
 const SUB_STEP_MAX_NS: u64 = 50_000_000;
 
-/// First stage of the widening recovery: attitude and velocity find their feet, no gate, s.
+/// First stage of the widening recovery: attitude and velocity find their feet, and the gate doesn't
+/// reject but opens them again: so long has to pass without that, s.
 const CAPTURE_S: f64 = 10.0;
 /// Second stage: the attitude settles, the parameters are considered but not estimated, s.
 const SETTLE_S: f64 = 120.0;
@@ -26,6 +27,14 @@ const SETTLE_VELOCITY_MPS: f64 = 0.1;
 const RECOVERY_POSITION_M: f64 = 10.0;
 /// Smallest σ of the attitude in the first stage, rad: 600″.
 const CAPTURE_ATTITUDE_RAD: f64 = 2.9e-3;
+/// Smallest σ of azimuth there, rad: 3°. An azimuth error shows only through Earth rate: by the time
+/// that it opens the gate it may be of any size, and the innovation doesn't say.
+const CAPTURE_AZIMUTH_RAD: f64 = 0.052;
+
+/// Largest σ of velocity, m/s, and position, m, in the first stage: a reference that is farther off
+/// is not followed.
+const CAPTURE_VELOCITY_MAX_MPS: f64 = 1e4;
+const CAPTURE_POSITION_MAX_M: f64 = 1e6;
 
 /// What came of a measurement.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -66,6 +75,8 @@ enum Stage {
 pub struct CalibrationFilter {
     model: ErrorModel,
     aiding: AidingMode,
+    /// Where the instrument stands during the calibration.
+    site: Site,
     gate: Option<Gate>,
     gyro_variance_per_s: f64,
     accel_variance_per_s: f64,
@@ -164,10 +175,17 @@ pub fn add_process_noise(
 impl CalibrationFilter {
     /// A filter with its prior.
     #[must_use]
-    pub fn new(kalman: &Kalman, noise: &Noise, gate: Option<Gate>, sample_period_ns: u64) -> Self {
+    pub fn new(
+        kalman: &Kalman,
+        site: &Site,
+        noise: &Noise,
+        gate: Option<Gate>,
+        sample_period_ns: u64,
+    ) -> Self {
         Self {
             model: kalman.error_model,
             aiding: kalman.aiding,
+            site: *site,
             gate,
             gyro_variance_per_s: noise.angle_random_walk * noise.angle_random_walk,
             accel_variance_per_s: noise.velocity_random_walk * noise.velocity_random_walk,
@@ -268,15 +286,23 @@ impl CalibrationFilter {
         let mut recovery_started = false;
         if let Some(gate) = self.gate
             && nis > gate.nis
-            && !matches!(self.stage, Stage::Capture(_))
         {
-            self.rejected_in_a_row += 1;
-            if self.rejected_in_a_row < gate.rejections {
+            if gate.recovery == Recovery::Widening && !self.is_plausible(&error) {
                 self.tally.rejected += 1;
                 return Some(Measured { nis, rejected: true, recovery_started });
             }
-            self.start_recovery(&gate, &error);
-            recovery_started = true;
+            if matches!(self.stage, Stage::Capture(_)) {
+                // What started it still lasts, or one opening was not wide enough.
+                self.open_wide(&gate, &error, strapdown);
+            } else {
+                self.rejected_in_a_row += 1;
+                if self.rejected_in_a_row < gate.rejections {
+                    self.tally.rejected += 1;
+                    return Some(Measured { nis, rejected: true, recovery_started });
+                }
+                self.start_recovery(&gate, &error, strapdown);
+                recovery_started = true;
+            }
         }
         self.rejected_in_a_row = 0;
 
@@ -328,6 +354,15 @@ impl CalibrationFilter {
         found.2.iter().all(|value| value.is_finite()).then_some(found)
     }
 
+    /// A reference so far off is no reference, and nothing to recover towards.
+    fn is_plausible(&self, error: &Vector3<f64>) -> bool {
+        error.norm()
+            <= match self.aiding {
+                AidingMode::Velocity { .. } => CAPTURE_VELOCITY_MAX_MPS,
+                AidingMode::Position { .. } => CAPTURE_POSITION_MAX_M,
+            }
+    }
+
     fn nis(&self, first: usize, r: f64, error: &Vector3<f64>) -> Option<f64> {
         let s = Matrix3::from_fn(|i, j| {
             self.covariance.at(first + i, first + j) + if i == j { r } else { 0.0 }
@@ -357,32 +392,51 @@ impl CalibrationFilter {
         *parameters = Parameters::from_array(&all);
     }
 
-    fn start_recovery(&mut self, gate: &Gate, error: &Vector3<f64>) {
+    fn start_recovery(&mut self, gate: &Gate, error: &Vector3<f64>, strapdown: &mut Strapdown) {
         self.tally.recoveries += 1;
         match gate.recovery {
             Recovery::Reset { attitude_rad, velocity_mps, position_m } => {
                 self.reopen([attitude_rad; 3], velocity_mps, position_m);
             }
-            Recovery::Widening => {
-                // An attitude error φ has grown into a velocity error g φ t, or a position error
-                // g φ t²/2, while the gate was shut; twice that and no less than 600″.
-                let t = f64::from(gate.rejections.max(1));
-                let reach = match self.aiding {
-                    AidingMode::Velocity { .. } => error.norm() / t,
-                    AidingMode::Position { .. } => 2.0 * error.norm() / (t * t),
-                };
-                let attitude = (2.0 * reach / 9.8).clamp(CAPTURE_ATTITUDE_RAD, 1.0);
-                let velocity = (2.0 * reach * t).max(1.0);
-                self.reopen([attitude; 3], velocity, RECOVERY_POSITION_M.max(2.0 * error.norm()));
-                self.stage = Stage::Capture(self.time_s + CAPTURE_S);
-            }
+            Recovery::Widening => self.open_wide(gate, error, strapdown),
         }
+    }
+
+    /// Starts the first stage of the widening recovery, or starts it over.
+    fn open_wide(&mut self, gate: &Gate, error: &Vector3<f64>, strapdown: &mut Strapdown) {
+        // An attitude error φ has grown into a velocity error g φ t, or a position error g φ t²/2,
+        // while the gate was shut; twice that and no less than 600″.
+        let t = f64::from(gate.rejections.max(1));
+        let reach = match self.aiding {
+            AidingMode::Velocity { .. } => error.norm() / t,
+            AidingMode::Position { .. } => 2.0 * error.norm() / (t * t),
+        };
+        let attitude = (2.0 * reach / 9.8).clamp(CAPTURE_ATTITUDE_RAD, 1.0);
+        let velocity = (2.0 * reach * t).clamp(1.0, CAPTURE_VELOCITY_MAX_MPS);
+        let position = match self.aiding {
+            // Velocity doesn't show how far a fault has carried the solution, and 100 m of height
+            // are 30 µg of gravity. But the instrument hasn't gone anywhere.
+            AidingMode::Velocity { .. } => {
+                strapdown.move_to(&self.site);
+                RECOVERY_POSITION_M
+            }
+            AidingMode::Position { .. } => {
+                (2.0 * error.norm()).clamp(RECOVERY_POSITION_M, CAPTURE_POSITION_MAX_M)
+            }
+        };
+        let azimuth = attitude.max(CAPTURE_AZIMUTH_RAD);
+        self.reopen([attitude, attitude, azimuth], velocity, position);
+        self.stage = Stage::Capture(self.time_s + CAPTURE_S);
     }
 
     fn advance_recovery(&mut self) {
         match self.stage {
             Stage::Capture(until) if self.time_s >= until => {
-                self.reopen(SETTLE_ATTITUDE_RAD, SETTLE_VELOCITY_MPS, RECOVERY_POSITION_M);
+                // Azimuth hardly shows in 10 s: what was opened wide for it has to stay open.
+                let attitude = core::array::from_fn(|axis| {
+                    SETTLE_ATTITUDE_RAD[axis].max(self.covariance.sigma(PHI + axis))
+                });
+                self.reopen(attitude, SETTLE_VELOCITY_MPS, RECOVERY_POSITION_M);
                 self.stage = Stage::Settle(self.time_s + SETTLE_S);
             }
             Stage::Settle(until) if self.time_s >= until => self.stage = Stage::Normal,

@@ -13,7 +13,7 @@ pub enum Order {
         /// Missing samples.
         missing: u64,
     },
-    /// Not later than the last one: not to be used.
+    /// Not later than the last one, or by so much that the stamp must be wrong: not to be used.
     Behind,
 }
 
@@ -43,6 +43,10 @@ pub struct Monitor {
     identical: [u32; 6],
     tally: MonitorTally,
 }
+
+/// A stamp or number that jumps ahead by more than a day is damaged: no source pauses for so long,
+/// and followed, it would put every later sample behind it.
+const JUMP_MAX_NS: u64 = 86_400_000_000_000;
 
 /// White noise below this many counts makes identical samples likely.
 const TESTABLE_COUNTS: f64 = 20.0;
@@ -102,6 +106,10 @@ impl Monitor {
             return Order::Behind;
         }
         let interval_ns = sample.device_time.ns - last.device_time.ns;
+        let jump = sample.sequence - last.sequence;
+        if interval_ns > JUMP_MAX_NS || jump > JUMP_MAX_NS / self.period_ns.max(1) {
+            return Order::Behind;
+        }
         // Rounded to whole samples: stamps of real instruments jitter.
         let periods = (interval_ns + self.period_ns / 2) / self.period_ns;
         if periods >= 2 { Order::Gap { missing: periods - 1 } } else { Order::Next(interval_ns) }
@@ -123,7 +131,7 @@ impl Monitor {
             ] {
                 let run = &mut self.identical[3 * triad + axis];
                 *run = if now == before { run.saturating_add(1) } else { 0 };
-                if self.testable[triad] && *run + 1 >= limit {
+                if self.testable[triad] && run.saturating_add(1) >= limit {
                     health |= flag;
                 }
             }

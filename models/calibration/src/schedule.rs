@@ -1,7 +1,7 @@
 //! When the gimbals turn: dwell times that fill the calibration, and a cursor that walks the stops.
 
 use crate::config::TurntableRates;
-use crate::sequence::{Sequence, Stop};
+use crate::sequence::{STOPS_MAX, Sequence, Stop};
 use octant_sample::{GimbalAngles, GimbalCommand};
 
 /// Time of a trapezoidal (or, when short, triangular) move over `angle_rad`, s.
@@ -156,22 +156,34 @@ impl Cursor {
     /// to start at time t is commanded one sample early.
     #[inline]
     pub fn advance(&mut self, tick: u64) {
-        if tick + 1 >= self.departure_tick {
-            self.depart();
+        if tick.saturating_add(1) >= self.departure_tick {
+            self.catch_up(tick);
         }
     }
 
-    fn depart(&mut self) {
+    /// After a gap several stops may have gone by.
+    #[cold]
+    fn catch_up(&mut self, tick: u64) {
+        for _ in 0..STOPS_MAX {
+            if tick.saturating_add(1) < self.departure_tick || !self.depart() {
+                return;
+            }
+        }
+    }
+
+    /// Sets out to the next stop; `false` at the last.
+    fn depart(&mut self) -> bool {
         let count = self.sequence.stops().len() as u32;
-        let next = self.stop + 1;
-        if !self.endless && next >= count * self.sequence.passes() {
-            return;
+        let next = self.stop.wrapping_add(1);
+        if !self.endless && next >= count.saturating_mul(self.sequence.passes()) {
+            return false;
         }
         let to = self.sequence.stops()[(next % count) as usize];
         let from = self.target();
         self.stop = next;
         self.arrival_s = self.departure_s + move_between_s(&from, &to, &self.rates);
         self.plan_dwell();
+        true
     }
 
     fn target(&self) -> Stop {

@@ -5,6 +5,7 @@
 //! rotation carried to third order: at 10 °/s and 200 Hz the second-order form alone would leave
 //! 1e-7 of gravity in every move.
 
+use crate::config::Site;
 use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
 use octant_earth::ellipsoid::Ellipsoid;
 use octant_earth::rotation::{quaternion_of, renormalize};
@@ -147,13 +148,44 @@ impl Strapdown {
         self.height_m += dr.z;
     }
 
-    /// Sets position and vertical channel for free navigation, keeping attitude and velocity.
-    pub fn start_free(&mut self, latitude_rad: f64, longitude_rad: f64, height_m: f64) {
+    /// Sets the position, keeping attitude and velocity.
+    pub fn move_to(&mut self, site: &Site) {
         (self.latitude_rad, self.longitude_rad, self.height_m) =
-            (latitude_rad, longitude_rad, height_m);
+            (site.latitude_rad, site.longitude_rad, site.height_m);
+        self.update_earth();
+    }
+
+    /// Sets position and vertical channel for free navigation, keeping attitude and velocity.
+    pub fn start_free(&mut self, site: &Site) {
         self.vertical = Vertical::Held;
         self.velocity_mps.z = 0.0;
-        self.update_earth();
+        self.move_to(site);
+    }
+
+    /// Every number of the solution is finite.
+    #[must_use]
+    #[inline]
+    pub fn is_finite(&self) -> bool {
+        // What is not finite stays so in a sum; finite ones don't overflow: radians, and metres.
+        let (q, v) = (&self.q_nb, &self.velocity_mps);
+        ((q.w + q.i + q.j + q.k)
+            + (v.x + v.y + v.z)
+            + (self.latitude_rad + self.longitude_rad + self.height_m))
+            .is_finite()
+    }
+
+    /// The same mechanization, set to a solution.
+    #[must_use]
+    pub fn stopped_at(&self, at: &Navigation) -> Self {
+        let [w, i, j, k] = at.q_nb;
+        Self::new(
+            &UnitQuaternion::new_unchecked(Quaternion::new(w, i, j, k)),
+            Vector3::from(at.velocity_mps),
+            at.latitude_rad,
+            at.longitude_rad,
+            at.height_m,
+            self.vertical,
+        )
     }
 
     /// Attitude as a matrix `c_nb`.

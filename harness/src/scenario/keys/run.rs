@@ -4,6 +4,7 @@ use super::{
     Bounds, Default, Key, Kind, SCHEMA, Section, calibration, instrument, key, section, source,
 };
 use crate::scenario::quantity::Dimension;
+use octant_calibration::positions::SEQUENCES;
 use octant_earth::units::DEG;
 
 pub(crate) static SCENARIO: Section = section(&[
@@ -169,7 +170,7 @@ static SHIP: Section = section(&[
         "spectrum",
         Kind::Table(&SPECTRUM),
         Default::Absent("sinusoids alone"),
-        "Irregular sea: sinusoids of a Bretschneider spectrum are added, with phases drawn from the seed.",
+        "Irregular sea: sinusoids of a Pierson-Moskowitz spectrum are added, with frequencies and phases drawn from the seed.",
     ),
     key(
         "mooring_offset",
@@ -228,7 +229,7 @@ static SPECTRUM: Section = section(&[
         "components",
         Kind::Integer(2, 64),
         Default::Value("16"),
-        "Sinusoids of equal energy in each motion.",
+        "Sinusoids of each motion, spread over frequency.",
     ),
     key("roll", RMS_ANGLE, Default::Value("0 deg"), "Root mean square of roll."),
     key("pitch", RMS_ANGLE, Default::Value("0 deg"), "Root mean square of pitch."),
@@ -243,15 +244,18 @@ const RMS_ANGLE: Kind =
 const RMS_LENGTH: Kind =
     Kind::Quantity(&[Dimension::LENGTH], Bounds::Within(0.0, 50.0, "from 0 to 50 m"));
 
-/// The named position sequences of a calibration.
-pub(crate) const POSITIONS: &[(&str, &str)] = &[
-    ("six", "the conventional method: six orthogonal attitudes, 17 stops"),
-    ("eight", "the six with two tilts in different body planes, 19 stops"),
-    (
-        "nineteen",
-        "the 19 positions of Xie Bo (2011), about body y, x and z from azimuth -90 deg, 19 stops",
-    ),
-];
+const fn positions() -> [(&'static str, &'static str); SEQUENCES.len()] {
+    let mut all = [("", ""); SEQUENCES.len()];
+    let mut index = 0;
+    while index < all.len() {
+        all[index] = (SEQUENCES[index].0, SEQUENCES[index].2);
+        index += 1;
+    }
+    all
+}
+
+/// Names and meanings of the core's sequences.
+pub(crate) const POSITIONS: &[(&str, &str)] = &positions();
 
 static REQUIREMENT: Section = section(&[
     key("id", Kind::Text, Default::Required, "Identifier, unique in the scenario."),

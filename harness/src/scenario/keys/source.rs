@@ -1,6 +1,6 @@
 //! Keys of the source: the plant, a recording, text files of a real instrument.
 
-use super::{Bounds, Default, Kind, Section, key, section};
+use super::{Bounds, Default, Key, Kind, Section, key, section};
 use crate::scenario::quantity::Dimension;
 
 pub(crate) static SOURCE: Section = section(&[
@@ -32,9 +32,10 @@ static TEXT: Section = section(&[
     key(
         "rate",
         Kind::Quantity(&[Dimension::FREQUENCY], Bounds::Within(1.0, 10e3, "from 1 Hz to 10 kHz")),
-        Default::Derived("imu.rate"),
-        "Nominal rate of the samples.",
+        Default::Derived("imu.rate divided by split"),
+        "Nominal rate of the rows: times split, it is imu.rate.",
     ),
+    SPLIT,
     key(
         "delimiter",
         Kind::Choice(&[
@@ -86,6 +87,12 @@ static TEXT: Section = section(&[
     ),
 ]);
 
+const SPLIT: Key = key(
+    "split",
+    Kind::Integer(1, crate::source::SPLIT_MAX as i64),
+    Default::Value("1"),
+    "Samples that a row or message becomes, equal parts of its interval, so that counts hold faster rates (179 deg/s at 100 Hz, 358 deg/s at 200 Hz).",
+);
 const FILE_DOC: &str = "File of these columns, where it isn't that of source.uri.";
 const AXES: Kind = Kind::Choices(&["x", "-x", "y", "-y", "z", "-z"]);
 const AXES_DOC: &str = "Which instrument axis, with its sign, lies along body x, y and z.";
@@ -164,7 +171,13 @@ static MCAP: Section = section(&[
         "time_field",
         Kind::Text,
         Default::Derived("the message's log time"),
-        "Dotted name of the field with the time stamp.",
+        "Dotted name of the field with the time stamp, a number.",
+    ),
+    key(
+        "nanoseconds_field",
+        Kind::Text,
+        Default::Absent("the time stamp is one number"),
+        "Dotted name of a field with nanoseconds to add, as stamps of ROS have them.",
     ),
     key(
         "time_unit",
@@ -180,9 +193,10 @@ static MCAP: Section = section(&[
     key(
         "rate",
         Kind::Quantity(&[Dimension::FREQUENCY], Bounds::Within(1.0, 10e3, "from 1 Hz to 10 kHz")),
-        Default::Derived("imu.rate"),
-        "Nominal rate of the samples.",
+        Default::Derived("imu.rate divided by split"),
+        "Nominal rate of the messages: times split, it is imu.rate.",
     ),
+    SPLIT,
     key("gyro", Kind::Table(&MCAP_GYRO), Default::Required, "Fields of the gyros."),
     key(
         "accelerometer",

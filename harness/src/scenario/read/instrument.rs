@@ -2,7 +2,7 @@
 
 use super::Reader;
 use crate::scenario::error::Problem;
-use crate::scenario::{Component, Distribution, Dockside, Motion};
+use crate::scenario::{Component, Distribution, Dockside, Motion, ShipSpectrum};
 use octant_earth::units::DEG;
 use octant_plant::config as plant;
 use octant_sample::parameters::Group;
@@ -152,32 +152,23 @@ pub(super) fn motion(motion: &Reader<'_>) -> Result<Motion, Problem> {
             components[index].push(Component { amplitude, period_s, phase_rad: None });
         }
     }
-    if let Some(spectrum) = ship.optional_table("spectrum") {
-        let count: u32 = spectrum.integer("components")?;
-        let peak_period_s = spectrum.si("peak_period")?;
-        for (index, key) in MOTIONS.into_iter().enumerate() {
-            let rms = spectrum.si(key)?;
-            if rms > 0.0 {
-                components[index].extend(bretschneider(rms, peak_period_s, count));
+    let spectrum = match ship.optional_table("spectrum") {
+        None => None,
+        Some(spectrum) => {
+            let mut sigma = [0.0; 6];
+            for (sigma, key) in sigma.iter_mut().zip(MOTIONS) {
+                *sigma = spectrum.si(key)?;
             }
+            let components: u32 = spectrum.integer("components")?;
+            Some(ShipSpectrum {
+                peak_period_s: spectrum.si("peak_period")?,
+                sigma,
+                components: components as usize,
+            })
         }
-    }
+    };
     let mooring_offset_m = ship.si_array("mooring_offset")?;
-    Ok(Motion::Dockside(Dockside { mean, components, mooring_offset_m }))
-}
-
-/// Sinusoids of equal energy that together have the given root mean square, at the periods that
-/// halve each of `count` equal slices of a Bretschneider spectrum.
-///
-/// The spectrum's cumulative energy is `exp(−5/4 (ω_p/ω)⁴)`, so the period at which it reaches p
-/// is `T_p · (−4/5 ln p)^¼`.
-fn bretschneider(rms: f64, peak_period_s: f64, count: u32) -> impl Iterator<Item = Component> {
-    let amplitude = rms * libm::sqrt(2.0 / f64::from(count));
-    (0..count).map(move |index| {
-        let p = (f64::from(index) + 0.5) / f64::from(count);
-        let period_s = peak_period_s * libm::sqrt(libm::sqrt(-0.8 * libm::log(p)));
-        Component { amplitude, period_s, phase_rad: None }
-    })
+    Ok(Motion::Dockside(Dockside { mean, components, spectrum, mooring_offset_m }))
 }
 
 #[cfg(test)]
@@ -191,19 +182,5 @@ mod tests {
         let [.., surge, sway, _] = SEVERE_SWAY;
         let horizontal = acceleration(surge).hypot(acceleration(sway));
         assert!((0.19..=0.22).contains(&horizontal), "{horizontal} m/s²");
-    }
-
-    #[test]
-    fn a_spectrum_has_the_energy_asked_for_around_its_peak() {
-        let components: Vec<_> = bretschneider(0.5, 8.0, 64).collect();
-        let energy: f64 = components.iter().map(|c| c.amplitude * c.amplitude / 2.0).sum();
-        assert!((energy.sqrt() - 0.5).abs() < 1e-12);
-        // Closed form: the mean zero-crossing period of the spectrum is 0.710 T_p.
-        let mean_square_rate: f64 = components
-            .iter()
-            .map(|c| c.amplitude * c.amplitude / 2.0 * (std::f64::consts::TAU / c.period_s).powi(2))
-            .sum();
-        let zero_crossing_s = std::f64::consts::TAU * (energy / mean_square_rate).sqrt();
-        assert!((zero_crossing_s / 8.0 - 0.710).abs() < 0.03, "{zero_crossing_s}");
     }
 }

@@ -3,10 +3,12 @@
 use super::{Reader, samples_of};
 use crate::scenario::document::{Node, Table, Value};
 use crate::scenario::error::Problem;
-use crate::scenario::{Alignment, Calibration, Motion, positions};
+use crate::scenario::{Alignment, Calibration, Motion};
 use octant_calibration::config as core;
+use octant_calibration::positions;
 use octant_calibration::sequence::{Sequence, Stop};
 use octant_earth::UnitQuaternion;
+use octant_earth::units::DEG;
 use octant_plant::config as plant;
 use octant_sample::Parameters;
 use octant_sample::parameters::Group;
@@ -146,7 +148,7 @@ fn calibration(table: &Reader<'_>, setting: &Setting<'_>) -> Result<Calibration,
         let name = table.text("positions")?;
         let stops = positions::named(name)
             .ok_or_else(|| table.problem("positions", format!("found {name:?}")))?;
-        (name, "positions", stops)
+        (name, "positions", from_degrees(stops))
     };
     let sequence =
         Sequence::new(&stops, passes).map_err(|error| table.problem(key, error.to_string()))?;
@@ -189,6 +191,15 @@ fn not_whole(table: &Reader<'_>, key: &str, setting: &Setting<'_>) -> Problem {
         key,
         format!("found {found:?}, expected a multiple of the sample period, {period_ns} ns"),
     )
+}
+
+fn from_degrees(stops: &[positions::Degrees]) -> Vec<Stop> {
+    let stop = |(azimuth_deg, roll_deg, weight): &positions::Degrees| Stop {
+        azimuth_rad: azimuth_deg * DEG,
+        roll_rad: roll_deg * DEG,
+        weight: *weight,
+    };
+    stops.iter().map(stop).collect()
 }
 
 fn stops(table: &Reader<'_>, key: &str) -> Result<Vec<Stop>, Problem> {
@@ -360,7 +371,7 @@ fn navigation(table: &Reader<'_>, setting: &Setting<'_>) -> Result<core::Navigat
     }
     let stops = match table.optional_text("rotation") {
         Some("none") => vec![Stop { azimuth_rad: 0.0, roll_rad: 0.0, weight: 1.0 }],
-        Some(_) => positions::sixteen(),
+        Some(_) => from_degrees(positions::SIXTEEN),
         None => stops(table, "rotation")?,
     };
     let rotation =

@@ -1,10 +1,11 @@
 //! Limits on results.
 
 use super::Reader;
+use crate::scenario::Requirement;
 use crate::scenario::document::Value;
 use crate::scenario::error::Problem;
 use crate::scenario::quantity::{self, Quantity};
-use crate::scenario::{Comparison, Requirement};
+use crate::score::verdict::{self, Comparison};
 use octant_sample::parameters::{Group, NAMES};
 
 /// Units that the names of measures end in, with the unit's own spelling.
@@ -27,14 +28,17 @@ pub(super) fn read(root: &Reader<'_>) -> Result<Vec<Requirement>, Problem> {
         if id.trim().is_empty() {
             return Err(table.problem("id", "found an empty text, expected an identifier"));
         }
-        if all.iter().any(|other| other.id == id) {
+        if all.iter().any(|other| other.check.id == id) {
             return Err(
                 table.problem("id", format!("found {id:?} a second time, expected unique ids"))
             );
         }
         let measure = table.text("measure")?;
         let plain = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
-        if measure.split('.').any(|part| part.is_empty() || !part.chars().all(plain)) {
+        // With bars around it the magnitude is meant.
+        let bare = measure.strip_prefix('|').and_then(|rest| rest.strip_suffix('|'));
+        let bare = bare.unwrap_or(measure);
+        if bare.split('.').any(|part| part.is_empty() || !part.chars().all(plain)) {
             return Err(table.problem(
                 "measure",
                 format!(
@@ -43,19 +47,21 @@ pub(super) fn read(root: &Reader<'_>) -> Result<Vec<Requirement>, Problem> {
                 ),
             ));
         }
-        let (limit, limit_text) = limit(&table, measure)?;
+        let (limit, limit_text) = limit(&table, bare)?;
         all.push(Requirement {
-            id,
-            text: table.text("text")?.to_owned(),
-            measure: measure.to_owned(),
-            limit,
-            limit_text,
-            comparison: match table.text("comparison")? {
-                "<" => Comparison::Below,
-                ">=" => Comparison::AtLeast,
-                ">" => Comparison::Above,
-                _ => Comparison::AtMost,
+            check: verdict::Requirement {
+                id,
+                measure: measure.to_owned(),
+                comparison: match table.text("comparison")? {
+                    "<" => Comparison::Below,
+                    ">=" => Comparison::AtLeast,
+                    ">" => Comparison::Above,
+                    _ => Comparison::AtMost,
+                },
+                limit,
             },
+            text: table.text("text")?.to_owned(),
+            limit_text,
             clause: table.optional_text("clause").map(str::to_owned),
         });
     }

@@ -2,6 +2,10 @@
 
 use super::Reader;
 use crate::scenario::error::Problem;
+use crate::source::{
+    Axis, Column, Delimiter, GimbalColumns, MappedField, MappedStamp, McapMapping, Quantity,
+    TextFiles, TextMapping, TimeColumn, TimeUnit,
+};
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
@@ -18,10 +22,10 @@ pub enum Source {
         /// The file.
         file: FileName,
         /// The mapping of a foreign file.
-        mapping: Option<Mcap>,
+        mapping: Option<McapMapping>,
     },
-    /// Text files of a real instrument.
-    Text(TextFiles),
+    /// Text files of a real instrument. The names in it are as they were written: see [`FileName`].
+    Text(TextMapping),
 }
 
 /// A file name as it was written.
@@ -57,104 +61,6 @@ impl FileName {
     }
 }
 
-/// How text files are read.
-#[derive(Clone, Debug, PartialEq)]
-pub struct TextFiles {
-    /// Nominal rate, ns between samples: equal to the scenario's sample period.
-    pub period_ns: u64,
-    /// What separates columns.
-    pub delimiter: Delimiter,
-    /// Lines to skip at the start.
-    pub skip_lines: u64,
-    /// The first line after those names the columns.
-    pub header: bool,
-    /// Lines that start with this are skipped; empty: none.
-    pub comment: String,
-    /// Column of the time stamp, in each file.
-    pub time_column: Column,
-    /// Seconds per unit of the time stamp.
-    pub time_unit_s: f64,
-    /// The gyros' file and columns.
-    pub gyro: (FileName, Signal<Column>),
-    /// The accelerometers' file and columns.
-    pub accelerometer: (FileName, Signal<Column>),
-    /// Columns of azimuth and roll in the gyros' file, and rad per unit.
-    pub gimbal: Option<(Column, Column, f64)>,
-}
-
-/// What separates columns.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Delimiter {
-    /// Any run of blanks and tabs.
-    Whitespace,
-    /// This one character.
-    Character(char),
-}
-
-/// A column of a text file.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Column {
-    /// Its number, from 1.
-    Number(usize),
-    /// Its name in the header.
-    Name(String),
-}
-
-/// Names of the fields of an MCAP message.
-pub type Fields = String;
-
-/// Three axes of raw numbers and what they mean: `si = (raw − offset) · scale · unit`.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Signal<C> {
-    /// Where raw x, y, z are.
-    pub columns: [C; 3],
-    /// Rate or increment.
-    pub quantity: SignalQuantity,
-    /// SI value of one unit after scaling.
-    pub unit: f64,
-    /// Units per raw number.
-    pub scale: [f64; 3],
-    /// Raw number of zero.
-    pub offset: [f64; 3],
-    /// Which instrument axis lies along body x, y, z.
-    pub axes: [Axis; 3],
-}
-
-/// Whether numbers are rates or their integrals over the interval.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum SignalQuantity {
-    /// rad/s or m/s².
-    Rate,
-    /// rad or m/s.
-    Increment,
-}
-
-/// An instrument axis with its sign.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Axis {
-    /// 0, 1, 2 for x, y, z.
-    pub index: usize,
-    /// It points the other way.
-    pub negative: bool,
-}
-
-/// Which fields of another program's MCAP file are read.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Mcap {
-    /// Topic of the samples.
-    pub topic: String,
-    /// Field with the time stamp; `None`: the message's log time.
-    pub time_field: Option<Fields>,
-    /// Seconds per unit of the time stamp.
-    pub time_unit_s: f64,
-    /// Nominal rate, ns between samples: equal to the scenario's sample period.
-    pub period_ns: u64,
-    /// Fields of the gyros.
-    pub gyro: Signal<Fields>,
-    /// Fields of the accelerometers.
-    pub accelerometer: Signal<Fields>,
-}
-
 pub(super) fn read(table: &Reader<'_>, sample_period_ns: u64) -> Result<Source, Problem> {
     let uri = table.text("uri")?;
     match uri.split_once(':') {
@@ -178,7 +84,11 @@ pub(super) fn read(table: &Reader<'_>, sample_period_ns: u64) -> Result<Source, 
     }
 }
 
-fn read_text(table: &Reader<'_>, file: &str, sample_period_ns: u64) -> Result<TextFiles, Problem> {
+fn read_text(
+    table: &Reader<'_>,
+    file: &str,
+    sample_period_ns: u64,
+) -> Result<TextMapping, Problem> {
     let header = table.boolean("header")?;
     let column = |table: &Reader<'_>, key: &str| -> Result<Column, Problem> {
         match table.optional_text(key) {
@@ -190,72 +100,129 @@ fn read_text(table: &Reader<'_>, file: &str, sample_period_ns: u64) -> Result<Te
             )),
         }
     };
-    let sensor = |key: &str| -> Result<(FileName, Signal<Column>), Problem> {
+    let sensor = |key: &str| -> Result<([Axis; 3], Quantity), Problem> {
         let sensor = table.table(key)?;
         let columns = [column(&sensor, "x")?, column(&sensor, "y")?, column(&sensor, "z")?];
-        let file = FileName(sensor.optional_text("file").unwrap_or(file).to_owned());
-        Ok((file, signal(&sensor, columns)?))
+        let signal = signal(&sensor)?;
+        let axis = |axis: Mapped| {
+            let column = columns[axis.index].clone();
+            Axis { column, offset: axis.offset, scale: axis.scale }
+        };
+        Ok((signal.axes.map(axis), signal.quantity))
     };
-    Ok(TextFiles {
-        period_ns: period_ns(table, sample_period_ns)?,
+    let file_of = |key: &str| -> Result<PathBuf, Problem> {
+        Ok(PathBuf::from(table.table(key)?.optional_text("file").unwrap_or(file)))
+    };
+    let files = match (file_of("gyro")?, file_of("accelerometer")?) {
+        (gyro, accelerometer) if gyro == accelerometer => TextFiles::One(gyro),
+        (gyro, accelerometer) => TextFiles::Split { gyro, accelerometer },
+    };
+    let (gyro, quantity) = sensor("gyro")?;
+    let (accelerometer, other) = sensor("accelerometer")?;
+    same_quantity(table, quantity, other)?;
+    let (nominal_rate_hz, split) = rate(table, sample_period_ns)?;
+    let unit = time_unit(table)?;
+    Ok(TextMapping {
+        files,
+        time: Some(TimeColumn { column: column(table, "time_column")?, unit }),
+        gyro,
+        accelerometer,
+        quantity,
+        nominal_rate_hz,
+        split,
         delimiter: match table.text("delimiter")? {
-            "comma" => Delimiter::Character(','),
-            "semicolon" => Delimiter::Character(';'),
-            "tab" => Delimiter::Character('\t'),
-            _ => Delimiter::Whitespace,
+            "comma" => Delimiter::Character(b','),
+            "semicolon" => Delimiter::Character(b';'),
+            "tab" => Delimiter::Character(b'\t'),
+            _ => Delimiter::Blanks,
         },
-        skip_lines: table.integer("skip_lines")?,
-        header,
         comment: table.text("comment")?.to_owned(),
-        time_column: column(table, "time_column")?,
-        time_unit_s: time_unit_s(table)?,
-        gyro: sensor("gyro")?,
-        accelerometer: sensor("accelerometer")?,
+        skip_lines: table.integer("skip_lines")?,
         gimbal: match table.optional_table("gimbal") {
             None => None,
-            Some(gimbal) => Some((
-                column(&gimbal, "azimuth")?,
-                column(&gimbal, "roll")?,
-                unit_si(&gimbal, "unit")?,
-            )),
+            Some(gimbal) => {
+                let scale = unit_si(&gimbal, "unit")?;
+                let axis = |key| Ok(Axis { column: column(&gimbal, key)?, offset: 0.0, scale });
+                Some(GimbalColumns { azimuth: axis("azimuth")?, roll: axis("roll")? })
+            }
         },
     })
 }
 
-fn read_mcap(table: &Reader<'_>, sample_period_ns: u64) -> Result<Mcap, Problem> {
-    let sensor = |key: &str| -> Result<Signal<Fields>, Problem> {
+fn read_mcap(table: &Reader<'_>, sample_period_ns: u64) -> Result<McapMapping, Problem> {
+    let sensor = |key: &str| -> Result<([MappedField; 3], Quantity), Problem> {
         let sensor = table.table(key)?;
-        let field = |axis| sensor.text(axis).map(str::to_owned);
-        signal(&sensor, [field("x")?, field("y")?, field("z")?])
+        let paths = [sensor.text("x")?, sensor.text("y")?, sensor.text("z")?];
+        let signal = signal(&sensor)?;
+        let field = |axis: Mapped| MappedField {
+            path: paths[axis.index].to_owned(),
+            offset: axis.offset,
+            scale: axis.scale,
+        };
+        Ok((signal.axes.map(field), signal.quantity))
     };
-    Ok(Mcap {
+    let (gyro, quantity) = sensor("gyro")?;
+    let (accelerometer, other) = sensor("accelerometer")?;
+    same_quantity(table, quantity, other)?;
+    let nanoseconds = table.optional_text("nanoseconds_field").map(str::to_owned);
+    let stamp = match table.optional_text("time_field") {
+        None if nanoseconds.is_some() => {
+            let message = "found without time_field, to which it is added";
+            return Err(table.problem("nanoseconds_field", message));
+        }
+        None => MappedStamp::LogTime,
+        Some(path) => {
+            MappedStamp::Field { path: path.to_owned(), unit: time_unit(table)?, nanoseconds }
+        }
+    };
+    let (nominal_rate_hz, split) = rate(table, sample_period_ns)?;
+    Ok(McapMapping {
         topic: table.text("topic")?.to_owned(),
-        time_field: table.optional_text("time_field").map(str::to_owned),
-        time_unit_s: time_unit_s(table)?,
-        period_ns: period_ns(table, sample_period_ns)?,
-        gyro: sensor("gyro")?,
-        accelerometer: sensor("accelerometer")?,
+        gyro,
+        accelerometer,
+        quantity,
+        stamp,
+        nominal_rate_hz,
+        split,
+        gimbal: None,
     })
 }
 
-/// The nominal rate is that of the scenario: the core has one sample period.
-fn period_ns(table: &Reader<'_>, sample_period_ns: u64) -> Result<u64, Problem> {
+fn same_quantity(table: &Reader<'_>, gyro: Quantity, other: Quantity) -> Result<(), Problem> {
+    if gyro == other {
+        return Ok(());
+    }
+    Err(table.table("accelerometer")?.problem(
+        "quantity",
+        "found another one than that of the gyros, expected rates or increments of both",
+    ))
+}
+
+/// Nominal rate of rows, Hz, and the samples of each: together they are the rate of the scenario,
+/// for the core has one sample period.
+fn rate(table: &Reader<'_>, sample_period_ns: u64) -> Result<(f64, u32), Problem> {
     let found_ns = super::instrument::sample_period_ns(table)?;
-    if found_ns == sample_period_ns {
-        return Ok(found_ns);
+    let split: u32 = table.integer("split")?;
+    if found_ns == sample_period_ns * u64::from(split) {
+        return Ok((table.si("rate")?, split));
     }
     Err(table.problem(
         "rate",
         format!(
-            "found {:?}, a period of {found_ns} ns, but imu.rate gives {sample_period_ns} ns: \
-             expected the same",
+            "found {:?}, a period of {found_ns} ns, split by {split}, but imu.rate gives \
+             {sample_period_ns} ns: expected the same",
             table.text("rate")?
         ),
     ))
 }
 
-fn time_unit_s(table: &Reader<'_>) -> Result<f64, Problem> {
-    unit_si(table, "time_unit")
+fn time_unit(table: &Reader<'_>) -> Result<TimeUnit, Problem> {
+    Ok(match table.text("time_unit")? {
+        "ms" => TimeUnit::Millisecond,
+        "us" => TimeUnit::Microsecond,
+        "ns" => TimeUnit::Nanosecond,
+        _ => TimeUnit::Second,
+    })
 }
 
 /// SI value of one of a unit.
@@ -266,14 +233,28 @@ fn unit_si(table: &Reader<'_>, key: &str) -> Result<f64, Problem> {
         .map_err(|_| table.problem(key, format!("found the unknown unit {unit:?}")))
 }
 
-fn signal<C>(table: &Reader<'_>, columns: [C; 3]) -> Result<Signal<C>, Problem> {
+/// What lies along a body axis: `si = (raw − offset) · scale`.
+#[derive(Clone, Copy)]
+struct Mapped {
+    /// 0, 1, 2: the instrument's x, y, z.
+    index: usize,
+    offset: f64,
+    scale: f64,
+}
+
+struct Signal {
+    axes: [Mapped; 3],
+    quantity: Quantity,
+}
+
+fn signal(table: &Reader<'_>) -> Result<Signal, Problem> {
     let quantity = match table.text("quantity")? {
-        "increment" => SignalQuantity::Increment,
-        _ => SignalQuantity::Rate,
+        "increment" => Quantity::Increments,
+        _ => Quantity::Rates,
     };
     let unit = table.text("unit")?;
     let integral = matches!(unit, "rad" | "deg" | "arcsec" | "m/s" | "mm/s");
-    if integral != (quantity == SignalQuantity::Increment) {
+    if integral != (quantity == Quantity::Increments) {
         let quantity = table.text("quantity")?;
         return Err(table.problem(
             "unit",
@@ -284,27 +265,28 @@ fn signal<C>(table: &Reader<'_>, columns: [C; 3]) -> Result<Signal<C>, Problem> 
     if scale.contains(&0.0) {
         return Err(table.problem("scale", "found 0, expected other numbers than zero"));
     }
-    Ok(Signal {
-        columns,
-        quantity,
-        unit: unit_si(table, "unit")?,
-        scale,
-        offset: table.numbers("offset")?,
-        axes: axes(table)?,
-    })
+    let offset: [f64; 3] = table.numbers("offset")?;
+    let unit = unit_si(table, "unit")?;
+    let axes = axes(table)?.map(|(index, sign)| Mapped {
+        index,
+        offset: offset[index],
+        scale: sign * scale[index] * unit,
+    });
+    Ok(Signal { axes, quantity })
 }
 
-fn axes(table: &Reader<'_>) -> Result<[Axis; 3], Problem> {
+/// Instrument axis (0, 1, 2) and sign of body x, y, z.
+fn axes(table: &Reader<'_>) -> Result<[(usize, f64); 3], Problem> {
     let texts = table.texts("axes");
     let axis = |text: &&str| {
-        let negative = text.starts_with('-');
+        let sign = if text.starts_with('-') { -1.0 } else { 1.0 };
         let index = ["x", "y", "z"].iter().position(|name| *name == text.trim_start_matches('-'));
-        index.map(|index| Axis { index, negative })
+        index.map(|index| (index, sign))
     };
-    let axes: Vec<Axis> = texts.iter().filter_map(axis).collect();
-    let mut indices: Vec<usize> = axes.iter().map(|axis| axis.index).collect();
+    let axes: Vec<(usize, f64)> = texts.iter().filter_map(axis).collect();
+    let mut indices: Vec<usize> = axes.iter().map(|axis| axis.0).collect();
     indices.sort_unstable();
-    match <[Axis; 3]>::try_from(axes) {
+    match <[(usize, f64); 3]>::try_from(axes) {
         Ok(axes) if indices == [0, 1, 2] => Ok(axes),
         _ => Err(table.problem(
             "axes",

@@ -3,6 +3,10 @@
 use crate::config::{AidingMode, Alignment, Config, Estimator};
 use crate::schedule::DoesNotFit;
 
+/// Longest calibration or navigation, s: thirty years. Its ticks can be multiplied by anything that
+/// they are multiplied by.
+const DURATION_MAX_S: f64 = 1e9;
+
 /// Why a configuration can't be run.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum ConfigError {
@@ -26,6 +30,28 @@ pub enum ConfigError {
         field: &'static str,
         /// Value found.
         found: f64,
+    },
+    /// A number that must be finite isn't.
+    #[error("{field} is {found}, a finite number is expected")]
+    NotFinite {
+        /// Name of the field.
+        field: &'static str,
+        /// Value found.
+        found: f64,
+    },
+    /// Longer than any procedure.
+    #[error("{field} is {found_s} s, at most {DURATION_MAX_S} s are expected")]
+    TooLong {
+        /// Name of the field.
+        field: &'static str,
+        /// Value found, s.
+        found_s: f64,
+    },
+    /// A test for identical counts that every sample fails.
+    #[error("the number of identical samples is {found}, at least 2 are expected")]
+    StuckSamples {
+        /// Value found.
+        found: u32,
     },
     /// The latitude is too close to a pole for a local-level frame.
     #[error("latitude is {found_rad} rad, within ±1.56 (±89.4 deg) is expected")]
@@ -70,13 +96,42 @@ pub(super) fn check(config: &Config) -> Result<(), ConfigError> {
             Err(ConfigError::NotPositive { field, found })
         }
     };
+    let finite = |field, found: f64| {
+        if found.is_finite() { Ok(()) } else { Err(ConfigError::NotFinite { field, found }) }
+    };
+    let duration = |field, found_s: f64| {
+        positive(field, found_s)?;
+        if found_s <= DURATION_MAX_S {
+            Ok(())
+        } else {
+            Err(ConfigError::TooLong { field, found_s })
+        }
+    };
+    finite("longitude", config.site.longitude_rad)?;
+    finite("height", config.site.height_m)?;
+    finite("angle random walk", config.noise.angle_random_walk)?;
+    finite("velocity random walk", config.noise.velocity_random_walk)?;
+    for value in config.initial_parameters.to_array() {
+        finite("an initial parameter", value)?;
+    }
+    if let Alignment::Given { q_nb, velocity_mps } = &config.alignment {
+        for value in q_nb.coords.iter().chain(velocity_mps.iter()) {
+            finite("the given alignment", *value)?;
+        }
+    }
+    if let Some(found @ 0..2) = config.screening.stuck_samples {
+        return Err(ConfigError::StuckSamples { found });
+    }
+    if let Some(gate) = config.screening.gate {
+        positive("gate of the innovations", gate.nis)?;
+    }
     positive("turntable rate", config.turntable.rate_radps)?;
     positive("turntable acceleration", config.turntable.acceleration_radps2)?;
     if let Alignment::Coarse { duration_s } = config.alignment {
-        positive("coarse alignment duration", duration_s)?;
+        duration("coarse alignment duration", duration_s)?;
     }
     if let Some(calibration) = &config.calibration {
-        positive("calibration duration", calibration.duration_s)?;
+        duration("calibration duration", calibration.duration_s)?;
         if let Estimator::Kalman(kalman) = &calibration.estimator {
             if kalman.aiding_period_ns == 0 || !kalman.aiding_period_ns.is_multiple_of(period_ns) {
                 return Err(ConfigError::Period {
@@ -91,9 +146,9 @@ pub(super) fn check(config: &Config) -> Result<(), ConfigError> {
         }
     }
     if let Some(navigation) = &config.navigation {
-        positive("navigation dwell", navigation.dwell_s)?;
+        duration("navigation dwell", navigation.dwell_s)?;
         if let Some(duration_s) = navigation.duration_s {
-            positive("navigation duration", duration_s)?;
+            duration("navigation duration", duration_s)?;
         }
     }
     if config.calibration.is_none() && config.navigation.is_none() {

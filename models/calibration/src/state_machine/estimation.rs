@@ -23,6 +23,7 @@ impl Estimation {
         Ok(match &calibration.estimator {
             Estimator::Kalman(kalman) => Self::Kalman(CalibrationFilter::new(
                 kalman,
+                &config.site,
                 &config.noise,
                 config.screening.gate,
                 config.sample_period_ns,

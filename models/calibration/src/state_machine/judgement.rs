@@ -11,6 +11,10 @@ const RECOVERIES_MAX: u32 = 10;
 /// Share of the expected measurements that a calibration needs.
 const MEASURED_SHARE_MIN: f64 = 0.5;
 
+/// Share of the expected measurements that must have gone into the parameters: recoveries hold
+/// these, and one that never ends would hold them for ever.
+const ESTIMATING_SHARE_MIN: f64 = 0.5;
+
 /// Why a calibration was refused.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum Refusal {
@@ -37,6 +41,14 @@ pub enum Refusal {
     Recoveries {
         /// Recoveries.
         recoveries: u32,
+    },
+    /// The parameters were held for too long.
+    #[error("recoveries held the parameters during {held} of {expected} measurements")]
+    Held {
+        /// Measurements used while the parameters were held.
+        held: u64,
+        /// Measurements expected.
+        expected: u64,
     },
     /// The reference did not come.
     #[error("only {used} of {expected} measurements of the reference came")]
@@ -78,6 +90,12 @@ pub(super) fn judge(
     let total = tally.used + tally.rejected;
     if !filter.covariance().is_finite() {
         return Err(Refusal::Numeric);
+    }
+    let estimating = tally.used - tally.held;
+    if (total as f64) >= MEASURED_SHARE_MIN * expected as f64
+        && (estimating as f64) < ESTIMATING_SHARE_MIN * expected as f64
+    {
+        return Err(Refusal::Held { held: tally.held, expected });
     }
     if (total as f64) < MEASURED_SHARE_MIN * expected as f64 {
         return Err(Refusal::AidingLost { used: total, expected });

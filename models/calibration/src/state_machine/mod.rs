@@ -1,7 +1,10 @@
 //! The procedure: alignment, calibration through the stops, compensation, navigation.
 
 mod check;
+mod ending;
 mod estimation;
+mod gap;
+mod gimbals;
 mod judgement;
 
 pub use check::ConfigError;
@@ -10,25 +13,18 @@ pub use judgement::Refusal;
 use crate::alignment::CoarseAlignment;
 use crate::compensation::Compensation;
 use crate::config::{Alignment, Calibration, Config, Estimator, Kalman, Site};
-use crate::covariance::PARAMETERS;
 use crate::filter::CalibrationFilter;
 use crate::monitor::{Monitor, MonitorTally, Order};
 use crate::schedule::{Cursor, dwell_s};
 use crate::strapdown::{Strapdown, Vertical};
-use crate::table::{CalibrationTable, Provenance, Quality};
+use crate::table::{CalibrationTable, Quality};
 use estimation::{Estimation, Standstill};
-use judgement::{judge, quality_of};
+use judgement::quality_of;
 use nalgebra::{UnitQuaternion, Vector3};
 use octant_sample::counts::{DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS};
 use octant_sample::parameters::PARAMETER_COUNT;
-use octant_sample::{
-    Aiding, GimbalAngles, GimbalCommand, Health, Mode, Output, Parameters, Sample, Status,
-};
+use octant_sample::{Aiding, GimbalAngles, Health, Mode, Output, Parameters, Sample};
 
-/// Missing samples over which the last increments are held; what is longer is lost.
-const HOLD_MAX_SAMPLES: u64 = 400;
-/// Difference of encoder and set point in a dwell that is called a disagreement, counts (0.5°).
-const GIMBAL_TOLERANCE: i32 = (0.5 * core::f64::consts::PI / 180.0 * (1u64 << 27) as f64) as i32;
 /// Time after arrival in which the gimbals may still settle, s.
 const GIMBAL_SETTLE_S: f64 = 1.0;
 /// Memory of the running mean of NIS, measurements.
@@ -197,8 +193,7 @@ impl Core {
             self.sample_s,
             true,
         ));
-        let Site { latitude_rad, longitude_rad, height_m } = self.config.site;
-        self.strapdown.start_free(latitude_rad, longitude_rad, height_m);
+        self.strapdown.start_free(&self.config.site);
         self.mode = Mode::Navigating;
     }
 
@@ -217,13 +212,13 @@ impl Core {
                 self.config.sample_period_ns
             }
         };
-        self.tick += 1;
+        self.tick = self.tick.saturating_add(1);
         self.take(sample, interval_ns as f64 * 1e-9);
         match self.mode {
             Mode::Calibrating => {
                 self.measure(aiding, &mut health, &mut nis);
                 if self.tick >= self.calibration_ticks {
-                    self.finish_calibration(sample);
+                    self.finish_calibration(sample.device_time);
                 }
             }
             Mode::Navigating if self.phase_tick() >= self.navigation_ticks => {
@@ -236,11 +231,19 @@ impl Core {
             cursor.advance(phase_tick);
         }
         self.compare_gimbals(sample, &mut health);
+        if !self.strapdown.is_finite() {
+            self.stop_at_last_finite(&mut health);
+        }
         self.answer(sample, health, nis)
     }
 
-    /// temp
-    pub fn end_of_stream(&mut self) {}
+    /// A solution that is no number is not handed out: the last good one stands, and is refused.
+    #[cold]
+    fn stop_at_last_finite(&mut self, health: &mut Health) {
+        *health |= Health::NUMERIC;
+        self.strapdown = self.strapdown.stopped_at(&self.last_output.navigation);
+        self.refuse(Refusal::Numeric);
+    }
 
     /// Samples since the start of the present phase.
     #[inline]
@@ -320,24 +323,6 @@ impl Core {
         self.mode = Mode::Refused;
     }
 
-    /// Bridges missing samples by holding the last increments, up to a bound: a hold without one
-    /// makes a fault at the start of a move worse.
-    fn bridge(&mut self, missing: u64) {
-        let measured = self.held;
-        let integrates = match self.mode {
-            Mode::Navigating => true,
-            Mode::Calibrating => matches!(self.estimation, Estimation::Kalman(_)),
-            _ => false,
-        };
-        if integrates {
-            for _ in 0..missing.min(HOLD_MAX_SAMPLES) {
-                self.integrate(&measured, self.sample_s);
-            }
-        }
-        // The clock of the procedure goes on: the turntable does too.
-        self.tick += missing;
-    }
-
     fn measure(&mut self, aiding: Option<&Aiding>, health: &mut Health, nis: &mut f64) {
         let (Estimation::Kalman(filter), Some(kalman)) =
             (&mut self.estimation, kalman_of(&self.config))
@@ -350,9 +335,16 @@ impl Core {
             return;
         }
         filter.propagate(&self.strapdown);
+        let before = self.parameters;
         let measured = aiding.and_then(|aiding| {
             filter.measure(&aiding.reference, &mut self.strapdown, &mut self.parameters)
         });
+        if !self.parameters.to_array().iter().all(|value| value.is_finite()) {
+            self.parameters = before;
+            self.refuse(Refusal::Numeric);
+            *health |= Health::NUMERIC;
+            return;
+        }
         if let Some(measured) = measured {
             self.last_measured_tick = self.tick;
             *nis = measured.nis;
@@ -375,97 +367,6 @@ impl Core {
         }
         if self.nis_running > kalman.refuse_above_mean_nis {
             *health |= Health::INCONSISTENT;
-        }
-    }
-
-    fn finish_calibration(&mut self, sample: &Sample) {
-        match self.conclude() {
-            Err(refusal) => self.refuse(refusal),
-            Ok(quality) => {
-                self.table = self.export(sample, quality);
-                self.start_navigation();
-            }
-        }
-    }
-
-    /// Brings the estimation to its end: judged, parameters and attitude in place.
-    fn conclude(&mut self) -> Result<Quality, Refusal> {
-        if let (Estimation::Kalman(filter), Some(kalman)) =
-            (&self.estimation, kalman_of(&self.config))
-        {
-            let period = kalman.aiding_period_ns;
-            let expected = self.calibration_ticks * self.config.sample_period_ns / period;
-            return judge(filter, kalman, expected);
-        }
-        let Some(adjusted) = self.estimation.adjust() else { return Err(Refusal::Numeric) };
-        let estimate = adjusted?;
-        self.parameters = estimate.parameters;
-        self.sigma = estimate.sigma;
-        self.revision += 1;
-        self.compensation = Compensation::new(&self.parameters);
-        if self.config.navigation.is_some() {
-            let still = self.standstill;
-            let (dtheta, dv) =
-                self.compensation.apply(&still.delta_theta, &still.delta_velocity, still.elapsed_s);
-            let mut alignment = CoarseAlignment::new(&self.config.site);
-            alignment.step(&dtheta, &dv, still.elapsed_s);
-            let q_nb = alignment.finish().ok_or(Refusal::Alignment)?;
-            self.strapdown = strapdown_at(&self.config.site, &q_nb, Vector3::zeros());
-        }
-        let used = estimate.intervals as u64;
-        Ok(Quality { nis_mean: f64::NAN, used, ..Quality::default() })
-    }
-
-    fn export(&self, sample: &Sample, quality: Quality) -> Option<CalibrationTable> {
-        let calibration = self.config.calibration.as_ref()?;
-        let covariance = core::array::from_fn(|i| {
-            core::array::from_fn(|j| match &self.estimation {
-                Estimation::Kalman(filter) => {
-                    filter.covariance().at(PARAMETERS + i, PARAMETERS + j)
-                }
-                // Least squares hands over standard deviations alone.
-                _ if i == j => self.sigma[i] * self.sigma[i],
-                _ => 0.0,
-            })
-        });
-        let Site { latitude_rad, longitude_rad, height_m } = self.config.site;
-        Some(CalibrationTable {
-            parameters: self.parameters,
-            covariance,
-            quality,
-            provenance: Provenance {
-                ended_ns: sample.device_time.ns,
-                duration_s: calibration.duration_s,
-                stops: calibration.sequence.stops().len() as u64
-                    * u64::from(calibration.sequence.passes()),
-                latitude_rad,
-                longitude_rad,
-                height_m,
-                method: match calibration.estimator {
-                    Estimator::Kalman(_) => 0,
-                    Estimator::LeastSquares(_) => 1,
-                    Estimator::ExternalTurntable(_) => 2,
-                },
-            },
-        })
-    }
-
-    fn compare_gimbals(&mut self, sample: &Sample, health: &mut Health) {
-        let Some(cursor) = &self.cursor else { return };
-        if sample.status.contains(Status::GIMBAL_INVALID)
-            || self.phase_tick() < cursor.arrival_tick() + self.settle_ticks
-            || self.mode == Mode::Refused
-        {
-            return;
-        }
-        // Between command and first motion lie two samples in which the set point is already new.
-        let GimbalCommand { target } = self.last_output.gimbal_command;
-        let off = |reading: i32, target: i32| {
-            (i64::from(reading) - i64::from(target)).unsigned_abs() > GIMBAL_TOLERANCE as u64
-        };
-        if off(sample.gimbal.azimuth, target.azimuth) || off(sample.gimbal.roll, target.roll) {
-            *health |= Health::GIMBAL_DISAGREES;
-            self.gimbal_disagreements += 1;
         }
     }
 

@@ -1,0 +1,31 @@
+//! The source of a scenario.
+
+use super::{Replay, Source, SourceError, TextFiles, TextMapping, TextSource};
+use crate::scenario::{self, FileName, Scenario};
+use std::path::PathBuf;
+
+/// Opens the recorded source of a scenario; `None` where it is the plant, which is made from what
+/// the seed draws: see [`super::PlantSource`].
+///
+/// # Errors
+/// If a file name can't be expanded, or a file can't be read.
+pub fn open(scenario: &Scenario) -> Result<Option<Box<dyn Source>>, SourceError> {
+    let path = |name: &FileName| name.path(&scenario.folder).map_err(SourceError::FileName);
+    match &scenario.source {
+        scenario::Source::Plant => Ok(None),
+        scenario::Source::Replay { file, mapping } => {
+            Ok(Some(Box::new(Replay::open(&path(file)?, mapping.as_ref())?)))
+        }
+        scenario::Source::Text(mapping) => {
+            let path = |written: &PathBuf| path(&FileName(written.display().to_string()));
+            let files = match &mapping.files {
+                TextFiles::One(file) => TextFiles::One(path(file)?),
+                TextFiles::Split { gyro, accelerometer } => {
+                    TextFiles::Split { gyro: path(gyro)?, accelerometer: path(accelerometer)? }
+                }
+            };
+            let mapping = TextMapping { files, ..mapping.clone() };
+            Ok(Some(Box::new(TextSource::open(&mapping)?)))
+        }
+    }
+}

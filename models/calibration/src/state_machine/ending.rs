@@ -1,0 +1,101 @@
+//! The end of a calibration: judged, parameters and attitude in place, and the table of it.
+
+use super::estimation::Estimation;
+use super::judgement::judge;
+use super::{Core, Refusal, kalman_of, strapdown_at};
+use crate::alignment::CoarseAlignment;
+use crate::compensation::Compensation;
+use crate::config::{Estimator, Site};
+use crate::covariance::PARAMETERS;
+use crate::table::{CalibrationTable, Provenance, Quality};
+use nalgebra::Vector3;
+use octant_sample::{DeviceTime, Mode, Output};
+
+impl Core {
+    /// The source has ended. A calibration that still runs is concluded with what there is, as at
+    /// the end of its duration; otherwise nothing changes. Answers with the last output, mode and
+    /// revision brought up to date.
+    pub fn end_of_stream(&mut self) -> Output {
+        if self.mode == Mode::Calibrating {
+            self.finish_calibration(self.last_output.device_time);
+            self.last_output.mode = self.mode;
+            self.last_output.parameters_revision = self.revision;
+            self.last_output.navigation = self.strapdown.navigation();
+        }
+        self.last_output
+    }
+
+    pub(super) fn finish_calibration(&mut self, at: DeviceTime) {
+        match self.conclude() {
+            Err(refusal) => self.refuse(refusal),
+            Ok(quality) => {
+                self.table = self.export(at, quality);
+                self.start_navigation();
+            }
+        }
+    }
+
+    /// Brings the estimation to its end: judged, parameters and attitude in place.
+    fn conclude(&mut self) -> Result<Quality, Refusal> {
+        if let (Estimation::Kalman(filter), Some(kalman)) =
+            (&self.estimation, kalman_of(&self.config))
+        {
+            let period = kalman.aiding_period_ns;
+            // A stream that ended early could bring no more.
+            let ticks = self.calibration_ticks.min(self.tick);
+            let expected = ticks * self.config.sample_period_ns / period;
+            return judge(filter, kalman, expected);
+        }
+        let Some(adjusted) = self.estimation.adjust() else { return Err(Refusal::Numeric) };
+        let estimate = adjusted?;
+        self.parameters = estimate.parameters;
+        self.sigma = estimate.sigma;
+        self.revision += 1;
+        self.compensation = Compensation::new(&self.parameters);
+        if self.config.navigation.is_some() {
+            let still = self.standstill;
+            let (dtheta, dv) =
+                self.compensation.apply(&still.delta_theta, &still.delta_velocity, still.elapsed_s);
+            let mut alignment = CoarseAlignment::new(&self.config.site);
+            alignment.step(&dtheta, &dv, still.elapsed_s);
+            let q_nb = alignment.finish().ok_or(Refusal::Alignment)?;
+            self.strapdown = strapdown_at(&self.config.site, &q_nb, Vector3::zeros());
+        }
+        let used = estimate.intervals as u64;
+        Ok(Quality { nis_mean: f64::NAN, used, ..Quality::default() })
+    }
+
+    fn export(&self, at: DeviceTime, quality: Quality) -> Option<CalibrationTable> {
+        let calibration = self.config.calibration.as_ref()?;
+        let covariance = core::array::from_fn(|i| {
+            core::array::from_fn(|j| match &self.estimation {
+                Estimation::Kalman(filter) => {
+                    filter.covariance().at(PARAMETERS + i, PARAMETERS + j)
+                }
+                // Least squares hands over standard deviations alone.
+                _ if i == j => self.sigma[i] * self.sigma[i],
+                _ => 0.0,
+            })
+        });
+        let Site { latitude_rad, longitude_rad, height_m } = self.config.site;
+        Some(CalibrationTable {
+            parameters: self.parameters,
+            covariance,
+            quality,
+            provenance: Provenance {
+                ended_ns: at.ns,
+                duration_s: calibration.duration_s,
+                stops: calibration.sequence.stops().len() as u64
+                    * u64::from(calibration.sequence.passes()),
+                latitude_rad,
+                longitude_rad,
+                height_m,
+                method: match calibration.estimator {
+                    Estimator::Kalman(_) => 0,
+                    Estimator::LeastSquares(_) => 1,
+                    Estimator::ExternalTurntable(_) => 2,
+                },
+            },
+        })
+    }
+}
