@@ -11,6 +11,7 @@ use super::writer::{RecordingWriter, next_on_grid};
 use super::{
     Counts, Event, Extra, FLUSH_INTERVAL, Frame, RecorderError, RecorderOptions, StreamHash,
 };
+use octant_sample::Mode;
 use std::fs::File;
 use std::io::Write;
 use std::path::Path;
@@ -47,6 +48,8 @@ pub struct Recorder {
     next_due_ns: u64,
     period_ns: u64,
     truth_due: bool,
+    /// Mode of the last output, none before the first.
+    mode: Option<Mode>,
     records_truth: bool,
     revision: u32,
     parameters_due: bool,
@@ -105,6 +108,7 @@ impl Recorder {
             next_due_ns: u64::MAX,
             period_ns: 1,
             truth_due: false,
+            mode: None,
             records_truth: false,
             revision: 0,
             parameters_due: false,
@@ -140,6 +144,7 @@ impl Recorder {
             next_due_ns: 0,
             period_ns: options.policy.period_ns.max(1),
             truth_due: false,
+            mode: None,
             records_truth,
             revision: 0,
             parameters_due: false,
@@ -167,10 +172,13 @@ impl Recorder {
             self.hand_over()?;
         }
         let time_ns = frame.clean.sample.device_time.ns;
-        let due = time_ns >= self.next_due_ns;
-        if due {
+        let on_grid = time_ns >= self.next_due_ns;
+        if on_grid {
             self.next_due_ns = next_on_grid(time_ns, self.period_ns);
         }
+        // Where the mode changes are the last parameters and the start of navigation.
+        let due = on_grid || self.mode != Some(frame.output.mode);
+        self.mode = Some(frame.output.mode);
         self.truth_due = due;
         if frame.output.parameters_revision != self.revision {
             self.revision = frame.output.parameters_revision;

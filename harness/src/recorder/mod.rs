@@ -83,7 +83,7 @@ impl Samples {
     }
 }
 
-/// What is kept of a run. Aiding and changes of mode are kept always.
+/// What is kept of a run. Aiding and epochs in which the mode changes are kept always.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Policy {
     /// Which samples and outputs are kept.

@@ -1,0 +1,131 @@
+// Opens a report and a comparison in Chromium and checks what a reader sees.
+// Usage: node tests/rigs/browser.mjs REPORT SUMMARY COMPARISON PICTURES
+import { readFile } from "node:fs/promises";
+import { createRequire } from "node:module";
+import { pathToFileURL } from "node:url";
+
+const require = createRequire(new URL("../../.rigs/npm/package.json", import.meta.url));
+const { chromium } = require("playwright-core");
+
+const [report, summaryPath, comparison, pictures] = process.argv.slice(2);
+let failed = 0;
+function check(name, holds, found = "") {
+  console.log(`${holds ? "ok  " : "FAIL"} ${name}${holds ? "" : `\n     found: ${found}`}`);
+  if (!holds) failed += 1;
+}
+
+const browser = await chromium.launch({
+  executablePath: "/usr/bin/chromium",
+  args: [
+    "--no-sandbox",
+    "--disable-gpu",
+    "--disable-quic",
+    "--no-first-run",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+  ],
+});
+
+// What every page has to keep, whatever is on it. `use` gets the open page.
+async function visit(name, path, use) {
+  const context = await browser.newContext({ offline: true, viewport: { width: 1280, height: 900 } });
+  const page = await context.newPage();
+  const errors = [];
+  const requests = [];
+  page.on("console", (message) => {
+    if (["error", "warning"].includes(message.type())) errors.push(message.text());
+  });
+  page.on("pageerror", (error) => errors.push(String(error)));
+  page.on("request", (request) => requests.push(request.url()));
+  await page.goto(pathToFileURL(path).href);
+
+  check(`${name}: has a title`, (await page.title()) !== "", await page.title());
+  const empty = await page.$$eval("svg", (charts) =>
+    charts.filter((chart) => {
+      const box = chart.getBoundingClientRect();
+      const drawn = chart.querySelectorAll("path[d], circle, line, rect").length;
+      // Only what is shown: legends' marks and folded parts have no box.
+      return box.width > 0 && (drawn === 0 || box.height === 0);
+    }).length);
+  check(`${name}: no chart is empty`, empty === 0, empty);
+  const broken = await page.$$eval("svg [d], svg circle, svg line", (marks) =>
+    marks.filter((mark) => /NaN|inf|undefined/.test(mark.outerHTML)).length);
+  check(`${name}: no mark has a place that is no number`, broken === 0, broken);
+  await use(page);
+
+  // No page is wider than the screen, on a phone either.
+  for (const width of [1280, 390]) {
+    await page.setViewportSize({ width, height: 900 });
+    const content = await page.evaluate(() => document.documentElement.scrollWidth);
+    check(`${name}: ${width} pixels are wide enough`, content <= width, content);
+  }
+  await page.setViewportSize({ width: 1280, height: 900 });
+
+  const background = () => page.evaluate(() => {
+    const of = (element) => getComputedStyle(element).backgroundColor;
+    const body = of(document.body);
+    const [r, g, b, a = 1] = (body.match(/[\d.]+/g) ?? []).map(Number);
+    if (a > 0) return (r + g + b) / 3;
+    const root = (of(document.documentElement).match(/[\d.]+/g) ?? []).map(Number);
+    return root[3] === 0 ? 255 : (root[0] + root[1] + root[2]) / 3;
+  });
+  await page.emulateMedia({ colorScheme: "light" });
+  const light = await background();
+  await page.screenshot({ path: `${pictures}/${name}-light.png`, fullPage: true });
+  await page.emulateMedia({ colorScheme: "dark" });
+  const dark = await background();
+  await page.screenshot({ path: `${pictures}/${name}-dark.png`, fullPage: true });
+  check(`${name}: dark where the reader wants it dark`, light > 200 && dark < 80, `${light}, ${dark}`);
+  await page.emulateMedia({ colorScheme: "dark", media: "print" });
+  const print = await background();
+  check(`${name}: printed on white`, print > 240, print);
+  const pdf = await page.pdf({ path: `${pictures}/${name}.pdf`, format: "A4" });
+  check(`${name}: makes a PDF`, pdf.subarray(0, 5).toString() === "%PDF-" && pdf.length > 10_000);
+
+  check(`${name}: no error in the console`, errors.length === 0, errors.join("; "));
+  const outside = requests.filter((url) => !url.startsWith("file:") && !url.startsWith("data:"));
+  check(`${name}: nothing is asked of the network`, outside.length === 0, outside.join(" "));
+  check(`${name}: one file is all of it`, requests.length === 1, requests.join(" "));
+  await context.close();
+}
+
+const visible = (page) => page.evaluate(() => document.body.innerText);
+const charts = (page) =>
+  page.$$eval("svg", (all) => all.filter((svg) => svg.querySelector("path.line[d]")).length);
+
+await visit("report", report, async (page) => {
+  const summary = JSON.parse(await readFile(summaryPath, "utf8"));
+  check("report: title is the scenario's", (await page.title()).includes(summary.scenario),
+    await page.title());
+  check("report: the verdict is seen", await page.locator(`.badge.${summary.verdict}`).first().isVisible());
+  // What is folded is unfolded first, as a reader does.
+  await page.$$eval("details", (all) => all.forEach((one) => { one.open = true; }));
+  const text = await visible(page);
+  const names = Object.keys(summary.calibration.parameters);
+  const missing = names.filter((name) => !text.includes(name));
+  check(`report: all ${names.length} parameters are seen`, names.length === 30 && missing.length === 0,
+    missing.join(" "));
+  for (const heading of ["Calibrated parameters", "Navigation", "Gimbals", "Provenance"]) {
+    check(`report: has ${heading}`, text.includes(heading));
+  }
+  check("report: seed and stream hash are told",
+    text.includes(summary.stream_hash.slice(0, 8)), summary.stream_hash);
+  const drawn = await charts(page);
+  check("report: charts have lines", drawn >= 4, drawn);
+});
+
+await visit("compare", comparison, async (page) => {
+  const text = await visible(page);
+  for (const words of ["eight positions with G states", "six positions without G states", "24 h"]) {
+    check(`compare: tells of ${words}`, text.includes(words));
+  }
+  const marks = await page.locator("svg circle, svg path").count();
+  check("compare: pairs and intervals are drawn", marks > 4, marks);
+});
+
+await browser.close();
+if (failed > 0) {
+  console.error(`${failed} checks failed`);
+  process.exit(1);
+}
