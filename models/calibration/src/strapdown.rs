@@ -45,6 +45,7 @@ pub struct Strapdown {
     previous: Option<(Vector3<f64>, Vector3<f64>)>,
     /// Velocity change by specific force in n during the last interval.
     delta_velocity_n: Vector3<f64>,
+    sound: bool,
 }
 
 impl Strapdown {
@@ -74,6 +75,7 @@ impl Strapdown {
             until_earth_update: 0,
             previous: None,
             delta_velocity_n: Vector3::zeros(),
+            sound: true,
         };
         strapdown.update_earth();
         strapdown
@@ -100,13 +102,13 @@ impl Strapdown {
         let (dtheta0, dv0) = self.previous.unwrap_or((*dtheta, *dv));
         self.previous = Some((*dtheta, *dv));
 
-        // Coning, rotation and sculling in the body frame at the start of the interval.
+        // Coning, rotation and sculling in the body frame at the start of the interval; what has
+        // dtheta as its first factor is taken together.
         let rotation = dtheta + dtheta0.cross(dtheta) * (1.0 / 12.0);
-        let half = dtheta.cross(dv) * 0.5;
+        let turned = dtheta.cross(dv);
         let dv_body = dv
-            + half
-            + dtheta.cross(&half) * (1.0 / 3.0)
-            + (dtheta0.cross(dv) + dv0.cross(dtheta)) * (1.0 / 12.0);
+            + dtheta.cross(&(dv * 0.5 + turned * (1.0 / 6.0) - dv0 * (1.0 / 12.0)))
+            + dtheta0.cross(dv) * (1.0 / 12.0);
 
         // The navigation frame turns under the body by zeta.
         let v = &self.velocity_mps;
@@ -127,22 +129,33 @@ impl Strapdown {
         if self.vertical == Vertical::Held {
             v_new.z = 0.0;
         }
+        // zeta is below 1e-6 rad: its quaternion to second order, closed by the renormalization.
+        let frame = Quaternion::new(1.0, -0.5 * zeta.x, -0.5 * zeta.y, -0.5 * zeta.z);
+        let q_new = renormalize(frame * (self.q_nb * quaternion_of(&rotation)));
+
+        if !finite(&q_new, &v_new) {
+            self.sound = false;
+            return;
+        }
         let mean = (v + v_new) * 0.5;
         self.latitude_rad += mean.x * self.per_meridian * interval_s;
         self.longitude_rad += mean.y * self.per_parallel * interval_s;
         self.height_m -= mean.z * interval_s;
         self.velocity_mps = v_new;
-
-        // zeta is below 1e-6 rad: its quaternion to second order, closed by the renormalization.
-        let frame = Quaternion::new(1.0, -0.5 * zeta.x, -0.5 * zeta.y, -0.5 * zeta.z);
-        self.q_nb = renormalize(frame * (self.q_nb * quaternion_of(&rotation)));
+        self.q_nb = q_new;
     }
 
     /// Subtracts estimated errors: φ (rad, n), δv (m/s, n) and δr (m; north, east, down).
     pub fn correct(&mut self, phi: &Vector3<f64>, dv: &Vector3<f64>, dr: &Vector3<f64>) {
         // computed = (I − [φ×]) true, so true = exp(φ) computed.
-        self.q_nb = renormalize(quaternion_of(phi) * self.q_nb);
-        self.velocity_mps -= dv;
+        let q_new = renormalize(quaternion_of(phi) * self.q_nb);
+        let v_new = self.velocity_mps - dv;
+        if !finite(&q_new, &v_new) || !(dr.x + dr.y + dr.z).is_finite() {
+            self.sound = false;
+            return;
+        }
+        self.q_nb = q_new;
+        self.velocity_mps = v_new;
         self.latitude_rad -= dr.x / self.earth.meridian_radius_m;
         self.longitude_rad -= dr.y / (self.earth.transverse_radius_m * self.earth.cos_latitude);
         self.height_m += dr.z;
@@ -162,30 +175,11 @@ impl Strapdown {
         self.move_to(site);
     }
 
-    /// Every number of the solution is finite.
+    /// Nothing that is no number has come to it. What has, was kept out of the solution.
     #[must_use]
     #[inline]
-    pub fn is_finite(&self) -> bool {
-        // What is not finite stays so in a sum; finite ones don't overflow: radians, and metres.
-        let (q, v) = (&self.q_nb, &self.velocity_mps);
-        ((q.w + q.i + q.j + q.k)
-            + (v.x + v.y + v.z)
-            + (self.latitude_rad + self.longitude_rad + self.height_m))
-            .is_finite()
-    }
-
-    /// The same mechanization, set to a solution.
-    #[must_use]
-    pub fn stopped_at(&self, at: &Navigation) -> Self {
-        let [w, i, j, k] = at.q_nb;
-        Self::new(
-            &UnitQuaternion::new_unchecked(Quaternion::new(w, i, j, k)),
-            Vector3::from(at.velocity_mps),
-            at.latitude_rad,
-            at.longitude_rad,
-            at.height_m,
-            self.vertical,
-        )
+    pub fn is_sound(&self) -> bool {
+        self.sound
     }
 
     /// Attitude as a matrix `c_nb`.
@@ -226,6 +220,12 @@ impl Strapdown {
             q_nb: [q.w, q.i, q.j, q.k],
         }
     }
+}
+
+/// What is not finite stays so in a sum; a sum that overflows is of no use either.
+#[inline]
+fn finite(q: &Quaternion<f64>, v: &Vector3<f64>) -> bool {
+    ((q.w + q.i) + (q.j + q.k) + (v.x + v.y + v.z)).is_finite()
 }
 
 /// `q u q*` for a unit quaternion.

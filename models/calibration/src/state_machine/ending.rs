@@ -9,7 +9,7 @@ use crate::config::{Estimator, Site};
 use crate::covariance::PARAMETERS;
 use crate::table::{CalibrationTable, Provenance, Quality};
 use nalgebra::Vector3;
-use octant_sample::{DeviceTime, Mode, Output};
+use octant_sample::{DeviceTime, Health, Mode, Output};
 
 impl Core {
     /// The source has ended. A calibration that still runs is concluded with what there is, as at
@@ -17,12 +17,9 @@ impl Core {
     /// revision brought up to date.
     pub fn end_of_stream(&mut self) -> Output {
         if self.mode == Mode::Calibrating {
-            self.finish_calibration(self.last_output.device_time);
-            self.last_output.mode = self.mode;
-            self.last_output.parameters_revision = self.revision;
-            self.last_output.navigation = self.strapdown.navigation();
+            self.finish_calibration(self.answered.1);
         }
-        self.last_output
+        self.output(Health::empty(), f64::NAN)
     }
 
     pub(super) fn finish_calibration(&mut self, at: DeviceTime) {

@@ -17,7 +17,7 @@ impl Core {
             return;
         }
         // Between command and first motion lie two samples in which the set point is already new.
-        let GimbalCommand { target } = self.last_output.gimbal_command;
+        let GimbalCommand { target } = self.gimbals.command;
         let off = |reading: i32, target: i32| {
             (i64::from(reading) - i64::from(target)).unsigned_abs() > GIMBAL_TOLERANCE as u64
         };

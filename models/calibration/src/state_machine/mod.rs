@@ -23,7 +23,9 @@ use judgement::quality_of;
 use nalgebra::{UnitQuaternion, Vector3};
 use octant_sample::counts::{DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS};
 use octant_sample::parameters::PARAMETER_COUNT;
-use octant_sample::{Aiding, GimbalAngles, Health, Mode, Output, Parameters, Sample};
+use octant_sample::{
+    Aiding, DeviceTime, GimbalAngles, GimbalCommand, Health, Mode, Output, Parameters, Sample,
+};
 
 /// Time after arrival in which the gimbals may still settle, s.
 const GIMBAL_SETTLE_S: f64 = 1.0;
@@ -39,6 +41,14 @@ pub struct Diagnostics {
     pub quality: Quality,
     /// Epochs in a dwell in which the encoders disagreed with the set point.
     pub gimbal_disagreements: u64,
+}
+
+/// What an output says of the gimbals.
+#[derive(Clone, Copy, Debug, Default)]
+struct Gimbals {
+    stop: u16,
+    moving: bool,
+    command: GimbalCommand,
 }
 
 /// The calibration core. See [`Core::step`].
@@ -75,7 +85,9 @@ pub struct Core {
     /// Quality of a filter that was refused.
     last_quality: Quality,
     table: Option<CalibrationTable>,
-    last_output: Output,
+    /// What the last output said of the gimbals, and its stamp.
+    gimbals: Gimbals,
+    answered: (u64, DeviceTime),
 }
 
 fn ticks(duration_s: f64, sample_s: f64) -> u64 {
@@ -132,7 +144,8 @@ impl Core {
             refusal: None,
             last_quality: Quality { nis_mean: f64::NAN, ..Quality::default() },
             table: None,
-            last_output: Output { nis: f64::NAN, ..Output::default() },
+            gimbals: Gimbals::default(),
+            answered: Default::default(),
         };
         if let Some(duration_s) = config.navigation.as_ref().and_then(|plan| plan.duration_s) {
             core.navigation_ticks = ticks(duration_s, sample_s);
@@ -187,7 +200,7 @@ impl Core {
         };
         self.cursor = Some(Cursor::new(
             plan.rotation.clone(),
-            self.last_output.gimbal_command.target,
+            self.gimbals.command.target,
             self.config.turntable,
             plan.dwell_s,
             self.sample_s,
@@ -231,18 +244,12 @@ impl Core {
             cursor.advance(phase_tick);
         }
         self.compare_gimbals(sample, &mut health);
-        if !self.strapdown.is_finite() {
-            self.stop_at_last_finite(&mut health);
+        if !self.strapdown.is_sound() && self.mode != Mode::Refused {
+            // What is no number has not got into the solution: the last good one stands.
+            health |= Health::NUMERIC;
+            self.refuse(Refusal::Numeric);
         }
         self.answer(sample, health, nis)
-    }
-
-    /// A solution that is no number is not handed out: the last good one stands, and is refused.
-    #[cold]
-    fn stop_at_last_finite(&mut self, health: &mut Health) {
-        *health |= Health::NUMERIC;
-        self.strapdown = self.strapdown.stopped_at(&self.last_output.navigation);
-        self.refuse(Refusal::Numeric);
     }
 
     /// Samples since the start of the present phase.
@@ -370,22 +377,35 @@ impl Core {
         }
     }
 
+    #[inline]
     fn answer(&mut self, sample: &Sample, health: Health, nis: f64) -> Output {
-        let phase_tick = self.phase_tick();
-        let output = &mut self.last_output;
-        output.sequence = sample.sequence;
-        output.device_time = sample.device_time;
-        output.mode = self.mode;
-        output.health = health;
-        output.nis = nis;
-        output.parameters_revision = self.revision;
-        output.navigation = self.strapdown.navigation();
+        self.answered = (sample.sequence, sample.device_time);
         if let Some(cursor) = &self.cursor {
-            output.stop = cursor.stop() as u16;
-            output.moving = cursor.moving(phase_tick);
-            output.gimbal_command = cursor.command();
+            self.gimbals = Gimbals {
+                stop: cursor.stop() as u16,
+                moving: cursor.moving(self.phase_tick()),
+                command: cursor.command(),
+            };
         }
-        self.last_output
+        self.output(health, nis)
+    }
+
+    /// The output as things stand. Made anew each time: copying one that has just been written
+    /// costs more than its computation.
+    #[inline]
+    fn output(&self, health: Health, nis: f64) -> Output {
+        Output {
+            sequence: self.answered.0,
+            device_time: self.answered.1,
+            mode: self.mode,
+            stop: self.gimbals.stop,
+            moving: self.gimbals.moving,
+            gimbal_command: self.gimbals.command,
+            navigation: self.strapdown.navigation(),
+            health,
+            nis,
+            parameters_revision: self.revision,
+        }
     }
 
     /// Estimated parameters.
