@@ -106,6 +106,10 @@ impl Monitor {
             return Order::Behind;
         }
         let interval_ns = sample.device_time.ns - last.device_time.ns;
+        if interval_ns == self.period_ns && sample.sequence == last.sequence + 1 {
+            // As it should be; a division is dear at every sample.
+            return Order::Next(interval_ns);
+        }
         let jump = sample.sequence - last.sequence;
         if interval_ns > JUMP_MAX_NS || jump > JUMP_MAX_NS / self.period_ns.max(1) {
             return Order::Behind;
