@@ -4,11 +4,11 @@
 
 mod instrument;
 
+use instrument::Case;
 use instrument::closed_loop::{ClosedLoop, on_two_threads};
-use instrument::{Case, LATITUDE_RAD, PERIOD_NS};
 use nalgebra::{Quaternion, UnitQuaternion};
 use octant_calibration::config::*;
-use octant_calibration::positions::{EIGHT, SIX};
+use octant_calibration::positions::{Degrees, EIGHT, SIX};
 use octant_earth::units::*;
 use octant_plant::config as plant;
 use octant_plant::motion::dockside_default;
@@ -85,21 +85,25 @@ fn perfect(dockside: bool) -> ClosedLoop {
 fn perfect_sensors_navigate_without_error() {
     let worst = on_two_threads(&[false, true], |dockside| {
         let mut run = perfect(*dockside);
+        let mut turned = false;
         let mut worst = [0.0f64; 2];
         while run.step().mode == Mode::Navigating {
             let error = position_error_arcmin(&run);
+            assert!(error.iter().all(|error| error.is_finite()));
+            turned |= run.output.moving && run.output.stop > 2;
             for axis in 0..2 {
                 worst[axis] = worst[axis].max(error[axis].abs());
             }
         }
+        assert!(turned);
         assert_eq!(run.output.sequence, 24 * 3600 * 200);
         worst
     });
     println!("24 h, arcmin: static {:?}, dockside {:?}", worst[0], worst[1]);
     assert!(worst[0].iter().all(|error| *error < 1e-3), "{worst:?}");
-    // 0.2 m of surge and sway are 1e-4 arcmin; the vertical channel is held while the ship heaves,
-    // and coning and sculling at 6 to 10 s are of third order at 200 Hz.
-    assert!(worst[1].iter().all(|error| *error < 5e-3), "{worst:?}");
+    // 1.5e-4 is found, and doesn't grow: the vertical channel is held while the ship heaves, and
+    // 0.2 m are 1.1e-4 arcmin.
+    assert!(worst[1].iter().all(|error| *error < 1e-3), "{worst:?}");
 }
 
 #[test]
@@ -163,24 +167,23 @@ fn a_calibration_from_coarse_alignment_is_consistent() {
 #[test]
 #[ignore = "minutes: run by tests/run"]
 fn the_other_estimators_end_in_navigation() {
-    let methods: Vec<(&str, &'static [(f64, f64, f64)], Estimator)> =
-        [("six", SIX), ("eight", EIGHT)]
-            .into_iter()
-            .flat_map(|(name, positions)| {
-                [
-                    Estimator::LeastSquares(LeastSquares {
-                        gravity_mps2: None,
-                        gyro: GyroReference::EarthRate,
-                        intervals: StaticIntervals::Commanded,
-                    }),
-                    Estimator::ExternalTurntable(ExternalTurntable {
-                        q_nc: UnitQuaternion::identity(),
-                        encoder_sigma_rad: 1.0 * ARCSEC,
-                    }),
-                ]
-                .map(|estimator| (name, positions, estimator))
-            })
-            .collect();
+    let methods: Vec<(&str, &'static [Degrees], Estimator)> = [("six", SIX), ("eight", EIGHT)]
+        .into_iter()
+        .flat_map(|(name, positions)| {
+            [
+                Estimator::LeastSquares(LeastSquares {
+                    gravity_mps2: None,
+                    gyro: GyroReference::EarthRate,
+                    intervals: StaticIntervals::Commanded,
+                }),
+                Estimator::ExternalTurntable(ExternalTurntable {
+                    q_nc: UnitQuaternion::identity(),
+                    encoder_sigma_rad: 1.0 * ARCSEC,
+                }),
+            ]
+            .map(|estimator| (name, positions, estimator))
+        })
+        .collect();
     let all = on_two_threads(&methods, |(_, positions, estimator)| {
         let mut case = Case::table_1(1, positions);
         case.navigation_h = 12.0;
@@ -224,5 +227,4 @@ fn the_other_estimators_end_in_navigation() {
         // Uncalibrated, 0.005 °/h alone are 3 arcmin.
         assert!(worst.iter().all(|error| *error < 6.0), "{worst:?}");
     }
-    let _ = (LATITUDE_RAD, PERIOD_NS);
 }

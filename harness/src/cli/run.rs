@@ -6,6 +6,7 @@ use crate::evidence::{Existing, Manifest, RunFacts, RunFolder};
 use crate::report;
 use crate::run::assemble::{parameter_text, text};
 use crate::run::method::configurations;
+use crate::run::raw_counts;
 use crate::run::{Control, MethodRun, Recording, Run, assemble, run_method};
 use crate::scenario::{Method, Scenario};
 use crate::score::junit::junit;
@@ -85,6 +86,7 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         ("calibration", primary.table.clone()),
         ("baseline", baseline.as_ref().and_then(|b| b.table.clone())),
     ];
+    let estimate = primary.watcher.last_parameters.map(|estimate| estimate.parameters);
     let run = assemble(&scenario, seed, primary, baseline)
         .map_err(|error| Failure::bench(format!("failed to write the summary: {error}")))?;
     for (name, table) in tables {
@@ -98,6 +100,7 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         ended: SystemTime::now(),
         command_line: rerun(arguments, seed),
     };
+    let raw = estimate.map_or(String::new(), |e| raw_counts::text(&scenario.source, &e));
     let (verdict, json) = write_results(folder.path(), run, &facts)?;
     let place = if interrupted {
         // An unfinished run keeps the name of one.
@@ -108,7 +111,7 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     if arguments.json {
         print(&json.text)?;
     } else {
-        print(&json.human)?;
+        print(&(json.human + &raw))?;
         print(&format!("{}\n", place.join("report.html").display()))?;
     }
     Ok(verdict)

@@ -2,6 +2,7 @@
 
 use super::drive::{Control, Ended, RunError, drive};
 use super::watch::Watcher;
+use crate::calibrate::{PassError, in_passes};
 use crate::endpoint::{Endpoint, InProcess};
 use crate::recorder::{
     Event, Policy, Recorder, RecorderError, RecorderOptions, RecorderSummary, Samples,
@@ -141,7 +142,12 @@ pub fn run_method(
     recording: Recording<'_>,
     control: &Control,
 ) -> Result<MethodRun, MethodError> {
-    let (plant, core, draws) = configurations(scenario, method, seed)?;
+    let (plant, mut core, draws) = configurations(scenario, method, seed)?;
+    let opened = crate::source::open(scenario).map_err(SetupError::Source)?;
+    let simulated = opened.is_none();
+    if !simulated {
+        settle(scenario, &mut core)?;
+    }
     let mut endpoint = InProcess::new(&core).map_err(SetupError::Core)?;
     let options = recorder_options(scenario, seed, &draws, method);
     let mut recorder = match recording {
@@ -151,8 +157,6 @@ pub fn run_method(
     };
     let calibration_s = core.calibration.as_ref().map_or(0.0, |c| c.duration_s);
     let mut watcher = Watcher::new(calibration_s);
-    let opened = crate::source::open(scenario).map_err(SetupError::Source)?;
-    let simulated = opened.is_none();
     let ended = match opened {
         // Statically dispatched: this loop passes ten million samples a second.
         None => {
@@ -166,6 +170,34 @@ pub fn run_method(
     };
     let truth = simulated.then_some(draws.parameters);
     finish(scenario, method, ended, endpoint, recorder, watcher, truth)
+}
+
+/// Least squares linearises about its initial parameters, and a real instrument's errors can be
+/// large: it passes over the recorded samples until nothing moves, and the run that is recorded is
+/// one more pass.
+fn settle(scenario: &Scenario, core: &mut core::Config) -> Result<(), MethodError> {
+    let least_squares = core
+        .calibration
+        .as_ref()
+        .is_some_and(|c| matches!(c.estimator, core::Estimator::LeastSquares(_)));
+    if !least_squares {
+        return Ok(());
+    }
+    let open = || match crate::source::open(scenario)? {
+        Some(source) => Ok(source),
+        None => Err(SourceError::Read {
+            path: "source.uri".to_owned(),
+            reason: "a file is expected here".to_owned(),
+        }),
+    };
+    let passes = in_passes(core, open).map_err(|error| match error {
+        PassError::Config(error) => MethodError::Setup(SetupError::Core(error)),
+        PassError::Source(error) => MethodError::Run(RunError::Source(error)),
+    })?;
+    if passes.core.table().is_some() {
+        core.initial_parameters = *passes.core.parameters();
+    }
+    Ok(())
 }
 
 /// What is recorded of a method, by the scenario.

@@ -7,6 +7,7 @@ pub mod assemble;
 pub mod drive;
 pub mod method;
 pub mod paired;
+pub mod raw_counts;
 pub mod watch;
 
 pub use assemble::{Run, assemble};

@@ -5,7 +5,7 @@ pub mod closed_loop;
 
 use nalgebra::UnitQuaternion;
 use octant_calibration::config::{self as core, *};
-use octant_calibration::positions::{SIXTEEN, from_degrees};
+use octant_calibration::positions::{Degrees, SIXTEEN, from_degrees};
 use octant_earth::rotation::exp;
 use octant_earth::units::*;
 use octant_plant::config as plant;
@@ -18,7 +18,7 @@ pub const LATITUDE_RAD: f64 = 30.5 * DEG;
 /// One method on one seed of the reference instrument.
 pub struct Case {
     pub seed: u64,
-    pub positions: &'static [(f64, f64, f64)],
+    pub positions: &'static [Degrees],
     pub passes: u32,
     pub calibration_h: f64,
     pub navigation_h: f64,
@@ -28,7 +28,7 @@ pub struct Case {
 }
 
 impl Case {
-    pub fn table_1(seed: u64, positions: &'static [(f64, f64, f64)]) -> Self {
+    pub fn table_1(seed: u64, positions: &'static [Degrees]) -> Self {
         Self {
             seed,
             positions,

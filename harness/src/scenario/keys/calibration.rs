@@ -84,6 +84,13 @@ static ALIGNMENT: Section = section(&[
 
 static INITIAL: Section = section(&[
     key(
+        "table",
+        Kind::Text,
+        Default::Absent("the groups below"),
+        "Calibration table of an earlier run, such as runs/quick/calibration.octcal, relative to the \
+         scenario's folder; stands in place of the groups.",
+    ),
+    key(
         "gyro_bias",
         Kind::Quantities(Dimension::GYRO_BIAS, 3),
         Default::Absent("zero"),

@@ -178,6 +178,7 @@ pub(super) fn scenario(document: Table, folder: &Path) -> Result<Scenario, Probl
         motion: &motion,
         turntable: &turntable,
         simulated: matches!(source, source::Source::Plant),
+        folder,
     };
     let procedure_table = root.table("procedure")?;
     let procedure = procedure::procedure(&procedure_table, &setting)?;

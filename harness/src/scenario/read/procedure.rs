@@ -7,11 +7,13 @@ use crate::scenario::{Alignment, Calibration, Motion};
 use octant_calibration::config as core;
 use octant_calibration::positions;
 use octant_calibration::sequence::{Sequence, Stop};
+use octant_calibration::table::CalibrationTable;
 use octant_earth::UnitQuaternion;
 use octant_earth::units::DEG;
 use octant_plant::config as plant;
 use octant_sample::Parameters;
 use octant_sample::parameters::Group;
+use std::path::Path;
 
 /// What the procedure has to fit.
 pub(super) struct Setting<'a> {
@@ -19,6 +21,8 @@ pub(super) struct Setting<'a> {
     pub(super) motion: &'a Motion,
     pub(super) turntable: &'a plant::Turntable,
     pub(super) simulated: bool,
+    /// Where relative file names start.
+    pub(super) folder: &'a Path,
 }
 
 pub(super) struct Procedure {
@@ -54,7 +58,7 @@ pub(super) fn procedure(table: &Reader<'_>, setting: &Setting<'_>) -> Result<Pro
     }
     Ok(Procedure {
         alignment: alignment(&table.table("alignment")?, calibration.as_ref())?,
-        initial_parameters: initial_parameters(table)?,
+        initial_parameters: initial_parameters(table, setting.folder)?,
         calibration,
         aiding,
         navigation,
@@ -96,13 +100,26 @@ fn alignment(table: &Reader<'_>, calibration: Option<&Calibration>) -> Result<Al
     Ok(Alignment::Coarse { duration_s })
 }
 
-fn initial_parameters(procedure: &Reader<'_>) -> Result<Parameters, Problem> {
+fn initial_parameters(procedure: &Reader<'_>, folder: &Path) -> Result<Parameters, Problem> {
     let mut all = [0.0; octant_sample::parameters::PARAMETER_COUNT];
-    if let Some(table) = procedure.optional_table("initial_parameters") {
-        for group in Group::ALL {
-            if let Some(values) = table.optional_si_vec(group.name()) {
-                all[group.range()].copy_from_slice(&values);
-            }
+    let Some(table) = procedure.optional_table("initial_parameters") else {
+        return Ok(Parameters::from_array(&all));
+    };
+    if let Some(file) = table.optional_text("table") {
+        if let Some(group) = Group::ALL.iter().find(|group| table.node(group.name()).is_some()) {
+            let message = "found beside table, expected one of them";
+            return Err(table.problem(group.name(), message));
+        }
+        let path = folder.join(file);
+        let bytes = std::fs::read(&path)
+            .map_err(|error| table.problem("table", format!("read {}: {error}", path.display())))?;
+        let read = CalibrationTable::from_bytes(&bytes)
+            .map_err(|error| table.problem("table", format!("read {}: {error}", path.display())))?;
+        return Ok(read.parameters);
+    }
+    for group in Group::ALL {
+        if let Some(values) = table.optional_si_vec(group.name()) {
+            all[group.range()].copy_from_slice(&values);
         }
     }
     Ok(Parameters::from_array(&all))
