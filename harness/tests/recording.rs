@@ -268,7 +268,7 @@ fn the_default_policy_keeps_one_epoch_a_second_and_every_aiding_and_mode() {
             rows += 1;
         }
     }
-    assert_eq!(rows, 61, "truth stands beside its output");
+    assert_eq!(rows, 62, "truth stands beside its output");
     assert_eq!(last, steps.last().unwrap().parameters);
     assert_eq!(truth_of(&steps[0]).time.ns, PERIOD_NS);
 }
