@@ -32,7 +32,8 @@ pub struct Manifest {
     pub started: String,
     /// End of the run, UTC, RFC 3339.
     pub ended: String,
-    /// The command line as it was given.
+    /// The command line that makes the run again, program first: with the seed that was used, without
+    /// the folder.
     pub command_line: Vec<String>,
     /// A line for a POSIX shell that runs it again.
     pub rerun: String,
