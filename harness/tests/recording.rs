@@ -235,12 +235,12 @@ fn the_stream_hash_is_the_same_for_every_block_size_and_policy() {
 fn the_default_policy_keeps_one_epoch_a_second_and_every_aiding_and_mode() {
     let steps = stream(200 * 60);
     let (bytes, summary) = record(&steps, &RecorderOptions::default());
-    // The first epoch, at 5 ms, then those at 1 s, 2 s, ... 60 s.
-    assert_eq!(summary.messages["/imu"], 61);
-    assert_eq!(summary.messages["/truth"], 61);
-    assert_eq!(summary.messages["/aiding"], 60);
-    // One more for the first epoch in which the core navigates, 5 ms after a whole second.
+    // The first epoch, at 5 ms, then those at 1 s, 2 s, ... 60 s, and one more: the first in which
+    // the core navigates, 5 ms after a whole second.
+    assert_eq!(summary.messages["/imu"], 62);
+    assert_eq!(summary.messages["/truth"], 62);
     assert_eq!(summary.messages["/output"], 62);
+    assert_eq!(summary.messages["/aiding"], 60);
     assert_eq!(summary.messages["/event"], 2);
     assert_eq!(summary.bytes, bytes.len() as u64);
     let contents = reader::read_bytes(&bytes).unwrap();
@@ -268,7 +268,7 @@ fn the_default_policy_keeps_one_epoch_a_second_and_every_aiding_and_mode() {
             rows += 1;
         }
     }
-    assert_eq!(rows, 61, "truth stands beside its output");
+    assert_eq!(rows, 62, "truth stands beside its output");
     assert_eq!(last, steps.last().unwrap().parameters);
     assert_eq!(truth_of(&steps[0]).time.ns, PERIOD_NS);
 }

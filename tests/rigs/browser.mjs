@@ -44,7 +44,7 @@ async function visit(name, path, use) {
   const empty = await page.$$eval("svg", (charts) =>
     charts.filter((chart) => {
       const box = chart.getBoundingClientRect();
-      const drawn = chart.querySelectorAll("path[d], circle, line, rect").length;
+      const drawn = chart.querySelectorAll("path[d], circle, line, rect, text").length;
       // Only what is shown: legends' marks and folded parts have no box.
       return box.width > 0 && (drawn === 0 || box.height === 0);
     }).length);

@@ -64,6 +64,10 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         octant_calibration::Core::new(&core)
             .map_err(|e| Failure::input(format!("failed to set up the core: {e}")))?;
     }
+    // A recording that can't be read, too.
+    if scenario.source != crate::scenario::Source::Plant {
+        crate::source::open(&scenario).map_err(|e| Failure::input(format!("failed to {e}")))?;
+    }
     let (path, existing) = match &arguments.out {
         Some(path) if arguments.force => (path.clone(), Existing::Replace),
         Some(path) => (path.clone(), Existing::Refuse),

@@ -53,6 +53,8 @@ pub(super) struct RecordingWriter<W: Write> {
     dirty: bool,
     /// Mode of the last output, none before the first.
     mode: Option<Mode>,
+    /// Revision of the parameters in the last output.
+    revision: u32,
     /// Log time and sequence number of the last frame.
     last_time_ns: u64,
     last_sequence: u64,
@@ -133,6 +135,7 @@ impl<W: Write> RecordingWriter<W> {
             mode: None,
             last_time_ns: 0,
             last_sequence: 0,
+            revision: 0,
             unwritten_parameters: None,
             next_parameters_ns: 0,
         })
@@ -189,15 +192,13 @@ impl<W: Write> RecordingWriter<W> {
             if keep {
                 message::encode_sample(sample, &mut self.bytes);
                 self.put(Topic::Imu)?;
-            }
-            let mode_changed = self.mode != Some(output.mode);
-            if keep || mode_changed {
                 message::encode_output(output, &mut self.bytes);
                 self.put(Topic::Output)?;
             }
-            if mode_changed {
+            if self.mode != Some(output.mode) {
                 self.mode_changed(output)?;
             }
+            self.revision = output.parameters_revision;
         }
         Ok(())
     }
@@ -222,9 +223,13 @@ impl<W: Write> RecordingWriter<W> {
 
     fn mode_changed(&mut self, output: &Output) -> Result<(), RecorderError> {
         let from = self.mode.replace(output.mode);
-        self.write_parameters()?;
-        // The parameters that come with the change itself are kept too.
-        self.next_parameters_ns = 0;
+        if output.parameters_revision == self.revision {
+            self.write_parameters()?;
+        } else {
+            // The change itself brings new ones: they are kept in place of those before.
+            self.unwritten_parameters = None;
+            self.next_parameters_ns = 0;
+        }
         self.event(&Event {
             kind: "mode".into(),
             detail: serde_json::json!({

@@ -1,0 +1,68 @@
+//! What is done with foreign bytes, for the fuzzer and for the test that runs the corpus.
+//!
+//! Nothing here may panic, run for long or take much memory, whatever the bytes are; and what is
+//! accepted has to keep its promises.
+
+use octant::recorder::reader;
+use octant::scenario::Scenario;
+use octant::scenario::resolve::{Draws, Seeded};
+use octant::source::{
+    Axis, Column, Delimiter, Quantity, Source, TextFiles, TextMapping, TextSource, TimeColumn,
+    TimeUnit,
+};
+use octant_calibration::table::CalibrationTable;
+use std::path::Path;
+
+/// A scenario: refused, or resolved to a text that reads back as the same scenario.
+pub(crate) fn scenario(bytes: &[u8]) {
+    let Ok(text) = std::str::from_utf8(bytes) else { return };
+    let Ok(scenario) = Scenario::parse(text, "input.toml", Path::new(""), &[]) else { return };
+    let draws = Draws::of(&scenario, &Seeded(scenario.seed));
+    let resolved = scenario.to_resolved_toml(scenario.seed, &draws);
+    let again = Scenario::parse(&resolved, "resolved.toml", Path::new(""), &[])
+        .expect("a resolved scenario is a scenario");
+    let draws = Draws::of(&again, &Seeded(again.seed));
+    assert_eq!(again.to_resolved_toml(again.seed, &draws), resolved);
+}
+
+/// A recording, read to its end.
+pub(crate) fn recording(bytes: &[u8]) {
+    let _ = reader::read_bytes(bytes);
+}
+
+/// Columns of text, read to the end: stamps never go back.
+pub(crate) fn text(bytes: &[u8]) {
+    // Per process: targets run side by side.
+    let path = std::env::temp_dir().join(format!("octant-text-{}.txt", std::process::id()));
+    std::fs::write(&path, bytes).expect("the temporary folder can be written");
+    for delimiter in [Delimiter::Blanks, Delimiter::Character(b',')] {
+        let axis = |number| Axis { column: Column::Number(number), offset: 0.0, scale: 1.0 };
+        let mapping = TextMapping {
+            files: TextFiles::One(path.clone()),
+            time: Some(TimeColumn { column: Column::Number(1), unit: TimeUnit::Second }),
+            gyro: [axis(2), axis(3), axis(4)],
+            accelerometer: [axis(5), axis(6), axis(7)],
+            quantity: Quantity::Rates,
+            nominal_rate_hz: 100.0,
+            split: 1,
+            delimiter,
+            comment: "#".to_owned(),
+            skip_lines: 0,
+            gimbal: None,
+        };
+        let Ok(mut source) = TextSource::open(&mapping) else { continue };
+        let mut last_ns = 0;
+        while let Ok(Some(epoch)) = source.next(&Default::default()) {
+            assert!(epoch.sample.device_time.ns >= last_ns, "a stamp goes back");
+            last_ns = epoch.sample.device_time.ns;
+        }
+    }
+    let _ = std::fs::remove_file(&path);
+}
+
+/// A calibration table: refused, or written back as the same bytes.
+pub(crate) fn table(bytes: &[u8]) {
+    if let Ok(table) = CalibrationTable::from_bytes(bytes) {
+        assert_eq!(table.to_bytes().as_slice(), bytes);
+    }
+}
