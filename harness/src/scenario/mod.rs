@@ -17,6 +17,7 @@ mod schema;
 mod tour;
 mod write;
 
+pub(crate) use error::suggestion;
 pub use error::{Place, Problem, ScenarioError};
 pub use keys::SCHEMA;
 pub use quantity::{Dimension, Quantity};
