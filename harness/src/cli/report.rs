@@ -60,8 +60,10 @@ pub(super) fn watch(path: &Path, scenario: &Scenario) -> Result<Watcher, Failure
     let recording = Recording::open(path).map_err(|error| bad(&error))?;
     let mut epochs = Epochs::new(recording);
     let mut watcher = Watcher::new(scenario.calibration.as_ref().map_or(0.0, |c| c.duration_s));
+    let mut last = None;
     while let Some(epoch) = epochs.next_epoch().map_err(|error| bad(&error))? {
         let Some(output) = &epoch.output else { continue };
+        last = Some(*output);
         let wanted = watcher.epoch(output);
         if let Some(estimate) = &epoch.parameters {
             watcher.parameters(output, estimate);
@@ -69,6 +71,10 @@ pub(super) fn watch(path: &Path, scenario: &Scenario) -> Result<Watcher, Failure
         if let (true, Some(truth)) = (wanted, &epoch.truth) {
             watcher.truth(output, truth);
         }
+    }
+    let concluded = epochs.last_event().and_then(crate::run::concluded::estimate);
+    if let (Some(output), Some(estimate)) = (last, concluded) {
+        watcher.parameters(&output, &estimate);
     }
     if epochs.recording().truncated() {
         eprintln!("octant: {} ends in the middle; what stands before is used", path.display());

@@ -5,7 +5,7 @@ use super::{Failure, ScenarioArguments, load, print, write};
 use crate::evidence::{Existing, FolderError, Manifest, RunFacts, RunFolder};
 use crate::report;
 use crate::run::assemble::{parameter_text, text};
-use crate::run::method::configurations;
+use crate::run::method::{configurations, core_problem};
 use crate::run::raw_counts;
 use crate::run::{Control, MethodRun, Recording, Run, assemble, run_method};
 use crate::scenario::{Method, Scenario};
@@ -61,8 +61,9 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     for method in methods(&scenario) {
         let (_, core, _) = configurations(&scenario, method, seed)
             .map_err(|e| Failure::input(format!("failed to {e}")))?;
-        octant_calibration::Core::new(&core)
-            .map_err(|e| Failure::input(format!("failed to set up the core: {e}")))?;
+        octant_calibration::Core::new(&core).map_err(|e| {
+            Failure::input(format!("failed to set up the core: {}", core_problem(&e)))
+        })?;
     }
     // A recording that can't be read, too.
     if scenario.source != crate::scenario::Source::Plant {

@@ -101,6 +101,9 @@ fn text(scores: &Scores) -> String {
     for (group, nees) in &scores.nees {
         let _ = writeln!(out, "  {group:20} squared error / variance {nees:.2} (1 is right)");
     }
+    if scores.parameters.values().all(|p| p.r#true.is_none()) {
+        out += &crate::run::assemble::parameter_lines(&scores.parameters);
+    }
     if let Some(navigation) = &scores.navigation {
         let (lat, lon) = (&navigation.latitude_error_arcmin, &navigation.longitude_error_arcmin);
         let radial = &navigation.radial_error_nmi;
