@@ -74,7 +74,7 @@ fn a_full_recording_gives_every_epoch_again() {
     assert_eq!(replay.next(&GimbalCommand::default()).unwrap(), None);
     assert!(!replay.truncated());
     assert_eq!(hash.hex(), summary.stream_hash);
-    assert_eq!(truths, 13, "the first epoch and twelve whole seconds");
+    assert_eq!(truths, 14, "the first epoch, twelve whole seconds and the change of mode");
     // A run is never overwritten.
     let error = Recorder::to_file(&path, &full()).unwrap_err();
     assert!(error.to_string().contains("recording.mcap"), "{error}");
