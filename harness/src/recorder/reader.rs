@@ -17,7 +17,7 @@ use std::path::Path;
 #[derive(Debug, thiserror::Error)]
 pub enum ReadError {
     /// The file can't be opened.
-    #[error("open: {0}")]
+    #[error("{0}")]
     Open(std::io::Error),
     /// The container is broken, or none.
     #[error(transparent)]

@@ -57,6 +57,10 @@ pub enum SetupError {
 pub fn core_problem(error: &ConfigError) -> String {
     use crate::report::number::plain;
     match error {
+        ConfigError::Alignment { alignment_s, dwell_s } if alignment_s <= dwell_s => {
+            "coarse alignment needs the first stop at azimuth 0 and roll 0, where the gimbals start"
+                .to_owned()
+        }
         ConfigError::Alignment { alignment_s, dwell_s } => format!(
             "procedure.alignment.duration is {} s, and the first stop is held for {} s only",
             plain(*alignment_s, 5),
