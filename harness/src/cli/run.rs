@@ -91,7 +91,8 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         ("calibration", primary.table.clone()),
         ("baseline", baseline.as_ref().and_then(|b| b.table.clone())),
     ];
-    let estimate = primary.watcher.last_parameters.map(|estimate| estimate.parameters);
+    let refused = primary.calibration.as_ref().is_some_and(|c| c.refused.is_some());
+    let estimate = primary.watcher.last_parameters.map(|e| e.parameters).filter(|_| !refused);
     let run = assemble(&scenario, seed, primary, baseline)
         .map_err(|error| Failure::bench(format!("failed to write the summary: {error}")))?;
     for (name, table) in tables {

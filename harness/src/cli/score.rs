@@ -52,7 +52,7 @@ pub(super) fn scenario_of(path: &Path) -> Result<(Scenario, Method, u64), Failur
 pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     let path = &arguments.recording;
     let (scenario, method, seed) = scenario_of(path)?;
-    let watcher = super::report::watch(path, &scenario)?;
+    let (watcher, last_event) = super::report::watch(path, &scenario)?;
     let navigation = match watcher.drift() {
         Some(drift) => Some(
             drift
@@ -79,6 +79,13 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         navigation,
     };
     if scores.navigation.is_none() && scores.parameters.is_empty() {
+        if let Some(event) = last_event.filter(|event| event.kind == "refused") {
+            let reason = event.detail.get("reason").and_then(|r| r.as_str()).unwrap_or("no reason");
+            return Err(Failure::input(format!(
+                "failed to score {}: its calibration was refused: {reason}",
+                path.display()
+            )));
+        }
         return Err(Failure::input(format!(
             "failed to score {}: it has neither parameters nor a navigation with truth",
             path.display()
