@@ -1,7 +1,7 @@
 //! Octant: the harness around the calibration core.
 //!
 //! A sample flows one way, and the modules are named for its stations:
-//! **source → faults → endpoint → recorder → score → report**.
+//! **source → endpoint → recorder → score → report**.
 
 pub mod calibrate;
 pub mod cli;

@@ -10,6 +10,7 @@ use octant_calibration::least_squares::raw::{self, Nominal};
 use octant_earth::Vector3;
 use std::path::{Path, PathBuf};
 
+/// Where real recordings are: by default a folder beside the repository.
 fn recordings() -> PathBuf {
     std::env::var_os("OCTANT_RECORDINGS").map_or_else(
         || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/recordings"),

@@ -348,6 +348,7 @@ fn a_comparison_says_in_words_what_it_shows() {
 
     let less = comparison(0.7, 0.02, 0.2);
     assert_eq!(less.cells[0].claim, Claim::BetterByLess);
+    assert!(less.words[0].starts_with("better, and by less than 50 %"), "{}", less.words[0]);
     assert_eq!(comparison(1.5, 0.02, 0.2).cells[0].claim, Claim::Worse);
 
     let none = compare("s", "six", "eight", &[], &[]);

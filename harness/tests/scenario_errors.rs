@@ -88,7 +88,7 @@ fn every_problem_is_told_at_once() {
     let text = format!("{HEAD}duration = 4\nfoo = 1\n[site]\nlatitude = \"95 deg\"\n");
     let problems = problems_with(&text, &[]);
     assert_eq!(problems.len(), 3, "{problems:?}");
-    assert!(problems.iter().any(|p| p.message.contains("within ±89.9 deg")), "{problems:?}");
+    assert!(problems.iter().any(|p| p.message.contains("within ±89.3 deg")), "{problems:?}");
 }
 
 #[test]
@@ -181,6 +181,29 @@ fn a_limit_is_in_the_unit_of_its_measure() {
     assert_eq!(parse("\"0.8 nmi\"").unwrap().requirements[0].check.limit, 0.8);
     assert_eq!(parse("\"3704 m\"").unwrap().requirements[0].check.limit, 2.0);
     assert_says(&problem(&requirement("\"3 arcmin\"")).2, &["comparable with nmi"]);
+}
+
+#[test]
+fn a_measure_that_no_run_can_have_is_refused_with_the_nearest() {
+    let requirement = |measure: &str| {
+        let head = format!("{HEAD}[[requirements]]\nid = \"A\"\ntext = \"t\"\n");
+        problem(&format!("{head}measure = \"{measure}\"\nlimit = 1\n"))
+    };
+    let (place, path, message) = requirement("navigaton.radial_error_nmi.max");
+    assert_eq!((place, path.as_str()), (at(6, 11), "requirements[0].measure"));
+    assert_says(&message, &["the summary has no \"navigaton\"", "did you mean \"navigation\"?"]);
+    let (_, _, message) = requirement("|calibration.parameters.g_zx.eror|");
+    assert_says(&message, &["calibration.parameters.g_zx has no", "did you mean \"error\"?"]);
+    let (_, _, message) = requirement("calibration.parameters.g_zq.error");
+    assert_says(&message, &["calibration.parameters has no \"g_zq\"", "did you mean"]);
+    assert_says(&requirement("navigation.radial_error_nmi").2, &["is a table", "rate_per_h"]);
+    assert_says(&requirement("calibration.nis_mean.max").2, &["is a number and has no \"max\""]);
+}
+
+#[test]
+fn a_file_that_is_not_there_is_told_as_such() {
+    let error = Scenario::load(Path::new("nosuch.toml"), &[]).unwrap_err().to_string();
+    assert!(error.starts_with("failed to read nosuch.toml: "), "{error}");
 }
 
 #[test]

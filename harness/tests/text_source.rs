@@ -170,7 +170,7 @@ fn two_files_have_to_agree() {
     assert!(found.contains("d.txt: line 2: stamp 20100000 ns, expected 20000000 ns"), "{found}");
 }
 
-/// Where real recordings are, if they are.
+/// Where real recordings are, if they are: by default a folder beside the repository.
 fn recordings() -> PathBuf {
     std::env::var_os("OCTANT_RECORDINGS").map_or_else(
         || {

@@ -1,13 +1,16 @@
 //! Verdicts, the form of the summary, JUnit.
 #![allow(clippy::unwrap_used)]
 
+use octant::run::{Control, Recording, assemble, run_method};
+use octant::scenario::{Method, Scenario};
 use octant::score::junit::junit;
+use octant::score::measures;
 use octant::score::summary::{
     Calibration, ErrorScore, FaultResult, HealthCounts, HeightChannel, Navigation, RadialScore,
     SCHEMA, Summary, SummaryError,
 };
 use octant::score::verdict::{
-    Comparison, Finding, NO_REQUIREMENT, Requirement, Verdict, judge, measure,
+    Comparison, Finding, NO_REQUIREMENT, Requirement, Verdict, evaluate, judge, measure,
 };
 use proptest::prelude::*;
 use std::collections::BTreeMap;
@@ -233,4 +236,45 @@ fn junit_names_what_each_case_verifies_and_passes_nothing_inconclusive() {
         .map(|n| n.attribute("value").unwrap())
         .collect();
     assert_eq!(verifies, ["NAV-1"; 3]);
+}
+
+/// Every number of a real summary, by its path.
+fn numbers(path: &str, value: &serde_json::Value, all: &mut Vec<String>) {
+    match value {
+        serde_json::Value::Number(_) => all.push(path.to_owned()),
+        serde_json::Value::Object(map) => {
+            for (key, value) in map {
+                let path = if path.is_empty() { key.clone() } else { format!("{path}.{key}") };
+                numbers(&path, value, all);
+            }
+        }
+        _ => {}
+    }
+}
+
+#[test]
+fn every_number_of_a_run_can_be_required() {
+    let text = "schema = 1\n[procedure.calibration]\nduration = \"1 h\"\n\
+                [procedure.navigation]\nduration = \"2 h\"\n[baseline]\ng_states = false\n";
+    let scenario = Scenario::parse(text, "f", std::path::Path::new(""), &[]).unwrap();
+    let run =
+        |method| run_method(&scenario, method, 1, Recording::None, &Control::default()).unwrap();
+    let (primary, baseline) = (run(Method::Primary), run(Method::Baseline));
+    let run = assemble(&scenario, 1, primary, Some(baseline)).unwrap();
+    let mut all = Vec::new();
+    numbers("", &serde_json::to_value(&run.summary).unwrap(), &mut all);
+    let refused: Vec<&String> = all.iter().filter(|path| measures::check(path).is_err()).collect();
+    assert_eq!(refused, ["schema", "seed"], "the form and what was put in are no results");
+    assert!(all.len() > 300, "{}", all.len());
+}
+
+#[test]
+fn figures_are_short_unless_they_look_alike() {
+    let found = |value: f64, limit| {
+        let requirement = requirement("v", Comparison::AtMost, limit);
+        evaluate(&requirement, &serde_json::json!({ "v": value })).figures()
+    };
+    let pair = |a: &str, b: &str| (a.to_owned(), b.to_owned());
+    assert_eq!(found(0.180_326_271_973_461_98, 0.01), pair("0.180326", "0.01"));
+    assert_eq!(found(3.000_000_001, 3.0), pair("3.000000001", "3"));
 }

@@ -13,6 +13,7 @@ mod score;
 
 use crate::score::verdict::Verdict;
 use clap::{Args, Parser, Subcommand};
+use std::ffi::OsString;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -40,6 +41,24 @@ enum Command {
     Report(report::Arguments),
     /// Print the JSON Schema of scenarios, for completion in editors.
     Schema,
+    #[command(external_subcommand)]
+    Other(Vec<OsString>),
+}
+
+/// Commands that belong to the plan of the program and are not in this version.
+const LATER: [&str; 9] =
+    ["campaign", "faults", "fmu", "serve", "nightly", "selftest", "watch", "doctor", "verify"];
+
+/// A command that isn't there.
+fn other(words: &[OsString]) -> Failure {
+    let name = words.first().map_or("".into(), |word| word.to_string_lossy());
+    if LATER.contains(&name.as_ref()) {
+        return Failure::input(format!("octant {name} is not part of this version"));
+    }
+    let command = <Cli as clap::CommandFactory>::command();
+    let known: Vec<&str> = command.get_subcommands().map(clap::Command::get_name).collect();
+    let known = crate::scenario::suggestion(&name, known.into_iter(), "commands");
+    Failure::input(format!("unknown command {name:?}, {known}"))
 }
 
 /// What every command that takes a scenario has.
@@ -111,6 +130,7 @@ pub fn main() -> ExitCode {
         Command::Score(arguments) => score::command(&arguments),
         Command::Observe(arguments) => observe::command(&arguments),
         Command::Report(arguments) => report::command(&arguments),
+        Command::Other(words) => Err(other(&words)),
         Command::Schema => {
             print(&format!("{:#}\n", crate::scenario::schema())).map(|()| Verdict::Pass)
         }

@@ -8,7 +8,7 @@ use crate::run::method::{configurations, label};
 use crate::scenario::{Distribution, Method, Motion, Scenario};
 use crate::score::verdict::Verdict;
 use clap::Args;
-use octant_calibration::config::{Config, Estimator};
+use octant_calibration::config::{Config, Estimator, StaticIntervals};
 use octant_calibration::covariance::{DR, DV, PARAMETERS, STATE_COUNT};
 use octant_calibration::filter::prior_sigmas;
 use octant_earth::frames::c_nc;
@@ -90,6 +90,14 @@ fn observe(scenario: &Scenario, method: Method) -> Result<Observation, Failure> 
             "failed to observe: the scenario has no [procedure.calibration]",
         ));
     };
+    if let Estimator::LeastSquares(least_squares) = &calibration.estimator
+        && matches!(least_squares.intervals, StaticIntervals::Detected { .. })
+    {
+        return Err(Failure::input(
+            "failed to observe: with intervals = \"detected\" no stops are commanded, so rank and \
+             σ of the sequence don't apply; octant run tells the σ of what was recorded",
+        ));
+    }
     let mean = match &scenario.motion {
         Motion::Static(mean) => *mean,
         Motion::Dockside(ship) => ship.mean,

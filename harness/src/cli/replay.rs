@@ -88,18 +88,17 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         print_json(&comparison)?;
     } else {
         let equal = match comparison.first_difference_sample {
+            None if samples == 0 => "nothing to compare".to_owned(),
             None => "every output is equal to the recorded one, bit for bit".to_owned(),
             Some(sample) => {
                 format!("outputs differ from the recorded ones from sample {sample} on")
             }
         };
         let cut = if comparison.truncated { " (the recording ends in the middle)" } else { "" };
-        print(&format!(
-            "{samples} samples{cut}: {equal}\nstream hash {}\n",
-            comparison.stream_hash
-        ))?;
+        let count = if samples == 0 { "no".to_owned() } else { samples.to_string() };
+        print(&format!("{count} samples{cut}: {equal}\nstream hash {}\n", comparison.stream_hash))?;
     }
-    Ok(match (comparison.outputs_equal, comparison.truncated) {
+    Ok(match (comparison.outputs_equal, comparison.truncated || samples == 0) {
         (false, _) => Verdict::Fail,
         (true, true) => Verdict::Inconclusive,
         (true, false) => Verdict::Pass,

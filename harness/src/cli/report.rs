@@ -2,6 +2,7 @@
 
 use super::{Failure, print, write};
 use crate::evidence::Manifest;
+use crate::recorder::Event;
 use crate::recorder::reader::{Epochs, Recording};
 use crate::report::{Provenance, ReportData};
 use crate::run::Watcher;
@@ -36,7 +37,7 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     let scenario = Scenario::load(&scenario_path, &[]).map_err(Failure::input)?;
     let manifest = Manifest::read(&arguments.run)
         .map_err(|error| Failure::input(format!("failed to {error}")))?;
-    let watcher = watch(&arguments.run.join("recording.mcap"), &scenario)?;
+    let (watcher, _) = watch(&arguments.run.join("recording.mcap"), &scenario)?;
     let data = ReportData {
         truth: truth(&summary),
         facts: crate::run::assemble::facts(&scenario),
@@ -52,16 +53,18 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     Ok(Verdict::Pass)
 }
 
-/// Feeds a recording to a watcher.
-pub(super) fn watch(path: &Path, scenario: &Scenario) -> Result<Watcher, Failure> {
+/// Feeds a recording to a watcher. With the watcher comes the recording's last event.
+pub(super) fn watch(path: &Path, scenario: &Scenario) -> Result<(Watcher, Option<Event>), Failure> {
     let bad = |error: &dyn std::fmt::Display| {
         Failure::input(format!("failed to read {}: {error}", path.display()))
     };
     let recording = Recording::open(path).map_err(|error| bad(&error))?;
     let mut epochs = Epochs::new(recording);
     let mut watcher = Watcher::new(scenario.calibration.as_ref().map_or(0.0, |c| c.duration_s));
+    let mut last = None;
     while let Some(epoch) = epochs.next_epoch().map_err(|error| bad(&error))? {
         let Some(output) = &epoch.output else { continue };
+        last = Some(*output);
         let wanted = watcher.epoch(output);
         if let Some(estimate) = &epoch.parameters {
             watcher.parameters(output, estimate);
@@ -70,10 +73,14 @@ pub(super) fn watch(path: &Path, scenario: &Scenario) -> Result<Watcher, Failure
             watcher.truth(output, truth);
         }
     }
+    let concluded = epochs.last_event().and_then(crate::run::concluded::estimate);
+    if let (Some(output), Some(estimate)) = (last, concluded) {
+        watcher.parameters(&output, &estimate);
+    }
     if epochs.recording().truncated() {
         eprintln!("octant: {} ends in the middle; what stands before is used", path.display());
     }
-    Ok(watcher)
+    Ok((watcher, epochs.last_event().cloned()))
 }
 
 /// True parameters, from a summary.

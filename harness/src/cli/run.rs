@@ -2,10 +2,10 @@
 
 use super::progress::with_progress;
 use super::{Failure, ScenarioArguments, load, print, write};
-use crate::evidence::{Existing, Manifest, RunFacts, RunFolder};
+use crate::evidence::{Existing, FolderError, Manifest, RunFacts, RunFolder};
 use crate::report;
 use crate::run::assemble::{parameter_text, text};
-use crate::run::method::configurations;
+use crate::run::method::{configurations, core_problem};
 use crate::run::raw_counts;
 use crate::run::{Control, MethodRun, Recording, Run, assemble, run_method};
 use crate::scenario::{Method, Scenario};
@@ -50,10 +50,10 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     }
     let mut more = Vec::new();
     if let Some(uri) = &arguments.source {
-        more.push(format!("source.uri={uri}"));
+        more.push(format!("source.uri={}", from_here(uri)?));
     }
     if let Some(uri) = &arguments.endpoint {
-        more.push(format!("endpoint={uri}"));
+        more.push(format!("endpoint.uri={uri}"));
     }
     let scenario = load(&arguments.scenario, &more)?;
     let seed = arguments.seed.unwrap_or(scenario.seed);
@@ -61,8 +61,9 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     for method in methods(&scenario) {
         let (_, core, _) = configurations(&scenario, method, seed)
             .map_err(|e| Failure::input(format!("failed to {e}")))?;
-        octant_calibration::Core::new(&core)
-            .map_err(|e| Failure::input(format!("failed to set up the core: {e}")))?;
+        octant_calibration::Core::new(&core).map_err(|e| {
+            Failure::input(format!("failed to set up the core: {}", core_problem(&e)))
+        })?;
     }
     // A recording that can't be read, too.
     if scenario.source != crate::scenario::Source::Plant {
@@ -74,7 +75,7 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         None => (free_name(&arguments.scenario.scenario), Existing::Refuse),
     };
     let folder = RunFolder::create(&path, existing)
-        .map_err(|error| Failure::input(format!("failed to {error}")))?;
+        .map_err(|error| Failure::input(format!("failed to {}", in_the_way(&error))))?;
     let started = SystemTime::now();
     let (_, _, draws) = configurations(&scenario, Method::Primary, seed)
         .map_err(|e| Failure::input(format!("failed to {e}")))?;
@@ -90,7 +91,8 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         ("calibration", primary.table.clone()),
         ("baseline", baseline.as_ref().and_then(|b| b.table.clone())),
     ];
-    let estimate = primary.watcher.last_parameters.map(|estimate| estimate.parameters);
+    let refused = primary.calibration.as_ref().is_some_and(|c| c.refused.is_some());
+    let estimate = primary.watcher.last_parameters.map(|e| e.parameters).filter(|_| !refused);
     let run = assemble(&scenario, seed, primary, baseline)
         .map_err(|error| Failure::bench(format!("failed to write the summary: {error}")))?;
     for (name, table) in tables {
@@ -119,6 +121,29 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         print(&format!("{}\n", place.join("report.html").display()))?;
     }
     Ok(verdict)
+}
+
+/// A source with its file made absolute: a name on the command line starts at the current folder,
+/// one in a scenario at the scenario's.
+fn from_here(uri: &str) -> Result<String, Failure> {
+    match uri.split_once(':') {
+        Some((kind @ ("replay" | "text"), file)) if !file.is_empty() && !file.starts_with("${") => {
+            let file = std::path::absolute(file)
+                .map_err(|error| Failure::input(format!("failed to find {file}: {error}")))?;
+            Ok(format!("{kind}:{}", file.display()))
+        }
+        _ => Ok(uri.to_owned()),
+    }
+}
+
+/// Why the folder can't be made, with the option that replaces what is there.
+fn in_the_way(error: &FolderError) -> String {
+    match error {
+        FolderError::Finished { .. } | FolderError::Unfinished { .. } => {
+            format!("{error}; --out DIR --force replaces it")
+        }
+        _ => error.to_string(),
+    }
 }
 
 /// What is printed of a run, by who reads it.
@@ -256,4 +281,19 @@ pub(super) fn on_recording(
         realtime: false,
         json,
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_source_on_the_command_line_starts_at_the_current_folder() {
+        let here = std::env::current_dir().unwrap();
+        let found = from_here("replay:a/b.mcap").unwrap();
+        assert_eq!(found, format!("replay:{}", here.join("a/b.mcap").display()));
+        for same in ["plant", "text:/c/d.txt", "text:${OCTANT_RECORDINGS}/e.txt", "replay:"] {
+            assert_eq!(from_here(same).unwrap(), same);
+        }
+    }
 }

@@ -52,7 +52,7 @@ pub(super) fn scenario_of(path: &Path) -> Result<(Scenario, Method, u64), Failur
 pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     let path = &arguments.recording;
     let (scenario, method, seed) = scenario_of(path)?;
-    let watcher = super::report::watch(path, &scenario)?;
+    let (watcher, last_event) = super::report::watch(path, &scenario)?;
     let navigation = match watcher.drift() {
         Some(drift) => Some(
             drift
@@ -79,6 +79,13 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         navigation,
     };
     if scores.navigation.is_none() && scores.parameters.is_empty() {
+        if let Some(event) = last_event.filter(|event| event.kind == "refused") {
+            let reason = event.detail.get("reason").and_then(|r| r.as_str()).unwrap_or("no reason");
+            return Err(Failure::input(format!(
+                "failed to score {}: its calibration was refused: {reason}",
+                path.display()
+            )));
+        }
         return Err(Failure::input(format!(
             "failed to score {}: it has neither parameters nor a navigation with truth",
             path.display()
@@ -100,6 +107,9 @@ fn text(scores: &Scores) -> String {
     }
     for (group, nees) in &scores.nees {
         let _ = writeln!(out, "  {group:20} squared error / variance {nees:.2} (1 is right)");
+    }
+    if scores.parameters.values().all(|p| p.r#true.is_none()) {
+        out += &crate::run::assemble::parameter_lines(&scores.parameters);
     }
     if let Some(navigation) = &scores.navigation {
         let (lat, lon) = (&navigation.latitude_error_arcmin, &navigation.longitude_error_arcmin);

@@ -21,18 +21,13 @@ pub enum Existing {
 #[derive(Debug, thiserror::Error)]
 pub enum FolderError {
     /// There is a finished run.
-    #[error(
-        "create run folder {path}: it holds a run already (replace it, or choose another name)"
-    )]
+    #[error("create run folder {path}: it holds a run already")]
     Finished {
         /// The folder.
         path: PathBuf,
     },
     /// There is what a killed run left.
-    #[error(
-        "create run folder {path}: a run that did not end left it (look into it, then replace it or \
-         choose another name)"
-    )]
+    #[error("create run folder {path}: a run that did not end left it")]
     Unfinished {
         /// The folder.
         path: PathBuf,

@@ -17,7 +17,7 @@ use std::path::Path;
 #[derive(Debug, thiserror::Error)]
 pub enum ReadError {
     /// The file can't be opened.
-    #[error("open: {0}")]
+    #[error("{0}")]
     Open(std::io::Error),
     /// The container is broken, or none.
     #[error(transparent)]
@@ -343,22 +343,29 @@ pub struct RecordedEpoch {
 }
 
 /// The epochs of a recording in order: time, truth, output and parameters for scoring, samples and
-/// aiding for replay. Events are passed over.
+/// aiding for replay. Of events the last one is kept.
 pub struct Epochs<R> {
     recording: Recording<R>,
     /// The first message of the next epoch.
     next: Option<(u64, Item)>,
+    last_event: Option<Event>,
 }
 
 impl<R: Read> Epochs<R> {
     /// Groups the messages of a recording.
     pub fn new(recording: Recording<R>) -> Self {
-        Self { recording, next: None }
+        Self { recording, next: None, last_event: None }
     }
 
     /// The recording behind.
     pub fn recording(&self) -> &Recording<R> {
         &self.recording
+    }
+
+    /// The last event so far: at the end of a run how its calibration was concluded, where it was
+    /// concluded by the end of the stream.
+    pub fn last_event(&self) -> Option<&Event> {
+        self.last_event.as_ref()
     }
 
     /// The next epoch of which anything is recorded, `None` at the end.
@@ -376,7 +383,8 @@ impl<R: Read> Epochs<R> {
                 return Ok(last.map(|_| epoch));
             };
             let topic = item.topic();
-            if topic == Topic::Event {
+            if let Item::Event(event) = item {
+                self.last_event = Some(event);
                 continue;
             }
             if last.is_some_and(|last| time_ns != epoch.time_ns || topic <= last) {

@@ -39,11 +39,14 @@ pub fn significant(value: f64, digits: i32) -> String {
 #[must_use]
 pub fn plain(value: f64, digits: i32) -> String {
     let text = significant(value, digits);
-    if text.contains('.') && !text.contains('e') {
-        text.trim_end_matches('0').trim_end_matches('.').to_owned()
-    } else {
-        text
+    let (mantissa, exponent) = match text.find('e') {
+        Some(at) => text.split_at(at),
+        None => (text.as_str(), ""),
+    };
+    if !mantissa.contains('.') {
+        return text;
     }
+    format!("{}{exponent}", mantissa.trim_end_matches('0').trim_end_matches('.'))
 }
 
 /// Decimals that show `value` with `digits` significant digits, at most 8.
@@ -81,6 +84,7 @@ mod tests {
         assert_eq!(plain(24.0, 3), "24");
         assert_eq!(plain(0.005, 4), "0.005");
         assert_eq!(plain(100.0, 3), "100");
+        assert_eq!(plain(2e-7, 6), "2e-7");
         assert_eq!(decimals_for(0.00065, 2), 5);
         assert_eq!(decimals_for(14.0, 2), 0);
     }

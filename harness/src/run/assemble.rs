@@ -5,10 +5,11 @@ use super::method::MethodRun;
 use crate::report::{Provenance, ReportData, number};
 use crate::scenario::{Motion, Scenario, Source};
 use crate::score::reference::{ReferenceInput, reference};
-use crate::score::summary::{Baseline, SCHEMA, Summary};
+use crate::score::summary::{Baseline, ParameterScore, SCHEMA, Summary};
 use crate::score::verdict::{Finding, Verdict, judge};
 use octant_earth::units::{DEG, DEG_PER_SQRT_HOUR, MICRO_G};
 use octant_sample::parameters::NAMES;
+use std::collections::BTreeMap;
 
 /// A run of one or two methods, scored and judged.
 #[derive(Debug)]
@@ -119,9 +120,7 @@ pub fn facts(scenario: &Scenario) -> Vec<(String, String)> {
         ),
         (
             "sample rate".to_owned(),
-            format!("{:.6} Hz", 1e9 / scenario.sample_period_ns as f64)
-                .trim_end_matches('0')
-                .to_owned(),
+            format!("{} Hz", number::plain(1e9 / scenario.sample_period_ns as f64, 6)),
         ),
         (
             "gyro random walk".to_owned(),
@@ -150,6 +149,9 @@ pub fn text(summary: &Summary) -> String {
     line(format!("{}: {}", summary.scenario, summary.verdict.name()));
     for reason in &summary.reasons {
         line(format!("  {reason}"));
+    }
+    for met in summary.requirements.iter().filter(|r| r.verdict == Verdict::Pass) {
+        line(format!("  {}", met.sentence()));
     }
     let methods = std::iter::once((&summary.method, &summary.calibration, &summary.navigation))
         .chain(summary.baseline.iter().map(|b| (&b.label, &b.calibration, &b.navigation)));
@@ -186,16 +188,39 @@ pub fn text(summary: &Summary) -> String {
     out
 }
 
-/// The parameters as a table, for methods that have no truth to be scored against.
+/// The parameters as a table, for methods that have no truth to be scored against. Nothing of a
+/// least-squares calibration that was refused: its numbers never came about.
 #[must_use]
 pub fn parameter_text(summary: &Summary) -> String {
+    match &summary.calibration {
+        Some(c) if c.refused.is_none() || c.estimator == "kalman" => parameter_lines(&c.parameters),
+        _ => String::new(),
+    }
+}
+
+/// Estimates with their σ, one a line, then the names of those that were not estimated.
+#[must_use]
+pub fn parameter_lines(parameters: &BTreeMap<String, ParameterScore>) -> String {
     use std::fmt::Write as _;
-    let mut out = String::new();
-    let Some(calibration) = &summary.calibration else { return out };
+    let (mut out, mut left) = (String::new(), Vec::new());
     for name in NAMES {
-        let Some(p) = calibration.parameters.get(name) else { continue };
-        let sigma = p.sigma.map_or("not estimated".to_owned(), |s| format!("± {s:.6}"));
-        let _ = writeln!(out, "  {name:24} {:>16.6} {sigma} {}", p.estimate, p.unit);
+        let Some(p) = parameters.get(name) else { continue };
+        let Some(sigma) = p.sigma else {
+            left.push(name);
+            continue;
+        };
+        // As many decimals as the σ has, so that they can be held against each other.
+        let decimals = number::decimals_for(sigma, 3);
+        let _ = writeln!(
+            out,
+            "  {name:24} {:>16} ± {} {}",
+            number::fixed(p.estimate, decimals),
+            number::fixed(sigma, decimals),
+            p.unit
+        );
+    }
+    if !left.is_empty() {
+        let _ = writeln!(out, "  not estimated: {}", left.join(" "));
     }
     out
 }

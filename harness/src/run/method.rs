@@ -1,5 +1,6 @@
 //! One method of a scenario, from its configuration to its scores.
 
+use super::concluded;
 use super::drive::{Control, Ended, RunError, drive};
 use super::watch::Watcher;
 use crate::calibrate::{PassError, in_passes};
@@ -17,7 +18,7 @@ use octant_calibration::config as core;
 use octant_calibration::state_machine::ConfigError;
 use octant_calibration::table::CalibrationTable;
 use octant_plant::Plant;
-use octant_sample::Parameters;
+use octant_sample::{Mode, Parameters};
 use std::path::Path;
 
 /// What is kept of a method's stream.
@@ -38,7 +39,7 @@ pub enum SetupError {
     #[error("set up the plant: {0}")]
     Plant(#[from] octant_plant::ConfigError),
     /// The core's configuration contradicts itself.
-    #[error("set up the core: {0}")]
+    #[error("set up the core: {}", core_problem(.0))]
     Core(#[from] ConfigError),
     /// A source could not be opened.
     #[error(transparent)]
@@ -49,6 +50,24 @@ pub enum SetupError {
     /// The recorder could not be set up.
     #[error(transparent)]
     Recorder(#[from] RecorderError),
+}
+
+/// Why a core can't be set up, in the figures of the scenario.
+#[must_use]
+pub fn core_problem(error: &ConfigError) -> String {
+    use crate::report::number::plain;
+    match error {
+        ConfigError::Alignment { alignment_s, dwell_s } if alignment_s <= dwell_s => {
+            "coarse alignment needs the first stop at azimuth 0 and roll 0, where the gimbals start"
+                .to_owned()
+        }
+        ConfigError::Alignment { alignment_s, dwell_s } => format!(
+            "procedure.alignment.duration is {} s, and the first stop is held for {} s only",
+            plain(*alignment_s, 5),
+            plain(*dwell_s, 5)
+        ),
+        _ => error.to_string(),
+    }
 }
 
 /// Why a method gave no result.
@@ -237,8 +256,15 @@ fn finish(
     truth: Option<Parameters>,
 ) -> Result<MethodRun, MethodError> {
     if ended == Ended::SourceEnded {
-        endpoint.end_of_stream();
-        watcher.last_parameters = Some(endpoint.parameters());
+        let output = endpoint.end_of_stream();
+        let estimate = endpoint.parameters();
+        watcher.last_parameters = Some(estimate);
+        // No sample goes with this output: the recording keeps the parameters as an event.
+        if output.mode != watcher.last_mode && output.mode != Mode::Refused {
+            recorder.event(concluded::event(&estimate));
+            watcher.parameters(&output, &estimate);
+        }
+        watcher.epoch(&output);
     }
     let core = endpoint.core();
     let refused = core.refusal().map(ToString::to_string);

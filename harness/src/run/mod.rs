@@ -1,9 +1,10 @@
 //! A run: epochs driven from source to endpoint to recorder, watched on the way, then scored.
 //!
 //! [`drive`] is the loop; [`watch`] what is noticed while it runs; [`method`] one method from its
-//! scenario to its scores; [`assemble`] the summary and report of a run of one or two methods.
+//! scenario to its scores; [`concluded`] what the end of a stream concludes; [`assemble`] the summary and report of a run of one or two methods.
 
 pub mod assemble;
+pub mod concluded;
 pub mod drive;
 pub mod method;
 pub mod paired;

@@ -38,8 +38,8 @@ pub enum PairedError {
         /// What the core said.
         reason: String,
     },
-    /// Nothing was navigated, or not long enough.
-    #[error("compare: a navigation of at least 24 h is needed to be scored")]
+    /// Nothing is navigated, or not long enough.
+    #[error("compare: both methods need a navigation of at least 24 h ([procedure.navigation])")]
     NoNavigation,
     /// Samples that are not simulated know nothing of seeds.
     #[error("compare: seeds need source.uri = \"plant\"")]
@@ -66,6 +66,10 @@ pub fn paired(
     if [first, second].iter().any(|s| s.scenario.source != crate::scenario::Source::Plant) {
         return Err(PairedError::NotSimulated);
     }
+    // Said before hours of simulation, not after.
+    if [first, second].iter().any(|side| navigated_h(&side.scenario) < MARKS_H[0]) {
+        return Err(PairedError::NoNavigation);
+    }
     let maxima = ensemble([first, second], seeds, controls)?;
     let runs: Vec<PairedRun> = seeds
         .iter()
@@ -83,6 +87,12 @@ pub fn paired(
     let (a, b) = if a == b { (format!("{a} (first)"), format!("{b} (second)")) } else { (a, b) };
     let comparison = compare(&scenario.title, &a, &b, &runs, &floor);
     if comparison.cells.is_empty() { Err(PairedError::NoNavigation) } else { Ok(comparison) }
+}
+
+/// Length of the navigation, h; 0 without one.
+fn navigated_h(scenario: &Scenario) -> f64 {
+    let Some(plan) = &scenario.navigation else { return 0.0 };
+    plan.duration_s.map_or(f64::INFINITY, |duration_s| duration_s / 3600.0)
 }
 
 fn ensemble(

@@ -77,7 +77,9 @@ pub(crate) fn check(
         (Kind::Text, Value::Text(_)) | (Kind::Boolean, Value::Boolean(_)) => {}
         (Kind::Uri(schemes), Value::Text(text)) => {
             let scheme = text.split(':').next().unwrap_or_default();
-            if !schemes.iter().any(|(known, _)| *known == scheme) {
+            if scheme == "fmu" {
+                report(format!("found {found}: FMUs are not part of this version"));
+            } else if !schemes.iter().any(|(known, _)| *known == scheme) {
                 let known = suggestion(scheme, schemes.iter().map(|(name, _)| *name), "possible");
                 report(format!("found {found}, {known}"));
             }

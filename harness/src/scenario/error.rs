@@ -14,6 +14,8 @@ pub enum Place {
     },
     /// In the argument of a `--set`.
     Argument(String),
+    /// The file as a whole: it can't be read.
+    Unread,
     /// Nowhere: the default of a key that the scenario leaves out.
     Default,
 }
@@ -47,6 +49,7 @@ impl fmt::Display for ScenarioError {
             match &problem.place {
                 Place::File { line, column } => write!(f, "{}:{line}:{column}: ", self.file)?,
                 Place::Argument(argument) => write!(f, "--set {argument}: ")?,
+                Place::Unread => write!(f, "failed to read {}: ", self.file)?,
                 Place::Default => write!(f, "{}: ", self.file)?,
             }
             if !problem.path.is_empty() {

@@ -17,6 +17,7 @@ mod schema;
 mod tour;
 mod write;
 
+pub(crate) use error::suggestion;
 pub use error::{Place, Problem, ScenarioError};
 pub use keys::SCHEMA;
 pub use quantity::{Dimension, Quantity};
@@ -223,9 +224,9 @@ impl Scenario {
         let text = std::fs::read_to_string(path).map_err(|error| ScenarioError {
             file: file.clone(),
             problems: vec![Problem {
-                place: Place::Default,
+                place: Place::Unread,
                 path: String::new(),
-                message: format!("read the scenario: {error}"),
+                message: error.to_string(),
             }],
         })?;
         let folder = path.parent().unwrap_or(Path::new("")).to_owned();

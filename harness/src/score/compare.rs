@@ -135,7 +135,9 @@ pub enum Claim {
     Holds,
     /// More than 50 % in these runs; the interval reaches below.
     Likely,
-    /// Better for certain, and not by 50 %.
+    /// Better for certain, and at most 50 % in these runs; the interval reaches above.
+    Better,
+    /// Better for certain, and not by 50 %: the whole interval lies between.
     BetterByLess,
     /// The interval includes 0: nothing is shown.
     NotShown,
@@ -153,6 +155,8 @@ impl Claim {
             Self::Holds
         } else if i.value > CLAIM {
             Self::Likely
+        } else if i.high > CLAIM {
+            Self::Better
         } else {
             Self::BetterByLess
         }
@@ -264,9 +268,11 @@ fn words(first: &str, second: &str, seeds: usize, cells: &[Cell]) -> Vec<String>
             "the claim (more than 50 % better) is likely and not shown: {found}; the interval \
              reaches below 50 %, and more seeds would tell"
         ),
-        Claim::BetterByLess => {
-            format!("better, and not shown to be better by more than 50 %: {found}")
-        }
+        Claim::Better => format!(
+            "better, and whether by more than 50 % is open: {found}; the interval reaches above \
+             50 %, and more seeds would tell"
+        ),
+        Claim::BetterByLess => format!("better, and by less than 50 %: {found}"),
         Claim::NotShown => format!(
             "no claim{}: the interval of improvement of {measure}, {range}, includes 0",
             if near_floor(main) { ": the random walk hides it" } else { "" }

@@ -15,9 +15,10 @@ pub fn junit(summary: &Summary) -> Result<String, quick_junit::SerializeError> {
     suite.add_property(("seed", summary.seed.to_string().as_str()));
     suite.add_property(("octant", summary.octant.as_str()));
     for result in &summary.requirements {
-        let sentence = format!("{} {} {}", result.measure, result.comparison.sign(), result.limit);
+        let (value, limit) = result.figures();
+        let sentence = format!("{} {} {limit}", result.measure, result.comparison.sign());
         let found = match (result.value, result.reason.as_ref()) {
-            (Some(value), _) => format!("found {value}"),
+            (Some(_), _) => format!("found {value}"),
             (None, Some(reason)) => reason.clone(),
             (None, None) => "nothing found".to_owned(),
         };

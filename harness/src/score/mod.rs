@@ -5,7 +5,7 @@
 //! - [`mod@reference`] and [`floor`] say what physics lets the scores be
 //! - [`ensemble`] has the statistics over many runs, [`compare`] those of two methods in pairs
 //! - [`health`] counts what the core reported on the way
-//! - [`summary`] is `summary.json`, [`verdict`] holds it against requirements, [`junit`] tells CI
+//! - [`summary`] is `summary.json`, [`measures`] are the numbers in it, [`verdict`] holds it against requirements, [`junit`] tells CI
 
 pub mod compare;
 pub mod drift;
@@ -13,6 +13,7 @@ pub mod ensemble;
 pub mod floor;
 pub mod health;
 pub mod junit;
+pub mod measures;
 pub mod parameters;
 pub mod reference;
 mod regression;

@@ -134,6 +134,31 @@ pub struct RequirementResult {
     pub reason: Option<String>,
 }
 
+impl RequirementResult {
+    /// `NAV-1: navigation.longitude_error_arcmin.max is 0.751, required <= 3`.
+    #[must_use]
+    pub fn sentence(&self) -> String {
+        let (value, limit) = self.figures();
+        format!(
+            "{}: {} is {value}, required {} {limit}",
+            self.id,
+            self.measure,
+            self.comparison.sign()
+        )
+    }
+
+    /// Value and limit as people read them: six digits, or all of them where six look alike.
+    #[must_use]
+    pub fn figures(&self) -> (String, String) {
+        let value = self.value.unwrap_or(f64::NAN);
+        let figures = [value, self.limit].map(|v| crate::report::number::plain(v, 6));
+        match figures {
+            [a, b] if a == b && value != self.limit => (value.to_string(), self.limit.to_string()),
+            [a, b] => (a, b),
+        }
+    }
+}
+
 /// Something other than a requirement that bears on the verdict: an overrun, a dropped record, a
 /// bench that failed.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -191,14 +216,7 @@ pub fn judge(
         verdict = verdict.worst(result.verdict);
         match result.verdict {
             Verdict::Pass => {}
-            Verdict::Fail | Verdict::Error => reasons.push(format!(
-                "{}: {} is {}, required {} {}",
-                result.id,
-                result.measure,
-                result.value.unwrap_or(f64::NAN),
-                result.comparison.sign(),
-                result.limit
-            )),
+            Verdict::Fail | Verdict::Error => reasons.push(result.sentence()),
             Verdict::Inconclusive => reasons.push(format!(
                 "{}: {}",
                 result.id,

@@ -66,9 +66,9 @@ static SITE: Section = section(&[
         Kind::Quantity(
             &[Dimension::ANGLE],
             Bounds::Within(
-                -89.9 * DEG,
-                89.9 * DEG,
-                "within ±89.9 deg: at the poles east has no direction",
+                -89.3 * DEG,
+                89.3 * DEG,
+                "within ±89.3 deg: at the poles east has no direction",
             ),
         ),
         Default::Value("30.5 deg"),

@@ -3,8 +3,9 @@
 use super::Reader;
 use crate::scenario::Requirement;
 use crate::scenario::document::Value;
-use crate::scenario::error::Problem;
+use crate::scenario::error::{Problem, suggestion};
 use crate::scenario::quantity::{self, Quantity};
+use crate::score::measures;
 use crate::score::verdict::{self, Comparison};
 use octant_sample::parameters::{Group, NAMES};
 
@@ -46,6 +47,17 @@ pub(super) fn read(root: &Reader<'_>) -> Result<Vec<Requirement>, Problem> {
                      navigation.longitude_error_arcmin.max"
                 ),
             ));
+        }
+        if let Err((place, part, keys)) = measures::check(bare) {
+            let found = match part {
+                None => format!("{place} is a table, expected a number in it: {}", keys.join(", ")),
+                Some(part) if keys.is_empty() => format!("{place} is a number and has no {part:?}"),
+                Some(part) => {
+                    let known = suggestion(&part, keys.iter().copied(), "it has");
+                    format!("{place} has no {part:?}, {known}")
+                }
+            };
+            return Err(table.problem("measure", format!("found {measure:?}: {found}")));
         }
         let (limit, limit_text) = limit(&table, bare)?;
         all.push(Requirement {

@@ -1,0 +1,111 @@
+//! What a requirement can measure: the numbers of the summary, by their paths.
+
+use octant_sample::parameters::{Group, NAMES};
+
+/// What stands at a place of the summary.
+enum Shape {
+    /// A number.
+    Number,
+    /// A table, and its keys.
+    Table(Vec<&'static str>),
+}
+
+/// Says why no run can have the measure at this path (without bars).
+///
+/// # Errors
+/// The part of the path that leads nowhere with what there is in its place: in parts, the part and
+/// the keys to choose from; no part where the path ends at a table.
+pub fn check(path: &str) -> Result<(), (String, Option<String>, Vec<&'static str>)> {
+    let mut walked: Vec<&str> = Vec::new();
+    let mut parts = path.split('.');
+    loop {
+        let place = if walked.is_empty() { "the summary".to_owned() } else { walked.join(".") };
+        match (shape(&walked), parts.next()) {
+            (Shape::Number, None) => return Ok(()),
+            (Shape::Number, Some(part)) => return Err((place, Some(part.to_owned()), Vec::new())),
+            (Shape::Table(keys), None) => return Err((place, None, keys)),
+            (Shape::Table(keys), Some(part)) if keys.contains(&part) => walked.push(part),
+            (Shape::Table(keys), Some(part)) => {
+                return Err((place, Some(part.to_owned()), keys));
+            }
+        }
+    }
+}
+
+/// The shape at a place that is there.
+fn shape(path: &[&str]) -> Shape {
+    let error = ["max", "rms", "final", "slope_per_day"];
+    let table = |keys: &[&'static str]| Shape::Table(keys.to_vec());
+    match path {
+        [] => table(&["calibration", "navigation", "baseline", "reference"]),
+        ["baseline"] => table(&["calibration", "navigation"]),
+        ["baseline", rest @ ..] => shape(rest),
+        ["calibration"] => table(&[
+            "duration_h",
+            "parameters",
+            "nis_mean",
+            "nees",
+            "worst_normalized_error",
+            "health",
+        ]),
+        ["calibration", "parameters"] => table(&NAMES),
+        ["calibration", "parameters", _] => {
+            table(&["true", "estimate", "sigma", "error", "normalized"])
+        }
+        ["calibration", "nees"] => Shape::Table(Group::ALL.map(Group::name).to_vec()),
+        ["calibration", "health"] => table(&[
+            "measurements",
+            "rejected",
+            "recoveries",
+            "gyro_stuck",
+            "accelerometer_stuck",
+            "gaps",
+            "out_of_order",
+            "inertial_invalid",
+            "gimbal_disagrees",
+            "aiding_lost",
+            "inconsistent",
+            "numeric",
+        ]),
+        ["navigation"] => table(&[
+            "duration_h",
+            "latitude_error_arcmin",
+            "longitude_error_arcmin",
+            "radial_error_nmi",
+            "slope_window",
+            "marks",
+        ]),
+        ["navigation", "latitude_error_arcmin" | "longitude_error_arcmin"] => table(&error),
+        ["navigation", "radial_error_nmi"] => table(&["max", "rms", "final", "rate_per_h"]),
+        ["navigation", "slope_window"] => table(&["periods", "hours"]),
+        ["navigation", "marks"] => table(&["24h", "72h"]),
+        ["navigation", "marks", _] => table(&[
+            "latitude_arcmin",
+            "longitude_arcmin",
+            "radial_nmi",
+            "latitude_max_arcmin",
+            "longitude_max_arcmin",
+            "radial_max_nmi",
+        ]),
+        ["reference"] => table(&[
+            "schuler_period_min",
+            "table_g_zz",
+            "true_g_zz",
+            "residual_g_zz",
+            "baseline_residual_g_zz",
+            "isotropic_g_sigma_floor_deg_per_h_per_g",
+            "random_walk",
+        ]),
+        ["reference", "table_g_zz" | "true_g_zz" | "residual_g_zz" | "baseline_residual_g_zz"] => {
+            table(&["g_zz_deg_per_h_per_g", "longitude_arcmin_per_day", "latitude_bound_arcmin"])
+        }
+        ["reference", "random_walk"] => table(&[
+            "latitude_final_arcmin",
+            "longitude_final_arcmin",
+            "latitude_rms_arcmin",
+            "longitude_rms_arcmin",
+            "radial_rms_nmi",
+        ]),
+        _ => Shape::Number,
+    }
+}
