@@ -1,7 +1,7 @@
 //! A run: epochs driven from source to endpoint to recorder, watched on the way, then scored.
 //!
-//! [`drive`] is the loop; [`watch`] what is noticed while it runs; [`method`] one method from its
-//! scenario to its scores; [`concluded`] what the end of a stream concludes; [`assemble`] the summary and report of a run of one or two methods.
+//! [`drive()`] is the loop; [`watch`] what is noticed while it runs; [`method`] one method from its
+//! scenario to its scores; [`concluded`] what the end of a stream concludes; [`assemble()`] the summary and report of a run of one or two methods.
 
 pub mod assemble;
 pub mod concluded;

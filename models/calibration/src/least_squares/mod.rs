@@ -5,7 +5,7 @@
 //! their parameters. Two references, by [`GyroReference`]:
 //!
 //! - **Earth rate**, for gyros that see it: gravity and Earth rate are known vectors in n, the
-//!   attitude of each interval is not ([`chain`]). In every interval the norm of gravity, the norm
+//!   attitude of each interval is not (`chain`). In every interval the norm of gravity, the norm
 //!   of Earth rate and their product `f·ω = gΩ sin L` are measured, and each move ties two
 //!   attitudes. Determines b_g, S_g, M_g, b_a, S_a and M_a; six positions are enough, because
 //!   the moves tie the accelerometers' axes to each other, which the norm of gravity alone cannot.
