@@ -293,7 +293,7 @@ fn read_step(channels: &HashMap<u16, Option<Topic>>, opcode: u8, data: &[u8]) ->
         op::MESSAGE | op::METADATA | op::ATTACHMENT | op::CHANNEL => {}
         _ => return Step::Nothing,
     }
-    match mcap::parse_record(opcode, data) {
+    match crate::recorder::records::parse(opcode, data) {
         Err(error) => Step::Damaged(error.to_string()),
         Ok(Record::Metadata(record)) if record.name == FORMAT_METADATA => {
             Step::Metadata(record.metadata)

@@ -28,6 +28,31 @@ pub enum RecordsError {
     },
 }
 
+/// Parses a record.
+///
+/// # Errors
+/// If it is damaged. `mcap` 0.26 slices an attachment without looking whether its CRC is still
+/// there, and panics where it isn't: that is looked at here.
+pub fn parse(opcode: u8, body: &[u8]) -> Result<mcap::records::Record<'_>, String> {
+    if opcode == mcap::records::op::ATTACHMENT && !attachment_has_its_crc(body) {
+        return Err("an attachment ends within its head".to_owned());
+    }
+    mcap::parse_record(opcode, body).map_err(|error| error.to_string())
+}
+
+/// An attachment is log time u64, creation time u64, name and media type (u32 length each), data
+/// (u64 length), CRC u32.
+fn attachment_has_its_crc(body: &[u8]) -> bool {
+    let mut at = 16usize;
+    for _ in ["name", "media type"] {
+        let Some(length) = body.get(at..).and_then(|rest| rest.first_chunk::<4>()) else {
+            return false;
+        };
+        at = at.saturating_add(4).saturating_add(u32::from_le_bytes(*length) as usize);
+    }
+    at.saturating_add(8 + 4) <= body.len()
+}
+
 /// Reads record by record. Chunks are unpacked, and their CRC is checked before any of their
 /// records is given out.
 pub struct Records<R> {

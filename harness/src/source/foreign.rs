@@ -286,7 +286,7 @@ fn read_step(decoders: &HashMap<u16, FieldDecoder>, plan: &Plan, opcode: u8, dat
     if !matches!(opcode, op::SCHEMA | op::CHANNEL | op::MESSAGE) {
         return Step::Nothing;
     }
-    match mcap::parse_record(opcode, data) {
+    match crate::recorder::records::parse(opcode, data) {
         Err(error) => Step::Damaged(error.to_string()),
         Ok(Record::Schema { header, data }) => Step::Schema {
             id: header.id,
