@@ -278,9 +278,7 @@ impl Core {
         }
     }
 
-    // Inlined by force: as a call, it reads increments back from memory that has just been written
-    // in wider pieces, and waits for them.
-    #[inline(always)]
+    #[inline]
     fn integrate(&mut self, measured: &(Vector3<f64>, Vector3<f64>), interval_s: f64) {
         let (dtheta, dv) = self.compensation.apply(&measured.0, &measured.1, interval_s);
         self.strapdown.step(&dtheta, &dv, interval_s);
