@@ -20,16 +20,8 @@ pub use text::{
 };
 
 use octant_plant::Truth;
-use octant_sample::{Aiding, GimbalCommand, Sample};
-
-/// What one step of a source delivers.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Epoch {
-    /// The inertial sample.
-    pub sample: Sample,
-    /// The reference, when one is due.
-    pub aiding: Option<Aiding>,
-}
+pub use octant_sample::Epoch;
+use octant_sample::GimbalCommand;
 
 /// A source of epochs.
 pub trait Source {

@@ -10,8 +10,8 @@
 use crate::config::{Imu, Temperature};
 use crate::increments::Increments;
 use crate::processes::Wander;
-use crate::stream::Triad;
 use nalgebra::{Matrix3, Vector3};
+use octant_random::stream::Triad;
 use octant_sample::Status;
 use octant_sample::counts::{Accumulator, DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS};
 

@@ -5,11 +5,11 @@ use crate::encoder::ErrorCurve;
 use crate::imu::{Reading, Sensors};
 use crate::increments::{Body, Increments};
 use crate::reference::Aider;
-use crate::truth::Truth;
+
 use crate::validate::{ConfigError, validate};
 use nalgebra::Quaternion;
 use octant_sample::time::SimulatedTime;
-use octant_sample::{Aiding, DeviceTime, GimbalAngles, GimbalCommand, Sample};
+use octant_sample::{Aiding, DeviceTime, GimbalAngles, GimbalCommand, Sample, Truth};
 
 /// What one step gives.
 #[derive(Clone, Copy, Debug, PartialEq)]
