@@ -215,10 +215,18 @@ impl Core {
     /// The parameters and their σ ([`Self::parameters`], [`Self::sigma`]) have changed when the
     /// output's revision has.
     pub fn step(&mut self, sample: &Sample, aiding: Option<&Aiding>) -> Output {
+        let mut output = Output::default();
+        self.step_into(sample, aiding, &mut output);
+        output
+    }
+
+    /// [`Self::step`] in place, for who steps millions of times: a copy of an output that has just
+    /// been written waits for the stores.
+    pub fn step_into(&mut self, sample: &Sample, aiding: Option<&Aiding>, output: &mut Output) {
         let (order, mut health) = self.monitor.check(sample);
         let mut nis = f64::NAN;
         let interval_ns = match order {
-            Order::Behind => return self.answer(sample, health, nis),
+            Order::Behind => return self.answer(sample, health, nis, output),
             Order::Next(interval_ns) => interval_ns,
             Order::Gap { missing } => {
                 self.bridge(missing);
@@ -226,7 +234,8 @@ impl Core {
             }
         };
         self.tick = self.tick.saturating_add(1);
-        self.take(sample, interval_ns as f64 * 1e-9);
+        let regular = interval_ns == self.config.sample_period_ns;
+        self.take(sample, if regular { self.sample_s } else { interval_ns as f64 * 1e-9 });
         match self.mode {
             Mode::Calibrating => {
                 self.measure(aiding, &mut health, &mut nis);
@@ -249,7 +258,7 @@ impl Core {
             health |= Health::NUMERIC;
             self.refuse(Refusal::Numeric);
         }
-        self.answer(sample, health, nis)
+        self.answer(sample, health, nis, output);
     }
 
     /// Samples since the start of the present phase.
@@ -378,7 +387,7 @@ impl Core {
     }
 
     #[inline]
-    fn answer(&mut self, sample: &Sample, health: Health, nis: f64) -> Output {
+    fn answer(&mut self, sample: &Sample, health: Health, nis: f64, output: &mut Output) {
         self.answered = (sample.sequence, sample.device_time);
         if let Some(cursor) = &self.cursor {
             self.gimbals = Gimbals {
@@ -387,7 +396,7 @@ impl Core {
                 command: cursor.command(),
             };
         }
-        self.output(health, nis)
+        *output = self.output(health, nis);
     }
 
     /// The output as things stand. Made anew each time: copying one that has just been written
