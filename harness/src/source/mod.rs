@@ -23,13 +23,6 @@ use octant_plant::Truth;
 pub use octant_sample::Epoch;
 use octant_sample::GimbalCommand;
 
-impl Epoch {
-    /// Takes what was found; `false` if that is nothing.
-    fn take(&mut self, found: Option<Self>) -> bool {
-        found.map(|found| *self = found).is_some()
-    }
-}
-
 /// A source of epochs.
 pub trait Source {
     /// The next epoch, into `epoch`; `false` when the source has ended, and then `epoch` is left as
