@@ -26,12 +26,6 @@ pub(crate) fn uniform(word: u64) -> f64 {
     ((word >> 11) as f64 + 0.5) * (1.0 / (1u64 << 53) as f64)
 }
 
-/// The block of a counter.
-#[inline(always)]
-pub(crate) fn words(key: Key, counter: u64) -> [u64; 4] {
-    block(key, [counter, 0, 0, 0])
-}
-
 fn density(x: f64) -> f64 {
     libm::exp(-0.5 * x * x)
 }
@@ -62,12 +56,7 @@ impl Ziggurat {
     /// Three independent standard normals of one counter.
     #[inline(always)]
     pub(crate) fn three(&self, key: Key, counter: u64) -> [f64; 3] {
-        self.three_of(key, counter, &words(key, counter))
-    }
-
-    /// The same from the block of the counter, for callers that have several blocks in flight.
-    #[inline(always)]
-    pub(crate) fn three_of(&self, key: Key, counter: u64, words: &[u64; 4]) -> [f64; 3] {
+        let words = block(key, [counter, 0, 0, 0]);
         [
             self.one(key, counter, 0, words[0]),
             self.one(key, counter, 1, words[1]),
