@@ -2,6 +2,7 @@
 
 use super::drive::Ended;
 use super::method::MethodRun;
+use super::twin::difference;
 use crate::report::{Provenance, ReportData, number};
 use crate::scenario::{Motion, Scenario, Source};
 use crate::score::reference::{ReferenceInput, reference};
@@ -47,6 +48,8 @@ pub fn assemble(
         baseline_estimated_g_zz: baseline.as_ref().and_then(g_zz),
     });
     let findings = findings(&primary);
+    let counterfactual = difference(scenario, &primary);
+    let baseline_counterfactual = baseline.as_ref().and_then(|run| difference(scenario, run));
     let mut summary = Summary {
         schema: SCHEMA,
         octant: env!("CARGO_PKG_VERSION").to_owned(),
@@ -64,12 +67,12 @@ pub fn assemble(
             label: run.label,
             calibration: run.calibration,
             navigation: run.navigation,
-            counterfactual: None,
+            counterfactual: baseline_counterfactual,
             stream_hash: run.recorder.stream_hash,
             faults: run.receipts.iter().map(FaultResult::from).collect(),
         }),
         reference: Some(references),
-        counterfactual: None,
+        counterfactual,
         pacing: None,
         stream_hash: primary.recorder.stream_hash.clone(),
     };

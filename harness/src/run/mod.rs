@@ -10,6 +10,7 @@ pub mod faulted;
 pub mod method;
 pub mod paired;
 pub mod raw_counts;
+pub mod twin;
 pub mod unit;
 pub mod watch;
 

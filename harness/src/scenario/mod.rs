@@ -296,6 +296,15 @@ impl Scenario {
         read::scenario(document, folder).map_err(|problem| with_file(vec![problem]))
     }
 
+    /// The same scenario without its faults.
+    #[must_use]
+    pub fn without_faults(&self) -> Self {
+        let mut clean = self.clone();
+        clean.faults.clear();
+        clean.document.remove("faults");
+        clean
+    }
+
     /// Samples of the calibration phase.
     #[must_use]
     pub fn calibration_samples(&self) -> u64 {
