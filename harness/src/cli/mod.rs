@@ -4,12 +4,14 @@
 #![allow(clippy::print_stdout, reason = "results go to stdout")]
 
 mod compare;
+mod minimise;
 mod observe;
 mod progress;
 mod replay;
 mod report;
 mod run;
 mod score;
+mod sweep;
 
 use crate::score::verdict::Verdict;
 use clap::{Args, Parser, Subcommand};

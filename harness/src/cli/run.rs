@@ -13,6 +13,7 @@ use crate::score::junit::junit;
 use crate::score::verdict::Verdict;
 use clap::Args;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::time::SystemTime;
 
 #[derive(Debug, Args)]
@@ -219,7 +220,7 @@ fn execute(
     let mut paired: Vec<MethodRun> = Vec::with_capacity(runs.len());
     for (run, (_, clean)) in runs.into_iter().zip(&tasks) {
         match (clean, paired.last_mut()) {
-            (Some(_), Some(faulted)) => faulted.twin = Some(Box::new(run)),
+            (Some(_), Some(faulted)) => faulted.twin = Some(Arc::new(run)),
             _ => paired.push(run),
         }
     }
@@ -264,6 +265,9 @@ fn rerun(arguments: &Arguments, seed: u64) -> Vec<String> {
         if let Some(uri) = uri {
             line.extend([name.to_owned(), uri.clone()]);
         }
+    }
+    if arguments.no_twin {
+        line.push("--no-twin".to_owned());
     }
     line.extend(["--seed".to_owned(), seed.to_string()]);
     line

@@ -24,6 +24,7 @@ use octant_faults::catalogue::Acts;
 use octant_plant::Plant;
 use octant_sample::{Mode, Parameters};
 use std::path::Path;
+use std::sync::Arc;
 
 /// What is kept of a method's stream.
 #[derive(Clone, Copy, Debug)]
@@ -115,7 +116,7 @@ pub struct MethodRun {
     /// What became of the faults, in the order of the scenario.
     pub receipts: Vec<Receipt>,
     /// The same run without its faults.
-    pub twin: Option<Box<MethodRun>>,
+    pub twin: Option<Arc<MethodRun>>,
 }
 
 /// Name of a method, for people.
