@@ -1,12 +1,20 @@
 //! The kinds of faults, one family a folder.
 
 mod added;
+mod aiding;
+mod chance;
 mod digital;
+mod onset;
+mod span;
+mod time;
+mod turntable;
+mod unit;
 
 use crate::catalogue::Kind;
 
 /// All kinds, in the order of the documentation.
-pub static KINDS: &[&[&Kind]] = &[digital::KINDS];
+pub static KINDS: &[&[&Kind]] =
+    &[digital::KINDS, time::KINDS, turntable::KINDS, unit::KINDS, aiding::KINDS];
 
 /// All kinds one by one.
 pub fn all() -> impl Iterator<Item = &'static Kind> {
