@@ -2,10 +2,13 @@
 
 use super::drive::Ended;
 use super::method::MethodRun;
+use super::twin::difference;
 use crate::report::{Provenance, ReportData, number};
 use crate::scenario::{Motion, Scenario, Source};
 use crate::score::reference::{ReferenceInput, reference};
-use crate::score::summary::{Baseline, ParameterScore, SCHEMA, Summary};
+use crate::score::summary::{
+    AlteredStreams, Baseline, FaultResult, ParameterScore, SCHEMA, Summary,
+};
 use crate::score::verdict::{Finding, Verdict, judge};
 use octant_earth::units::{DEG, DEG_PER_SQRT_HOUR, MICRO_G};
 use octant_sample::parameters::NAMES;
@@ -45,6 +48,8 @@ pub fn assemble(
         baseline_estimated_g_zz: baseline.as_ref().and_then(g_zz),
     });
     let findings = findings(&primary);
+    let counterfactual = difference(scenario, &primary);
+    let baseline_counterfactual = baseline.as_ref().and_then(|run| difference(scenario, run));
     let mut summary = Summary {
         schema: SCHEMA,
         octant: env!("CARGO_PKG_VERSION").to_owned(),
@@ -53,7 +58,8 @@ pub fn assemble(
         verdict: Verdict::Pass,
         reasons: Vec::new(),
         requirements: Vec::new(),
-        faults: Vec::new(),
+        faults: primary.receipts.iter().map(FaultResult::from).collect(),
+        altered_streams: primary.recorder.altered_streams.as_ref().map(AlteredStreams::from),
         method: primary.label.clone(),
         calibration: primary.calibration.take(),
         navigation: primary.navigation.take(),
@@ -61,9 +67,12 @@ pub fn assemble(
             label: run.label,
             calibration: run.calibration,
             navigation: run.navigation,
+            counterfactual: baseline_counterfactual,
             stream_hash: run.recorder.stream_hash,
+            faults: run.receipts.iter().map(FaultResult::from).collect(),
         }),
         reference: Some(references),
+        counterfactual,
         pacing: None,
         stream_hash: primary.recorder.stream_hash.clone(),
     };
