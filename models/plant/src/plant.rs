@@ -225,11 +225,15 @@ fn displaced(truth: Truth, motion: &Motion, rate: &Vector3<f64>) -> Truth {
     let [r, r_rate, _] = motion.displacement;
     let aside = c_nb * r;
     let velocity = Vector3::from(truth.velocity_mps) + c_nb * (r_rate + over_ground.cross(&r));
-    let q = c_nb * motion.rotation();
+    let north_rad = aside.x / earth.meridian_radius_m;
+    let east_rad = aside.y / earth.transverse_radius_m;
+    let per_cos = 1.0 / earth.cos_latitude;
+    // North and down are those of the place to which it is displaced.
+    let turn = Vector3::new(east_rad, -north_rad, -east_rad * earth.sin_latitude * per_cos);
+    let q = octant_earth::rotation::exp(&-turn) * c_nb * motion.rotation();
     Truth {
-        latitude_rad: truth.latitude_rad + aside.x / earth.meridian_radius_m,
-        longitude_rad: truth.longitude_rad
-            + aside.y / (earth.transverse_radius_m * earth.cos_latitude),
+        latitude_rad: truth.latitude_rad + north_rad,
+        longitude_rad: truth.longitude_rad + east_rad * per_cos,
         height_m: truth.height_m - aside.z,
         velocity_mps: velocity.into(),
         q_nb: [q.w, q.i, q.j, q.k],
