@@ -5,7 +5,9 @@ use super::method::MethodRun;
 use crate::report::{Provenance, ReportData, number};
 use crate::scenario::{Motion, Scenario, Source};
 use crate::score::reference::{ReferenceInput, reference};
-use crate::score::summary::{Baseline, ParameterScore, SCHEMA, Summary};
+use crate::score::summary::{
+    AlteredStreams, Baseline, FaultResult, ParameterScore, SCHEMA, Summary,
+};
 use crate::score::verdict::{Finding, Verdict, judge};
 use octant_earth::units::{DEG, DEG_PER_SQRT_HOUR, MICRO_G};
 use octant_sample::parameters::NAMES;
@@ -53,7 +55,8 @@ pub fn assemble(
         verdict: Verdict::Pass,
         reasons: Vec::new(),
         requirements: Vec::new(),
-        faults: Vec::new(),
+        faults: primary.receipts.iter().map(FaultResult::from).collect(),
+        altered_streams: primary.recorder.altered_streams.as_ref().map(AlteredStreams::from),
         method: primary.label.clone(),
         calibration: primary.calibration.take(),
         navigation: primary.navigation.take(),
@@ -63,6 +66,7 @@ pub fn assemble(
             navigation: run.navigation,
             counterfactual: None,
             stream_hash: run.recorder.stream_hash,
+            faults: run.receipts.iter().map(FaultResult::from).collect(),
         }),
         reference: Some(references),
         counterfactual: None,

@@ -107,8 +107,9 @@ impl Monitor {
             self.tally.invalid += 1;
             health |= Health::INERTIAL_INVALID;
         }
-        if let Some(limit) = self.stuck_samples {
-            health |= self.stuck(sample, limit);
+        if self.stuck_samples.is_some() {
+            let ([x, y, z], [u, v, w]) = (sample.delta_theta, sample.delta_velocity);
+            health |= self.stuck(x, y, z, u, v, w);
         }
         self.last = Some(Last { sequence: sample.sequence, time_ns: sample.device_time.ns });
         (order, health)
@@ -134,35 +135,33 @@ impl Monitor {
         if periods >= 2 { Order::Gap { missing: periods - 1 } } else { Order::Next(interval_ns) }
     }
 
-    #[inline]
-    fn stuck(&mut self, sample: &Sample, limit: u32) -> Health {
-        let [x, y, z] = sample.delta_theta;
-        let [u, v, w] = sample.delta_velocity;
-        let now = [x, y, z, u, v, w];
-        let before = core::mem::replace(&mut self.counts, now);
-        let mut same = [false; 6];
-        for channel in 0..6 {
-            same[channel] = now[channel] == before[channel];
-        }
+    /// Each count is an argument of its own, and the call is kept, so that each is read the way it
+    /// was written: a wide read of what single stores have just filled waits for them.
+    #[inline(never)]
+    fn stuck(&mut self, x: i32, y: i32, z: i32, u: i32, v: i32, w: i32) -> Health {
+        let before = core::mem::replace(&mut self.counts, [x, y, z, u, v, w]);
         // With noise of many counts there is nothing to do in nearly every sample.
-        if self.repeats || same != [false; 6] {
-            self.repeated(&same, limit)
-        } else {
-            Health::empty()
-        }
+        let same = x == before[0]
+            || y == before[1]
+            || z == before[2]
+            || u == before[3]
+            || v == before[4]
+            || w == before[5];
+        if same || self.repeats { self.repeated(&before) } else { Health::empty() }
     }
 
     #[cold]
-    fn repeated(&mut self, same: &[bool; 6], limit: u32) -> Health {
-        if self.last.is_none() {
-            // The first sample has nothing before it.
+    #[inline(never)]
+    fn repeated(&mut self, before: &[i32; 6]) -> Health {
+        // The first sample has nothing before it.
+        let (Some(_), Some(limit)) = (self.last, self.stuck_samples) else {
             return Health::empty();
-        }
+        };
         let mut health = Health::empty();
         let flags = [Health::GYRO_STUCK, Health::ACCELEROMETER_STUCK];
         for channel in 0..6 {
             let run = &mut self.identical[channel];
-            *run = if same[channel] { run.saturating_add(1) } else { 0 };
+            *run = if self.counts[channel] == before[channel] { run.saturating_add(1) } else { 0 };
             if self.testable[channel / 3] && run.saturating_add(1) >= limit {
                 health |= flags[channel / 3];
             }

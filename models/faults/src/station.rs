@@ -425,6 +425,11 @@ impl Station {
         self.stages.iter().map(|stage| stage.id.as_str())
     }
 
+    /// Ids and kinds of the faults, in order.
+    pub fn names(&self) -> impl Iterator<Item = (&str, &'static str)> {
+        self.stages.iter().map(|stage| (stage.id.as_str(), stage.kind.name))
+    }
+
     /// Receipts of all faults, in order.
     #[must_use]
     pub fn receipts(&self) -> Vec<Receipt> {

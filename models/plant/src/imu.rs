@@ -11,7 +11,7 @@ use crate::config::{Imu, Temperature};
 use crate::increments::Increments;
 use crate::processes::Wander;
 use nalgebra::{Matrix3, Vector3};
-use octant_random::stream::Triad;
+use octant_random::stream::{Ahead, Triad};
 use octant_sample::Status;
 use octant_sample::counts::{Accumulator, DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS};
 
@@ -31,7 +31,7 @@ pub(crate) struct Reading {
 struct Triple {
     lsb: f64,
     sigma_counts: f64,
-    noise: Triad,
+    noise: Ahead,
     wanders: Vec<Wander>,
     /// Range in counts per interval; infinite: that of the format.
     limit_counts: f64,
@@ -43,18 +43,12 @@ struct Triple {
 
 impl Triple {
     #[inline(always)]
-    fn count(
-        &mut self,
-        mut reading: Vector3<f64>,
-        sample: u64,
-        words: &[u64; 4],
-        counts: &mut [i32; 3],
-    ) -> bool {
+    fn count(&mut self, mut reading: Vector3<f64>, sample: u64, counts: &mut [i32; 3]) -> bool {
         for wander in &mut self.wanders {
             reading += Vector3::from(wander.increment(sample)) / self.lsb;
         }
         if self.sigma_counts > 0.0 {
-            let noise = self.noise.of(sample, words);
+            let noise = self.noise.at(sample);
             for axis in 0..3 {
                 reading[axis] += self.sigma_counts * noise[axis];
             }
@@ -132,7 +126,7 @@ impl Sensors {
         let triple = |lsb: f64, density: f64, name, wanders, range: f64, quantum: f64| Triple {
             lsb,
             sigma_counts: density * root_dt / lsb,
-            noise: Triad::new(seed, name),
+            noise: Ahead::new(Triad::new(seed, name)),
             wanders,
             limit_counts: if range > 0.0 { range * dt / lsb } else { f64::INFINITY },
             quantum_counts: quantum / lsb,
@@ -198,15 +192,11 @@ impl Sensors {
             let warm = self.warm(increments, start_ns);
             (gyro, accelerometer) = (gyro + warm.gyro, accelerometer + warm.accelerometer);
         }
-        // Both blocks before either is used: their chains of multiplications overlap.
-        let gyro_words = self.gyro.noise.words(sample);
-        let accelerometer_words = self.accelerometer.noise.words(sample);
         let mut status = Status::empty();
-        if self.gyro.count(gyro, sample, &gyro_words, delta_theta) {
+        if self.gyro.count(gyro, sample, delta_theta) {
             status |= Status::GYRO_SATURATED;
         }
-        let words = &accelerometer_words;
-        if self.accelerometer.count(accelerometer, sample, words, delta_velocity) {
+        if self.accelerometer.count(accelerometer, sample, delta_velocity) {
             status |= Status::ACCELEROMETER_SATURATED;
         }
         status
