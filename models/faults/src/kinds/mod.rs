@@ -6,13 +6,17 @@ mod channel;
 mod digital;
 mod mapped;
 mod onset;
+mod physics;
+mod plant;
 mod ring_laser;
 mod six;
+mod turntable;
 
 use crate::catalogue::Kind;
 
 /// All kinds, in the order of the documentation.
-pub static KINDS: &[&[&Kind]] = &[analogue::KINDS, ring_laser::KINDS, digital::KINDS];
+pub static KINDS: &[&[&Kind]] =
+    &[physics::KINDS, analogue::KINDS, ring_laser::KINDS, digital::KINDS, turntable::KINDS];
 
 /// All kinds one by one.
 pub fn all() -> impl Iterator<Item = &'static Kind> {

@@ -22,8 +22,7 @@ impl Motion {
 }
 
 /// Rate and specific force in the axes of the frame that moves, from those of the frame that it
-/// moves against (Titterton and Weston, 2004, sec. 11.2; Shuster, 1993, for the rotation vector's
-/// derivative):
+/// moves against (Titterton and Weston, 2004; Shuster, 1993, for the rotation vector's derivative):
 ///
 /// `ω' = Exp(−θ) ω + J θ̇`, `J = I − (1 − cos θ)/θ² [θ×] + (θ − sin θ)/θ³ [θ×]²`, and
 /// `f' = Exp(−θ) (f + r̈ + 2 ω × ṙ + ω̇ × r + ω × (ω × r))`.
