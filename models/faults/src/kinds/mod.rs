@@ -8,6 +8,8 @@ mod channel;
 mod digital;
 mod mapped;
 mod onset;
+mod physics;
+mod plant;
 mod ring_laser;
 mod six;
 mod span;
@@ -19,6 +21,7 @@ use crate::catalogue::Kind;
 
 /// All kinds, in the order of the documentation.
 pub static KINDS: &[&[&Kind]] = &[
+    physics::KINDS,
     analogue::KINDS,
     ring_laser::KINDS,
     digital::KINDS,
