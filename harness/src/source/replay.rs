@@ -89,15 +89,20 @@ impl Replay {
 impl Source for Replay {
     /// The epoch as it reached the recorded core, faults included.
     fn next(&mut self, _command: &GimbalCommand) -> Result<Option<Epoch>, SourceError> {
+        let mut events = Vec::new();
         match &mut self.kind {
             Kind::Foreign(foreign) => foreign.next(),
             Kind::Octant { epochs, .. } => loop {
                 match epochs.next_epoch().map_err(|e| read_error(&self.path, &e))? {
                     None => return Ok(None),
-                    Some(epoch) => {
+                    Some(mut epoch) => {
+                        // What happened beside epochs that never reached the core, and is not to
+                        // be lost with them.
+                        events.append(&mut epoch.events);
                         // Aiding without its sample is where a torn file ends.
                         if let Some(sample) = epoch.sample {
                             let aiding = epoch.aiding;
+                            epoch.events = events;
                             self.last = epoch;
                             return Ok(Some(Epoch { sample, aiding }));
                         }
