@@ -163,6 +163,9 @@ pub fn text(summary: &Summary) -> String {
     for met in summary.requirements.iter().filter(|r| r.verdict == Verdict::Pass) {
         line(format!("  {}", met.sentence()));
     }
+    for fault in &summary.faults {
+        line(format!("  {}", fault.sentence()));
+    }
     let methods = std::iter::once((&summary.method, &summary.calibration, &summary.navigation))
         .chain(summary.baseline.iter().map(|b| (&b.label, &b.calibration, &b.navigation)));
     for (label, calibration, navigation) in methods {

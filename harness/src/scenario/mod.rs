@@ -25,7 +25,7 @@ pub use quantity::{Dimension, Quantity};
 pub use read::faults::Fault;
 pub use read::source::{FileName, Source};
 pub use schema::schema;
-pub use tour::{fault_example, tour};
+pub use tour::{fault_example, fault_parameters, tour};
 
 use octant_calibration::config as core;
 use octant_plant::config as plant;
