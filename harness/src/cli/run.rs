@@ -1,7 +1,7 @@
 //! `octant run`.
 
 use super::progress::with_progress;
-use super::{Failure, ScenarioArguments, load, print, write};
+use super::{Failure, ScenarioArguments, load_fired, print, write};
 use crate::evidence::{Existing, FolderError, Manifest, RunFacts, RunFolder};
 use crate::report;
 use crate::run::assemble::{parameter_text, text};
@@ -13,6 +13,7 @@ use crate::score::junit::junit;
 use crate::score::verdict::Verdict;
 use clap::Args;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::time::SystemTime;
 
 #[derive(Debug, Args)]
@@ -34,6 +35,9 @@ pub(super) struct Arguments {
     /// Where the core is, instead of the scenario's endpoint.
     #[arg(long, value_name = "URI")]
     endpoint: Option<String>,
+    /// Fire a fault whose trigger is manual, such as spike-1="5050 s".
+    #[arg(long, value_name = "ID=TIME")]
+    fire: Vec<String>,
     /// Pace the run by the clock. Not part of this version.
     #[arg(long)]
     realtime: bool,
@@ -58,7 +62,7 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     if let Some(uri) = &arguments.endpoint {
         more.push(format!("endpoint.uri={uri}"));
     }
-    let scenario = load(&arguments.scenario, &more)?;
+    let scenario = load_fired(&arguments.scenario, &more, &arguments.fire)?;
     let seed = arguments.seed.unwrap_or(scenario.seed);
     // What contradicts itself is said before anything is written.
     for method in methods(&scenario) {
@@ -219,7 +223,7 @@ fn execute(
     let mut paired: Vec<MethodRun> = Vec::with_capacity(runs.len());
     for (run, (_, clean)) in runs.into_iter().zip(&tasks) {
         match (clean, paired.last_mut()) {
-            (Some(_), Some(faulted)) => faulted.twin = Some(Box::new(run)),
+            (Some(_), Some(faulted)) => faulted.twin = Some(Arc::new(run)),
             _ => paired.push(run),
         }
     }
@@ -265,6 +269,12 @@ fn rerun(arguments: &Arguments, seed: u64) -> Vec<String> {
             line.extend([name.to_owned(), uri.clone()]);
         }
     }
+    for fire in &arguments.fire {
+        line.extend(["--fire".to_owned(), fire.clone()]);
+    }
+    if arguments.no_twin {
+        line.push("--no-twin".to_owned());
+    }
     line.extend(["--seed".to_owned(), seed.to_string()]);
     line
 }
@@ -305,6 +315,7 @@ pub(super) fn on_recording(
         seed: None,
         source: Some(format!("{kind}:{}", recording.display())),
         endpoint: None,
+        fire: Vec::new(),
         realtime: false,
         no_twin: false,
         json,

@@ -3,6 +3,7 @@
 use super::drive::Ended;
 use super::method::MethodRun;
 use super::twin::difference;
+use crate::report::counterfactual::in_words;
 use crate::report::{Provenance, ReportData, number};
 use crate::scenario::{Motion, Scenario, Source};
 use crate::score::reference::{ReferenceInput, reference};
@@ -162,6 +163,9 @@ pub fn text(summary: &Summary) -> String {
     for met in summary.requirements.iter().filter(|r| r.verdict == Verdict::Pass) {
         line(format!("  {}", met.sentence()));
     }
+    for fault in &summary.faults {
+        line(format!("  {}", fault.sentence()));
+    }
     let methods = std::iter::once((&summary.method, &summary.calibration, &summary.navigation))
         .chain(summary.baseline.iter().map(|b| (&b.label, &b.calibration, &b.navigation)));
     for (label, calibration, navigation) in methods {
@@ -192,6 +196,20 @@ pub fn text(summary: &Summary) -> String {
                 "    radial    max {:.3}, rms {:.3} nmi, {:.4} nmi/h",
                 n.radial_error_nmi.max, n.radial_error_nmi.rms, n.radial_error_nmi.rate_per_h
             ));
+        }
+    }
+    let differences = std::iter::once((&summary.method, &summary.counterfactual))
+        .chain(summary.baseline.iter().map(|b| (&b.label, &b.counterfactual)));
+    for (label, difference) in differences {
+        let Some(difference) = difference else { continue };
+        line(format!("against the twin without faults, {label}"));
+        line(format!("  {}", in_words(difference)));
+        for fault in &difference.faults {
+            let noticed = match (&fault.noticed_by, fault.delay_s) {
+                (Some(by), Some(delay_s)) => format!("noticed as {by} after {delay_s:.3} s"),
+                _ => "not noticed".to_owned(),
+            };
+            line(format!("  {}: {noticed}", fault.id));
         }
     }
     out

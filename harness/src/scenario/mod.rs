@@ -25,7 +25,7 @@ pub use quantity::{Dimension, Quantity};
 pub use read::faults::Fault;
 pub use read::source::{FileName, Source};
 pub use schema::schema;
-pub use tour::{fault_example, tour};
+pub use tour::{fault_example, fault_parameters, tour};
 
 use octant_calibration::config as core;
 use octant_plant::config as plant;
@@ -299,10 +299,24 @@ impl Scenario {
     /// The same scenario without its faults.
     #[must_use]
     pub fn without_faults(&self) -> Self {
-        let mut clean = self.clone();
-        clean.faults.clear();
-        clean.document.remove("faults");
-        clean
+        self.with_faults(|_| false)
+    }
+
+    /// The same scenario with some of its faults, by their numbers from 0.
+    #[must_use]
+    pub fn with_faults(&self, keep: impl Fn(usize) -> bool) -> Self {
+        let mut some = self.clone();
+        let mut numbers = 0..;
+        some.faults.retain(|_| numbers.next().is_some_and(&keep));
+        if some.faults.is_empty() {
+            some.document.remove("faults");
+        } else if let Some(document::Node { value: document::Value::Array(entries), .. }) =
+            some.document.get_mut("faults")
+        {
+            let mut numbers = 0..;
+            entries.retain(|_| numbers.next().is_some_and(&keep));
+        }
+        some
     }
 
     /// Samples of the calibration phase.
