@@ -39,7 +39,8 @@ pub struct Context<'a> {
     pub counter: u64,
     /// Sample period, s.
     pub dt_s: f64,
-    /// Samples since the fault set in: 0 at the first.
+    /// Samples since the fault set in: 0 at the first that the rule sees of this onset, and at no
+    /// other, whatever faults of delivery before it hold back or let out together.
     pub since_onset: u64,
     /// How often the fault has set in before.
     pub firing: u32,

@@ -4,7 +4,6 @@ mod added;
 mod aiding;
 mod chance;
 mod digital;
-mod onset;
 mod span;
 mod time;
 mod turntable;
