@@ -103,9 +103,7 @@ pub trait SampleRule: Debug + Send {
 
     /// Acts on one epoch after the fault's end, for as long as something of it
     /// [stays](Self::lingers).
-    fn afterwards(&mut self, epoch: &mut Epoch, now: &Context<'_>) {
-        let _ = (epoch, now);
-    }
+    fn afterwards(&mut self, _epoch: &mut Epoch, _now: &Context<'_>) {}
 }
 
 /// Acts on the delivery of epochs.

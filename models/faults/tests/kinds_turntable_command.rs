@@ -184,3 +184,11 @@ fn the_turntable_is_what_counts_for_the_next_fault() {
         (STOPS[2], STOPS[2], STOPS[4], STOPS[4], STOPS[6])
     );
 }
+
+#[test]
+fn a_set_point_that_changes_alone_is_known() {
+    // A core that tells nothing of its stops: only the set point says that it went on.
+    let silent = |k: u64| Output { gimbal_command: core(k).gimbal_command, ..Output::default() };
+    let outcome = run_with(&[fault("command-lost", &[], 350, 80)], 800, silent);
+    assert_eq!(departures(&outcome), [(401, 429, STOPS[3])]);
+}
