@@ -19,13 +19,15 @@ pub use text::{
     TimeUnit,
 };
 
+use octant_faults::disturbance::Disturbed;
 use octant_plant::Truth;
 pub use octant_sample::Epoch;
 use octant_sample::GimbalCommand;
 
 /// A source of epochs.
 pub trait Source {
-    /// The next epoch, or `None` when the source has ended.
+    /// The next epoch, into `epoch`; `false` when the source has ended, and then `epoch` is left as
+    /// it was. Filled in place: copying a sample that has just been written stalls on its stores.
     ///
     /// `command` is the gimbal command of the core's last output, computed from sample k. A source
     /// that turns gimbals lets it act from the end of the interval that this call delivers
@@ -33,7 +35,7 @@ pub trait Source {
     ///
     /// # Errors
     /// If the source is broken: file truncated, device gone.
-    fn next(&mut self, command: &GimbalCommand) -> Result<Option<Epoch>, SourceError>;
+    fn next(&mut self, command: &GimbalCommand, epoch: &mut Epoch) -> Result<bool, SourceError>;
 
     /// Truth at the stamp of the last epoch, where the source knows it. Costs more than a sample:
     /// ask only when it is recorded.
@@ -41,11 +43,16 @@ pub trait Source {
 
     /// Samples that the source will deliver in all, where it knows.
     fn samples_total(&self) -> Option<u64>;
+
+    /// The plant, where the source is one that faults can disturb.
+    fn disturbed(&mut self) -> Option<&mut dyn Disturbed> {
+        None
+    }
 }
 
 impl<S: Source + ?Sized> Source for Box<S> {
-    fn next(&mut self, command: &GimbalCommand) -> Result<Option<Epoch>, SourceError> {
-        (**self).next(command)
+    fn next(&mut self, command: &GimbalCommand, epoch: &mut Epoch) -> Result<bool, SourceError> {
+        (**self).next(command, epoch)
     }
 
     fn truth(&self) -> Option<Truth> {
@@ -54,6 +61,10 @@ impl<S: Source + ?Sized> Source for Box<S> {
 
     fn samples_total(&self) -> Option<u64> {
         (**self).samples_total()
+    }
+
+    fn disturbed(&mut self) -> Option<&mut dyn Disturbed> {
+        (**self).disturbed()
     }
 }
 

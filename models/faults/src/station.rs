@@ -93,6 +93,18 @@ impl Stage {
         self.acting() && matches!(&self.rule, Rule::Unit(rule) if rule.cuts_power())
     }
 
+    /// The first epoch that has to be remembered as the one before an onset.
+    fn looks_back_from(&self) -> u64 {
+        match (&self.rule, self.clock.state) {
+            (Rule::Samples(rule), state) if rule.looks_back() => match state {
+                State::Pending(at) => at.saturating_sub(1),
+                State::Spent => u64::MAX,
+                State::Waiting | State::Active { .. } | State::Fading { .. } => 0,
+            },
+            _ => u64::MAX,
+        }
+    }
+
     fn context<'a>(&self, shared: &Shared, last: &'a Epoch, output: &'a Output) -> Context<'a> {
         Context {
             epoch: shared.epoch,
@@ -143,7 +155,8 @@ pub struct Station {
     busy: bool,
     conditions: bool,
     truth: bool,
-    looks_back: bool,
+    /// Epochs from this one on are remembered.
+    remember: u64,
     /// Faults act on set points, and want to know those before.
     commands: bool,
     set_points: SetPoints,
@@ -171,9 +184,6 @@ impl Station {
         }
         let conditions = stages.iter().any(|stage| stage.clock.has_condition());
         let truth = stages.iter().any(|stage| stage.clock.needs_truth());
-        let looks_back = stages
-            .iter()
-            .any(|stage| matches!(&stage.rule, Rule::Samples(rule) if rule.looks_back()));
         let commands = stages.iter().any(|stage| matches!(stage.rule, Rule::Command(_)));
         let burst = burst(&stages)?;
         let mut station = Self {
@@ -187,7 +197,7 @@ impl Station {
             busy: false,
             conditions,
             truth,
-            looks_back,
+            remember: u64::MAX,
             commands,
             set_points: SetPoints::default(),
             last: Epoch::default(),
@@ -248,6 +258,7 @@ impl Station {
     /// Looks what has to be looked at next.
     fn plan(&mut self) {
         self.wake = self.stages.iter().map(|stage| stage.clock.wake()).min().unwrap_or(u64::MAX);
+        self.remember = self.stages.iter().map(Stage::looks_back_from).min().unwrap_or(u64::MAX);
         self.busy = self.conditions || self.stages.iter().any(Stage::engaged);
     }
 
@@ -270,16 +281,19 @@ impl Station {
     #[inline]
     #[must_use]
     pub fn is_idle(&self) -> bool {
-        !self.busy && !self.looks_back
+        !self.busy && self.epoch < self.remember
     }
 
     /// With the epoch that the source has made, on its way to the core.
     #[inline]
     pub fn after(&mut self, epoch: &Epoch, output: &Output) -> Delivered<'_> {
-        if self.is_idle() {
-            return Delivered::Untouched;
+        if self.busy {
+            return self.pass(epoch, output);
         }
-        self.pass(epoch, output)
+        if self.epoch >= self.remember {
+            self.last = *epoch;
+        }
+        Delivered::Untouched
     }
 
     fn shared(&self) -> Shared {
@@ -498,6 +512,11 @@ impl Station {
     /// Ids of the faults, in order.
     pub fn ids(&self) -> impl Iterator<Item = &str> {
         self.stages.iter().map(|stage| stage.id.as_str())
+    }
+
+    /// Ids and kinds of the faults, in order.
+    pub fn names(&self) -> impl Iterator<Item = (&str, &'static str)> {
+        self.stages.iter().map(|stage| (stage.id.as_str(), stage.kind.name))
     }
 
     /// Receipts of all faults, in order.
