@@ -114,17 +114,8 @@ impl<E: Endpoint + ?Sized> Loop<'_, E> {
     /// What happens to the unit at an epoch, before it gets it.
     #[cold]
     fn unit(&mut self, event: &UnitEvent, epoch: u64) -> Result<(), RunError> {
-        match event {
-            UnitEvent::PowerOff => self.powered = false,
-            UnitEvent::PowerOn | UnitEvent::Restart => {
-                self.endpoint.restart(None)?;
-                self.powered = true;
-            }
-            UnitEvent::RestartWith { offset } => {
-                self.endpoint.restart(Some(offset))?;
-                self.powered = true;
-            }
-        }
+        super::unit::happen(event, self.endpoint)?;
+        self.powered = *event != UnitEvent::PowerOff;
         self.recorder.event(super::unit::event(event, epoch));
         Ok(())
     }

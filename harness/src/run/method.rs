@@ -13,23 +13,24 @@ use crate::scenario::resolve::{Draws, Seeded};
 use crate::scenario::{Method, Scenario, Source as SourceKind};
 use crate::score::parameters::{nees, score, worst_normalized_error};
 use crate::score::summary::{Calibration, HeightChannel, Navigation};
-use crate::source::{PlantSource, Source, SourceError};
+use crate::score::trace::Trace;
+use crate::source::{PlantSource, SourceError};
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use octant_calibration::config as core;
 use octant_calibration::state_machine::ConfigError;
 use octant_calibration::table::CalibrationTable;
 use octant_faults::Receipt;
-use octant_faults::catalogue::Acts;
 use octant_plant::Plant;
 use octant_sample::{Mode, Parameters};
 use std::path::Path;
+use std::sync::Arc;
 
 /// What is kept of a method's stream.
 #[derive(Clone, Copy, Debug)]
 pub enum Recording<'a> {
     /// A file, by the scenario's policy.
     File(&'a Path),
-    /// The hash of the stream alone.
+    /// The hash of the stream alone, and the trace by which a twin is compared.
     Hash,
     /// Nothing: for ensembles.
     None,
@@ -113,6 +114,8 @@ pub struct MethodRun {
     pub table: Option<CalibrationTable>,
     /// What became of the faults, in the order of the scenario.
     pub receipts: Vec<Receipt>,
+    /// The same run without its faults.
+    pub twin: Option<Arc<MethodRun>>,
 }
 
 /// Name of a method, for people.
@@ -189,6 +192,9 @@ pub fn run_method(
     };
     let calibration_s = core.calibration.as_ref().map_or(0.0, |c| c.duration_s);
     let mut watcher = Watcher::new(calibration_s);
+    if !scenario.faults.is_empty() || matches!(recording, Recording::Hash) {
+        watcher.trace = Some(Trace::new());
+    }
     let mut faulted = faulted(scenario, seed)?;
     let ended = match opened {
         // Statically dispatched: this loop passes ten million samples a second.
@@ -199,7 +205,6 @@ pub fn run_method(
                 None => drive(&mut source, &mut endpoint, &mut recorder, &mut watcher, control)?,
                 Some(faulted) => {
                     let (endpoint, recorder) = (&mut endpoint, &mut recorder);
-                    check_disturbed(&mut source, faulted)?;
                     drive_faulted(&mut source, faulted, endpoint, recorder, &mut watcher, control)?
                 }
             }
@@ -228,16 +233,6 @@ fn faulted(scenario: &Scenario, seed: u64) -> Result<Option<Faulted>, SetupError
         .collect();
     fires.sort_unstable();
     Ok(station.map(|station| Faulted { station, fires }))
-}
-
-/// Faults inside the plant need one that can be disturbed.
-fn check_disturbed(source: &mut PlantSource, faulted: &Faulted) -> Result<(), SetupError> {
-    if !faulted.station.acts_on(Acts::Plant) || source.disturbed().is_some() {
-        return Ok(());
-    }
-    let id = faulted.station.ids().next().unwrap_or_default().to_owned();
-    let reason = "it acts inside the plant, and the plant of this version can't be disturbed";
-    Err(SetupError::Fault { id, reason: reason.to_owned() })
 }
 
 /// Least squares linearises about its initial parameters, and a real instrument's errors can be
@@ -360,6 +355,7 @@ fn finish(
         truth,
         table,
         receipts: Vec::new(),
+        twin: None,
     })
 }
 

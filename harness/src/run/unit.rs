@@ -1,5 +1,6 @@
 //! What happened to the unit under test, as an event of the recording: a replay does it again.
 
+use crate::endpoint::{Endpoint, EndpointError};
 use crate::recorder::Event;
 use octant_faults::rule::UnitEvent;
 use octant_sample::Parameters;
@@ -63,6 +64,22 @@ pub fn of(event: &Event) -> Result<Option<UnitEvent>, String> {
             ));
         }
     }))
+}
+
+/// Lets it happen to an endpoint. Of one without power nothing is to be done here: no epoch reaches
+/// it, and it starts anew when power comes back.
+///
+/// # Errors
+/// If the endpoint can't.
+pub fn happen<E: Endpoint + ?Sized>(
+    event: &UnitEvent,
+    endpoint: &mut E,
+) -> Result<(), EndpointError> {
+    match event {
+        UnitEvent::PowerOff => Ok(()),
+        UnitEvent::PowerOn | UnitEvent::Restart => endpoint.restart(None),
+        UnitEvent::RestartWith { offset } => endpoint.restart(Some(offset)),
+    }
 }
 
 #[cfg(test)]

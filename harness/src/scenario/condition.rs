@@ -100,7 +100,7 @@ mod tests {
         );
         for (text, expected) in [
             ("nis", "above or below"),
-            ("nsi above 25", "did you mean \"nis\"?"),
+            ("lattitude error above 1 deg", "did you mean \"latitude error\"?"),
             ("nis above 25 m/s", "a plain number"),
             ("velocity north above 3", "without unit"),
             ("velocity north above 3 deg", "expected a velocity"),

@@ -271,6 +271,30 @@ fn given(section: &Section) -> Vec<String> {
 /// Values of examples of faults where that of the form alone makes no fault: kind, key, TOML.
 const FAULT_EXAMPLES: &[(&str, &str, &str)] = &[("spike", "amplitude", r#""1000 deg/h""#)];
 
+/// What the parameters of a kind of fault take, with their bounds, in words.
+#[must_use]
+pub fn fault_parameters(kind: &str) -> Vec<(&'static str, String)> {
+    let takes = |key: &'static Key| {
+        let choices = match &key.kind {
+            Kind::Choice(choices) => choices
+                .iter()
+                .filter(|(_, doc)| !doc.is_empty())
+                .map(|(name, doc)| format!("{name:?}: {doc}"))
+                .collect::<Vec<_>>(),
+            _ => Vec::new(),
+        };
+        let more =
+            if choices.is_empty() { String::new() } else { format!(" ({})", choices.join("; ")) };
+        let bounds = match &key.kind {
+            Kind::Quantity(_, bounds) => format!(", {}", bounds.words()),
+            _ => String::new(),
+        };
+        (key.name, format!("{}{bounds}{more}", expected(&key.kind)))
+    };
+    let section = super::keys::kind_section(kind);
+    section.map_or_else(Vec::new, |section| section.keys.iter().map(takes).collect())
+}
+
 /// An entry of a scenario with a fault of a kind, as TOML; `None` for a kind that isn't there.
 #[must_use]
 pub fn fault_example(kind: &str) -> Option<String> {

@@ -154,6 +154,26 @@ pub struct FaultResult {
     pub faulted_crc32: Option<String>,
 }
 
+impl FaultResult {
+    /// `fault spike-1 (spike): fired once, 100 samples from 36001 to 36100`.
+    #[must_use]
+    pub fn sentence(&self) -> String {
+        let times = match self.firings {
+            1 => "once".to_owned(),
+            n => format!("{n} times"),
+        };
+        let what = match (self.first_sample, self.last_sample) {
+            (Some(first), Some(last)) if first == last => format!("fired {times}, sample {first}"),
+            (Some(first), Some(last)) => {
+                format!("fired {times}, {} samples from {first} to {last}", self.samples_altered)
+            }
+            _ if self.firings > 0 => format!("set in {times} and altered nothing"),
+            _ => "never fired".to_owned(),
+        };
+        format!("fault {} ({}): {what}", self.id, self.kind)
+    }
+}
+
 impl From<&octant_faults::Receipt> for FaultResult {
     fn from(receipt: &octant_faults::Receipt) -> Self {
         // A fault that touches no sample (of the plant, of the unit) leaves both sums empty.

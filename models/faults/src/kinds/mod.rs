@@ -1,7 +1,9 @@
 //! The kinds of faults, one family a folder.
 
 mod added;
+mod aiding;
 mod analogue;
+mod chance;
 mod channel;
 mod digital;
 mod mapped;
@@ -10,13 +12,24 @@ mod physics;
 mod plant;
 mod ring_laser;
 mod six;
+mod span;
+mod time;
 mod turntable;
+mod unit;
 
 use crate::catalogue::Kind;
 
 /// All kinds, in the order of the documentation.
-pub static KINDS: &[&[&Kind]] =
-    &[physics::KINDS, analogue::KINDS, ring_laser::KINDS, digital::KINDS, turntable::KINDS];
+pub static KINDS: &[&[&Kind]] = &[
+    physics::KINDS,
+    analogue::KINDS,
+    ring_laser::KINDS,
+    digital::KINDS,
+    time::KINDS,
+    turntable::KINDS,
+    unit::KINDS,
+    aiding::KINDS,
+];
 
 /// All kinds one by one.
 pub fn all() -> impl Iterator<Item = &'static Kind> {

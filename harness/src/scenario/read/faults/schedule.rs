@@ -244,6 +244,14 @@ impl<'a> Timing<'a> {
         else {
             return Ok(());
         };
+        if let Some(fire) = all[index].fires.iter().find(|fire| **fire > total) {
+            let message = format!(
+                "found {}, and the run ends at {}",
+                self.words(fire.saturating_sub(1)),
+                self.words(total)
+            );
+            return Err(trigger.problem("fire", message));
+        }
         if earliest > total {
             let key = trigger.first_key();
             let at_the_earliest = match all[index].spec.schedule.trigger {
@@ -256,15 +264,6 @@ impl<'a> Timing<'a> {
                 self.words(total)
             );
             return Err(trigger.problem(key, message));
-        }
-        let late = all[index].fires.iter().find(|fire| **fire > total);
-        if let Some(fire) = late {
-            let message = format!(
-                "found {}, and the run ends at {}",
-                self.words(fire.saturating_sub(1)),
-                self.words(total)
-            );
-            return Err(trigger.problem("fire", message));
         }
         Ok(())
     }

@@ -1,5 +1,6 @@
 //! Gimbals, drives and encoders.
 
+mod command;
 mod drive;
 mod encoder;
 mod gimbal;
@@ -15,4 +16,9 @@ pub(super) static KINDS: &[&Kind] = &[
     &drive::RUNAWAY,
     &drive::OVERSHOOT,
     &gimbal::SHORT_SETTLE,
+    &command::SKIPPED_POSITION,
+    &command::REPEATED_POSITION,
+    &command::WRONG_DIRECTION,
+    &command::COMMAND_LATE,
+    &command::COMMAND_LOST,
 ];
