@@ -28,16 +28,10 @@ enum Command {
         #[arg(value_name = "KIND")]
         kind: String,
     },
-    /// Run a scenario with a fault at many strengths. Not part of this version.
-    Sweep {
-        #[arg(value_name = "SCENARIO", trailing_var_arg = true, allow_hyphen_values = true)]
-        rest: Vec<String>,
-    },
-    /// Take away from a failed run the faults that it fails without. Not part of this version.
-    Minimise {
-        #[arg(value_name = "RUN", trailing_var_arg = true, allow_hyphen_values = true)]
-        rest: Vec<String>,
-    },
+    /// Run a scenario over a grid of a fault's values and times, and see where it breaks.
+    Sweep(super::sweep::Arguments),
+    /// Find the smallest set of a run's faults that still breaks it.
+    Minimise(super::minimise::Arguments),
 }
 
 pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
@@ -54,14 +48,10 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
                 return Err(Failure::input(format!("unknown kind of fault {kind:?}, {known}")));
             }
         },
-        Command::Sweep { .. } => return Err(later("sweep")),
-        Command::Minimise { .. } => return Err(later("minimise")),
+        Command::Sweep(arguments) => return super::sweep::command(arguments),
+        Command::Minimise(arguments) => return super::minimise::command(arguments),
     }
     Ok(Verdict::Pass)
-}
-
-fn later(name: &str) -> Failure {
-    Failure::input(format!("octant faults {name} is not part of this version"))
 }
 
 #[derive(Serialize)]

@@ -5,12 +5,14 @@
 
 mod compare;
 mod faults;
+mod minimise;
 mod observe;
 mod progress;
 mod replay;
 mod report;
 mod run;
 mod score;
+mod sweep;
 
 use crate::score::verdict::Verdict;
 use clap::{Args, Parser, Subcommand};

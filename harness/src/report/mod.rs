@@ -8,10 +8,12 @@
 mod calibration;
 pub mod chart;
 pub mod compare;
+pub mod counterfactual;
 mod drift;
 pub mod number;
 mod page;
 mod parameters;
 pub mod run;
+pub mod sweep;
 
 pub use run::{GimbalPoint, HealthEvent, NisPoint, ParameterPoint, Provenance, ReportData};

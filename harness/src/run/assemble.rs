@@ -2,6 +2,8 @@
 
 use super::drive::Ended;
 use super::method::MethodRun;
+use super::twin::difference;
+use crate::report::counterfactual::in_words;
 use crate::report::{Provenance, ReportData, number};
 use crate::scenario::{Motion, Scenario, Source};
 use crate::score::reference::{ReferenceInput, reference};
@@ -47,6 +49,8 @@ pub fn assemble(
         baseline_estimated_g_zz: baseline.as_ref().and_then(g_zz),
     });
     let findings = findings(&primary);
+    let counterfactual = difference(scenario, &primary);
+    let baseline_counterfactual = baseline.as_ref().and_then(|run| difference(scenario, run));
     let mut summary = Summary {
         schema: SCHEMA,
         octant: env!("CARGO_PKG_VERSION").to_owned(),
@@ -64,10 +68,12 @@ pub fn assemble(
             label: run.label,
             calibration: run.calibration,
             navigation: run.navigation,
+            counterfactual: baseline_counterfactual,
             stream_hash: run.recorder.stream_hash,
             faults: run.receipts.iter().map(FaultResult::from).collect(),
         }),
         reference: Some(references),
+        counterfactual,
         pacing: None,
         stream_hash: primary.recorder.stream_hash.clone(),
     };
@@ -190,6 +196,20 @@ pub fn text(summary: &Summary) -> String {
                 "    radial    max {:.3}, rms {:.3} nmi, {:.4} nmi/h",
                 n.radial_error_nmi.max, n.radial_error_nmi.rms, n.radial_error_nmi.rate_per_h
             ));
+        }
+    }
+    let differences = std::iter::once((&summary.method, &summary.counterfactual))
+        .chain(summary.baseline.iter().map(|b| (&b.label, &b.counterfactual)));
+    for (label, difference) in differences {
+        let Some(difference) = difference else { continue };
+        line(format!("against the twin without faults, {label}"));
+        line(format!("  {}", in_words(difference)));
+        for fault in &difference.faults {
+            let noticed = match (&fault.noticed_by, fault.delay_s) {
+                (Some(by), Some(delay_s)) => format!("noticed as {by} after {delay_s:.3} s"),
+                _ => "not noticed".to_owned(),
+            };
+            line(format!("  {}: {noticed}", fault.id));
         }
     }
     out

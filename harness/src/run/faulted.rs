@@ -65,13 +65,16 @@ where
     let station = &mut faulted.station;
     let mut fires = faulted.fires.iter().peekable();
     let mut epochs = 0u64;
+    let mut epoch = Epoch::default();
     let ended = loop {
         while let Some((_, id)) = fires.next_if(|(at, _)| *at == epochs + 1) {
             station.fire(id);
         }
         let mut command = run.command;
         station.before(&mut command, &run.output, &mut Behind(source));
-        let Some(epoch) = source.next(&command)? else { break Ended::SourceEnded };
+        if !source.next(&command, &mut epoch)? {
+            break Ended::SourceEnded;
+        }
         for event in station.unit_events() {
             run.unit(event, epochs + 1)?;
         }
@@ -135,17 +138,17 @@ impl<E: Endpoint + ?Sized> Loop<'_, E> {
             return Ok(None);
         }
         for (index, faulted) in these.iter().enumerate() {
-            let output = self.endpoint.step(faulted)?;
+            self.endpoint.step(faulted, &mut self.output)?;
+            let output = &self.output;
             if index == 0 {
-                self.recorder.push(Frame { clean, faulted, output: &output })?;
+                self.recorder.push(Frame { clean, faulted, output })?;
             } else {
-                self.recorder.added(clean.sample.device_time.ns, faulted, &output)?;
+                self.recorder.added(clean.sample.device_time.ns, faulted, output)?;
             }
             let (revision, recorder) = (&mut self.revision, &mut *self.recorder);
-            answered(&output, revision, &*self.endpoint, recorder, self.watcher, source);
+            answered(output, revision, &*self.endpoint, recorder, self.watcher, source);
             self.command = output.gimbal_command;
-            self.output = output;
-            if let Some(ended) = over(&output) {
+            if let Some(ended) = over(output) {
                 return Ok(Some(ended));
             }
         }

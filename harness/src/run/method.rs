@@ -13,6 +13,7 @@ use crate::scenario::resolve::{Draws, Seeded};
 use crate::scenario::{Method, Scenario, Source as SourceKind};
 use crate::score::parameters::{nees, score, worst_normalized_error};
 use crate::score::summary::{Calibration, HeightChannel, Navigation};
+use crate::score::trace::Trace;
 use crate::source::{PlantSource, Source, SourceError};
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use octant_calibration::config as core;
@@ -23,13 +24,14 @@ use octant_faults::catalogue::Acts;
 use octant_plant::Plant;
 use octant_sample::{Mode, Parameters};
 use std::path::Path;
+use std::sync::Arc;
 
 /// What is kept of a method's stream.
 #[derive(Clone, Copy, Debug)]
 pub enum Recording<'a> {
     /// A file, by the scenario's policy.
     File(&'a Path),
-    /// The hash of the stream alone.
+    /// The hash of the stream alone, and the trace by which a twin is compared.
     Hash,
     /// Nothing: for ensembles.
     None,
@@ -113,6 +115,8 @@ pub struct MethodRun {
     pub table: Option<CalibrationTable>,
     /// What became of the faults, in the order of the scenario.
     pub receipts: Vec<Receipt>,
+    /// The same run without its faults.
+    pub twin: Option<Arc<MethodRun>>,
 }
 
 /// Name of a method, for people.
@@ -189,6 +193,9 @@ pub fn run_method(
     };
     let calibration_s = core.calibration.as_ref().map_or(0.0, |c| c.duration_s);
     let mut watcher = Watcher::new(calibration_s);
+    if !scenario.faults.is_empty() || matches!(recording, Recording::Hash) {
+        watcher.trace = Some(Trace::new());
+    }
     let mut faulted = faulted(scenario, seed)?;
     let ended = match opened {
         // Statically dispatched: this loop passes ten million samples a second.
@@ -360,6 +367,7 @@ fn finish(
         truth,
         table,
         receipts: Vec::new(),
+        twin: None,
     })
 }
 

@@ -8,8 +8,11 @@ pub mod concluded;
 pub mod drive;
 pub mod faulted;
 pub mod method;
+pub mod minimise;
 pub mod paired;
 pub mod raw_counts;
+pub mod sweep;
+pub mod twin;
 pub mod unit;
 pub mod watch;
 

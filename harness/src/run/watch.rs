@@ -7,6 +7,7 @@ use crate::endpoint::ParameterEstimate;
 use crate::report::{GimbalPoint, HealthEvent, NisPoint, ParameterPoint};
 use crate::score::drift::{DriftSample, DriftScorer};
 use crate::score::health::HealthMonitor;
+use crate::score::trace::Trace;
 use octant_plant::Truth;
 use octant_sample::{Health, Mode, Output};
 
@@ -39,6 +40,8 @@ pub struct Watcher {
     last_ns: u64,
     drift: DriftScorer,
     drift_samples: u64,
+    /// For the comparison with a twin, where there is one.
+    pub trace: Option<Trace>,
     /// Health and NIS over the run.
     pub health: HealthMonitor,
     /// How the parameters came about.
@@ -71,6 +74,7 @@ impl Watcher {
             last_ns: 0,
             drift: DriftScorer::new(),
             drift_samples: 0,
+            trace: None,
             health: HealthMonitor::new(),
             convergence: Vec::new(),
             nis: Vec::new(),
@@ -85,6 +89,9 @@ impl Watcher {
     pub fn epoch(&mut self, output: &Output) -> bool {
         let now_ns = output.device_time.ns;
         self.last_ns = now_ns;
+        if let Some(trace) = &mut self.trace {
+            trace.output(output);
+        }
         if output.mode != self.last_mode {
             self.change_mode(output);
         }
@@ -109,6 +116,7 @@ impl Watcher {
         if output.mode == Mode::Navigating {
             // A core that was started anew navigates anew: the last navigation is the one scored.
             (self.drift, self.drift_samples) = (DriftScorer::new(), 0);
+            self.trace.iter_mut().for_each(Trace::navigation_begins);
             self.navigation_start_ns = Some(output.device_time.ns);
             self.scored_ns = None;
             self.next_score_ns = output.device_time.ns;
@@ -188,13 +196,18 @@ impl Watcher {
         }
         self.scored_ns = Some(now_ns);
         self.drift_samples += 1;
-        self.drift.push(&DriftSample {
+        let sample = DriftSample {
             t_s: (now_ns - start_ns) as f64 * 1e-9,
             latitude_error_rad: output.navigation.latitude_rad - truth.latitude_rad,
             longitude_error_rad: output.navigation.longitude_rad - truth.longitude_rad,
             latitude_rad: truth.latitude_rad,
             height_m: truth.height_m,
-        });
+        };
+        if let Some(trace) = &mut self.trace {
+            let (north, east) = (sample.latitude_error_rad, sample.longitude_error_rad);
+            trace.drift(sample.t_s, north, east);
+        }
+        self.drift.push(&sample);
     }
 
     /// The drift so far; `None` without navigation or without truth.

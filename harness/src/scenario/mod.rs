@@ -296,6 +296,29 @@ impl Scenario {
         read::scenario(document, folder).map_err(|problem| with_file(vec![problem]))
     }
 
+    /// The same scenario without its faults.
+    #[must_use]
+    pub fn without_faults(&self) -> Self {
+        self.with_faults(|_| false)
+    }
+
+    /// The same scenario with some of its faults, by their numbers from 0.
+    #[must_use]
+    pub fn with_faults(&self, keep: impl Fn(usize) -> bool) -> Self {
+        let mut some = self.clone();
+        let mut numbers = 0..;
+        some.faults.retain(|_| numbers.next().is_some_and(&keep));
+        if some.faults.is_empty() {
+            some.document.remove("faults");
+        } else if let Some(document::Node { value: document::Value::Array(entries), .. }) =
+            some.document.get_mut("faults")
+        {
+            let mut numbers = 0..;
+            entries.retain(|_| numbers.next().is_some_and(&keep));
+        }
+        some
+    }
+
     /// Samples of the calibration phase.
     #[must_use]
     pub fn calibration_samples(&self) -> u64 {

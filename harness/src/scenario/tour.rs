@@ -159,14 +159,14 @@ fn comment(key: &Key, out: &mut String) {
                 let doc = key.doc.trim_end_matches('.');
                 let more: Vec<String> = section.keys[1..]
                     .iter()
-                    .map(|key| format!("{} = {}", key.name, example(&key.kind)))
+                    .map(|key| format!("{} = {}", key.name, example_in_form(key)))
                     .collect();
                 let more = if more.is_empty() {
                     String::new()
                 } else {
                     format!("; with it {}", more.join(", "))
                 };
-                format!("{} = {} ({doc}{more})", key.name, example(&key.kind))
+                format!("{} = {} ({doc}{more})", key.name, example_in_form(key))
             });
             text += &format!(" One of: {}.", each.collect::<Vec<_>>().join("; "));
         }
@@ -258,10 +258,32 @@ fn example(kind: &Kind) -> String {
     }
 }
 
+/// Examples of keys of triggers and repetitions.
+const FORM_EXAMPLES: &[(&str, &str)] = &[
+    ("at", r#""5050 s""#),
+    ("sample", "1010001"),
+    ("position", "4"),
+    ("moving_to", "5"),
+    ("mode", r#""navigating""#),
+    ("every", r#""60 s""#),
+    ("poisson", r#""6 min""#),
+    ("after_fault", r#""spike-1""#),
+    ("after", r#""2 s""#),
+    ("from", r#""10 min""#),
+    ("until", r#""1 h""#),
+    ("times", "3"),
+];
+
+/// The example of a key of a form.
+fn example_in_form(key: &Key) -> String {
+    let own = FORM_EXAMPLES.iter().find(|(name, _)| *name == key.name);
+    own.map_or_else(|| example(&key.kind), |(_, text)| (*text).to_owned())
+}
+
 /// The keys of a table that can't be left out, and those with a value by default, as TOML.
 fn given(section: &Section) -> Vec<String> {
     let line = |key: &Key| match key.default {
-        Default::Required => Some(format!("{} = {}", key.name, example(&key.kind))),
+        Default::Required => Some(format!("{} = {}", key.name, example_in_form(key))),
         Default::Value(text) => Some(format!("{} = {}", key.name, written(text))),
         Default::Derived(_) | Default::Absent(_) | Default::Section => None,
     };

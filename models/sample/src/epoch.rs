@@ -23,4 +23,9 @@ impl Epoch {
                 _ => false,
             }
     }
+
+    /// Takes what was found; `false` if that is nothing.
+    pub fn take(&mut self, found: Option<Self>) -> bool {
+        found.map(|found| *self = found).is_some()
+    }
 }

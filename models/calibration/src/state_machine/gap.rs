@@ -12,7 +12,7 @@ impl Core {
     /// makes a fault at the start of a move worse.
     #[cold]
     pub(super) fn bridge(&mut self, missing: u64) {
-        let measured = self.held;
+        let [x, y, z, u, v, w] = self.held;
         let integrates = match self.mode {
             Mode::Navigating => true,
             Mode::Calibrating => matches!(self.estimation, Estimation::Kalman(_)),
@@ -20,7 +20,7 @@ impl Core {
         };
         if integrates {
             for _ in 0..missing.min(HOLD_MAX_SAMPLES) {
-                self.integrate(&measured, self.sample_s);
+                self.integrate(self.sample_s, x, y, z, u, v, w);
             }
         }
         // The clock of the procedure goes on: the turntable does too.

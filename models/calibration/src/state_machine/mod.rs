@@ -76,9 +76,11 @@ pub struct Core {
     revision: u32,
     compensation: Compensation,
     strapdown: Strapdown,
-    /// Last raw increments, for bridging a gap.
-    held: (Vector3<f64>, Vector3<f64>),
+    /// Counts of the last sample integrated, for bridging a gap.
+    held: [i32; 6],
     last_measured_tick: u64,
+    /// Next tick, at the earliest, at which aiding is due: a division is dear at every sample.
+    due_tick: u64,
     nis_running: f64,
     gimbal_disagreements: u64,
     refusal: Option<Refusal>,
@@ -88,6 +90,15 @@ pub struct Core {
     /// What the last output said of the gimbals, and its stamp.
     gimbals: Gimbals,
     answered: (u64, DeviceTime),
+}
+
+/// Increments (rad and m/s) of counts.
+#[inline]
+fn increments(theta: [i32; 3], velocity: [i32; 3]) -> (Vector3<f64>, Vector3<f64>) {
+    (
+        Vector3::from(theta.map(f64::from)) * DELTA_THETA_LSB_RAD,
+        Vector3::from(velocity.map(f64::from)) * DELTA_VELOCITY_LSB_MPS,
+    )
 }
 
 fn ticks(duration_s: f64, sample_s: f64) -> u64 {
@@ -137,8 +148,9 @@ impl Core {
             revision: 0,
             compensation: Compensation::new(&config.initial_parameters),
             strapdown: strapdown_at(&config.site, &q_nb, velocity),
-            held: Default::default(),
+            held: [0; 6],
             last_measured_tick: 0,
+            due_tick: 0,
             nis_running: 0.0,
             gimbal_disagreements: 0,
             refusal: None,
@@ -215,10 +227,18 @@ impl Core {
     /// The parameters and their σ ([`Self::parameters`], [`Self::sigma`]) have changed when the
     /// output's revision has.
     pub fn step(&mut self, sample: &Sample, aiding: Option<&Aiding>) -> Output {
+        let mut output = Output::default();
+        self.step_into(sample, aiding, &mut output);
+        output
+    }
+
+    /// [`Self::step`] in place, for who steps millions of times: a copy of an output that has just
+    /// been written waits for the stores.
+    pub fn step_into(&mut self, sample: &Sample, aiding: Option<&Aiding>, output: &mut Output) {
         let (order, mut health) = self.monitor.check(sample);
         let mut nis = f64::NAN;
         let interval_ns = match order {
-            Order::Behind => return self.answer(sample, health, nis),
+            Order::Behind => return self.answer(sample, health, nis, output),
             Order::Next(interval_ns) => interval_ns,
             Order::Gap { missing } => {
                 self.bridge(missing);
@@ -226,10 +246,13 @@ impl Core {
             }
         };
         self.tick = self.tick.saturating_add(1);
-        self.take(sample, interval_ns as f64 * 1e-9);
+        let regular = interval_ns == self.config.sample_period_ns;
+        self.take(sample, if regular { self.sample_s } else { interval_ns as f64 * 1e-9 });
         match self.mode {
             Mode::Calibrating => {
-                self.measure(aiding, &mut health, &mut nis);
+                if aiding.is_some() || self.tick >= self.due_tick {
+                    self.measure(aiding, &mut health, &mut nis);
+                }
                 if self.tick >= self.calibration_ticks {
                     self.finish_calibration(sample.device_time);
                 }
@@ -249,7 +272,7 @@ impl Core {
             health |= Health::NUMERIC;
             self.refuse(Refusal::Numeric);
         }
-        self.answer(sample, health, nis)
+        self.answer(sample, health, nis, output);
     }
 
     /// Samples since the start of the present phase.
@@ -261,37 +284,40 @@ impl Core {
     /// Takes the increments of a sample into whatever runs.
     #[inline]
     fn take(&mut self, sample: &Sample, interval_s: f64) {
-        let increments = |counts: &[i32; 3], lsb: f64| {
-            Vector3::new(f64::from(counts[0]), f64::from(counts[1]), f64::from(counts[2])) * lsb
-        };
-        let measured = (
-            increments(&sample.delta_theta, DELTA_THETA_LSB_RAD),
-            increments(&sample.delta_velocity, DELTA_VELOCITY_LSB_MPS),
-        );
         match (self.mode, &self.estimation) {
             (Mode::Navigating, _) | (Mode::Calibrating, Estimation::Kalman(_)) => {
-                self.integrate(&measured, interval_s);
+                let ([x, y, z], [u, v, w]) = (sample.delta_theta, sample.delta_velocity);
+                self.integrate(interval_s, x, y, z, u, v, w);
             }
-            (Mode::Aligning, _) => self.align(&measured, interval_s),
-            (Mode::Calibrating, _) => self.watch(sample, &measured, interval_s),
+            (Mode::Aligning, _) => self.align(sample, interval_s),
+            (Mode::Calibrating, _) => self.watch(sample, interval_s),
             (Mode::Refused | Mode::Done, _) => {}
         }
     }
 
-    #[inline]
-    fn integrate(&mut self, measured: &(Vector3<f64>, Vector3<f64>), interval_s: f64) {
-        let (dtheta, dv) = self.compensation.apply(&measured.0, &measured.1, interval_s);
+    /// Navigates over one interval: counts of delta_theta, then of delta_velocity.
+    ///
+    /// Each count is an argument of its own, and the call is kept, so that each is read the way it
+    /// was written. Read in pairs, right after single ones were stored, they would have to wait
+    /// until those stores are through: more than the rest of the step takes.
+    #[inline(never)]
+    #[allow(clippy::too_many_arguments, reason = "in registers: see above")]
+    fn integrate(&mut self, interval_s: f64, x: i32, y: i32, z: i32, u: i32, v: i32, w: i32) {
+        let (theta, velocity) = increments([x, y, z], [u, v, w]);
+        let (dtheta, dv) = self.compensation.apply(&theta, &velocity, interval_s);
         self.strapdown.step(&dtheta, &dv, interval_s);
         if let Estimation::Kalman(filter) = &mut self.estimation {
             filter.accumulate(&self.strapdown, &dtheta, &dv, interval_s);
         }
-        self.held = *measured;
+        self.held = [x, y, z, u, v, w];
     }
 
     #[cold]
-    fn align(&mut self, measured: &(Vector3<f64>, Vector3<f64>), interval_s: f64) {
+    #[inline(never)]
+    fn align(&mut self, sample: &Sample, interval_s: f64) {
         let Some((alignment, until)) = &mut self.alignment else { return };
-        let (dtheta, dv) = self.compensation.apply(&measured.0, &measured.1, interval_s);
+        let (theta, velocity) = increments(sample.delta_theta, sample.delta_velocity);
+        let (dtheta, dv) = self.compensation.apply(&theta, &velocity, interval_s);
         alignment.step(&dtheta, &dv, interval_s);
         if self.tick < *until {
             return;
@@ -308,18 +334,21 @@ impl Core {
     /// A least-squares calibration doesn't navigate: it looks at standstills and at the moves
     /// between them.
     #[inline(never)]
-    fn watch(&mut self, sample: &Sample, measured: &(Vector3<f64>, Vector3<f64>), interval_s: f64) {
+    fn watch(&mut self, sample: &Sample, interval_s: f64) {
         let Some(cursor) = &self.cursor else { return };
         let tick = self.tick;
         let standing = tick > cursor.arrival_tick() + self.settle_ticks;
         if standing {
-            self.standstill.add(measured, interval_s);
+            let measured = increments(sample.delta_theta, sample.delta_velocity);
+            self.standstill.add(&measured, interval_s);
         } else {
             self.standstill = Standstill::default();
         }
         self.estimation.raw_sample(sample, interval_s, standing);
     }
 
+    #[cold]
+    #[inline(never)]
     fn refuse(&mut self, refusal: Refusal) {
         if let Some(filter) = self.filter() {
             self.last_quality = quality_of(filter);
@@ -330,6 +359,7 @@ impl Core {
         self.mode = Mode::Refused;
     }
 
+    #[inline(never)]
     fn measure(&mut self, aiding: Option<&Aiding>, health: &mut Health, nis: &mut f64) {
         let (Estimation::Kalman(filter), Some(kalman)) =
             (&mut self.estimation, kalman_of(&self.config))
@@ -338,6 +368,7 @@ impl Core {
         };
         let period_ticks = kalman.aiding_period_ns / self.config.sample_period_ns;
         let due = self.tick.is_multiple_of(period_ticks);
+        self.due_tick = self.tick.checked_next_multiple_of(period_ticks).unwrap_or(u64::MAX);
         if !due && aiding.is_none() {
             return;
         }
@@ -378,7 +409,7 @@ impl Core {
     }
 
     #[inline]
-    fn answer(&mut self, sample: &Sample, health: Health, nis: f64) -> Output {
+    fn answer(&mut self, sample: &Sample, health: Health, nis: f64, output: &mut Output) {
         self.answered = (sample.sequence, sample.device_time);
         if let Some(cursor) = &self.cursor {
             self.gimbals = Gimbals {
@@ -387,7 +418,7 @@ impl Core {
                 command: cursor.command(),
             };
         }
-        self.output(health, nis)
+        *output = self.output(health, nis);
     }
 
     /// The output as things stand. Made anew each time: copying one that has just been written

@@ -1,12 +1,18 @@
 //! The kinds of faults, one family a folder.
 
 mod added;
+mod analogue;
+mod channel;
 mod digital;
+mod mapped;
+mod onset;
+mod ring_laser;
+mod six;
 
 use crate::catalogue::Kind;
 
 /// All kinds, in the order of the documentation.
-pub static KINDS: &[&[&Kind]] = &[digital::KINDS];
+pub static KINDS: &[&[&Kind]] = &[analogue::KINDS, ring_laser::KINDS, digital::KINDS];
 
 /// All kinds one by one.
 pub fn all() -> impl Iterator<Item = &'static Kind> {
