@@ -488,6 +488,70 @@ fn an_endpoint_starts_anew_from_its_configuration() {
     }
 }
 
+/// Kinds of the catalogue of every place where faults act, over one run.
+const EVERYWHERE: &str = r#"
+[[faults]]
+id = "slip"
+kind = "gimbal-slip"
+gimbal = "roll"
+angle = "0.05 deg"
+trigger = { position = 3, after = "5 s" }
+
+[[faults]]
+id = "lost-command"
+kind = "command-lost"
+trigger = { moving_to = 4 }
+duration = "2 s"
+
+[[faults]]
+id = "late"
+kind = "late-delivery"
+delay = "0.1 s"
+trigger = { at = "150 s" }
+duration = "1 s"
+
+[[faults]]
+id = "drop"
+kind = "dropout"
+trigger = { after_fault = "late", after = "10 s" }
+duration = "100 samples"
+
+[[faults]]
+id = "noise"
+kind = "noise-gain"
+channels = "gyro"
+gain = "300 %"
+trigger = { at = "200 s" }
+duration = "10 s"
+recovery = "5 s"
+
+[[faults]]
+id = "restart"
+kind = "restart"
+trigger = { at = "250 s" }
+"#;
+
+#[test]
+fn faults_of_every_place_leave_a_recording_that_replays_bit_for_bit() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("all.toml"), format!("{LOCKSTEP}\n{EVERYWHERE}")).unwrap();
+    let octant = |arguments: &[&str]| {
+        let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_octant"));
+        command.args(arguments).current_dir(folder.path()).output().unwrap()
+    };
+    let run = octant(&["run", "all.toml", "--out", "all"]);
+    assert!(matches!(run.status.code(), Some(0 | 1)), "{}", String::from_utf8_lossy(&run.stderr));
+    let text = std::fs::read_to_string(folder.path().join("all/summary.json")).unwrap();
+    let summary: serde_json::Value = serde_json::from_str(&text).unwrap();
+    for fault in summary["faults"].as_array().unwrap() {
+        assert_eq!(fault["fired"], true, "{fault}");
+    }
+    let replay = octant(&["replay", "all/recording.mcap", "--json"]);
+    let replay: serde_json::Value = serde_json::from_slice(&replay.stdout).unwrap();
+    assert_eq!(replay["outputs_equal"], true, "{replay}");
+    assert_eq!(replay["stream_hash"], summary["stream_hash"]);
+}
+
 #[test]
 fn the_program_says_what_a_fault_did() {
     let folder = tempfile::tempdir().unwrap();

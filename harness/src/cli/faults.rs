@@ -28,7 +28,7 @@ enum Command {
         #[arg(value_name = "KIND")]
         kind: String,
     },
-    /// Run a scenario over a grid of a fault's values and times, and see where it breaks.
+    /// Run a grid of one fault, and draw which of its forms are invisible and harmful.
     Sweep(super::sweep::Arguments),
     /// Find the smallest set of a run's faults that still breaks it.
     Minimise(super::minimise::Arguments),

@@ -14,13 +14,12 @@ use crate::scenario::{Method, Scenario, Source as SourceKind};
 use crate::score::parameters::{nees, score, worst_normalized_error};
 use crate::score::summary::{Calibration, HeightChannel, Navigation};
 use crate::score::trace::Trace;
-use crate::source::{PlantSource, Source, SourceError};
+use crate::source::{PlantSource, SourceError};
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use octant_calibration::config as core;
 use octant_calibration::state_machine::ConfigError;
 use octant_calibration::table::CalibrationTable;
 use octant_faults::Receipt;
-use octant_faults::catalogue::Acts;
 use octant_plant::Plant;
 use octant_sample::{Mode, Parameters};
 use std::path::Path;
@@ -206,7 +205,6 @@ pub fn run_method(
                 None => drive(&mut source, &mut endpoint, &mut recorder, &mut watcher, control)?,
                 Some(faulted) => {
                     let (endpoint, recorder) = (&mut endpoint, &mut recorder);
-                    check_disturbed(&mut source, faulted)?;
                     drive_faulted(&mut source, faulted, endpoint, recorder, &mut watcher, control)?
                 }
             }
@@ -235,16 +233,6 @@ fn faulted(scenario: &Scenario, seed: u64) -> Result<Option<Faulted>, SetupError
         .collect();
     fires.sort_unstable();
     Ok(station.map(|station| Faulted { station, fires }))
-}
-
-/// Faults inside the plant need one that can be disturbed.
-fn check_disturbed(source: &mut PlantSource, faulted: &Faulted) -> Result<(), SetupError> {
-    if !faulted.station.acts_on(Acts::Plant) || source.disturbed().is_some() {
-        return Ok(());
-    }
-    let id = faulted.station.ids().next().unwrap_or_default().to_owned();
-    let reason = "it acts inside the plant, and the plant of this version can't be disturbed";
-    Err(SetupError::Fault { id, reason: reason.to_owned() })
 }
 
 /// Least squares linearises about its initial parameters, and a real instrument's errors can be

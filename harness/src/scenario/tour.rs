@@ -4,7 +4,8 @@
 
 use super::complete::{expected, join};
 use super::document::{parse_default, write_value};
-use super::keys::{Default, Key, Kind, SCENARIO, Section};
+use super::keys::{Bounds, Default, Key, Kind, SCENARIO, Section};
+use super::quantity::{self, Dimension};
 
 /// What the tour sets beside the defaults: path and TOML value.
 const SET: &[(&str, &str)] = &[
@@ -291,7 +292,49 @@ fn given(section: &Section) -> Vec<String> {
 }
 
 /// Values of examples of faults where that of the form alone makes no fault: kind, key, TOML.
-const FAULT_EXAMPLES: &[(&str, &str, &str)] = &[("spike", "amplitude", r#""1000 deg/h""#)];
+const FAULT_EXAMPLES: &[(&str, &str, &str)] = &[
+    ("vibration-sine", "frequency", r#""35 Hz""#),
+    ("vibration-sine", "acceleration", r#"["1 m/s^2", "0 m/s^2", "0 m/s^2"]"#),
+    ("vibration-random", "psd", r#"["0.01 g^2/Hz", "0.01 g^2/Hz", "0.01 g^2/Hz"]"#),
+    ("shock", "peak", r#"["0 g", "0 g", "5 g"]"#),
+    ("temperature-ramp", "ramp", r#""5 K/h""#),
+    ("temperature-ramp", "gyro_bias", r#"["0.0002 deg/h/K", "0 deg/h/K", "0 deg/h/K"]"#),
+    ("mooring-jerk", "displacement", r#"["0.3 m", "0 m", "0 m"]"#),
+    ("lever-arm", "accelerometer_x", r#"["0 m", "0.05 m", "0 m"]"#),
+    ("noise-gain", "gain", r#""300 %""#),
+    ("bias-ramp", "rise", r#""10 min""#),
+    ("gauss-markov", "correlation_time", r#""1 h""#),
+    ("cross-axis", "into", r#""gyro y""#),
+    ("axis-swap", "second", r#""gyro y""#),
+    ("dither-residual", "amplitude", r#""0.01 arcsec""#),
+    ("dither-residual", "frequency", r#""37 Hz""#),
+    ("spike", "amplitude", r#""1000 deg/h""#),
+    ("bit-flip", "bit", "20"),
+    ("intermittent", "mean_out", r#""0.1 s""#),
+    ("intermittent", "mean_in", r#""10 s""#),
+    ("sequence-gap", "skip", "10"),
+    ("clock-skew", "skew", r#""50 ppm""#),
+    ("time-jitter", "sigma", r#""0.1 ms""#),
+    ("time-offset", "offset", r#""2 ms""#),
+    ("time-step", "step", r#""1 s""#),
+    ("late-delivery", "delay", r#""0.1 s""#),
+    ("command-late", "delay", r#""0.5 s""#),
+    ("runaway", "rate", r#""1 deg/s""#),
+    ("overshoot", "angle", r#""0.5 deg""#),
+    ("gimbal-slip", "angle", r#""0.05 deg""#),
+    ("encoder-slip", "angle", r#""0.05 deg""#),
+    ("stale-table", "gyro_bias", r#"["0.01 deg/h", "0 deg/h", "0 deg/h"]"#),
+    ("aiding-late", "delay", r#""0.2 s""#),
+];
+
+/// A quantity within its bounds: the dimension's example where that is, else one between them.
+fn quantity_within(dimension: Dimension, bounds: Bounds) -> String {
+    let example = quantity::parse(dimension.example).is_ok_and(|q| bounds.contain(q.si));
+    match bounds {
+        Bounds::Within(from, to, _) if !example => dimension.write(0.5 * (from + to)),
+        _ => dimension.example.to_owned(),
+    }
+}
 
 /// What the parameters of a kind of fault take, with their bounds, in words.
 #[must_use]
@@ -330,7 +373,12 @@ pub fn fault_example(kind: &str) -> Option<String> {
             (None, Default::Required) => match key.name {
                 "id" => format!("{:?}", format!("{kind}-1")),
                 "trigger" => r#"{ at = "100 s" }"#.to_owned(),
-                _ => example(&key.kind),
+                _ => match &key.kind {
+                    Kind::Quantity(dimensions, bounds) => {
+                        format!("{:?}", quantity_within(dimensions[0], *bounds))
+                    }
+                    kind => example(kind),
+                },
             },
             (None, Default::Absent(_)) if key.name == "duration" => match key.kind {
                 Kind::Refused(_) => continue,

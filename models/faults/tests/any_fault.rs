@@ -329,8 +329,8 @@ fn receipt_is_sound(told: &Told, index: usize) {
 /// Epochs in which the fault was active, fading included.
 fn active(told: &Told) -> Vec<u64> {
     let is = |k: u64| {
-        let until = told.occurrences.iter().filter(|it| it.epoch <= k);
-        until.last().is_some_and(|it| it.begins)
+        let mut until = told.occurrences.iter().filter(|it| it.epoch <= k);
+        until.next_back().is_some_and(|it| it.begins)
     };
     (1..=EPOCHS).filter(|k| is(*k)).collect()
 }

@@ -6,10 +6,11 @@ mod common;
 use common::counts::*;
 use common::{Outcome, clean, fault, run};
 use octant_faults::catalogue::Dimension::*;
+use octant_faults::station::Delivered;
 use octant_faults::trigger::Trigger;
-use octant_faults::{Channels, Spec, Value};
+use octant_faults::{Channels, Spec, Station, Value};
 use octant_sample::imu::Status;
-use octant_sample::{Aiding, Epoch, Reference};
+use octant_sample::{Aiding, Epoch, GimbalCommand, Output, Reference};
 
 const X: Channels = Channels::gyro(0);
 const Z_ACCELEROMETER: Channels = Channels::accelerometer(2);
@@ -230,9 +231,8 @@ fn bits_flip_and_stick() {
             let unsigned = unsigned + weight * (i64::from(wish(is)) - i64::from(is));
             if unsigned >= 1 << 31 { (unsigned - (1 << 32)) as i32 } else { unsigned as i32 }
         };
-        let cases: [(&'static str, fn(bool) -> bool); 3] =
-            [("inverted", |is| !is), ("set", |_| true), ("cleared", |_| false)];
-        for (name, wish) in cases {
+        let wishes: [fn(bool) -> bool; 3] = [|is| !is, |_| true, |_| false];
+        for (name, wish) in ["inverted", "set", "cleared"].into_iter().zip(wishes) {
             let outcome = run(&[bit(Channels::GYRO, number, name, 1.0, 100)], 200);
             becomes(&outcome, 11..111, |_, epoch| {
                 epoch.sample.delta_theta = epoch.sample.delta_theta.map(|c| with(c, wish));
@@ -364,6 +364,41 @@ fn the_reference_is_not_a_number() {
                 }
             });
             assert_eq!(outcome.receipts[0].samples_altered, 2);
+        }
+    }
+}
+
+#[test]
+fn components_of_a_position_are_latitude_longitude_and_height() {
+    let clean = |k: u64| {
+        let reference =
+            Reference::Position { latitude_rad: 0.5, longitude_rad: -2.0, height_m: 40.0 };
+        let device_time = clean(k).sample.device_time;
+        Epoch { aiding: Some(Aiding { device_time, reference }), ..clean(k) }
+    };
+    for (component, position) in [
+        ("all", [f64::INFINITY; 3]),
+        ("first", [f64::INFINITY, -2.0, 40.0]),
+        ("second", [0.5, f64::INFINITY, 40.0]),
+        ("third", [0.5, -2.0, f64::INFINITY]),
+    ] {
+        let values = [choice("component", component), choice("value", "infinity")];
+        let spec = fault("aiding-nan", &values, 2, 1);
+        let mut station = Station::new(&[spec], &common::setup()).unwrap();
+        let output = Output::default();
+        for k in 1..=3 {
+            station.before(&mut GimbalCommand::default(), &output, &mut common::Log::default());
+            let epoch = clean(k);
+            let mut right = clean(k);
+            if k == 2 {
+                let [latitude_rad, longitude_rad, height_m] = position;
+                let reference = Reference::Position { latitude_rad, longitude_rad, height_m };
+                right.aiding = right.aiding.map(|aiding| Aiding { reference, ..aiding });
+            }
+            match station.after(&epoch, &output) {
+                Delivered::Untouched => assert_ne!(k, 2),
+                Delivered::These(out) => assert_eq!((k, out), (2, &[right][..])),
+            }
         }
     }
 }

@@ -83,7 +83,7 @@ fn residual(frequency: f64, phase: f64, walk: f64, which: Channels) -> [(&'stati
 fn the_residual_angle_is_a_sine_and_no_drift() {
     let values = residual(413.7, 0.9, 0.0, Channels::GYRO);
     let spec = fault("dither-residual", &values, 101, 5000);
-    let outcome = run(&[spec.clone()], 5200);
+    let outcome = run(std::slice::from_ref(&spec), 5200);
     let angle = |n: f64| 5000.0 * (TAU * 413.7 * n * DT + 0.9).sin();
     let real = |k: u64| angle(k as f64 - 100.0) - angle(k as f64 - 101.0);
     follows(&outcome, &[0, 1, 2], |k, _| if (101..5101).contains(&k) { real(k) } else { 0.0 });
