@@ -102,7 +102,7 @@ pub(super) static TIME_BACKWARDS: Kind = Kind {
         Parameter {
             name: "speed",
             takes: Takes::Quantity(&[Dimension::Ratio], Bounds::Positive),
-            default: Some("1"),
+            default: Some("100 %"),
             doc: "How fast the stamps go back, relative to how fast time passes.",
         },
         CLOCK,
