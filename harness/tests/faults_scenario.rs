@@ -131,9 +131,16 @@ fn the_resolved_scenario_has_the_same_faults() {
 
 #[test]
 fn every_kind_has_an_example_that_parses_and_builds() {
+    let mut wrong = Vec::new();
     for kind in kinds::all() {
         let example = fault_example(kind.name).unwrap();
-        let scenario = read(&format!("{HEAD}{example}"));
+        let scenario = match parse(&format!("{HEAD}{example}")) {
+            Ok(scenario) => scenario,
+            Err(problems) => {
+                wrong.push(format!("{example}{problems:?}"));
+                continue;
+            }
+        };
         let spec = &scenario.faults[0].spec;
         assert_eq!(spec.kind.name, kind.name);
         for parameter in kind.parameters {
@@ -142,6 +149,7 @@ fn every_kind_has_an_example_that_parses_and_builds() {
         }
         Station::new(std::slice::from_ref(spec), &scenario.fault_setup(1)).unwrap();
     }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n\n"));
 }
 
 /// The one problem of a text: line, column, path and message.
