@@ -15,6 +15,7 @@ mod quantity;
 mod read;
 pub mod resolve;
 mod schema;
+pub mod suite;
 mod tour;
 mod write;
 
