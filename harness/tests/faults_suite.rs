@@ -66,8 +66,12 @@ fn problems(case: &Case, twins: &Twins) -> Vec<String> {
     let mut faulted = run(&scenario, Recording::None);
     faulted.twin = Some(twins.of(&scenario));
     let summary = assemble(&scenario, scenario.seed, faulted, None).unwrap().summary;
-    let mut problems: Vec<String> =
-        summary.faults.iter().filter(|f| !f.fired).map(|f| format!("{} never fired", f.id)).collect();
+    let mut problems: Vec<String> = summary
+        .faults
+        .iter()
+        .filter(|f| !f.fired)
+        .map(|f| format!("{} never fired", f.id))
+        .collect();
     problems.extend(case.hold(summary.verdict, &summary.reasons).err());
     problems
 }

@@ -10,6 +10,7 @@ mod condition;
 mod derive;
 mod document;
 mod error;
+mod examples;
 mod keys;
 mod quantity;
 mod read;

@@ -35,7 +35,7 @@ pub struct Case {
     pub scenario: PathBuf,
     /// The verdict.
     pub expect: Verdict,
-    /// Words that one of the reasons has to contain; given wherever a pass isn't expected.
+    /// Words that every reason has to contain; given wherever a pass isn't expected.
     pub because: Option<String>,
 }
 
@@ -95,7 +95,8 @@ fn cases(document: &Table, folder: &Path) -> Result<Suite, Problem> {
             }
             (Verdict::Pass, None) => {}
             (_, None) => {
-                let message = "missing, expected words that a reason of the verdict has to contain";
+                let message =
+                    "missing, expected words that the reasons of the verdict have to contain";
                 return Err(table.problem("because", message));
             }
             (_, Some(text)) if text.trim().is_empty() => {
@@ -109,7 +110,8 @@ fn cases(document: &Table, folder: &Path) -> Result<Suite, Problem> {
 }
 
 impl Case {
-    /// Holds what came against what is expected.
+    /// Holds what came against what is expected: the verdict, and that there is no reason for it but
+    /// the expected one.
     ///
     /// # Errors
     /// In words: what was found and what was expected.
@@ -118,8 +120,10 @@ impl Case {
             || self.expect.name().to_owned(),
             |because| format!("{}, because of {because:?}", self.expect.name()),
         );
-        let given = |because: &str| reasons.iter().any(|reason| reason.contains(because));
-        if verdict == self.expect && self.because.as_deref().is_none_or(given) {
+        let alone = |because: &str| {
+            !reasons.is_empty() && reasons.iter().all(|reason| reason.contains(because))
+        };
+        if verdict == self.expect && self.because.as_deref().is_none_or(alone) {
             return Ok(());
         }
         Err(format!("found {} ({}), expected {expected}", verdict.name(), reasons.join("; ")))
@@ -147,6 +151,8 @@ mod tests {
         good.hold(Verdict::Pass, &[]).unwrap();
         let reasons = ["calibration refused: no".to_owned()];
         bad.hold(Verdict::Fail, &reasons).unwrap();
+        let more = [reasons[0].clone(), "X: 3".to_owned()];
+        assert!(bad.hold(Verdict::Fail, &more).unwrap_err().contains("X: 3"));
         assert_eq!(
             bad.hold(Verdict::Fail, &["X: 3".to_owned()]).unwrap_err(),
             "found fail (X: 3), expected fail, because of \"refused\""
@@ -167,7 +173,10 @@ mod tests {
                 "expect = \"pass\"\nbecause = \"x\"",
                 "s.toml:5:11: cases[0].because: found a reason, and a pass needs none",
             ),
-            ("expct = \"pass\"", "s.toml:4:1: cases[0].expct: unknown key, did you mean \"expect\""),
+            (
+                "expct = \"pass\"",
+                "s.toml:4:1: cases[0].expct: unknown key, did you mean \"expect\"",
+            ),
             (
                 "expect = \"pass\"\n[[cases]]\nscenario = \"a.toml\"\nexpect = \"pass\"",
                 "s.toml:6:12: cases[1].scenario: found \"a.toml\" a second time",

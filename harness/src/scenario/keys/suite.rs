@@ -23,6 +23,6 @@ static CASE: Section = section(&[
         "because",
         Kind::Text,
         Default::Absent("none: a pass is expected"),
-        "Words that one of the verdict's reasons has to contain.",
+        "Words that every reason of the verdict has to contain.",
     ),
 ]);
