@@ -18,9 +18,9 @@ const CLOSING_S: f64 = 0.1;
 /// Shortest time that a motion may take, s.
 const SHORTEST_S: f64 = 1e-6;
 
-/// A value to compute with: kinds of faults refuse what is not finite.
+/// A value to compute with: kinds of faults refuse what is not finite or beyond reason.
 fn finite(value: f64) -> f64 {
-    if value.is_finite() { value } else { 0.0 }
+    if value.is_finite() { value.clamp(-1e6, 1e6) } else { 0.0 }
 }
 
 fn length(value: f64) -> f64 {
