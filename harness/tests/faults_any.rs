@@ -31,9 +31,10 @@ fn scenario(specs: &[Spec]) -> Scenario {
     scenario
 }
 
-/// The kind alone decides whether what it does stands between clean and faulted stream.
+/// The kind alone decides whether what it does stands between clean and faulted stream. (What a unit
+/// without power doesn't get is lost.)
 fn shows(spec: &Spec) -> bool {
-    matches!(spec.kind.acts, Acts::Samples | Acts::Delivery)
+    matches!(spec.kind.acts, Acts::Samples | Acts::Delivery | Acts::Unit)
 }
 
 /// The first step of the source in which what reached the core is not what the source delivered.
