@@ -232,32 +232,38 @@ struct Deliver {
 
 impl DeliveryRule for Deliver {
     /// By its number since the onset: 0 lost; 1 kept; 2 delivered, then the kept one; 3 twice.
-    fn on_epoch(&mut self, epoch: Epoch, _: bool, now: &Context<'_>, out: &mut Vec<Epoch>) {
-        match now.since_onset {
-            0 => {}
-            1 => self.kept = Some(epoch),
-            2 => out.extend([epoch].into_iter().chain(self.kept.take())),
-            3 => out.extend([epoch, epoch]),
-            _ => out.push(epoch),
+    fn on_step(&mut self, incoming: &[Epoch], _: bool, now: &Context<'_>, out: &mut Vec<Epoch>) {
+        for epoch in incoming {
+            match now.since_onset {
+                0 => {}
+                1 => self.kept = Some(*epoch),
+                2 => out.extend([*epoch].into_iter().chain(self.kept.take())),
+                3 => out.extend([*epoch, *epoch]),
+                _ => out.push(*epoch),
+            }
         }
     }
 
     fn holds(&self) -> usize {
         usize::from(self.kept.is_some())
     }
+
+    fn most_out(&self, incoming: usize) -> usize {
+        2 * incoming + 1
+    }
 }
 
-/// Does this at its onset, and that at its end.
+/// Does this at its onset, or is without power.
 #[derive(Clone, Debug)]
-struct Unit(Option<UnitEvent>, Option<UnitEvent>);
+struct Unit(Option<UnitEvent>);
 
 impl UnitRule for Unit {
     fn on_epoch(&mut self, now: &Context<'_>) -> Option<UnitEvent> {
         self.0.filter(|_| now.since_onset == 0)
     }
 
-    fn end(&mut self, _: &Context<'_>) -> Option<UnitEvent> {
-        self.1
+    fn cuts_power(&self) -> bool {
+        self.0.is_none()
     }
 }
 
@@ -276,16 +282,12 @@ macro_rules! test_kind {
     };
 }
 test_kind!(DELIVERY, Acts::Delivery, Rule::Delivery(Box::new(Deliver { kept: None })));
-test_kind!(RESTART, Acts::Unit, Rule::Unit(Box::new(Unit(Some(UnitEvent::Restart), None))));
-test_kind!(
-    POWER,
-    Acts::Unit,
-    Rule::Unit(Box::new(Unit(Some(UnitEvent::PowerOff), Some(UnitEvent::PowerOn))))
-);
+test_kind!(RESTART, Acts::Unit, Rule::Unit(Box::new(Unit(Some(UnitEvent::Restart)))));
+test_kind!(POWER, Acts::Unit, Rule::Unit(Box::new(Unit(None))));
 test_kind!(STORED, Acts::Unit, {
     let mut offset = Parameters::default();
     offset.gyro_bias[0] = 1e-6;
-    Rule::Unit(Box::new(Unit(Some(UnitEvent::RestartWith { offset }), None)))
+    Rule::Unit(Box::new(Unit(Some(UnitEvent::RestartWith { offset }))))
 });
 
 struct Driven {

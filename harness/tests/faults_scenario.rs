@@ -327,6 +327,22 @@ fn a_fault_that_cannot_fire_is_refused_with_the_reason() {
     let itself = spike("trigger = { after_fault = \"a\" }\nduration = \"1 s\"");
     let (.., message) = problem(&itself);
     assert!(message.contains("nothing starts"), "{message}");
+    // A delay that no buffer holds: 4096 samples are 20.48 s.
+    let late = |delay: &str| {
+        format!(
+            "{HEAD}[[faults]]\nid = \"a\"\nkind = \"late-delivery\"\ndelay = \"{delay}\"\n\
+             trigger = {{ at = \"5 s\" }}\nduration = \"1 min\"\n"
+        )
+    };
+    read(&late("20 s"));
+    let (line, column, path, message) = problem(&late("30 s"));
+    assert_eq!((line, column, path.as_str()), (LINES + 4, 9, "faults[0].delay"), "{message}");
+    // What a recording holds has happened: nothing inside the instrument can be changed.
+    let text =
+        format!("{HEAD}{}[source]\nuri = \"replay:x.mcap\"\n", fault_example("shock").unwrap());
+    let (line, column, path, message) = problem(&text);
+    assert_eq!((line, column, path.as_str()), (LINES + 3, 8, "faults[0].kind"));
+    assert!(message.contains("acts inside the simulated instrument"), "{message}");
     // Of a recording there is no truth.
     let text = spike("trigger = { when = \"true azimuth above 10 deg\" }")
         + "[source]\nuri = \"replay:x.mcap\"\n";
