@@ -227,6 +227,11 @@ fn the_committed_pages_are_those_of_the_program() {
         assert!(lines.count() > 1, "{name}: nothing but the legend is drawn");
         expected.extend([format!("{name}.md"), format!("{name}.svg")]);
     }
+    let index = std::fs::read_to_string(format!("{docs}.md")).unwrap();
+    for kind in octant_faults::kinds::all() {
+        let row = format!("| [{0}](faults/{0}.md) | {1} |", kind.name, kind.summary);
+        assert!(index.contains(&row), "docs/faults.md has no {row}");
+    }
     let mut there: Vec<String> = std::fs::read_dir(docs)
         .unwrap()
         .map(|entry| entry.unwrap().file_name().to_string_lossy().into_owned())

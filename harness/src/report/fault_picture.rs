@@ -132,7 +132,7 @@ static COMMANDS: [Quantity; 2] = [
     quantity!("set point, azimuth", |s, _| s.command.target.azimuth_rad(), ANGLES, GIMBAL_LSB_RAD),
     quantity!("set point, roll", |s, _| s.command.target.roll_rad(), ANGLES, GIMBAL_LSB_RAD),
 ];
-static STAMPS: [Quantity; 3] = [
+static STAMPS: [Quantity; 2] = [
     quantity!(
         "stamp of the sample, less its time",
         |s, v| last(s).map_or(f64::NAN, |e| stamp_error(e.sample.device_time.ns, v)),
@@ -145,6 +145,8 @@ static STAMPS: [Quantity; 3] = [
         COUNT,
         1.0
     ),
+];
+static STATUS: [Quantity; 1] = [
     quantity!(
         "status of the sample",
         |s, _| last(s).map_or(f64::NAN, |e| f64::from(e.sample.status.bits())),
@@ -270,7 +272,7 @@ pub fn picture(kind: &Kind, runs: &SideBySide, window: Window, period_s: f64) ->
         (Acts::Unit, _) => &[&ANSWERS[..1], &ANSWERS[1..]],
         (Acts::Plant, Family::Turntable) => &[&ENCODERS, &CHANNELS],
         (Acts::Plant, _) => &[&CHANNELS],
-        _ => &[&STAMPS, &REFERENCE, &ENCODERS, &CHANNELS],
+        _ => &[&STAMPS, &REFERENCE, &ENCODERS, &CHANNELS, &STATUS],
     };
     let shown = groups.iter().find_map(|group| {
         group
