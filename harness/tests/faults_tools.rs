@@ -131,7 +131,7 @@ trigger = { at = "0 s" }
 [[faults]]
 id = "lost"
 kind = "aiding-lost"
-loss = "1"
+loss = "100 %"
 trigger = { at = "100 s" }
 duration = "3 s"
 

@@ -146,14 +146,12 @@ static STAMPS: [Quantity; 2] = [
         1.0
     ),
 ];
-static STATUS: [Quantity; 1] = [
-    quantity!(
-        "status of the sample",
-        |s, _| last(s).map_or(f64::NAN, |e| f64::from(e.sample.status.bits())),
-        COUNT,
-        1.0
-    ),
-];
+static STATUS: [Quantity; 1] = [quantity!(
+    "status of the sample",
+    |s, _| last(s).map_or(f64::NAN, |e| f64::from(e.sample.status.bits())),
+    COUNT,
+    1.0
+)];
 static REFERENCE: [Quantity; 7] = [
     quantity!("reference velocity, north", |s, _| velocity(s, 0), VELOCITIES, 1e-12),
     quantity!("reference velocity, east", |s, _| velocity(s, 1), VELOCITIES, 1e-12),
