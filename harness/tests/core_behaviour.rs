@@ -37,7 +37,9 @@ fn short(seed: u64) -> Case {
 /// the ship's is not at time 0: the case rolls by up to 3°.
 fn dockside(case: &Case) -> (plant::Config, Config) {
     let (mut plant, mut core) = (case.plant(), case.core());
-    plant.motion = plant::Motion::Dockside(dockside_default(case.seed));
+    let ship = dockside_default(case.seed);
+    core.screening.base = instrument::base_of(&ship);
+    plant.motion = plant::Motion::Dockside(ship);
     plant.aiding.kind = plant::AidingKind::DockPosition { sigma_m: 0.01 };
     let truth = octant_plant::Plant::new(&plant).unwrap().truth();
     if let Alignment::Given { q_nb, velocity_mps } = &mut core.alignment {

@@ -34,7 +34,9 @@ fn hand_over(plant: &plant::Config, core: &mut Config) {
 
 fn dockside(case: &Case) -> (plant::Config, Config) {
     let (mut plant, mut core) = (case.plant(), case.core());
-    plant.motion = plant::Motion::Dockside(dockside_default(case.seed));
+    let ship = dockside_default(case.seed);
+    core.screening.base = instrument::base_of(&ship);
+    plant.motion = plant::Motion::Dockside(ship);
     plant.aiding.kind = plant::AidingKind::DockPosition { sigma_m: 0.01 };
     hand_over(&plant, &mut core);
     kalman(&mut core).aiding = AidingMode::Position { sigma_m: 0.15 };
@@ -69,7 +71,9 @@ fn perfect(dockside: bool) -> ClosedLoop {
     plant.imu.parameters = Parameters::default();
     plant.imu.velocity_random_walk = 0.0;
     if dockside {
-        plant.motion = plant::Motion::Dockside(dockside_default(1));
+        let ship = dockside_default(1);
+        core.screening.base = instrument::base_of(&ship);
+        plant.motion = plant::Motion::Dockside(ship);
     }
     core.calibration = None;
     core.alignment = Alignment::Given {

@@ -121,10 +121,28 @@ impl Case {
                 velocity_random_walk: 50.0 * MICRO_G,
             },
             initial_parameters: Parameters::default(),
-            screening: Screening {
-                gate: Some(Gate { nis: 25.0, rejections: 5, recovery: Recovery::Widening }),
-                stuck_samples: Some(8),
-            },
+            screening: Screening::hardened(Base::Still),
         }
     }
+}
+
+/// Bounds of a moored ship's motion: the sums of its sinusoids' amplitudes, on all axes, doubled.
+pub fn base_of(ship: &plant::Dockside) -> Base {
+    let bound = |motions: [&Vec<plant::Sinusoid>; 3], order: i32| -> f64 {
+        let sum: f64 = motions
+            .into_iter()
+            .flatten()
+            .map(|s| s.amplitude * (2.0 * std::f64::consts::PI / s.period_s).powi(order))
+            .sum();
+        2.0 * sum
+    };
+    let angles = [&ship.roll, &ship.pitch, &ship.yaw];
+    let shifts = [&ship.surge, &ship.sway, &ship.heave];
+    Base::Moving(BaseMotion {
+        angle_rad: bound(angles, 0),
+        rate_radps: bound(angles, 1),
+        acceleration_radps2: bound(angles, 2),
+        force_mps2: bound(shifts, 2),
+        jerk_mps3: bound(shifts, 3),
+    })
 }

@@ -1,5 +1,6 @@
 //! The procedure: alignment, calibration through the stops, compensation, navigation.
 
+mod bridge;
 mod check;
 mod ending;
 mod estimation;
@@ -13,12 +14,16 @@ pub use judgement::Refusal;
 use crate::alignment::CoarseAlignment;
 use crate::compensation::Compensation;
 use crate::config::{Alignment, Calibration, Config, Estimator, Kalman, Site};
+use crate::drift::Drift;
 use crate::filter::CalibrationFilter;
 use crate::monitor::{Monitor, MonitorTally, Order};
 use crate::schedule::{Cursor, dwell_s};
+use crate::screen::{Screen, lanes};
 use crate::strapdown::{Strapdown, Vertical};
 use crate::table::{CalibrationTable, Quality};
+use bridge::Bridge;
 use estimation::{Estimation, Standstill};
+use gimbals::Slips;
 use judgement::quality_of;
 use nalgebra::{UnitQuaternion, Vector3};
 use octant_sample::counts::{DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS};
@@ -68,6 +73,9 @@ pub struct Core {
     mode: Mode,
     cursor: Option<Cursor>,
     monitor: Monitor,
+    screen: Screen,
+    bridge: Bridge,
+    slips: Slips,
     alignment: Option<(CoarseAlignment, u64)>,
     estimation: Estimation,
     standstill: Standstill,
@@ -81,6 +89,7 @@ pub struct Core {
     last_measured_tick: u64,
     nis_running: f64,
     gimbal_disagreements: u64,
+    gimbal_tolerance: u64,
     refusal: Option<Refusal>,
     /// Quality of a filter that was refused.
     last_quality: Quality,
@@ -129,6 +138,14 @@ impl Core {
             mode: Mode::Aligning,
             cursor: None,
             monitor: Monitor::new(config.sample_period_ns, sigmas, config.screening.stuck_samples),
+            screen: Screen::new(
+                &config.screening,
+                &config.noise,
+                &config.turntable,
+                sample_s,
+            ),
+            bridge: Bridge::default(),
+            slips: Slips::default(),
             alignment,
             estimation: Estimation::Idle,
             standstill: Standstill::default(),
@@ -141,6 +158,7 @@ impl Core {
             last_measured_tick: 0,
             nis_running: 0.0,
             gimbal_disagreements: 0,
+            gimbal_tolerance: gimbals::tolerance_counts(&config.screening),
             refusal: None,
             last_quality: Quality { nis_mean: f64::NAN, ..Quality::default() },
             table: None,
@@ -221,15 +239,15 @@ impl Core {
             Order::Behind => return self.answer(sample, health, nis),
             Order::Next(interval_ns) => interval_ns,
             Order::Gap { missing } => {
-                self.bridge(missing);
+                self.bridge(missing, sample);
                 self.config.sample_period_ns
             }
         };
         self.tick = self.tick.saturating_add(1);
-        self.take(sample, interval_ns as f64 * 1e-9);
+        self.take(sample, interval_ns as f64 * 1e-9, &mut health);
         match self.mode {
             Mode::Calibrating => {
-                self.measure(aiding, &mut health, &mut nis);
+                self.measure(sample, aiding, &mut health, &mut nis);
                 if self.tick >= self.calibration_ticks {
                     self.finish_calibration(sample.device_time);
                 }
@@ -260,22 +278,30 @@ impl Core {
 
     /// Takes the increments of a sample into whatever runs.
     #[inline]
-    fn take(&mut self, sample: &Sample, interval_s: f64) {
-        let increments = |counts: &[i32; 3], lsb: f64| {
-            Vector3::new(f64::from(counts[0]), f64::from(counts[1]), f64::from(counts[2])) * lsb
-        };
-        let measured = (
-            increments(&sample.delta_theta, DELTA_THETA_LSB_RAD),
-            increments(&sample.delta_velocity, DELTA_VELOCITY_LSB_MPS),
-        );
+    fn take(&mut self, sample: &Sample, interval_s: f64, health: &mut Health) {
         match (self.mode, &self.estimation) {
             (Mode::Navigating, _) | (Mode::Calibrating, Estimation::Kalman(_)) => {
-                self.integrate(&measured, interval_s);
+                let lanes = lanes(sample);
+                let moving = self.gimbals_may_move();
+                if !self.screen.passes(&lanes, moving) || health.contains(Health::INERTIAL_INVALID) {
+                    self.doubt(sample, &lanes, interval_s, health);
+                    return;
+                }
+                self.bridge.gimbal = sample.gimbal;
+                self.integrate(&increments(sample), interval_s);
             }
-            (Mode::Aligning, _) => self.align(&measured, interval_s),
-            (Mode::Calibrating, _) => self.watch(sample, &measured, interval_s),
+            (Mode::Aligning, _) => self.align(&increments(sample), interval_s),
+            (Mode::Calibrating, _) => self.watch(sample, &increments(sample), interval_s),
             (Mode::Refused | Mode::Done, _) => {}
         }
+    }
+
+    /// The gimbals are on their way, or may still settle.
+    #[inline]
+    fn gimbals_may_move(&self) -> bool {
+        self.cursor
+            .as_ref()
+            .is_some_and(|cursor| self.phase_tick() < cursor.arrival_tick() + self.settle_ticks)
     }
 
     #[inline]
@@ -322,7 +348,7 @@ impl Core {
 
     fn refuse(&mut self, refusal: Refusal) {
         if let Some(filter) = self.filter() {
-            self.last_quality = quality_of(filter);
+            self.last_quality = self.quality(filter);
         }
         self.refusal = Some(refusal);
         self.estimation = Estimation::Idle;
@@ -330,9 +356,22 @@ impl Core {
         self.mode = Mode::Refused;
     }
 
-    fn measure(&mut self, aiding: Option<&Aiding>, health: &mut Health, nis: &mut f64) {
-        let (Estimation::Kalman(filter), Some(kalman)) =
-            (&mut self.estimation, kalman_of(&self.config))
+    fn measure(
+        &mut self,
+        sample: &Sample,
+        aiding: Option<&Aiding>,
+        health: &mut Health,
+        nis: &mut f64,
+    ) {
+        let mut aiding = aiding;
+        if self.config.screening.aiding_stamps
+            && aiding.is_some_and(|aiding| aiding.device_time != sample.device_time)
+        {
+            // Where the instrument was at another time, or is yet to be.
+            aiding = None;
+            *health |= Health::AIDING_STALE;
+        }
+        let (Estimation::Kalman(_), Some(kalman)) = (&self.estimation, kalman_of(&self.config))
         else {
             return;
         };
@@ -341,6 +380,12 @@ impl Core {
         if !due && aiding.is_none() {
             return;
         }
+        self.account();
+        let (Estimation::Kalman(filter), Some(kalman)) =
+            (&mut self.estimation, kalman_of(&self.config))
+        else {
+            return;
+        };
         filter.propagate(&self.strapdown);
         let before = self.parameters;
         let measured = aiding.and_then(|aiding| {
@@ -372,9 +417,13 @@ impl Core {
         if filter.is_recovering() {
             *health |= Health::RECOVERING;
         }
+        if filter.drift().is_some_and(Drift::is_found) {
+            *health |= Health::DRIFTING;
+        }
         if self.nis_running > kalman.refuse_above_mean_nis {
             *health |= Health::INCONSISTENT;
         }
+        self.compare_turns(sample, health);
     }
 
     #[inline]
@@ -442,11 +491,27 @@ impl Core {
         }
     }
 
+    fn filter_mut(&mut self) -> Option<&mut CalibrationFilter> {
+        match &mut self.estimation {
+            Estimation::Kalman(filter) => Some(filter),
+            _ => None,
+        }
+    }
+
+    /// Quality of a filter's calibration so far.
+    fn quality(&self, filter: &CalibrationFilter) -> Quality {
+        Quality {
+            bridged: self.bridge.samples,
+            gimbal_slips: self.slips.count,
+            ..quality_of(filter)
+        }
+    }
+
     /// Counts so far.
     #[must_use]
     pub fn diagnostics(&self) -> Diagnostics {
         let quality = match (self.filter(), &self.table) {
-            (Some(filter), _) => quality_of(filter),
+            (Some(filter), _) => self.quality(filter),
             (None, Some(table)) => table.quality,
             (None, None) => self.last_quality,
         };
@@ -456,6 +521,18 @@ impl Core {
             gimbal_disagreements: self.gimbal_disagreements,
         }
     }
+}
+
+/// Increments of a sample, rad and m/s.
+#[inline]
+fn increments(sample: &Sample) -> (Vector3<f64>, Vector3<f64>) {
+    let scaled = |counts: &[i32; 3], lsb: f64| {
+        Vector3::new(f64::from(counts[0]), f64::from(counts[1]), f64::from(counts[2])) * lsb
+    };
+    (
+        scaled(&sample.delta_theta, DELTA_THETA_LSB_RAD),
+        scaled(&sample.delta_velocity, DELTA_VELOCITY_LSB_MPS),
+    )
 }
 
 fn kalman_of(config: &Config) -> Option<&Kalman> {

@@ -1,0 +1,289 @@
+//! Which samples can't be: increments that jump as no motion makes them, and channels that stick.
+//!
+//! Two neighbouring increments of one channel differ by their noise and by what the rate (or the
+//! specific force) changes in one period. With the table's and the base's largest accelerations that
+//! is bounded, and what is beyond the bound isn't believed. A clean stream costs one comparison a
+//! channel: everything else is looked at only when one of these fails.
+//!
+//! Limits, for a period h and noise σ of an increment:
+//! - noise: 8 √2 σ. The difference of two samples has √2 σ, and eight of these are exceeded with
+//!   1.2e-15: in 28 h at 200 Hz, 2e7 samples of six channels, with 2e-7.
+//! - gyros: α h², where α is the acceleration that the base can have and, while the gimbals move,
+//!   twice that of the turntable on both gimbals with the square of the rates (two gimbals turning
+//!   at once carry each other's axes around). Twice, because a servo isn't its set point.
+//! - accelerometers: what turns gravity through the axes, (g + a) ω h², and the base's own jerk.
+//!
+//! The hold is bounded: after that the stream is believed again. And a stream that keeps jumping is
+//! right, and the limit wrong: it is doubled.
+
+use crate::config::{Base, Noise, Screening, TurntableRates};
+use octant_sample::Sample;
+use octant_sample::counts::{DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS};
+
+/// Counts of gyros x y z and accelerometers x y z; the last two are always zero.
+pub type Lanes = [i32; 8];
+
+/// Channels of the gyros as bits.
+pub const GYROS: u8 = 0b00_0111;
+/// Channels of the accelerometers as bits.
+pub const ACCELEROMETERS: u8 = 0b11_1000;
+
+/// Standard deviations of the difference of two samples that the noise is allowed.
+const NOISE_SIGMAS: f64 = 8.0;
+/// White noise below this many counts isn't what limits a real sensor: its limit means nothing.
+const TESTABLE_COUNTS: f64 = 20.0;
+/// Margin on what the turntable's servo makes of its acceleration and rate.
+const SERVO_MARGIN: f64 = 2.0;
+/// Standard gravity, for a bound.
+const GRAVITY_MPS2: f64 = 9.81;
+/// Longest hold where the motion is known (a base that stands), s, and where the last increments are
+/// held, s: a ship's 5 °/s² make 90″ of 0.1 s.
+const HOLD_KNOWN_S: f64 = 2.0;
+const HOLD_LAST_S: f64 = 0.1;
+/// Jumps in one stretch of ten seconds that a fault is believed to make; a stream with more of them
+/// is like this. One hold that comes to its end counts as ten.
+const JUMPS_MAX: u32 = 50;
+const JUMPS_STRETCH_S: f64 = 10.0;
+const EXPIRED_JUMPS: u32 = 10;
+
+/// Counts of a sample in lanes.
+#[must_use]
+#[inline]
+pub fn lanes(sample: &Sample) -> Lanes {
+    let ([a, b, c], [d, e, f]) = (sample.delta_theta, sample.delta_velocity);
+    [a, b, c, d, e, f, 0, 0]
+}
+
+/// What became of a sample that didn't pass at once.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Examined {
+    /// Channels that jumped and are not believed.
+    pub jumped: u8,
+    /// Channels whose count has been the same for too long.
+    pub stuck: u8,
+    /// Those among them that were found stuck with this sample.
+    pub found_stuck: u8,
+    /// Channels whose jump has lasted too long: believed again from this sample on.
+    pub expired: u8,
+}
+
+/// The screen of one stream.
+#[derive(Clone, Debug)]
+pub struct Screen {
+    /// Last counts that were believed.
+    last: Lanes,
+    /// Limit while the gimbals stand and while they move; `floor` is 1 where identical counts are
+    /// no accident.
+    limits: [[u32; 8]; 2],
+    floor: [u32; 8],
+    /// Nothing is being held, counted or waited for.
+    calm: bool,
+    started: bool,
+    stuck_limit: u32,
+    hold: [u32; 2],
+    stretch: u64,
+
+    seen: Lanes,
+    runs: [u32; 6],
+    held: [u32; 6],
+    jumps: [u32; 2],
+    stretch_until: u64,
+}
+
+impl Screen {
+    /// A screen for samples of this period (s).
+    #[must_use]
+    pub fn new(
+        screening: &Screening,
+        noise: &Noise,
+        turntable: &TurntableRates,
+        sample_s: f64,
+    ) -> Self {
+        let sqrt_s = libm::sqrt(sample_s);
+        let (base_rate, base_acceleration, force, jerk) = match screening.base {
+            Base::Still => (0.0, 0.0, 0.0, 0.0),
+            Base::Moving(motion) => (
+                motion.rate_radps,
+                motion.acceleration_radps2,
+                motion.force_mps2,
+                motion.jerk_mps3,
+            ),
+        };
+        let table_rate = SERVO_MARGIN * core::f64::consts::SQRT_2 * turntable.rate_radps;
+        let table_acceleration =
+            SERVO_MARGIN * core::f64::consts::SQRT_2 * turntable.acceleration_radps2;
+        // Standing gimbals at 0, moving ones at 1.
+        let angular = [
+            base_acceleration,
+            base_acceleration
+                + table_acceleration
+                + (table_rate + base_rate) * (table_rate + base_rate),
+        ];
+        let turning = |rate: f64| (GRAVITY_MPS2 + force) * rate + jerk;
+        let linear = [turning(base_rate), turning(base_rate + table_rate)];
+        let square = sample_s * sample_s;
+        let (gyro_step, accel_step) = screening.resolution;
+        let triads = [
+            (noise.angle_random_walk * sqrt_s, gyro_step, DELTA_THETA_LSB_RAD, angular),
+            (noise.velocity_random_walk * sqrt_s, accel_step, DELTA_VELOCITY_LSB_MPS, linear),
+        ];
+        // The lanes that are always zero pass whatever the limit.
+        let mut limits = [[1u32; 8]; 2];
+        let mut floor = [0u32; 8];
+        for (triad, (sigma, step, lsb, motion)) in triads.into_iter().enumerate() {
+            let sigma_counts = sigma / lsb;
+            let testable = sigma_counts >= TESTABLE_COUNTS;
+            for channel in 3 * triad..3 * triad + 3 {
+                for (limit, motion) in limits.iter_mut().zip(motion) {
+                    let noise_counts = NOISE_SIGMAS * core::f64::consts::SQRT_2 * sigma_counts;
+                    let counts = noise_counts + 2.0 * step / lsb + motion * square / lsb + 2.0;
+                    limit[channel] = if testable && screening.jumps && counts < 1e9 {
+                        counts as u32
+                    } else {
+                        u32::MAX
+                    };
+                }
+                let coarse = step > sigma;
+                floor[channel] =
+                    u32::from(testable && !coarse && screening.stuck_samples.is_some());
+            }
+        }
+        let samples = |time_s: f64| (time_s / sample_s + 0.5).max(1.0) as u32;
+        Self {
+            last: [0; 8],
+            limits,
+            floor,
+            calm: true,
+            started: false,
+            stuck_limit: screening.stuck_samples.unwrap_or(u32::MAX),
+            hold: [samples(HOLD_LAST_S), samples(HOLD_KNOWN_S)],
+            stretch: u64::from(samples(JUMPS_STRETCH_S)),
+            seen: [0; 8],
+            runs: [0; 6],
+            held: [0; 6],
+            jumps: [0; 2],
+            stretch_until: 0,
+        }
+    }
+
+    /// The sample follows the last one as it should; then it is taken. If not, [`Self::examine`] it.
+    #[must_use]
+    #[inline]
+    pub fn passes(&mut self, lanes: &Lanes, moving: bool) -> bool {
+        let limits = &self.limits[usize::from(moving)];
+        let mut good = self.calm;
+        for i in 0..8 {
+            // From the floor up to the limit: a difference below the floor wraps around.
+            let difference = lanes[i].wrapping_sub(self.last[i]).unsigned_abs();
+            good &= difference.wrapping_sub(self.floor[i]) < limits[i];
+        }
+        if good {
+            self.last = *lanes;
+        }
+        good
+    }
+
+    /// Looks closely at a sample that didn't pass. `expected`: counts that the known motion makes,
+    /// where it is known; `tick`: number of the sample.
+    pub fn examine(
+        &mut self,
+        lanes: &Lanes,
+        moving: bool,
+        expected: Option<&[f64; 6]>,
+        tick: u64,
+    ) -> Examined {
+        let mut found = Examined::default();
+        if !self.started {
+            self.started = true;
+            (self.last, self.seen) = (*lanes, *lanes);
+            return found;
+        }
+        if self.calm {
+            self.seen = self.last;
+        }
+        if tick >= self.stretch_until {
+            self.stretch_until = tick.saturating_add(self.stretch);
+            self.jumps = [0; 2];
+        }
+        let hold = self.hold[usize::from(expected.is_some())];
+        let mut calm = true;
+        for i in 0..6 {
+            let bit = 1u8 << i;
+            let repeats = self.floor[i] != 0 && lanes[i] == self.seen[i];
+            let was_stuck = self.runs[i].saturating_add(1) >= self.stuck_limit;
+            self.runs[i] = if repeats { self.runs[i].saturating_add(1) } else { 0 };
+            let stuck = self.runs[i].saturating_add(1) >= self.stuck_limit;
+            calm &= self.runs[i] == 0;
+            if stuck {
+                found.stuck |= bit;
+                if !was_stuck {
+                    found.found_stuck |= bit;
+                }
+                // What a dead channel says is neither a jump nor something to jump from.
+                self.held[i] = 0;
+                continue;
+            }
+            let limit = self.limits[usize::from(moving)][i];
+            let near = |reference: f64, allowed: f64| {
+                (f64::from(lanes[i]) - reference).abs() <= allowed
+            };
+            // What moves goes on moving while it isn't believed; the limit is twice the motion.
+            let moves = moving || expected.is_none();
+            let since = if moves { 1.0 + 0.5 * f64::from(self.held[i]) } else { 1.0 };
+            let believed = limit == u32::MAX
+                || near(f64::from(self.last[i]), since * f64::from(limit))
+                || expected.is_some_and(|expected| near(expected[i], f64::from(limit)))
+                // Nothing says how far the truth went while the channel was dead.
+                || (was_stuck && expected.is_none());
+            if believed {
+                self.last[i] = lanes[i];
+                self.held[i] = 0;
+                continue;
+            }
+            let triad = i / 3;
+            if self.held[i] == 0 {
+                self.jumps[triad] += 1;
+            }
+            self.held[i] += 1;
+            if self.held[i] > hold {
+                found.expired |= bit;
+                self.jumps[triad] += EXPIRED_JUMPS;
+                self.last[i] = lanes[i];
+                self.held[i] = 0;
+            } else {
+                found.jumped |= bit;
+                calm = false;
+            }
+        }
+        for triad in 0..2 {
+            if self.jumps[triad] > JUMPS_MAX {
+                self.jumps[triad] = 0;
+                self.widen(triad);
+            }
+        }
+        self.seen = *lanes;
+        self.calm = calm;
+        found
+    }
+
+    /// A stream that jumps again and again is like this: its limit is wrong.
+    fn widen(&mut self, triad: usize) {
+        for limits in &mut self.limits {
+            for limit in &mut limits[3 * triad..3 * triad + 3] {
+                *limit = limit.saturating_mul(2);
+            }
+        }
+    }
+
+    /// Repeats of the last count in a row.
+    #[must_use]
+    pub fn run(&self, channel: usize) -> u32 {
+        self.runs[channel]
+    }
+
+    /// Last counts that were believed.
+    #[must_use]
+    pub fn last(&self) -> &Lanes {
+        &self.last
+    }
+}
