@@ -7,8 +7,8 @@ use octant::recorder::reader;
 use octant::scenario::Scenario;
 use octant::scenario::resolve::{Draws, Seeded};
 use octant::source::{
-    Axis, Column, Delimiter, Quantity, Source, TextFiles, TextMapping, TextSource, TimeColumn,
-    TimeUnit,
+    Axis, Column, Delimiter, Epoch, Quantity, Source, TextFiles, TextMapping, TextSource,
+    TimeColumn, TimeUnit,
 };
 use octant_calibration::table::CalibrationTable;
 use std::path::Path;
@@ -52,7 +52,8 @@ pub(crate) fn text(bytes: &[u8]) {
         };
         let Ok(mut source) = TextSource::open(&mapping) else { continue };
         let mut last_ns = 0;
-        while let Ok(Some(epoch)) = source.next(&Default::default()) {
+        let mut epoch = Epoch::default();
+        while let Ok(true) = source.next(&Default::default(), &mut epoch) {
             assert!(epoch.sample.device_time.ns >= last_ns, "a stamp goes back");
             last_ns = epoch.sample.device_time.ns;
         }

@@ -125,6 +125,7 @@ fn faults() -> Vec<Fault> {
         fault("gyro bias step 0.005 deg/h", Gyro(0, 0.005 * dph), DWELL, TO_END, RefusedOrBelow(6.0), None),
         fault("gyro bias step 0.05 deg/h", Gyro(0, 0.05 * dph), DWELL, TO_END, RefusedOrBelow(5.0), None),
         fault("accelerometer step 50 ug", Accel(0, 50.0 * MICRO_G), DWELL, TO_END, RefusedOrBelow(5.0), None),
+        fault("accelerometer step 50 ug, late", Accel(0, 50.0 * MICRO_G), 11_000 * SECOND, TO_END, RefusedOrBelow(5.0), None),
         fault("encoder slip 0.5 deg, dwell", Encoder(0.5 * DEG), DWELL, TO_END, Below(0.2), slip),
         fault("encoder slip 0.5 deg, move", Encoder(0.5 * DEG), MOVE, TO_END, Below(0.2), Some((Health::GIMBAL_SLIPPED, 8.0))),
         fault("gimbal slip 0.5 deg, unseen", Slip(0.5 * DEG), MOVE, TO_END, Below(0.2), Some((Health::GIMBAL_SLIPPED, 8.0))),
@@ -137,7 +138,7 @@ fn faults() -> Vec<Fault> {
         fault("gap 10 s, move", Lost, MOVE, 2000, Below(3.0), gap),
         fault("duplicates 0.1 s", Duplicate, MOVE, 20, Below(3.0), Some((Health::OUT_OF_ORDER, 0.01))),
         fault("stamps backwards 0.1 s", Backwards, MOVE, 20, Below(3.0), Some((Health::OUT_OF_ORDER, 0.01))),
-        fault("late aiding, 100 s", LateAiding, DWELL, 20_000, Below(3.0), Some((Health::AIDING_STALE, 1.0))),
+        fault("late aiding, 100 s", LateAiding, DWELL, 20_000, Below(3.0), Some((Health::AIDING_STALE, 2.1))),
         fault("late aiding under a new stamp, 100 s", LyingAiding, DWELL, 20_000, Below(3.0), None),
     ]
 }

@@ -31,7 +31,8 @@ fn mapping(files: TextFiles) -> TextMapping {
 
 fn all(source: &mut TextSource) -> Result<Vec<Epoch>, SourceError> {
     let mut epochs = Vec::new();
-    while let Some(epoch) = source.next(&GimbalCommand::default())? {
+    let mut epoch = Epoch::default();
+    while source.next(&GimbalCommand::default(), &mut epoch)? {
         epochs.push(epoch);
     }
     Ok(epochs)

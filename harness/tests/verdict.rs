@@ -50,6 +50,7 @@ fn summary() -> Summary {
         }),
         baseline: None,
         reference: None,
+        counterfactual: None,
         pacing: None,
         stream_hash: "00".to_owned(),
     }

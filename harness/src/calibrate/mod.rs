@@ -3,7 +3,7 @@
 //! Least squares linearises about its initial parameters. Where errors are large (MEMS: percents),
 //! each pass starts from the result of the one before, until nothing moves.
 
-use crate::source::{Source, SourceError};
+use crate::source::{Epoch, Source, SourceError};
 use octant_calibration::state_machine::ConfigError;
 use octant_calibration::{Config, Core};
 use octant_sample::{GimbalCommand, Mode};
@@ -64,7 +64,8 @@ pub fn in_passes<S: Source>(
 fn pass(config: &Config, source: &mut impl Source) -> Result<Core, PassError> {
     let mut core = Core::new(config)?;
     let mut command = GimbalCommand::default();
-    while let Some(epoch) = source.next(&command)? {
+    let mut epoch = Epoch::default();
+    while source.next(&command, &mut epoch)? {
         let output = core.step(&epoch.sample, epoch.aiding.as_ref());
         command = output.gimbal_command;
         if !matches!(output.mode, Mode::Aligning | Mode::Calibrating) {

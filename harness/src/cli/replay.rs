@@ -6,10 +6,9 @@ use crate::recorder::StreamHash;
 use crate::run::method::configurations;
 use crate::scenario::Scenario;
 use crate::score::verdict::Verdict;
-use crate::source::Replay;
-use crate::source::Source;
+use crate::source::{Epoch, Replay, Source};
 use clap::Args;
-use octant_sample::GimbalCommand;
+use octant_sample::{GimbalCommand, Output};
 use serde::Serialize;
 use std::path::PathBuf;
 
@@ -62,8 +61,9 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     let mut source = Replay::open(path, None).map_err(|e| bad(&e))?;
     let (mut hash, mut samples, mut revision) = (StreamHash::new(), 0u64, 0);
     let mut first_difference_sample = None;
-    while let Some(epoch) = source.next(&GimbalCommand::default()).map_err(|e| bad(&e))? {
-        let output = endpoint.step(&epoch).map_err(|e| bad(&e))?;
+    let (mut epoch, mut output) = (Epoch::default(), Output::default());
+    while source.next(&GimbalCommand::default(), &mut epoch).map_err(|e| bad(&e))? {
+        endpoint.step(&epoch, &mut output).map_err(|e| bad(&e))?;
         samples += 1;
         hash.epoch(&epoch.sample, epoch.aiding.as_ref(), &output);
         if output.parameters_revision != revision {

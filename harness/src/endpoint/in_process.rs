@@ -37,10 +37,10 @@ impl InProcess {
 
 impl Endpoint for InProcess {
     #[inline]
-    fn step(&mut self, epoch: &Epoch) -> Result<Output, EndpointError> {
-        let output = self.core.step(&epoch.sample, epoch.aiding.as_ref());
+    fn step(&mut self, epoch: &Epoch, output: &mut Output) -> Result<(), EndpointError> {
+        self.core.step_into(&epoch.sample, epoch.aiding.as_ref(), output);
         self.revision = output.parameters_revision;
-        Ok(output)
+        Ok(())
     }
 
     fn parameters(&self) -> ParameterEstimate {

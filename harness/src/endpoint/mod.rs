@@ -21,11 +21,12 @@ pub struct ParameterEstimate {
 
 /// One realisation of the calibration core.
 pub trait Endpoint {
-    /// Hands one epoch to the core and returns its answer.
+    /// Hands one epoch to the core; its answer goes into `output`, which after an error is of no
+    /// use.
     ///
     /// # Errors
     /// If the endpoint failed as a bench part: device gone, process died.
-    fn step(&mut self, epoch: &Epoch) -> Result<Output, EndpointError>;
+    fn step(&mut self, epoch: &Epoch, output: &mut Output) -> Result<(), EndpointError>;
 
     /// The parameters as of the last output.
     fn parameters(&self) -> ParameterEstimate;

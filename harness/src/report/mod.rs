@@ -8,6 +8,7 @@
 mod calibration;
 pub mod chart;
 pub mod compare;
+pub mod counterfactual;
 mod drift;
 pub mod number;
 mod page;

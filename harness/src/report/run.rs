@@ -2,6 +2,7 @@
 
 use super::calibration::calibration;
 use super::chart::{Chart, Line, Role};
+use super::counterfactual::counterfactual;
 use super::drift::drift;
 use super::number;
 use super::page::{badge, page};
@@ -95,6 +96,7 @@ pub fn render(data: &ReportData) -> String {
         (header(data))
         (figures(summary))
         (requirements(summary))
+        (counterfactual(summary))
         (drift(summary))
         (calibration(data))
         (gimbals(data))

@@ -61,9 +61,11 @@ pub fn assemble(
             label: run.label,
             calibration: run.calibration,
             navigation: run.navigation,
+            counterfactual: None,
             stream_hash: run.recorder.stream_hash,
         }),
         reference: Some(references),
+        counterfactual: None,
         pacing: None,
         stream_hash: primary.recorder.stream_hash.clone(),
     };

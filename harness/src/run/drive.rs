@@ -3,8 +3,8 @@
 use super::watch::Watcher;
 use crate::endpoint::{Endpoint, EndpointError};
 use crate::recorder::{Extra, Frame, Recorder, RecorderError};
-use crate::source::{Source, SourceError};
-use octant_sample::{GimbalCommand, Mode};
+use crate::source::{Epoch, Source, SourceError};
+use octant_sample::{GimbalCommand, Mode, Output};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 /// Epochs between two looks at what others want: about a millisecond of wall time.
@@ -67,9 +67,12 @@ where
     let mut command = GimbalCommand::default();
     let mut revision = 0;
     let mut epochs = 0u64;
+    let (mut epoch, mut output) = (Epoch::default(), Output::default());
     loop {
-        let Some(epoch) = source.next(&command)? else { return Ok(Ended::SourceEnded) };
-        let output = endpoint.step(&epoch)?;
+        if !source.next(&command, &mut epoch)? {
+            return Ok(Ended::SourceEnded);
+        }
+        endpoint.step(&epoch, &mut output)?;
         command = output.gimbal_command;
         recorder.push(Frame { clean: &epoch, faulted: &epoch, output: &output })?;
         if output.parameters_revision != revision {

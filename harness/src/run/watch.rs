@@ -7,6 +7,7 @@ use crate::endpoint::ParameterEstimate;
 use crate::report::{GimbalPoint, HealthEvent, NisPoint, ParameterPoint};
 use crate::score::drift::{DriftSample, DriftScorer};
 use crate::score::health::HealthMonitor;
+use crate::score::trace::Trace;
 use octant_plant::Truth;
 use octant_sample::{Health, Mode, Output};
 
@@ -37,6 +38,8 @@ pub struct Watcher {
     last_ns: u64,
     drift: DriftScorer,
     drift_samples: u64,
+    /// For the comparison with a twin, where there is one.
+    pub trace: Option<Trace>,
     /// Health and NIS over the run.
     pub health: HealthMonitor,
     /// How the parameters came about.
@@ -68,6 +71,7 @@ impl Watcher {
             last_ns: 0,
             drift: DriftScorer::new(),
             drift_samples: 0,
+            trace: None,
             health: HealthMonitor::new(),
             convergence: Vec::new(),
             nis: Vec::new(),
@@ -82,6 +86,9 @@ impl Watcher {
     pub fn epoch(&mut self, output: &Output) -> bool {
         let now_ns = output.device_time.ns;
         self.last_ns = now_ns;
+        if let Some(trace) = &mut self.trace {
+            trace.output(output);
+        }
         if output.mode != self.last_mode {
             self.change_mode(output);
         }
@@ -171,13 +178,18 @@ impl Watcher {
     pub fn truth(&mut self, output: &Output, truth: &Truth) {
         let Some(start_ns) = self.navigation_start_ns else { return };
         self.drift_samples += 1;
-        self.drift.push(&DriftSample {
+        let sample = DriftSample {
             t_s: (output.device_time.ns - start_ns) as f64 * 1e-9,
             latitude_error_rad: output.navigation.latitude_rad - truth.latitude_rad,
             longitude_error_rad: output.navigation.longitude_rad - truth.longitude_rad,
             latitude_rad: truth.latitude_rad,
             height_m: truth.height_m,
-        });
+        };
+        if let Some(trace) = &mut self.trace {
+            let (north, east) = (sample.latitude_error_rad, sample.longitude_error_rad);
+            trace.drift(sample.t_s, north, east);
+        }
+        self.drift.push(&sample);
     }
 
     /// The drift so far; `None` without navigation or without truth.

@@ -8,6 +8,7 @@
 //! - [`summary`] is `summary.json`, [`measures`] are the numbers in it, [`verdict`] holds it against requirements, [`junit`] tells CI
 
 pub mod compare;
+pub mod counterfactual;
 pub mod drift;
 pub mod ensemble;
 pub mod floor;
@@ -19,4 +20,5 @@ pub mod reference;
 mod regression;
 mod series;
 pub mod summary;
+pub mod trace;
 pub mod verdict;

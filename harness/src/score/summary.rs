@@ -2,6 +2,7 @@
 //!
 //! Nothing of host or clock is in it: the same scenario, seed and core give the same bytes.
 
+use super::counterfactual::Counterfactual;
 use super::reference::Reference;
 use super::verdict::{RequirementResult, Verdict};
 use serde::{Deserialize, Serialize};
@@ -35,6 +36,10 @@ pub struct Summary {
     pub calibration: Option<Calibration>,
     /// The navigation; null if the run had none, or nothing to compare it with.
     pub navigation: Option<Navigation>,
+    /// What the faults did, against the twin of the run without them; null without faults, or
+    /// without a twin.
+    #[serde(default)]
+    pub counterfactual: Option<Counterfactual>,
     /// The second method of the same run: same instrument, same noise.
     pub baseline: Option<Baseline>,
     /// What physics says beside the scores.
@@ -304,6 +309,9 @@ pub struct Baseline {
     pub calibration: Option<Calibration>,
     /// Its navigation.
     pub navigation: Option<Navigation>,
+    /// What the faults did to it, against its own twin.
+    #[serde(default)]
+    pub counterfactual: Option<Counterfactual>,
     /// BLAKE3 of its stream.
     pub stream_hash: String,
 }

@@ -20,20 +20,13 @@ pub use text::{
 };
 
 use octant_plant::Truth;
-use octant_sample::{Aiding, GimbalCommand, Sample};
-
-/// What one step of a source delivers.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Epoch {
-    /// The inertial sample.
-    pub sample: Sample,
-    /// The reference, when one is due.
-    pub aiding: Option<Aiding>,
-}
+pub use octant_sample::Epoch;
+use octant_sample::GimbalCommand;
 
 /// A source of epochs.
 pub trait Source {
-    /// The next epoch, or `None` when the source has ended.
+    /// The next epoch, into `epoch`; `false` when the source has ended, and then `epoch` is left as
+    /// it was. Filled in place: copying a sample that has just been written stalls on its stores.
     ///
     /// `command` is the gimbal command of the core's last output, computed from sample k. A source
     /// that turns gimbals lets it act from the end of the interval that this call delivers
@@ -41,7 +34,7 @@ pub trait Source {
     ///
     /// # Errors
     /// If the source is broken: file truncated, device gone.
-    fn next(&mut self, command: &GimbalCommand) -> Result<Option<Epoch>, SourceError>;
+    fn next(&mut self, command: &GimbalCommand, epoch: &mut Epoch) -> Result<bool, SourceError>;
 
     /// Truth at the stamp of the last epoch, where the source knows it. Costs more than a sample:
     /// ask only when it is recorded.
@@ -52,8 +45,8 @@ pub trait Source {
 }
 
 impl<S: Source + ?Sized> Source for Box<S> {
-    fn next(&mut self, command: &GimbalCommand) -> Result<Option<Epoch>, SourceError> {
-        (**self).next(command)
+    fn next(&mut self, command: &GimbalCommand, epoch: &mut Epoch) -> Result<bool, SourceError> {
+        (**self).next(command, epoch)
     }
 
     fn truth(&self) -> Option<Truth> {

@@ -31,13 +31,13 @@ impl PlantSource {
 
 impl Source for PlantSource {
     #[inline]
-    fn next(&mut self, command: &GimbalCommand) -> Result<Option<Epoch>, SourceError> {
+    fn next(&mut self, command: &GimbalCommand, epoch: &mut Epoch) -> Result<bool, SourceError> {
         if self.left == 0 {
-            return Ok(None);
+            return Ok(false);
         }
         self.left -= 1;
-        let step = self.plant.step(command);
-        Ok(Some(Epoch { sample: step.sample, aiding: step.aiding }))
+        self.plant.step_into(command, &mut epoch.sample, &mut epoch.aiding);
+        Ok(true)
     }
 
     /// Truth at the stamp of the last epoch; before the first, at time 0.
@@ -65,13 +65,16 @@ mod tests {
         let mut plant = Plant::new(&config).unwrap();
         assert_eq!(source.samples_total(), Some(450));
         let command = GimbalCommand::default();
+        let mut epoch = Epoch::default();
         for _ in 0..450 {
             let step = plant.step(&command);
-            let epoch = Epoch { sample: step.sample, aiding: step.aiding };
-            assert_eq!(source.next(&command).unwrap(), Some(epoch));
+            assert!(source.next(&command, &mut epoch).unwrap());
+            assert_eq!(epoch, Epoch { sample: step.sample, aiding: step.aiding });
         }
         assert_eq!(source.truth(), Some(plant.truth()));
-        assert_eq!(source.next(&command).unwrap(), None);
+        let last = epoch;
+        assert!(!source.next(&command, &mut epoch).unwrap());
+        assert_eq!(epoch, last);
         assert_eq!(source.truth(), Some(plant.truth()));
     }
 }

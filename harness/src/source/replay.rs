@@ -88,18 +88,18 @@ impl Replay {
 
 impl Source for Replay {
     /// The epoch as it reached the recorded core, faults included.
-    fn next(&mut self, _command: &GimbalCommand) -> Result<Option<Epoch>, SourceError> {
+    fn next(&mut self, _command: &GimbalCommand, epoch: &mut Epoch) -> Result<bool, SourceError> {
         match &mut self.kind {
-            Kind::Foreign(foreign) => foreign.next(),
+            Kind::Foreign(foreign) => Ok(epoch.take(foreign.next()?)),
             Kind::Octant { epochs, .. } => loop {
                 match epochs.next_epoch().map_err(|e| read_error(&self.path, &e))? {
-                    None => return Ok(None),
-                    Some(epoch) => {
+                    None => return Ok(false),
+                    Some(recorded) => {
                         // Aiding without its sample is where a torn file ends.
-                        if let Some(sample) = epoch.sample {
-                            let aiding = epoch.aiding;
-                            self.last = epoch;
-                            return Ok(Some(Epoch { sample, aiding }));
+                        if let Some(sample) = recorded.sample {
+                            *epoch = Epoch { sample, aiding: recorded.aiding };
+                            self.last = recorded;
+                            return Ok(true);
                         }
                     }
                 }

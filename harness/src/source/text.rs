@@ -245,8 +245,8 @@ impl TextSource {
 }
 
 impl Source for TextSource {
-    fn next(&mut self, _command: &GimbalCommand) -> Result<Option<Epoch>, SourceError> {
-        self.advance()
+    fn next(&mut self, _command: &GimbalCommand, epoch: &mut Epoch) -> Result<bool, SourceError> {
+        Ok(epoch.take(self.advance()?))
     }
 
     fn truth(&self) -> Option<Truth> {

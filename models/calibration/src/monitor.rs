@@ -32,6 +32,13 @@ pub struct MonitorTally {
     pub invalid: u64,
 }
 
+/// Number and stamp of a sample.
+#[derive(Clone, Copy, Debug)]
+struct Last {
+    sequence: u64,
+    time_ns: u64,
+}
+
 /// Watches the stream of samples.
 #[derive(Clone, Debug)]
 pub struct Monitor {
@@ -39,8 +46,16 @@ pub struct Monitor {
     stuck_samples: Option<u32>,
     /// Which triads have enough noise for the test of identical counts.
     testable: [bool; 2],
-    last: Option<Sample>,
+    last: Option<Last>,
+    /// Counts of the last sample, gyros first. Kept as they are compared: copying the sample whole
+    /// would wait for the stores that have just filled it.
+    counts: [i32; 6],
+    /// Samples in a row, beyond the first, in which a channel gave the same count.
     identical: [u32; 6],
+    /// One of those is not zero.
+    repeats: bool,
+    /// There are no counts yet to compare with.
+    fresh: bool,
     tally: MonitorTally,
 }
 
@@ -64,12 +79,16 @@ impl Monitor {
                 sigmas.1 / DELTA_VELOCITY_LSB_MPS >= TESTABLE_COUNTS,
             ],
             last: None,
+            counts: [0; 6],
             identical: [0; 6],
+            repeats: false,
+            fresh: true,
             tally: MonitorTally::default(),
         }
     }
 
-    /// How this sample follows the last, and its health flags.
+    /// How this sample follows the last, and its health flags but those of stuck channels, which
+    /// [`Self::stuck`] or a [`crate::screen::Screen`] looks for.
     #[inline]
     pub fn check(&mut self, sample: &Sample) -> (Order, Health) {
         let mut health = Health::empty();
@@ -92,20 +111,17 @@ impl Monitor {
             self.tally.invalid += 1;
             health |= Health::INERTIAL_INVALID;
         }
-        if let Some(limit) = self.stuck_samples {
-            health |= self.stuck(sample, limit);
-        }
-        self.last = Some(*sample);
+        self.last = Some(Last { sequence: sample.sequence, time_ns: sample.device_time.ns });
         (order, health)
     }
 
     #[inline]
     fn order(&self, sample: &Sample) -> Order {
         let Some(last) = &self.last else { return Order::Next(self.period_ns) };
-        if sample.sequence <= last.sequence || sample.device_time <= last.device_time {
+        if sample.sequence <= last.sequence || sample.device_time.ns <= last.time_ns {
             return Order::Behind;
         }
-        let interval_ns = sample.device_time.ns - last.device_time.ns;
+        let interval_ns = sample.device_time.ns - last.time_ns;
         if interval_ns == self.period_ns && sample.sequence == last.sequence + 1 {
             // As it should be; a division is dear at every sample.
             return Order::Next(interval_ns);
@@ -119,31 +135,48 @@ impl Monitor {
         if periods >= 2 { Order::Gap { missing: periods - 1 } } else { Order::Next(interval_ns) }
     }
 
+    /// Channels that give the same count again and again; to be asked for every sample.
     #[inline]
-    fn stuck(&mut self, sample: &Sample, limit: u32) -> Health {
-        let Some(last) = &self.last else { return Health::empty() };
+    pub fn stuck(&mut self, sample: &Sample) -> Health {
+        let Some(limit) = self.stuck_samples else { return Health::empty() };
+        let [x, y, z] = sample.delta_theta;
+        let [u, v, w] = sample.delta_velocity;
+        let now = [x, y, z, u, v, w];
+        let before = core::mem::replace(&mut self.counts, now);
+        let mut same = [false; 6];
+        for channel in 0..6 {
+            same[channel] = now[channel] == before[channel];
+        }
+        // With noise of many counts there is nothing to do in nearly every sample.
+        let fresh = core::mem::replace(&mut self.fresh, false);
+        if !fresh && (self.repeats || same != [false; 6]) {
+            self.repeated(&same, limit)
+        } else {
+            Health::empty()
+        }
+    }
+
+    #[cold]
+    fn repeated(&mut self, same: &[bool; 6], limit: u32) -> Health {
         let mut health = Health::empty();
-        for axis in 0..3 {
-            for (triad, now, before, flag) in [
-                (0, sample.delta_theta[axis], last.delta_theta[axis], Health::GYRO_STUCK),
-                (
-                    1,
-                    sample.delta_velocity[axis],
-                    last.delta_velocity[axis],
-                    Health::ACCELEROMETER_STUCK,
-                ),
-            ] {
-                let run = &mut self.identical[3 * triad + axis];
-                *run = if now == before { run.saturating_add(1) } else { 0 };
-                if self.testable[triad] && run.saturating_add(1) >= limit {
-                    health |= flag;
-                }
+        let flags = [Health::GYRO_STUCK, Health::ACCELEROMETER_STUCK];
+        for channel in 0..6 {
+            let run = &mut self.identical[channel];
+            *run = if same[channel] { run.saturating_add(1) } else { 0 };
+            if self.testable[channel / 3] && run.saturating_add(1) >= limit {
+                health |= flags[channel / 3];
             }
         }
+        self.repeats = self.identical != [0; 6];
         if !health.is_empty() {
             self.tally.stuck += 1;
         }
         health
+    }
+
+    /// Takes note of a sample with a channel that a screen found stuck.
+    pub fn note_stuck(&mut self) {
+        self.tally.stuck += 1;
     }
 
     /// Counts since the start.

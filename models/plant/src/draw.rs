@@ -2,10 +2,10 @@
 //!
 //! Every group has its own stream, so that a change of one distribution moves no other group.
 
-use crate::normal::{Ziggurat, uniform};
-use crate::philox::block;
-use crate::stream::{Phase, key};
 use octant_earth::units::{ARCSEC, DEG_PER_HOUR, DEG_PER_HOUR_PER_G, MICRO_G, PPM};
+use octant_random::normal::{Ziggurat, uniform};
+use octant_random::philox::block;
+use octant_random::stream::{Phase, key};
 use octant_sample::Parameters;
 
 /// Distribution of a group of N parameters, SI.

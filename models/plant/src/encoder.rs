@@ -1,8 +1,8 @@
 //! Encoders: the angle of the drive with a periodic error, in counts.
 
-use crate::normal::Ziggurat;
-use crate::stream::{Phase, key};
 use crate::trig::Near;
+use octant_random::normal::Ziggurat;
+use octant_random::stream::{Phase, key};
 
 /// Harmonics of a turn in the error curve: eccentricity, ellipticity and their neighbours.
 const HARMONICS: usize = 4;

@@ -242,13 +242,18 @@ impl Gimbal {
         if target == self.target {
             return false;
         }
+        self.turn_to(target, now_ns);
+        true
+    }
+
+    #[cold]
+    fn turn_to(&mut self, target: i32, now_ns: u64) {
         self.target = target;
         let now = self.drive.at(self.drive.seconds(now_ns));
         let body = self.body.at(self.body.seconds(now_ns)).angle;
         let target_rad = f64::from(target) * octant_sample::counts::GIMBAL_LSB_RAD;
         self.drive = Profile::to(target_rad, now, now_ns, self.rate, self.acceleration);
         self.body = self.drive.behind_play(body, self.half_play);
-        true
     }
 
     /// Drive and body rest from a time on.

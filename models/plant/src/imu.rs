@@ -10,8 +10,8 @@
 use crate::config::{Imu, Temperature};
 use crate::increments::Increments;
 use crate::processes::Wander;
-use crate::stream::Triad;
 use nalgebra::{Matrix3, Vector3};
+use octant_random::stream::Triad;
 use octant_sample::Status;
 use octant_sample::counts::{Accumulator, DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS};
 
@@ -20,14 +20,11 @@ fn rows(m: [[f64; 3]; 3]) -> Matrix3<f64> {
 }
 
 /// What a triad measures without noise, in counts.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Reading {
     gyro: Vector3<f64>,
     accelerometer: Vector3<f64>,
 }
-
-/// Counts of a sample and the flags that go with them.
-pub(crate) type Counts = ([i32; 3], [i32; 3], Status);
 
 /// Noise and digitisation of one triad.
 #[derive(Clone, Debug)]
@@ -40,8 +37,6 @@ struct Triple {
     limit_counts: f64,
     /// Coarser quantum in counts; 0: none.
     quantum_counts: f64,
-    /// No range and no coarser quantum.
-    plain: bool,
     quantizers: [Accumulator; 3],
     accumulators: [Accumulator; 3],
 }
@@ -53,7 +48,8 @@ impl Triple {
         mut reading: Vector3<f64>,
         sample: u64,
         words: &[u64; 4],
-    ) -> ([i32; 3], bool) {
+        counts: &mut [i32; 3],
+    ) -> bool {
         for wander in &mut self.wanders {
             reading += Vector3::from(wander.increment(sample)) / self.lsb;
         }
@@ -64,20 +60,19 @@ impl Triple {
             }
         }
         let mut saturated = false;
-        if !self.plain {
-            saturated = self.limit_and_quantize(&mut reading);
+        if self.quantum_counts > 0.0 || reading.iter().any(|x| x.abs() > self.limit_counts) {
+            (reading, saturated) = self.limit_and_quantize(reading);
         }
-        let mut counts = [0; 3];
         for axis in 0..3 {
             let count = self.accumulators[axis].count(reading[axis]);
             counts[axis] = count.value;
             saturated |= count.saturated;
         }
-        (counts, saturated)
+        saturated
     }
 
     #[inline(never)]
-    fn limit_and_quantize(&mut self, reading: &mut Vector3<f64>) -> bool {
+    fn limit_and_quantize(&mut self, mut reading: Vector3<f64>) -> (Vector3<f64>, bool) {
         let mut saturated = false;
         for axis in 0..3 {
             if reading[axis].abs() > self.limit_counts {
@@ -90,7 +85,7 @@ impl Triple {
                 saturated |= count.saturated;
             }
         }
-        saturated
+        (reading, saturated)
     }
 
     fn navigate(&mut self) {
@@ -141,7 +136,6 @@ impl Sensors {
             wanders,
             limit_counts: if range > 0.0 { range * dt / lsb } else { f64::INFINITY },
             quantum_counts: quantum / lsb,
-            plain: range == 0.0 && quantum == 0.0,
             quantizers: Default::default(),
             accumulators: Default::default(),
         };
@@ -187,29 +181,36 @@ impl Sensors {
         }
     }
 
-    /// Temperature, noise and digitisation. `sample` is the number in the phase from 0, `start_s`
-    /// the start of the interval.
+    /// Temperature, noise and digitisation. `sample` is the number in the phase from 0, `start_ns`
+    /// the start of the interval. Counts go where they are to stay.
     #[inline]
     pub(crate) fn count(
         &mut self,
-        mut reading: Reading,
+        reading: &Reading,
         increments: &Increments,
         sample: u64,
-        start_s: f64,
-    ) -> Counts {
+        start_ns: u64,
+        delta_theta: &mut [i32; 3],
+        delta_velocity: &mut [i32; 3],
+    ) -> Status {
+        let (mut gyro, mut accelerometer) = (reading.gyro, reading.accelerometer);
         if let Some(temperature) = &self.temperature {
-            warm(temperature, &mut reading, increments, start_s, self.dt);
+            let start_s = start_ns as f64 * 1e-9;
+            let warm = warm(temperature, increments, start_s, self.dt);
+            (gyro, accelerometer) = (gyro + warm.gyro, accelerometer + warm.accelerometer);
         }
         // Both blocks before either is used: their chains of multiplications overlap.
         let gyro_words = self.gyro.noise.words(sample);
         let accelerometer_words = self.accelerometer.noise.words(sample);
-        let (gyro, gyro_saturated) = self.gyro.count(reading.gyro, sample, &gyro_words);
-        let (accelerometer, accelerometer_saturated) =
-            self.accelerometer.count(reading.accelerometer, sample, &accelerometer_words);
         let mut status = Status::empty();
-        status.set(Status::GYRO_SATURATED, gyro_saturated);
-        status.set(Status::ACCELEROMETER_SATURATED, accelerometer_saturated);
-        (gyro, accelerometer, status)
+        if self.gyro.count(gyro, sample, &gyro_words, delta_theta) {
+            status |= Status::GYRO_SATURATED;
+        }
+        let words = &accelerometer_words;
+        if self.accelerometer.count(accelerometer, sample, words, delta_velocity) {
+            status |= Status::ACCELEROMETER_SATURATED;
+        }
+        status
     }
 }
 
@@ -225,22 +226,18 @@ fn mean_change_k(temperature: &Temperature, start_s: f64, dt: f64) -> f64 {
 }
 
 #[inline(never)]
-fn warm(
-    temperature: &Temperature,
-    reading: &mut Reading,
-    increments: &Increments,
-    start_s: f64,
-    dt: f64,
-) {
+fn warm(temperature: &Temperature, increments: &Increments, start_s: f64, dt: f64) -> Reading {
     let change = mean_change_k(temperature, start_s, dt);
+    let mut reading = Reading::default();
     for axis in 0..3 {
-        reading.gyro[axis] += change
+        reading.gyro[axis] = change
             * (temperature.gyro_bias_per_k[axis] * dt
                 + temperature.gyro_scale_per_k[axis] * increments.delta_theta[axis])
             / DELTA_THETA_LSB_RAD;
-        reading.accelerometer[axis] += change
+        reading.accelerometer[axis] = change
             * (temperature.accel_bias_per_k[axis] * dt
                 + temperature.accel_scale_per_k[axis] * increments.delta_velocity[axis])
             / DELTA_VELOCITY_LSB_MPS;
     }
+    reading
 }

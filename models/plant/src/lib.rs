@@ -8,7 +8,7 @@
 //! interval, the sensors distort the integrals and add their noise, and counters digitise them.
 //! The reference that aids a calibration is made at the same stamp.
 //!
-//! Random numbers come from named streams ([`stream`]): `gyro.noise`, `accelerometer.noise`,
+//! Random numbers come from named streams ([`octant_random`]): `gyro.noise`, `accelerometer.noise`,
 //! `gyro.gauss_markov`, `gyro.rate_random_walk`, `accelerometer.gauss_markov`, `aiding.noise`,
 //! `turntable.encoder.azimuth`, `turntable.encoder.roll`, and `draw.*` for what is drawn before a
 //! run ([`draw`]). None of them moves another.
@@ -21,19 +21,15 @@ mod gimbal;
 mod imu;
 mod increments;
 pub mod motion;
-mod normal;
-pub mod philox;
 mod plant;
 mod processes;
 mod reference;
 pub mod sea;
-pub mod stream;
 mod sway;
 mod trig;
-mod truth;
 mod validate;
 mod vibration;
 
+pub use octant_sample::Truth;
 pub use plant::{Plant, Step};
-pub use truth::Truth;
 pub use validate::ConfigError;

@@ -5,11 +5,11 @@ use crate::encoder::ErrorCurve;
 use crate::imu::{Reading, Sensors};
 use crate::increments::{Body, Increments};
 use crate::reference::Aider;
-use crate::truth::Truth;
+
 use crate::validate::{ConfigError, validate};
 use nalgebra::Quaternion;
 use octant_sample::time::SimulatedTime;
-use octant_sample::{Aiding, DeviceTime, GimbalAngles, GimbalCommand, Sample};
+use octant_sample::{Aiding, DeviceTime, GimbalAngles, GimbalCommand, Sample, Truth};
 
 /// What one step gives.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -38,8 +38,10 @@ pub struct Plant {
     until_aiding: u64,
     non_orthogonality_rad: f64,
     saturated_samples: u64,
-    /// Increments and reading of every sample, while nothing moves.
-    still: Option<(Increments, Reading)>,
+    /// Increments and reading of the last sample, and whether every one to come has the same.
+    increments: Increments,
+    reading: Reading,
+    is_still: bool,
     /// Encoder angles; those of a drive that rests are not read again.
     angles: GimbalAngles,
     /// Whether the drives of azimuth and roll rest, and their angles are read.
@@ -69,7 +71,9 @@ impl Plant {
             aider,
             non_orthogonality_rad: config.turntable.non_orthogonality_rad,
             saturated_samples: 0,
-            still: None,
+            increments: Increments::default(),
+            reading: Reading::default(),
+            is_still: false,
             angles: GimbalAngles::default(),
             resting: [false; 2],
         })
@@ -81,57 +85,63 @@ impl Plant {
     /// interval that this call delivers, and is first felt in the one after.
     #[inline]
     pub fn step(&mut self, command: &GimbalCommand) -> Step {
+        let mut step = Step { sample: Sample::default(), aiding: None };
+        self.step_into(command, &mut step.sample, &mut step.aiding);
+        step
+    }
+
+    /// [`Self::step`] in place, for who steps millions of times: a copy of what has just been
+    /// written waits for the stores.
+    #[inline]
+    pub fn step_into(
+        &mut self,
+        command: &GimbalCommand,
+        sample: &mut Sample,
+        aiding: &mut Option<Aiding>,
+    ) {
         let start_ns = self.time_ns;
         if self.sequence == self.calibration_samples {
             self.in_phase = 0;
             self.sensors.navigate();
         }
-        let sample = self.in_phase;
+        let number = self.in_phase;
         self.in_phase += 1;
         self.sequence += 1;
         self.time_ns += self.body.period_ns();
 
-        let (increments, reading) = match self.still {
-            Some(still) => still,
-            None => self.move_on(start_ns),
-        };
-        let start_s = start_ns as f64 * 1e-9;
-        let (delta_theta, delta_velocity, status) =
-            self.sensors.count(reading, &increments, sample, start_s);
+        if !self.is_still {
+            self.move_on(start_ns);
+        }
+        let status = self.sensors.count(
+            &self.reading,
+            &self.increments,
+            number,
+            start_ns,
+            &mut sample.delta_theta,
+            &mut sample.delta_velocity,
+        );
         self.saturated_samples += u64::from(!status.is_empty());
         if self.resting != [true; 2] {
             self.read_encoders();
         }
-        let gimbal = self.angles;
-        let device_time = DeviceTime::from_ns(self.time_ns);
+        sample.sequence = self.sequence;
+        sample.device_time = DeviceTime::from_ns(self.time_ns);
+        sample.gimbal = self.angles;
+        sample.status = status;
         self.until_aiding -= 1;
-        let aiding = if self.until_aiding == 0 { self.aid(device_time, sample) } else { None };
+        *aiding = if self.until_aiding == 0 { self.aid(sample.device_time, number) } else { None };
 
         if self.body.command(command, self.time_ns) {
-            self.still = None;
+            self.is_still = false;
             self.resting = [false; 2];
-        }
-        Step {
-            sample: Sample {
-                sequence: self.sequence,
-                device_time,
-                delta_theta,
-                delta_velocity,
-                gimbal,
-                status,
-            },
-            aiding,
         }
     }
 
     #[inline(never)]
-    fn move_on(&mut self, start_ns: u64) -> (Increments, Reading) {
-        let increments = self.body.increments(start_ns);
-        let reading = self.sensors.read(&increments);
-        if self.body.is_constant(start_ns) {
-            self.still = Some((increments, reading));
-        }
-        (increments, reading)
+    fn move_on(&mut self, start_ns: u64) {
+        self.increments = self.body.increments(start_ns);
+        self.reading = self.sensors.read(&self.increments);
+        self.is_still = self.body.is_constant(start_ns);
     }
 
     #[inline(never)]

@@ -1,7 +1,7 @@
 //! Biases that wander: first-order Gauss-Markov and rate random walk.
 
 use crate::config::GaussMarkov;
-use crate::stream::Triad;
+use octant_random::stream::Triad;
 
 /// Three independent processes `x(k+1) = a x(k) + q n(k)`, exact at the stamps for any period.
 ///

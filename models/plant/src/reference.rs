@@ -2,8 +2,8 @@
 
 use crate::case::Whereabouts;
 use crate::config::{AidingKind, Config, Site};
-use crate::stream::Triad;
 use octant_earth::ellipsoid::Ellipsoid;
+use octant_random::stream::Triad;
 use octant_sample::{Aiding, DeviceTime, Reference};
 
 #[derive(Clone, Debug)]

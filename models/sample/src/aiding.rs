@@ -26,3 +26,17 @@ pub struct Aiding {
     /// The measured reference.
     pub reference: Reference,
 }
+
+impl Aiding {
+    /// Bit for bit the same: NaN is equal to itself and zero differs from minus zero.
+    #[must_use]
+    pub fn same_bits(&self, other: &Self) -> bool {
+        let bits = |reference: &Reference| match *reference {
+            Reference::Velocity(v) => (0, v.map(f64::to_bits)),
+            Reference::Position { latitude_rad, longitude_rad, height_m } => {
+                (1, [latitude_rad, longitude_rad, height_m].map(f64::to_bits))
+            }
+        };
+        self.device_time == other.device_time && bits(&self.reference) == bits(&other.reference)
+    }
+}

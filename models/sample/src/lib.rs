@@ -8,15 +8,19 @@
 pub mod aiding;
 pub mod canonical;
 pub mod counts;
+pub mod epoch;
 pub mod gimbal;
 pub mod imu;
 pub mod output;
 pub mod parameters;
 pub mod time;
+pub mod truth;
 
 pub use aiding::{Aiding, Reference};
+pub use epoch::Epoch;
 pub use gimbal::{GimbalAngles, GimbalCommand};
 pub use imu::{Sample, Status};
 pub use output::{Health, Mode, Navigation, Output};
 pub use parameters::Parameters;
 pub use time::DeviceTime;
+pub use truth::Truth;

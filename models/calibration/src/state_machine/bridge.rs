@@ -35,6 +35,8 @@ pub(super) struct Bridge {
     pub(super) gimbal: GimbalAngles,
     /// Encoder angles before the first of the identical counts of each gyro.
     run_start: [GimbalAngles; 3],
+    /// Repeated counts of each channel that were used, before it was found stuck.
+    used_repeats: [u32; 6],
     /// Channels that have been bridged since the uncertainty was last accounted for.
     open: u8,
     /// What jumps would have added, had they been believed: rad and m/s, in b.
@@ -159,6 +161,11 @@ impl Core {
         if found.jumped | found.expired != 0 {
             *health |= Health::JUMP;
         }
+        if found.stuck != 0 {
+            self.monitor.note_stuck();
+            health.set(Health::GYRO_STUCK, found.stuck & GYROS != 0);
+            health.set(Health::ACCELEROMETER_STUCK, found.stuck & ACCELEROMETERS != 0);
+        }
 
         let mut taken = Increments::of(lanes);
         let mut channels = 0;
@@ -181,6 +188,9 @@ impl Core {
             taken.delta_velocity -= on(channels >> 3, &off.1);
             if found.found_stuck & channels != 0 && still {
                 self.make_up(&mut taken, found.found_stuck, sample, standing, interval_s);
+                // A dead channel says nothing of any motion.
+                self.bridge.disbelieved.0 -= on(found.found_stuck, &self.bridge.disbelieved.0);
+                self.bridge.disbelieved.1 -= on(found.found_stuck >> 3, &self.bridge.disbelieved.1);
             }
             self.bridge.open |= channels;
             self.bridge.elapsed_s += interval_s;
@@ -189,6 +199,7 @@ impl Core {
                 filter.bridge(channels);
             }
         }
+        self.count_repeats(channels);
         self.bridge.gimbal = sample.gimbal;
         self.integrate(&(taken.delta_theta, taken.delta_velocity), interval_s);
         if channels == 0 {
@@ -224,6 +235,18 @@ impl Core {
         }
     }
 
+    /// Counts the repeats that are used as they are.
+    fn count_repeats(&mut self, bridged: u8) {
+        for channel in 0..6 {
+            let used = &mut self.bridge.used_repeats[channel];
+            if self.screen.run(channel) == 0 {
+                *used = 0;
+            } else if bridged & (1 << channel) == 0 {
+                *used += 1;
+            }
+        }
+    }
+
     fn begin_stretch(&mut self) {
         if self.bridge.open == 0 {
             self.bridge.start = self.bridge.gimbal;
@@ -252,14 +275,19 @@ impl Core {
             if channels & (1 << channel) == 0 {
                 continue;
             }
-            // Samples of the run before this one that repeated the first.
-            let late = f64::from(self.screen.run(channel).saturating_sub(1));
+            let (repeats, used) =
+                (self.screen.run(channel).saturating_sub(1), self.bridge.used_repeats[channel]);
+            if used == 0 || used > repeats {
+                continue;
+            }
+            let late = f64::from(used);
+            let share = late / f64::from(repeats);
             let axis = channel % 3;
             let invalid = sample.status.contains(Status::GIMBAL_INVALID);
             let turn = if standing || invalid {
                 Vector3::zeros()
             } else {
-                gimbal_turn(self.bridge.run_start[axis], self.bridge.gimbal)
+                gimbal_turn(self.bridge.run_start[axis], self.bridge.gimbal) * share
             };
             let (theta, v) = self.known_motion(&turn, late * interval_s);
             // The attitude is that at the end of them, known_motion goes on from its start.

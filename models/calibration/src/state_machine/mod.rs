@@ -233,10 +233,18 @@ impl Core {
     /// The parameters and their σ ([`Self::parameters`], [`Self::sigma`]) have changed when the
     /// output's revision has.
     pub fn step(&mut self, sample: &Sample, aiding: Option<&Aiding>) -> Output {
+        let mut output = Output::default();
+        self.step_into(sample, aiding, &mut output);
+        output
+    }
+
+    /// [`Self::step`] in place, for who steps millions of times: a copy of an output that has just
+    /// been written waits for the stores.
+    pub fn step_into(&mut self, sample: &Sample, aiding: Option<&Aiding>, output: &mut Output) {
         let (order, mut health) = self.monitor.check(sample);
         let mut nis = f64::NAN;
         let interval_ns = match order {
-            Order::Behind => return self.answer(sample, health, nis),
+            Order::Behind => return self.answer(sample, health, nis, output),
             Order::Next(interval_ns) => interval_ns,
             Order::Gap { missing } => {
                 self.bridge(missing, sample);
@@ -244,7 +252,9 @@ impl Core {
             }
         };
         self.tick = self.tick.saturating_add(1);
-        self.take(sample, interval_ns as f64 * 1e-9, &mut health);
+        let regular = interval_ns == self.config.sample_period_ns;
+        let interval_s = if regular { self.sample_s } else { interval_ns as f64 * 1e-9 };
+        self.take(sample, interval_s, &mut health);
         match self.mode {
             Mode::Calibrating => {
                 self.measure(sample, aiding, &mut health, &mut nis);
@@ -267,7 +277,7 @@ impl Core {
             health |= Health::NUMERIC;
             self.refuse(Refusal::Numeric);
         }
-        self.answer(sample, health, nis)
+        self.answer(sample, health, nis, output);
     }
 
     /// Samples since the start of the present phase.
@@ -290,9 +300,14 @@ impl Core {
                 self.bridge.gimbal = sample.gimbal;
                 self.integrate(&increments(sample), interval_s);
             }
-            (Mode::Aligning, _) => self.align(&increments(sample), interval_s),
-            (Mode::Calibrating, _) => self.watch(sample, &increments(sample), interval_s),
-            (Mode::Refused | Mode::Done, _) => {}
+            (mode, _) => {
+                *health |= self.monitor.stuck(sample);
+                match mode {
+                    Mode::Aligning => self.align(&increments(sample), interval_s),
+                    Mode::Calibrating => self.watch(sample, &increments(sample), interval_s),
+                    _ => {}
+                }
+            }
         }
     }
 
@@ -427,7 +442,7 @@ impl Core {
     }
 
     #[inline]
-    fn answer(&mut self, sample: &Sample, health: Health, nis: f64) -> Output {
+    fn answer(&mut self, sample: &Sample, health: Health, nis: f64, output: &mut Output) {
         self.answered = (sample.sequence, sample.device_time);
         if let Some(cursor) = &self.cursor {
             self.gimbals = Gimbals {
@@ -436,7 +451,7 @@ impl Core {
                 command: cursor.command(),
             };
         }
-        self.output(health, nis)
+        *output = self.output(health, nis);
     }
 
     /// The output as things stand. Made anew each time: copying one that has just been written

@@ -37,7 +37,7 @@ pub fn key(seed: u64, name: &str, phase: Phase) -> Key {
 
 /// Three standard normals per sample: one triad's noise.
 #[derive(Clone, Debug)]
-pub(crate) struct Triad {
+pub struct Triad {
     current: Key,
     navigation: Key,
     initial: Key,
@@ -45,7 +45,9 @@ pub(crate) struct Triad {
 }
 
 impl Triad {
-    pub(crate) fn new(seed: u64, name: &str) -> Self {
+    /// The stream of a seed and a name.
+    #[must_use]
+    pub fn new(seed: u64, name: &str) -> Self {
         Self {
             current: key(seed, name, Phase::Calibration),
             navigation: key(seed, name, Phase::Navigation),
@@ -55,30 +57,30 @@ impl Triad {
     }
 
     /// From here on the numbers are those of navigation.
-    pub(crate) fn navigate(&mut self) {
+    pub fn navigate(&mut self) {
         self.current = self.navigation;
     }
 
     /// The numbers of a sample of the present phase.
     #[inline(always)]
-    pub(crate) fn at(&self, sample: u64) -> [f64; 3] {
+    pub fn at(&self, sample: u64) -> [f64; 3] {
         self.ziggurat.three(self.current, sample)
     }
 
     /// The random words of a sample of the present phase.
     #[inline(always)]
-    pub(crate) fn words(&self, sample: u64) -> [u64; 4] {
+    pub fn words(&self, sample: u64) -> [u64; 4] {
         normal::words(self.current, sample)
     }
 
     /// The numbers of a sample of the present phase, from its words.
     #[inline(always)]
-    pub(crate) fn of(&self, sample: u64, words: &[u64; 4]) -> [f64; 3] {
+    pub fn of(&self, sample: u64, words: &[u64; 4]) -> [f64; 3] {
         self.ziggurat.three_of(self.current, sample, words)
     }
 
     /// The numbers drawn once, for an initial state.
-    pub(crate) fn initial(&self) -> [f64; 3] {
+    pub fn initial(&self) -> [f64; 3] {
         self.ziggurat.three(self.initial, 0)
     }
 }

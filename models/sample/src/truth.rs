@@ -4,7 +4,7 @@
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Truth {
     /// Simulated time, ns since the start.
-    pub time: octant_sample::time::SimulatedTime,
+    pub time: crate::time::SimulatedTime,
     /// Geodetic latitude, rad.
     pub latitude_rad: f64,
     /// Longitude, rad.

@@ -3,7 +3,8 @@
 //! comparison in 98.8 % of the cases, libm's logarithm and exponential in the rest.
 
 use crate::philox::{Key, block};
-use std::sync::LazyLock;
+use alloc::boxed::Box;
+use once_cell::race::OnceBox;
 
 const LAYERS: usize = 256;
 /// Where the tail begins, for 256 layers.
@@ -11,24 +12,24 @@ const TAIL: f64 = 3.654_152_885_361_008_8;
 
 /// Edges and densities of the layers.
 #[derive(Debug)]
-pub(crate) struct Ziggurat {
+pub struct Ziggurat {
     /// Width of layer i; the base layer's is its area over the density at the tail.
     x: [f64; LAYERS + 1],
     /// exp(−x²/2) at each edge.
     f: [f64; LAYERS + 1],
 }
 
-static ZIGGURAT: LazyLock<Ziggurat> = LazyLock::new(Ziggurat::new);
+static ZIGGURAT: OnceBox<Ziggurat> = OnceBox::new();
 
 /// A uniform number in (0, 1): 53 bits, centred in its cell.
 #[inline]
-pub(crate) fn uniform(word: u64) -> f64 {
+pub fn uniform(word: u64) -> f64 {
     ((word >> 11) as f64 + 0.5) * (1.0 / (1u64 << 53) as f64)
 }
 
 /// The block of a counter.
 #[inline(always)]
-pub(crate) fn words(key: Key, counter: u64) -> [u64; 4] {
+pub fn words(key: Key, counter: u64) -> [u64; 4] {
     block(key, [counter, 0, 0, 0])
 }
 
@@ -38,8 +39,8 @@ fn density(x: f64) -> f64 {
 
 impl Ziggurat {
     /// The tables, made once per process.
-    pub(crate) fn shared() -> &'static Self {
-        &ZIGGURAT
+    pub fn shared() -> &'static Self {
+        ZIGGURAT.get_or_init(|| Box::new(Self::new()))
     }
 
     fn new() -> Self {
@@ -61,13 +62,13 @@ impl Ziggurat {
 
     /// Three independent standard normals of one counter.
     #[inline(always)]
-    pub(crate) fn three(&self, key: Key, counter: u64) -> [f64; 3] {
+    pub fn three(&self, key: Key, counter: u64) -> [f64; 3] {
         self.three_of(key, counter, &words(key, counter))
     }
 
     /// The same from the block of the counter, for callers that have several blocks in flight.
     #[inline(always)]
-    pub(crate) fn three_of(&self, key: Key, counter: u64, words: &[u64; 4]) -> [f64; 3] {
+    pub fn three_of(&self, key: Key, counter: u64, words: &[u64; 4]) -> [f64; 3] {
         [
             self.one(key, counter, 0, words[0]),
             self.one(key, counter, 1, words[1]),

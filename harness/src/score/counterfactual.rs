@@ -1,0 +1,353 @@
+//! What a fault did: the faulted run held against its twin, which met the same instrument and the
+//! same noise without the fault.
+//!
+//! Every difference between the two is the fault's doing, because nothing else differs. What the
+//! core reported in the faulted run and not in its twin is how it noticed.
+
+use super::health::{Episode, name};
+use super::summary::{Calibration, Navigation};
+use super::trace::Trace;
+use octant_earth::ellipsoid::Ellipsoid;
+use octant_earth::units::{ARCMIN, NAUTICAL_MILE_M};
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// Parameter shift, in posterior σ of the twin, from which a fault counts as harmful: an error that
+/// its own σ would not let anyone expect.
+pub const HARMFUL_SHIFT_SIGMA: f64 = 3.0;
+/// The same report within this time in both runs is not the fault's, ns.
+const SAME_NS: u64 = 5_000_000_000;
+/// Rows of the difference kept in the summary.
+const ROWS_MAX: usize = 1000;
+
+/// What the faults of a run did, against its twin.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Counterfactual {
+    /// Seconds of the run after which the outputs of the two are no longer the same; they differ
+    /// within the second that follows. Null where no output differs.
+    pub outputs_differ_after_s: Option<f64>,
+    /// Shift of every estimated parameter, by name.
+    pub parameters: BTreeMap<String, Shift>,
+    /// Name of the parameter that moved most; null without a calibration in both.
+    pub worst_parameter: Option<String>,
+    /// Its |shift|, in σ of the twin.
+    pub worst_shift_sigma: Option<f64>,
+    /// Difference of the navigation errors; null where one of the two didn't navigate.
+    pub navigation: Option<DriftDifference>,
+    /// What became of each fault, in the order of the scenario.
+    pub faults: Vec<Noticed>,
+    /// The calibration was refused, and that of the twin wasn't.
+    pub refused: bool,
+    /// The fault did harm: a parameter moved by 3 σ or more, or the radial error changed by more than
+    /// the twin's largest.
+    pub harmful: bool,
+    /// It did harm, the calibration was published, and no fault was noticed.
+    pub missed: bool,
+    /// Reports of the core that no fault explains: those of the twin.
+    pub false_alarms: u64,
+    /// Hash of the twin's stream.
+    pub twin_stream_hash: String,
+}
+
+/// Shift of one parameter.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Shift {
+    /// Estimate of the faulted run minus that of the twin, in the unit of the parameter.
+    pub shift: f64,
+    /// The same in posterior σ of the twin.
+    pub sigma: f64,
+}
+
+/// Difference of the navigation errors, faulted minus twin.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct DriftDifference {
+    /// Largest |difference| of latitude, arcmin.
+    pub latitude_max_arcmin: f64,
+    /// Largest |difference| of longitude, arcmin.
+    pub longitude_max_arcmin: f64,
+    /// Largest distance between the two solutions, nmi.
+    pub radial_max_nmi: f64,
+    /// Largest radial error of the twin, nmi: what the difference is to be held against.
+    pub twin_radial_max_nmi: f64,
+    /// Hours, difference of latitude, of longitude (arcmin).
+    pub series_hours: Vec<[f64; 3]>,
+}
+
+/// Whether and how the core noticed a fault.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Noticed {
+    /// Id of the fault.
+    pub id: String,
+    /// Onset: start of the first interval that it altered, s of the run; null if it never fired.
+    pub onset_s: Option<f64>,
+    /// The core's first report that its twin doesn't have, from the onset on; null: none. With
+    /// several faults at once it can be another one's.
+    pub noticed_by: Option<String>,
+    /// Seconds from the onset to that report.
+    pub delay_s: Option<f64>,
+    /// Seconds of the run at which the last such report ended.
+    pub last_report_s: Option<f64>,
+    /// The reports ended before the calibration or the run did, the calibration stands, and no
+    /// parameter moved by 3 σ.
+    pub recovered: bool,
+}
+
+/// One run, as far as it is compared.
+#[derive(Clone, Copy, Debug)]
+pub struct Side<'a> {
+    /// Its calibration.
+    pub calibration: Option<&'a Calibration>,
+    /// Its navigation.
+    pub navigation: Option<&'a Navigation>,
+    /// What the core reported.
+    pub episodes: &'a [Episode],
+    /// Its trace.
+    pub trace: &'a Trace,
+    /// Hash of its stream.
+    pub stream_hash: &'a str,
+    /// Length of the run, s of device time.
+    pub elapsed_s: f64,
+}
+
+/// Holds a faulted run against its twin. `onsets` are the faults with the start of the first
+/// interval that each altered, s; `latitude_rad` and `height_m` are those of the site.
+#[must_use]
+pub fn counterfactual(
+    faulted: &Side<'_>,
+    twin: &Side<'_>,
+    onsets: &[(String, Option<f64>)],
+    sample_s: f64,
+    latitude_rad: f64,
+    height_m: f64,
+) -> Counterfactual {
+    let parameters = shifts(faulted, twin);
+    let worst = parameters
+        .iter()
+        .map(|(name, shift)| (name, shift.sigma.abs()))
+        .max_by(|a, b| a.1.total_cmp(&b.1));
+    let worst_shift_sigma = worst.map(|(_, sigma)| sigma);
+    let refused_by = |side: &Side<'_>| side.calibration.is_some_and(|c| c.refused.is_some());
+    let refused = refused_by(faulted) && !refused_by(twin);
+    let navigation = difference(faulted, twin, latitude_rad, height_m);
+    let shifted = worst_shift_sigma.is_some_and(|sigma| sigma >= HARMFUL_SHIFT_SIGMA);
+    let drifted = navigation
+        .as_ref()
+        .is_some_and(|n: &DriftDifference| n.radial_max_nmi > n.twin_radial_max_nmi);
+    let harmful = shifted || drifted;
+    let new = new_episodes(faulted.episodes, twin.episodes);
+    let stands = !refused && !shifted;
+    let faults: Vec<Noticed> = onsets
+        .iter()
+        .map(|(id, onset_s)| noticed(id, *onset_s, &new, faulted.elapsed_s, stands))
+        .collect();
+    let unnoticed = faults.iter().all(|fault| fault.noticed_by.is_none());
+    Counterfactual {
+        outputs_differ_after_s: faulted
+            .trace
+            .parts_from(twin.trace)
+            .map(|outputs| outputs as f64 * sample_s),
+        worst_parameter: worst.map(|(name, _)| name.clone()),
+        worst_shift_sigma,
+        parameters,
+        navigation,
+        faults,
+        refused,
+        harmful,
+        missed: harmful && !refused && unnoticed,
+        false_alarms: twin.episodes.len() as u64,
+        twin_stream_hash: twin.stream_hash.to_owned(),
+    }
+}
+
+/// Shifts of the parameters that both estimated.
+fn shifts(faulted: &Side<'_>, twin: &Side<'_>) -> BTreeMap<String, Shift> {
+    let (Some(faulted), Some(twin)) = (faulted.calibration, twin.calibration) else {
+        return BTreeMap::new();
+    };
+    twin.parameters
+        .iter()
+        .filter_map(|(name, clean)| {
+            let estimate = faulted.parameters.get(name)?.estimate;
+            let sigma = clean.sigma?;
+            let shift = estimate - clean.estimate;
+            Some((name.clone(), Shift { shift, sigma: shift / sigma }))
+        })
+        .collect()
+}
+
+fn difference(
+    faulted: &Side<'_>,
+    twin: &Side<'_>,
+    latitude_rad: f64,
+    height_m: f64,
+) -> Option<DriftDifference> {
+    faulted.navigation?;
+    let twin_radial_max_nmi = twin.navigation?.radial_error_nmi.max;
+    let earth = Ellipsoid::at(latitude_rad, height_m);
+    let rows = faulted.trace.minus(twin.trace);
+    let (mut latitude_max, mut longitude_max, mut radial_max_m) = (0.0f64, 0.0f64, 0.0f64);
+    for (_, latitude, longitude) in &rows {
+        let north_m = latitude * earth.meridian_radius_m;
+        let east_m = longitude * earth.transverse_radius_m * earth.cos_latitude;
+        latitude_max = latitude_max.max(latitude.abs());
+        longitude_max = longitude_max.max(longitude.abs());
+        radial_max_m = radial_max_m.max(libm::hypot(north_m, east_m));
+    }
+    let every = rows.len().div_ceil(ROWS_MAX).max(1);
+    Some(DriftDifference {
+        latitude_max_arcmin: latitude_max / ARCMIN,
+        longitude_max_arcmin: longitude_max / ARCMIN,
+        radial_max_nmi: radial_max_m / NAUTICAL_MILE_M,
+        twin_radial_max_nmi,
+        series_hours: rows
+            .iter()
+            .step_by(every)
+            .map(|(hours, latitude, longitude)| [*hours, latitude / ARCMIN, longitude / ARCMIN])
+            .collect(),
+    })
+}
+
+/// Episodes of the faulted run that the twin doesn't have at that time.
+fn new_episodes<'a>(faulted: &'a [Episode], twin: &[Episode]) -> Vec<&'a Episode> {
+    faulted
+        .iter()
+        .filter(|episode| {
+            !twin.iter().any(|other| {
+                other.cause == episode.cause && episode.start.ns.abs_diff(other.start.ns) <= SAME_NS
+            })
+        })
+        .collect()
+}
+
+fn noticed(
+    id: &str,
+    onset_s: Option<f64>,
+    new: &[&Episode],
+    elapsed_s: f64,
+    stands: bool,
+) -> Noticed {
+    let mut found = Noticed {
+        id: id.to_owned(),
+        onset_s,
+        noticed_by: None,
+        delay_s: None,
+        last_report_s: None,
+        recovered: false,
+    };
+    let Some(onset_s) = onset_s else { return found };
+    let after: Vec<&&Episode> = new.iter().filter(|e| e.start.seconds() >= onset_s).collect();
+    if let Some(first) = after.iter().min_by_key(|episode| episode.start.ns) {
+        found.noticed_by = Some(name(first.cause).to_owned());
+        found.delay_s = Some(first.start.seconds() - onset_s);
+        let last_s = after.iter().map(|e| e.end.seconds()).fold(0.0, f64::max);
+        found.last_report_s = Some(last_s);
+        // Measurements come once a second: one that reports at the very end hasn't ended.
+        found.recovered = stands && last_s < elapsed_s - 2.0;
+    }
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::score::summary::{HealthCounts, ParameterScore};
+    use octant_sample::{DeviceTime, Health};
+
+    fn calibration(estimate: f64, refused: Option<&str>) -> Calibration {
+        let score = |estimate, sigma| ParameterScore {
+            r#true: None,
+            estimate,
+            sigma,
+            error: None,
+            normalized: None,
+            unit: "deg/h".to_owned(),
+        };
+        Calibration {
+            positions: "eight".to_owned(),
+            estimator: "kalman".to_owned(),
+            duration_h: 4.0,
+            parameters: [
+                ("bg_x".to_owned(), score(estimate, Some(0.5))),
+                ("bg_y".to_owned(), score(7.0, Some(0.25))),
+                ("g_xx".to_owned(), score(0.0, None)),
+            ]
+            .into(),
+            nis_mean: None,
+            nees: BTreeMap::new(),
+            worst_normalized_error: None,
+            refused: refused.map(str::to_owned),
+            health: HealthCounts::default(),
+        }
+    }
+
+    fn episode(cause: Health, start_s: u64, end_s: u64) -> Episode {
+        let at = |s: u64| DeviceTime::from_ns(s * 1_000_000_000);
+        Episode { cause, start: at(start_s), end: at(end_s), epochs: 1 }
+    }
+
+    fn side<'a>(c: &'a Calibration, episodes: &'a [Episode], trace: &'a Trace) -> Side<'a> {
+        Side {
+            calibration: Some(c),
+            navigation: None,
+            episodes,
+            trace,
+            stream_hash: "abc",
+            elapsed_s: 1000.0,
+        }
+    }
+
+    fn compare(
+        faulted: (&Calibration, &[Episode]),
+        twin: (&Calibration, &[Episode]),
+        onset_s: Option<f64>,
+    ) -> Counterfactual {
+        let trace = Trace::new();
+        counterfactual(
+            &side(faulted.0, faulted.1, &trace),
+            &side(twin.0, twin.1, &trace),
+            &[("f".to_owned(), onset_s)],
+            0.005,
+            0.5,
+            0.0,
+        )
+    }
+
+    #[test]
+    fn a_shift_is_in_sigma_of_the_twin_and_a_silent_one_is_missed() {
+        let (faulted, twin) = (calibration(3.0, None), calibration(1.0, None));
+        let c = compare((&faulted, &[]), (&twin, &[]), Some(100.0));
+        assert_eq!(c.parameters["bg_x"], Shift { shift: 2.0, sigma: 4.0 });
+        assert!(!c.parameters.contains_key("g_xx"), "it was not estimated");
+        assert_eq!(c.worst_parameter.as_deref(), Some("bg_x"));
+        assert!(c.harmful && c.missed && !c.refused);
+        assert_eq!(c.faults[0].noticed_by, None);
+    }
+
+    #[test]
+    fn what_the_twin_reports_too_is_a_false_alarm_and_no_notice() {
+        let (faulted, twin) = (calibration(1.0, None), calibration(1.0, None));
+        let gap = [episode(Health::GAP, 150, 150)];
+        let c = compare((&faulted, &gap), (&twin, &gap), Some(100.0));
+        assert_eq!((c.false_alarms, c.faults[0].noticed_by.as_deref()), (1, None));
+        let late = [gap[0], episode(Health::GYRO_STUCK, 130, 160)];
+        let c = compare((&faulted, &late), (&twin, &gap), Some(129.5));
+        assert_eq!(c.faults[0].noticed_by.as_deref(), Some("gyro stuck"));
+        assert_eq!((c.faults[0].delay_s, c.faults[0].last_report_s), (Some(0.5), Some(160.0)));
+        assert!(c.faults[0].recovered && !c.harmful);
+    }
+
+    #[test]
+    fn a_refused_calibration_is_not_missed() {
+        let (faulted, twin) = (calibration(9.0, Some("no")), calibration(1.0, None));
+        let c = compare((&faulted, &[]), (&twin, &[]), Some(100.0));
+        assert!(c.refused && c.harmful && !c.missed && !c.faults[0].recovered);
+    }
+
+    #[test]
+    fn a_fault_that_never_fired_is_noticed_by_nobody() {
+        let (faulted, twin) = (calibration(1.0, None), calibration(1.0, None));
+        let stuck = [episode(Health::GYRO_STUCK, 130, 160)];
+        let c = compare((&faulted, &stuck), (&twin, &[]), None);
+        assert_eq!(c.faults[0].noticed_by, None);
+    }
+}

@@ -1,0 +1,148 @@
+//! What a run leaves behind so that it can be held against its twin: digests of the core's outputs,
+//! and navigation errors on a grid that both share.
+
+use octant_sample::Output;
+
+/// Outputs under one digest.
+pub const DIGEST_OUTPUTS: u64 = 200;
+/// Points of drift kept; beyond, every second one is dropped and the grid is twice as wide.
+const POINTS_MAX: usize = 4096;
+
+/// The trace of one run.
+#[derive(Clone, Debug)]
+pub struct Trace {
+    running: u64,
+    outputs: u64,
+    /// One for every [`DIGEST_OUTPUTS`] outputs, each over all outputs so far.
+    digests: Vec<u64>,
+    stride_s: u64,
+    /// Second of the navigation, latitude and longitude error, rad.
+    points: Vec<(u64, f64, f64)>,
+}
+
+impl Default for Trace {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl Trace {
+    /// A trace of nothing yet.
+    #[must_use]
+    pub fn new() -> Self {
+        Self { running: 0, outputs: 0, digests: Vec::new(), stride_s: 1, points: Vec::new() }
+    }
+
+    /// Takes the output of every epoch.
+    #[inline]
+    pub fn output(&mut self, output: &Output) {
+        let navigation = &output.navigation;
+        let mut take = |bits: u64| {
+            self.running =
+                (self.running ^ bits).wrapping_mul(0x9E37_79B9_7F4A_7C15).rotate_left(31);
+        };
+        take(navigation.latitude_rad.to_bits());
+        take(navigation.longitude_rad.to_bits());
+        for value in navigation.velocity_mps.iter().chain(&navigation.q_nb) {
+            take(value.to_bits());
+        }
+        take(u64::from(output.health.bits()) << 32 | u64::from(output.parameters_revision));
+        take(output.mode as u64);
+        self.outputs += 1;
+        if self.outputs.is_multiple_of(DIGEST_OUTPUTS) {
+            self.digests.push(self.running);
+        }
+    }
+
+    /// Takes a navigation error, `t_s` after the start of the navigation. Those on whole seconds are
+    /// kept.
+    pub fn drift(&mut self, t_s: f64, latitude_error_rad: f64, longitude_error_rad: f64) {
+        let second = t_s.round();
+        if (t_s - second).abs() > 1e-6 || !(0.0..1e12).contains(&second) {
+            return;
+        }
+        let second = second as u64;
+        if !second.is_multiple_of(self.stride_s) {
+            return;
+        }
+        self.points.push((second, latitude_error_rad, longitude_error_rad));
+        if self.points.len() > POINTS_MAX {
+            self.stride_s *= 2;
+            let stride_s = self.stride_s;
+            self.points.retain(|(second, ..)| second.is_multiple_of(stride_s));
+        }
+    }
+
+    /// Outputs after which this run and another are no longer the same: they differ within the next
+    /// [`DIGEST_OUTPUTS`]. `None` where nothing differs.
+    #[must_use]
+    pub fn parts_from(&self, other: &Self) -> Option<u64> {
+        let common = self.digests.iter().zip(&other.digests).take_while(|(a, b)| a == b).count();
+        let same = self.outputs == other.outputs && self.running == other.running;
+        (!same).then_some(common as u64 * DIGEST_OUTPUTS)
+    }
+
+    /// Hours of navigation, and latitude and longitude error of this run minus those of another, rad,
+    /// where both have a point.
+    #[must_use]
+    pub fn minus(&self, other: &Self) -> Vec<(f64, f64, f64)> {
+        let mut theirs = other.points.iter().peekable();
+        let mut difference = Vec::new();
+        for (second, latitude, longitude) in &self.points {
+            while theirs.next_if(|point| point.0 < *second).is_some() {}
+            if let Some(point) = theirs.next_if(|point| point.0 == *second) {
+                let hours = *second as f64 / 3600.0;
+                difference.push((hours, latitude - point.1, longitude - point.2));
+            }
+        }
+        difference
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn runs_part_where_an_output_differs() {
+        let run = |changed: u64| {
+            let mut trace = Trace::new();
+            for k in 0..10_050u64 {
+                let mut output = Output::default();
+                output.navigation.latitude_rad = k as f64;
+                if k == changed {
+                    output.navigation.velocity_mps[2] = 1e-300;
+                }
+                trace.output(&output);
+            }
+            trace
+        };
+        let clean = run(u64::MAX);
+        assert_eq!(run(u64::MAX).parts_from(&clean), None);
+        assert_eq!(run(4321).parts_from(&clean), Some(4200));
+        assert_eq!(run(0).parts_from(&clean), Some(0));
+        assert_eq!(run(10_049).parts_from(&clean), Some(10_000));
+        let mut shorter = Trace::new();
+        shorter.output(&Output::default());
+        assert_eq!(shorter.parts_from(&clean), Some(0));
+    }
+
+    #[test]
+    fn a_long_drift_keeps_a_common_grid_with_a_shorter_one() {
+        let run = |seconds: u64, slope: f64| {
+            let mut trace = Trace::new();
+            for t in 0..=seconds {
+                trace.drift(t as f64, slope * t as f64, -slope * t as f64);
+                trace.drift(t as f64 + 0.5, f64::NAN, f64::NAN);
+            }
+            trace
+        };
+        let difference = run(300_000, 3.0).minus(&run(100_000, 1.0));
+        assert!(difference.len() > 500 && difference.len() < POINTS_MAX);
+        for (hours, latitude, longitude) in &difference {
+            assert!((latitude - 2.0 * hours * 3600.0).abs() < 1e-6);
+            assert_eq!(*longitude, -latitude);
+        }
+        assert!(difference.last().unwrap().0 > 27.7);
+    }
+}

@@ -1,0 +1,56 @@
+//! A pulse on one or more channels.
+
+use crate::catalogue::{Acts, Bounds, Dimension, Family, Kind, Lasts, Parameter, Takes};
+use crate::kinds::added::Added;
+use crate::rule::{Context, Rule, SampleRule};
+use crate::setup::{BuildError, Setup};
+use crate::values::Values;
+use alloc::boxed::Box;
+use octant_sample::Epoch;
+
+pub(super) static SPIKE: Kind = Kind {
+    name: "spike",
+    family: Family::Digital,
+    acts: Acts::Samples,
+    summary: "A pulse of constant height on one or more channels.",
+    model: "While it lasts, every sample of the channels gets the pulse's height:\n\n\
+            \u{20}   Δθ' = Δθ + A dt      or      Δv' = Δv + A dt\n\n\
+            in counts, with the remainder carried from sample to sample, so that a pulse of N \
+            samples adds N·A·dt to within half a count. Its width is its duration; single, \
+            periodic and Poisson spikes differ by their trigger.",
+    parameters: &[
+        Parameter {
+            name: "channels",
+            takes: Takes::Channels,
+            default: None,
+            doc: "Channels that get the pulse: gyros or accelerometers.",
+        },
+        Parameter {
+            name: "amplitude",
+            takes: Takes::Quantity(&[Dimension::GyroBias, Dimension::AccelBias], Bounds::NotZero),
+            default: None,
+            doc: "Height of the pulse: an angular rate for gyros, an acceleration for accelerometers.",
+        },
+    ],
+    lasts: Lasts::Span,
+    build,
+};
+
+fn build(values: &Values, setup: &Setup) -> Result<Rule, BuildError> {
+    let added = Added::of(values, "channels", "amplitude", setup)?;
+    Ok(Rule::Samples(Box::new(Spike { added })))
+}
+
+#[derive(Debug)]
+struct Spike {
+    added: Added,
+}
+
+impl SampleRule for Spike {
+    fn on_epoch(&mut self, epoch: &mut Epoch, now: &Context<'_>) {
+        if now.since_onset == 0 {
+            self.added.clear();
+        }
+        self.added.add(&mut epoch.sample, now.strength);
+    }
+}

@@ -1,0 +1,100 @@
+//! What became of a fault: found by comparing, not told by the fault.
+
+use alloc::string::String;
+use octant_sample::canonical::{AIDING_BYTES, SAMPLE_BYTES, aiding, sample};
+use octant_sample::{Epoch, GimbalCommand};
+
+/// The receipt of one fault.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Receipt {
+    /// Id of the fault in the scenario.
+    pub id: String,
+    /// Name of its kind.
+    pub kind: &'static str,
+    /// It was in the pipeline from the start.
+    pub armed: bool,
+    /// How often it set in.
+    pub firings: u32,
+    /// First epoch of the source that it altered, from 1.
+    pub first_sample: Option<u64>,
+    /// Last epoch of the source that it altered.
+    pub last_sample: Option<u64>,
+    /// Epochs that it altered. Of a fault inside the plant: epochs that it was active in; what it
+    /// changed there shows in the difference to the run without it.
+    pub samples_altered: u64,
+    /// CRC-32 of what it was given, over the epochs that it altered.
+    pub clean_crc32: u32,
+    /// CRC-32 of what it made of it.
+    pub faulted_crc32: u32,
+}
+
+impl Receipt {
+    /// It altered something.
+    #[must_use]
+    pub fn fired(&self) -> bool {
+        self.samples_altered > 0
+    }
+}
+
+/// Keeps the receipt of one fault.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Ledger {
+    first: Option<u64>,
+    last: Option<u64>,
+    altered: u64,
+    clean: crc32fast::Hasher,
+    faulted: crc32fast::Hasher,
+}
+
+impl Ledger {
+    /// The fault had its hand on an epoch.
+    pub(crate) fn touched(&mut self, epoch: u64) {
+        // Several epochs can leave a delivery fault in one step of the source.
+        if self.last != Some(epoch) {
+            self.altered += 1;
+        }
+        self.first.get_or_insert(epoch);
+        self.last = Some(epoch);
+    }
+
+    pub(crate) fn clean(&mut self, epoch: &Epoch) {
+        digest(&mut self.clean, epoch);
+    }
+
+    pub(crate) fn faulted(&mut self, epoch: &Epoch) {
+        digest(&mut self.faulted, epoch);
+    }
+
+    pub(crate) fn commands(&mut self, clean: &GimbalCommand, faulted: &GimbalCommand) {
+        for (into, command) in [(&mut self.clean, clean), (&mut self.faulted, faulted)] {
+            into.update(&command.target.azimuth.to_le_bytes());
+            into.update(&command.target.roll.to_le_bytes());
+        }
+    }
+
+    pub(crate) fn receipt(&self, id: &str, kind: &'static str, firings: u32) -> Receipt {
+        Receipt {
+            id: id.into(),
+            kind,
+            armed: true,
+            firings,
+            first_sample: self.first,
+            last_sample: self.last,
+            samples_altered: self.altered,
+            clean_crc32: self.clean.clone().finalize(),
+            faulted_crc32: self.faulted.clone().finalize(),
+        }
+    }
+}
+
+/// Takes the canonical bytes of an epoch.
+fn digest(into: &mut crc32fast::Hasher, epoch: &Epoch) {
+    let mut bytes = [0; SAMPLE_BYTES];
+    sample(&epoch.sample, &mut bytes);
+    into.update(&bytes);
+    if let Some(message) = &epoch.aiding {
+        let mut bytes = [0; AIDING_BYTES];
+        aiding(message, &mut bytes);
+        into.update(&bytes);
+    }
+}

@@ -1,0 +1,125 @@
+//! What a kind implements: one small trait for each place where a fault can act.
+//!
+//! A rule is called only while its fault is active. It doesn't report what it did: the station
+//! compares, counts and keeps the receipt.
+
+use crate::disturbance::{Disturbance, Motor};
+use crate::setup::Stream;
+use alloc::boxed::Box;
+use alloc::vec::Vec;
+use core::fmt::Debug;
+use octant_random::normal::{Ziggurat, uniform, words};
+use octant_random::stream::Phase;
+use octant_sample::{Epoch, GimbalCommand, Output, Parameters};
+
+/// The rule of one fault, by the place where it acts.
+#[derive(Debug)]
+pub enum Rule {
+    /// Inside the plant.
+    Plant(Box<dyn PlantRule>),
+    /// On set points.
+    Command(Box<dyn CommandRule>),
+    /// On samples and aiding.
+    Samples(Box<dyn SampleRule>),
+    /// On delivery.
+    Delivery(Box<dyn DeliveryRule>),
+    /// On the unit under test.
+    Unit(Box<dyn UnitRule>),
+}
+
+/// What a rule knows of the moment.
+#[derive(Clone, Copy, Debug)]
+pub struct Context<'a> {
+    /// Number of the source's epoch, from 1.
+    pub epoch: u64,
+    /// Phase of the run.
+    pub phase: Phase,
+    /// Number of the sample in its phase, from 0: the counter of random streams.
+    pub counter: u64,
+    /// Sample period, s.
+    pub dt_s: f64,
+    /// Samples since the fault set in: 0 at the first.
+    pub since_onset: u64,
+    /// How often the fault has set in before.
+    pub firing: u32,
+    /// 1 while the fault lasts; falls to 0 over its recovery.
+    pub strength: f64,
+    /// The epoch before this one as it left the source: for rules that
+    /// [look back](SampleRule::looks_back), else undefined.
+    pub last: &'a Epoch,
+    /// The core's last output.
+    pub output: &'a Output,
+}
+
+impl Context<'_> {
+    /// Three standard normal numbers of this sample.
+    #[must_use]
+    pub fn normals(&self, stream: &Stream) -> [f64; 3] {
+        Ziggurat::shared().three(stream.key(self.phase), self.counter)
+    }
+
+    /// Four random numbers in (0, 1) of this sample.
+    #[must_use]
+    pub fn uniforms(&self, stream: &Stream) -> [f64; 4] {
+        words(stream.key(self.phase), self.counter).map(uniform)
+    }
+}
+
+/// Acts on samples and aiding in place.
+pub trait SampleRule: Debug + Send {
+    /// Acts on one epoch.
+    fn on_epoch(&mut self, epoch: &mut Epoch, now: &Context<'_>);
+
+    /// Whether the rule needs the epoch before its first one ([`Context::last`]).
+    fn looks_back(&self) -> bool {
+        false
+    }
+}
+
+/// Acts on the delivery of epochs.
+pub trait DeliveryRule: Debug + Send {
+    /// Takes an epoch; what is to be delivered now goes to `out`, in order. `active` is false for
+    /// epochs after the fault ended, which a rule sees for as long as it [holds](Self::holds) some.
+    fn on_epoch(&mut self, epoch: Epoch, active: bool, now: &Context<'_>, out: &mut Vec<Epoch>);
+
+    /// Epochs that are held back.
+    fn holds(&self) -> usize;
+}
+
+/// Acts on the set point that the turntable gets.
+pub trait CommandRule: Debug + Send {
+    /// Acts on the set point of one epoch.
+    fn on_command(&mut self, command: &mut GimbalCommand, now: &Context<'_>);
+}
+
+/// Acts inside the plant.
+pub trait PlantRule: Debug + Send {
+    /// What the plant suffers from now on; `motor` is the turntable as it stands.
+    fn begin(&mut self, now: &Context<'_>, motor: &Motor) -> Disturbance;
+}
+
+/// Acts on the unit under test.
+pub trait UnitRule: Debug + Send {
+    /// What happens to it at this epoch, before it gets the epoch; `None`: nothing.
+    fn on_epoch(&mut self, now: &Context<'_>) -> Option<UnitEvent>;
+    /// What happens to it when the fault ends.
+    fn end(&mut self, now: &Context<'_>) -> Option<UnitEvent>;
+}
+
+/// What happens to the unit under test.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[allow(clippy::large_enum_variant, reason = "rare, and passed by value once")]
+pub enum UnitEvent {
+    /// It starts anew, as at power on, and forgets everything.
+    Restart,
+    /// It loses power: no epoch reaches it and it answers nothing.
+    PowerOff,
+    /// Power comes back: it starts anew.
+    PowerOn,
+    /// It starts anew with a stored calibration that is `offset` away from the one that it would
+    /// have started from, SI.
+    RestartWith {
+        /// Added to the initial parameters.
+        offset: Parameters,
+    },
+}

@@ -1,0 +1,468 @@
+//! The station between source and endpoint: an ordered pipeline of faults.
+//!
+//! An epoch passes it in two steps. [`Station::before`] is called before the source makes the
+//! epoch: triggers are looked at, faults of plant and set point act. [`Station::after`] is called
+//! with the epoch that the source has made: faults of samples and delivery act on it, in the order
+//! of the scenario. What an active fault altered is found by comparing before and after it.
+
+use crate::catalogue::{Acts, Kind, Lasts};
+use crate::disturbance::Disturbed;
+use crate::receipt::{Ledger, Receipt};
+use crate::rule::{Context, Rule, UnitEvent};
+use crate::setup::{BuildError, Setup};
+use crate::trigger::{Clock, News, Scene, Schedule, State, Trigger};
+use crate::values::Values;
+use alloc::string::String;
+use alloc::vec::Vec;
+use octant_random::stream::Phase;
+use octant_sample::{Epoch, GimbalCommand, Output, Truth};
+
+/// One fault of a scenario.
+#[derive(Clone, Debug)]
+pub struct Spec {
+    /// Its id, one of its own.
+    pub id: String,
+    /// Its kind.
+    pub kind: &'static Kind,
+    /// Values of every parameter of the kind.
+    pub values: Values,
+    /// When.
+    pub schedule: Schedule,
+}
+
+/// The world that a station acts on beside samples.
+pub trait World {
+    /// The plant, where the source is one.
+    fn disturbed(&mut self) -> Option<&mut dyn Disturbed>;
+    /// Truth at the last epoch, where the source knows it.
+    fn truth(&self) -> Option<Truth>;
+}
+
+/// What became of an epoch.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Delivered<'a> {
+    /// No fault is active: the epoch goes on as it is.
+    Untouched,
+    /// These go on instead of it: none, one or several.
+    These(&'a [Epoch]),
+}
+
+/// Something to tell about a fault.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Occurrence {
+    /// Epoch of the source.
+    pub epoch: u64,
+    /// Number of the fault in the scenario, from 0.
+    pub fault: usize,
+    /// It sets in, or it ends.
+    pub begins: bool,
+}
+
+#[derive(Debug)]
+struct Stage {
+    id: String,
+    kind: &'static Kind,
+    rule: Rule,
+    clock: Clock,
+    ledger: Ledger,
+}
+
+impl Stage {
+    fn acting(&self) -> bool {
+        matches!(self.clock.state, State::Active { .. } | State::Fading { .. })
+    }
+
+    /// It acts, or holds epochs back from when it did.
+    fn engaged(&self) -> bool {
+        self.acting() || matches!(&self.rule, Rule::Delivery(rule) if rule.holds() > 0)
+    }
+
+    fn context<'a>(&self, shared: &Shared, last: &'a Epoch, output: &'a Output) -> Context<'a> {
+        Context {
+            epoch: shared.epoch,
+            phase: shared.phase,
+            counter: shared.counter,
+            dt_s: shared.dt_s,
+            since_onset: self.clock.onset().map_or(0, |onset| shared.epoch - onset),
+            firing: self.clock.firings.saturating_sub(1),
+            strength: self.clock.strength(shared.epoch),
+            last,
+            output,
+        }
+    }
+}
+
+/// What every context of an epoch has in common.
+#[derive(Clone, Copy, Debug)]
+struct Shared {
+    epoch: u64,
+    phase: Phase,
+    counter: u64,
+    dt_s: f64,
+}
+
+/// Epochs in flight at most: what a delivery fault can hold back.
+pub const FLIGHT_MAX: usize = 4096;
+/// Occurrences kept between two looks of the harness.
+const OCCURRENCES_MAX: usize = 256;
+
+/// The pipeline of one run.
+#[derive(Debug)]
+pub struct Station {
+    stages: Vec<Stage>,
+    dt_s: f64,
+    calibration_samples: u64,
+    /// Epochs so far.
+    epoch: u64,
+    /// The next epoch at which time alone changes something.
+    wake: u64,
+    /// The scene of the epoch before; 0: none yet.
+    seen: u32,
+    scene: Option<Scene>,
+    /// A stage is engaged, or has a condition that has to be looked at in every epoch.
+    busy: bool,
+    conditions: bool,
+    truth: bool,
+    looks_back: bool,
+    last: Epoch,
+    flight: Vec<Epoch>,
+    landed: Vec<Epoch>,
+    occurrences: Vec<Occurrence>,
+    events: Vec<UnitEvent>,
+}
+
+impl Station {
+    /// A station with the faults in the order in which they act.
+    ///
+    /// # Errors
+    /// If a fault's values contradict each other, an id is given twice, or a fault waits for one
+    /// that isn't there.
+    pub fn new(specs: &[Spec], setup: &Setup) -> Result<Self, (String, BuildError)> {
+        let mut stages: Vec<Stage> = Vec::with_capacity(specs.len());
+        for spec in specs {
+            let stage = Self::stage(spec, specs, &stages, setup);
+            stages.push(stage.map_err(|error| (spec.id.clone(), error))?);
+        }
+        let conditions = stages.iter().any(|stage| stage.clock.has_condition());
+        let truth = stages.iter().any(|stage| stage.clock.needs_truth());
+        let looks_back = stages
+            .iter()
+            .any(|stage| matches!(&stage.rule, Rule::Samples(rule) if rule.looks_back()));
+        let mut station = Self {
+            stages,
+            dt_s: setup.dt_s(),
+            calibration_samples: setup.calibration_samples,
+            epoch: 0,
+            wake: 0,
+            seen: 0,
+            scene: None,
+            busy: false,
+            conditions,
+            truth,
+            looks_back,
+            last: Epoch::default(),
+            flight: Vec::with_capacity(FLIGHT_MAX),
+            landed: Vec::with_capacity(FLIGHT_MAX),
+            occurrences: Vec::with_capacity(OCCURRENCES_MAX),
+            events: Vec::with_capacity(specs.len()),
+        };
+        station.plan();
+        Ok(station)
+    }
+
+    fn stage(
+        spec: &Spec,
+        specs: &[Spec],
+        before: &[Stage],
+        setup: &Setup,
+    ) -> Result<Stage, BuildError> {
+        if before.iter().any(|stage| stage.id == spec.id) {
+            return Err(BuildError::DuplicateId(spec.id.clone()));
+        }
+        if let Trigger::After { fault, .. } = &spec.schedule.trigger
+            && !specs.iter().any(|other| other.id == *fault && other.id != spec.id)
+        {
+            return Err(BuildError::NoSuchFault { id: spec.id.clone(), after: fault.clone() });
+        }
+        let mut schedule = spec.schedule.clone();
+        match spec.kind.lasts {
+            Lasts::Fading => {}
+            Lasts::Span if schedule.recovery > 0 => {
+                let problem = "this kind doesn't fade: it is there or it isn't";
+                return Err(BuildError::value("recovery", problem));
+            }
+            Lasts::Span => {}
+            Lasts::Instant => (schedule.duration, schedule.recovery) = (Some(1), 0),
+        }
+        if schedule.duration == Some(0) {
+            return Err(BuildError::value(
+                "duration",
+                "less than a sample, at least one is expected",
+            ));
+        }
+        let setup = Setup { id: spec.id.clone(), ..setup.clone() };
+        let rule = (spec.kind.build)(&spec.values, &setup)?;
+        let clock = Clock::new(schedule, setup.stream("trigger").key(Phase::Calibration));
+        Ok(Stage { id: spec.id.clone(), kind: spec.kind, rule, clock, ledger: Ledger::default() })
+    }
+
+    /// Looks what has to be looked at next.
+    fn plan(&mut self) {
+        self.wake = self.stages.iter().map(|stage| stage.clock.wake()).min().unwrap_or(u64::MAX);
+        self.busy = self.conditions || self.stages.iter().any(Stage::engaged);
+    }
+
+    /// Before the source makes its next epoch: `command` is what it would get from the core,
+    /// `output` the core's last output.
+    #[inline]
+    pub fn before(&mut self, command: &mut GimbalCommand, output: &Output, world: &mut dyn World) {
+        self.epoch += 1;
+        if self.epoch < self.wake && !self.busy && Scene::of(output).packed() == self.seen {
+            return;
+        }
+        self.look(command, output, world);
+    }
+
+    /// Whether anything has to be done with the epoch that the source has made.
+    #[inline]
+    #[must_use]
+    pub fn is_idle(&self) -> bool {
+        !self.busy && !self.looks_back
+    }
+
+    /// With the epoch that the source has made, on its way to the core.
+    #[inline]
+    pub fn after(&mut self, epoch: &Epoch, output: &Output) -> Delivered<'_> {
+        if self.is_idle() {
+            return Delivered::Untouched;
+        }
+        self.pass(epoch, output)
+    }
+
+    fn shared(&self) -> Shared {
+        let index = self.epoch - 1;
+        let (phase, counter) = if index < self.calibration_samples {
+            (Phase::Calibration, index)
+        } else {
+            (Phase::Navigation, index - self.calibration_samples)
+        };
+        Shared { epoch: self.epoch, phase, counter, dt_s: self.dt_s }
+    }
+
+    #[inline(never)]
+    fn look(&mut self, command: &mut GimbalCommand, output: &Output, world: &mut dyn World) {
+        let scene = Scene::of(output);
+        let truth = if self.truth { world.truth() } else { None };
+        let news =
+            News { epoch: self.epoch, before: self.scene, scene, output, truth: truth.as_ref() };
+        for stage in &mut self.stages {
+            stage.clock.look(&news);
+        }
+        (self.scene, self.seen) = (Some(scene), scene.packed());
+        let shared = self.shared();
+        for index in 0..self.stages.len() {
+            let stage = &mut self.stages[index];
+            let ticked = stage.clock.tick(self.epoch);
+            if ticked.ended {
+                let now = stage.context(&shared, &self.last, output);
+                end(stage, index as u32, &now, world, &mut self.events);
+                self.tell(index, false);
+                self.tell_others(index);
+            }
+            if ticked.began {
+                let stage = &mut self.stages[index];
+                let now = stage.context(&shared, &self.last, output);
+                begin(stage, index as u32, &now, world);
+                self.tell(index, true);
+            }
+            self.act_before(index, &shared, command, output);
+        }
+        self.plan();
+    }
+
+    /// Those that wait for a fault hear that it has ended.
+    fn tell_others(&mut self, ended: usize) {
+        for other in 0..self.stages.len() {
+            let waits = matches!(
+                self.stages[other].clock.trigger(),
+                Trigger::After { fault, .. } if *fault == self.stages[ended].id
+            );
+            if waits {
+                self.stages[other].clock.other_ended(self.epoch);
+            }
+        }
+    }
+
+    fn tell(&mut self, fault: usize, begins: bool) {
+        // The harness looks after every epoch; more than that in one step can't be told.
+        if self.occurrences.len() < OCCURRENCES_MAX {
+            self.occurrences.push(Occurrence { epoch: self.epoch, fault, begins });
+        }
+    }
+
+    fn act_before(
+        &mut self,
+        index: usize,
+        shared: &Shared,
+        command: &mut GimbalCommand,
+        output: &Output,
+    ) {
+        let stage = &mut self.stages[index];
+        if !stage.acting() {
+            return;
+        }
+        let now = stage.context(shared, &self.last, output);
+        match &mut stage.rule {
+            Rule::Command(rule) => {
+                let clean = *command;
+                rule.on_command(command, &now);
+                if *command != clean {
+                    stage.ledger.touched(shared.epoch);
+                    stage.ledger.commands(&clean, command);
+                }
+            }
+            Rule::Unit(rule) => {
+                if let Some(event) = rule.on_epoch(&now) {
+                    stage.ledger.touched(shared.epoch);
+                    self.events.push(event);
+                }
+            }
+            Rule::Plant(_) => stage.ledger.touched(shared.epoch),
+            Rule::Samples(_) | Rule::Delivery(_) => {}
+        }
+    }
+
+    #[inline(never)]
+    fn pass(&mut self, epoch: &Epoch, output: &Output) -> Delivered<'_> {
+        let shared = self.shared();
+        self.flight.clear();
+        self.flight.push(*epoch);
+        let mut engaged = false;
+        for stage in &mut self.stages {
+            if !stage.engaged() {
+                continue;
+            }
+            let acting = stage.acting();
+            let now = stage.context(&shared, &self.last, output);
+            match &mut stage.rule {
+                Rule::Samples(rule) => {
+                    engaged = true;
+                    for epoch in &mut self.flight {
+                        let clean = *epoch;
+                        rule.on_epoch(epoch, &now);
+                        if !epoch.same_bits(&clean) {
+                            stage.ledger.touched(shared.epoch);
+                            stage.ledger.clean(&clean);
+                            stage.ledger.faulted(epoch);
+                        }
+                    }
+                }
+                Rule::Delivery(rule) => {
+                    engaged = true;
+                    self.landed.clear();
+                    for epoch in &self.flight {
+                        let from = self.landed.len();
+                        rule.on_epoch(*epoch, acting, &now, &mut self.landed);
+                        let out = &self.landed[from..];
+                        if out.len() != 1 || !out[0].same_bits(epoch) {
+                            stage.ledger.touched(shared.epoch);
+                            stage.ledger.clean(epoch);
+                            out.iter().for_each(|epoch| stage.ledger.faulted(epoch));
+                        }
+                    }
+                    core::mem::swap(&mut self.flight, &mut self.landed);
+                }
+                Rule::Plant(_) | Rule::Command(_) | Rule::Unit(_) => {}
+            }
+        }
+        self.last = *epoch;
+        self.plan();
+        if engaged { Delivered::These(&self.flight) } else { Delivered::Untouched }
+    }
+
+    /// What happened to the unit under test in this epoch, to be done before it gets the epoch.
+    /// Empty almost always.
+    #[inline]
+    #[must_use]
+    pub fn unit_events(&self) -> &[UnitEvent] {
+        &self.events
+    }
+
+    /// Onsets and ends since the last call of [`Self::told`].
+    #[inline]
+    #[must_use]
+    pub fn occurrences(&self) -> &[Occurrence] {
+        &self.occurrences
+    }
+
+    /// Unit events and occurrences have been dealt with.
+    pub fn told(&mut self) {
+        self.events.clear();
+        self.occurrences.clear();
+    }
+
+    /// Lets a fault with a manual trigger set in at the next epoch. False if there is none of that
+    /// id that waits.
+    pub fn fire(&mut self, id: &str) -> bool {
+        let next = self.epoch + 1;
+        let fired = self
+            .stages
+            .iter_mut()
+            .find(|stage| stage.id == id && *stage.clock.trigger() == Trigger::Manual)
+            .is_some_and(|stage| stage.clock.fire(next));
+        self.plan();
+        fired
+    }
+
+    /// Whether a place has faults at all.
+    #[must_use]
+    pub fn acts_on(&self, place: Acts) -> bool {
+        self.stages.iter().any(|stage| stage.kind.acts == place)
+    }
+
+    /// Ids of the faults, in order.
+    pub fn ids(&self) -> impl Iterator<Item = &str> {
+        self.stages.iter().map(|stage| stage.id.as_str())
+    }
+
+    /// Receipts of all faults, in order.
+    #[must_use]
+    pub fn receipts(&self) -> Vec<Receipt> {
+        self.stages
+            .iter()
+            .map(|stage| {
+                let firings = stage.clock.firings;
+                stage.ledger.receipt(&stage.id, stage.kind.name, firings)
+            })
+            .collect()
+    }
+}
+
+fn begin(stage: &mut Stage, handle: u32, now: &Context<'_>, world: &mut dyn World) {
+    if let (Rule::Plant(rule), Some(plant)) = (&mut stage.rule, world.disturbed()) {
+        let disturbance = rule.begin(now, &plant.motor());
+        plant.begin(handle, &disturbance);
+    }
+}
+
+fn end(
+    stage: &mut Stage,
+    handle: u32,
+    now: &Context<'_>,
+    world: &mut dyn World,
+    events: &mut Vec<UnitEvent>,
+) {
+    match &mut stage.rule {
+        Rule::Plant(_) => {
+            if let Some(plant) = world.disturbed() {
+                plant.end(handle);
+            }
+        }
+        Rule::Unit(rule) => {
+            if let Some(event) = rule.end(now) {
+                events.push(event);
+            }
+        }
+        Rule::Samples(_) | Rule::Command(_) | Rule::Delivery(_) => {}
+    }
+}

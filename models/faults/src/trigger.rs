@@ -1,0 +1,423 @@
+//! When a fault sets in, how long it lasts, how it fades, how often it comes back.
+//!
+//! Times are epochs of the source, numbered from 1. A fault that sets in at time t alters first the
+//! sample of the interval that begins at t: epoch `t / period + 1`. What depends on the core is
+//! decided on its answer to the epoch before.
+
+use alloc::string::String;
+use octant_random::normal::{uniform, words};
+use octant_random::philox::Key;
+use octant_sample::{Health, Mode, Output, Truth};
+
+/// When and how long.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Schedule {
+    /// What it waits for.
+    pub trigger: Trigger,
+    /// Epochs that it lasts; `None`: to the end of the run. An instant lasts one.
+    pub duration: Option<u64>,
+    /// Epochs over which it fades.
+    pub recovery: u64,
+    /// How often it comes back.
+    pub repeat: Repeat,
+}
+
+/// What a fault waits for.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Trigger {
+    /// An epoch of the source, from 1.
+    Epoch(u64),
+    /// So many epochs after the core has arrived at a stop, in a mode.
+    Position {
+        /// The stop, from 0, over all passes.
+        stop: u16,
+        /// Calibrating or navigating.
+        mode: Mode,
+        /// Epochs after the arrival.
+        delay: u64,
+    },
+    /// So many epochs after the core has set out for a stop, in a mode.
+    Move {
+        /// The stop, from 0, over all passes.
+        stop: u16,
+        /// Calibrating or navigating.
+        mode: Mode,
+        /// Epochs after the start.
+        delay: u64,
+    },
+    /// So many epochs after the core has entered a mode.
+    Mode {
+        /// The mode.
+        mode: Mode,
+        /// Epochs after that.
+        delay: u64,
+    },
+    /// So many epochs after a signal has crossed a value.
+    Condition {
+        /// What is looked at.
+        signal: Signal,
+        /// Above or below.
+        comparison: Comparison,
+        /// The value, SI.
+        value: f64,
+        /// Epochs after the crossing.
+        delay: u64,
+    },
+    /// Again and again at equal distances.
+    Periodic {
+        /// First epoch.
+        first: u64,
+        /// Distance of the onsets.
+        period: u64,
+        /// No onset after this epoch.
+        last: Option<u64>,
+    },
+    /// At random: the waiting time from the end of one to the onset of the next is exponential.
+    Poisson {
+        /// No onset before this epoch.
+        first: u64,
+        /// No onset after this epoch.
+        last: Option<u64>,
+        /// Mean waiting time, epochs.
+        mean: f64,
+    },
+    /// So many epochs after another fault has ended.
+    After {
+        /// Id of the other.
+        fault: String,
+        /// Epochs after its end.
+        delay: u64,
+    },
+    /// By hand: [`crate::Station::fire`].
+    Manual,
+}
+
+/// How often a fault comes back.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Repeat {
+    /// It doesn't (triggers that repeat by themselves still do).
+    #[default]
+    Once,
+    /// So many times in all, at this distance of onsets.
+    Times {
+        /// Onsets in all.
+        times: u32,
+        /// Distance of the onsets, epochs.
+        every: u64,
+    },
+    /// Whenever its trigger comes true again.
+    EveryTime,
+}
+
+/// What a condition looks at. All are those of the epoch before.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Signal {
+    /// NIS of the last measurement.
+    Nis,
+    /// Any of these health flags: 1 where one is set, else 0.
+    Health(Health),
+    /// Velocity of the navigation solution: 0 north, 1 east, 2 down, m/s.
+    Velocity(usize),
+    /// Latitude of the navigation solution minus the true one, rad; its size.
+    LatitudeError,
+    /// Longitude of the navigation solution minus the true one, rad; its size.
+    LongitudeError,
+    /// True gimbal angle: 0 azimuth, 1 roll, rad.
+    TrueGimbal(usize),
+    /// True velocity: 0 north, 1 east, 2 down, m/s.
+    TrueVelocity(usize),
+}
+
+impl Signal {
+    /// It needs truth, which only a simulated source has.
+    #[must_use]
+    pub const fn needs_truth(self) -> bool {
+        matches!(
+            self,
+            Self::LatitudeError
+                | Self::LongitudeError
+                | Self::TrueGimbal(_)
+                | Self::TrueVelocity(_)
+        )
+    }
+
+    /// Its value; NaN where it has none.
+    fn value(self, output: &Output, truth: Option<&Truth>) -> f64 {
+        let of = |f: fn(&Truth) -> f64| truth.map_or(f64::NAN, f);
+        match self {
+            Self::Nis => output.nis,
+            Self::Health(flags) => f64::from(u8::from(output.health.intersects(flags))),
+            Self::Velocity(axis) => output.navigation.velocity_mps[axis % 3],
+            Self::LatitudeError => {
+                (output.navigation.latitude_rad - of(|truth| truth.latitude_rad)).abs()
+            }
+            Self::LongitudeError => {
+                (output.navigation.longitude_rad - of(|truth| truth.longitude_rad)).abs()
+            }
+            Self::TrueGimbal(0) => of(|truth| truth.gimbal_rad[0]),
+            Self::TrueGimbal(_) => of(|truth| truth.gimbal_rad[1]),
+            Self::TrueVelocity(axis) => truth.map_or(f64::NAN, |t| t.velocity_mps[axis % 3]),
+        }
+    }
+}
+
+/// Which side of a value a condition waits for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Comparison {
+    /// Above it.
+    Above,
+    /// Below it.
+    Below,
+}
+
+impl Trigger {
+    /// The first epoch at which it can come true, where time alone decides.
+    #[must_use]
+    pub fn earliest(&self) -> Option<u64> {
+        match self {
+            Self::Epoch(first) | Self::Periodic { first, .. } | Self::Poisson { first, .. } => {
+                Some(*first)
+            }
+            _ => None,
+        }
+    }
+}
+
+/// What the core did with the epoch before, as far as triggers wait for it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Scene {
+    mode: Mode,
+    stop: u16,
+    moving: bool,
+}
+
+impl Scene {
+    #[inline]
+    pub(crate) fn of(output: &Output) -> Self {
+        Self { mode: output.mode, stop: output.stop, moving: output.moving }
+    }
+
+    /// One word, to be compared in one step.
+    #[inline]
+    pub(crate) fn packed(self) -> u32 {
+        1 << 31 | (self.mode as u32) << 17 | u32::from(self.moving) << 16 | u32::from(self.stop)
+    }
+}
+
+/// What is new at an epoch.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct News<'a> {
+    pub(crate) epoch: u64,
+    /// The scene before and now.
+    pub(crate) before: Option<Scene>,
+    pub(crate) scene: Scene,
+    pub(crate) output: &'a Output,
+    pub(crate) truth: Option<&'a Truth>,
+}
+
+/// Where a fault is in its life.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum State {
+    /// For its trigger.
+    Waiting,
+    /// For an epoch that is known.
+    Pending(u64),
+    /// It acts, from its onset until before an epoch.
+    Active { onset: u64, until: u64 },
+    /// It fades.
+    Fading { onset: u64, from: u64, until: u64 },
+    /// It won't come back.
+    Spent,
+}
+
+/// The clock of one fault.
+#[derive(Clone, Debug)]
+pub(crate) struct Clock {
+    schedule: Schedule,
+    /// Numbers of a Poisson trigger, one for each onset.
+    key: Key,
+    pub(crate) state: State,
+    pub(crate) firings: u32,
+    /// Its condition held at the epoch before.
+    held: bool,
+}
+
+/// What a clock did at an epoch.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Ticked {
+    pub(crate) began: bool,
+    pub(crate) ended: bool,
+}
+
+impl Clock {
+    pub(crate) fn new(schedule: Schedule, key: Key) -> Self {
+        let mut clock = Self { schedule, key, state: State::Waiting, firings: 0, held: false };
+        clock.state = match clock.schedule.trigger {
+            Trigger::Epoch(first) | Trigger::Periodic { first, .. } => State::Pending(first.max(1)),
+            Trigger::Poisson { first, last, .. } => {
+                clock.up_to(last, first.max(1).saturating_add(clock.waiting()))
+            }
+            _ => State::Waiting,
+        };
+        clock
+    }
+
+    pub(crate) fn trigger(&self) -> &Trigger {
+        &self.schedule.trigger
+    }
+
+    /// Its trigger has to be looked at in every epoch.
+    pub(crate) fn has_condition(&self) -> bool {
+        matches!(self.schedule.trigger, Trigger::Condition { .. })
+    }
+
+    pub(crate) fn needs_truth(&self) -> bool {
+        matches!(&self.schedule.trigger, Trigger::Condition { signal, .. } if signal.needs_truth())
+    }
+
+    /// The next epoch at which time alone changes something.
+    pub(crate) fn wake(&self) -> u64 {
+        match self.state {
+            State::Pending(at) => at,
+            State::Active { until, .. } | State::Fading { until, .. } => until,
+            State::Waiting | State::Spent => u64::MAX,
+        }
+    }
+
+    /// Strength at an epoch: 1 while it lasts, then down a straight line.
+    pub(crate) fn strength(&self, epoch: u64) -> f64 {
+        match self.state {
+            State::Active { .. } => 1.0,
+            State::Fading { from, until, .. } => (until - epoch) as f64 / (until - from + 1) as f64,
+            _ => 0.0,
+        }
+    }
+
+    /// Onset of what is going on.
+    pub(crate) fn onset(&self) -> Option<u64> {
+        match self.state {
+            State::Active { onset, .. } | State::Fading { onset, .. } => Some(onset),
+            _ => None,
+        }
+    }
+
+    /// It sets in at the next epoch, if it waits.
+    pub(crate) fn fire(&mut self, epoch: u64) -> bool {
+        let waits = matches!(self.state, State::Waiting);
+        if waits {
+            self.state = State::Pending(epoch);
+        }
+        waits
+    }
+
+    /// Another fault has ended at an epoch.
+    pub(crate) fn other_ended(&mut self, epoch: u64) {
+        if let (State::Waiting, Trigger::After { delay, .. }) = (self.state, &self.schedule.trigger)
+        {
+            self.state = State::Pending(epoch.saturating_add(*delay));
+        }
+    }
+
+    /// Looks whether the trigger has come true.
+    pub(crate) fn look(&mut self, news: &News<'_>) {
+        let Some(delay) = self.comes_true(news) else { return };
+        if self.state == State::Waiting {
+            self.state = State::Pending(news.epoch.saturating_add(delay));
+        }
+    }
+
+    fn comes_true(&mut self, news: &News<'_>) -> Option<u64> {
+        let edge = |holds: fn(&Scene, u16) -> bool, mode: Mode, stop: u16| {
+            let in_it = |scene: &Scene| scene.mode == mode && holds(scene, stop);
+            in_it(&news.scene) && !news.before.as_ref().is_some_and(in_it)
+        };
+        match self.schedule.trigger {
+            Trigger::Position { stop, mode, delay } => {
+                edge(|scene, stop| scene.stop == stop && !scene.moving, mode, stop).then_some(delay)
+            }
+            Trigger::Move { stop, mode, delay } => {
+                edge(|scene, stop| scene.stop == stop && scene.moving, mode, stop).then_some(delay)
+            }
+            Trigger::Mode { mode, delay } => edge(|_, _| true, mode, 0).then_some(delay),
+            Trigger::Condition { signal, comparison, value, delay } => {
+                let found = signal.value(news.output, news.truth);
+                if found.is_nan() {
+                    // Nothing was measured: what held before is neither confirmed nor refuted.
+                    return None;
+                }
+                let holds = match comparison {
+                    Comparison::Above => found > value,
+                    Comparison::Below => found < value,
+                };
+                let crossed = holds && !self.held;
+                self.held = holds;
+                crossed.then_some(delay)
+            }
+            _ => None,
+        }
+    }
+
+    /// Carries on to an epoch.
+    pub(crate) fn tick(&mut self, epoch: u64) -> Ticked {
+        let mut ticked = Ticked::default();
+        // Each turn moves on by a state; a life has three of them.
+        for _ in 0..4 {
+            match self.state {
+                State::Pending(at) if epoch >= at && !ticked.ended => {
+                    let until =
+                        self.schedule.duration.map_or(u64::MAX, |n| epoch.saturating_add(n));
+                    self.state = State::Active { onset: epoch, until };
+                    self.firings += 1;
+                    ticked.began = true;
+                }
+                State::Active { onset, until } if epoch >= until => {
+                    if self.schedule.recovery > 0 {
+                        let until = epoch.saturating_add(self.schedule.recovery);
+                        self.state = State::Fading { onset, from: epoch, until };
+                    } else {
+                        self.state = self.next(onset, epoch);
+                        ticked.ended = true;
+                    }
+                }
+                State::Fading { onset, until, .. } if epoch >= until => {
+                    self.state = self.next(onset, epoch);
+                    ticked.ended = true;
+                }
+                _ => break,
+            }
+        }
+        ticked
+    }
+
+    /// What comes after an end.
+    fn next(&self, onset: u64, epoch: u64) -> State {
+        match (&self.schedule.trigger, self.schedule.repeat) {
+            (Trigger::Periodic { first, period, last }, _) => {
+                // Counted from the first, so that nothing drifts.
+                let periods = (onset - (*first).max(1)) / period.max(&1) + 1;
+                self.up_to(*last, (*first).max(1).saturating_add(periods.saturating_mul(*period)))
+            }
+            (Trigger::Poisson { last, .. }, _) => {
+                self.up_to(*last, epoch.saturating_add(self.waiting()))
+            }
+            (_, Repeat::Times { times, every }) if self.firings < times => {
+                State::Pending(onset.saturating_add(every).max(epoch))
+            }
+            (_, Repeat::EveryTime) => State::Waiting,
+            _ => State::Spent,
+        }
+    }
+
+    fn up_to(&self, last: Option<u64>, at: u64) -> State {
+        if last.is_some_and(|last| at > last) { State::Spent } else { State::Pending(at) }
+    }
+
+    /// Exponential waiting time of the next onset, epochs.
+    fn waiting(&self) -> u64 {
+        let Trigger::Poisson { mean, .. } = self.schedule.trigger else { return 0 };
+        let [word, ..] = words(self.key, u64::from(self.firings));
+        let wait = -mean * libm::log(uniform(word));
+        // Past any run; the cast saturates.
+        wait as u64
+    }
+}

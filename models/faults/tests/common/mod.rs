@@ -1,0 +1,148 @@
+//! A bench for faults: a stream of samples that any test can compute by itself, and a station.
+#![allow(dead_code, clippy::unwrap_used)]
+
+use octant_faults::disturbance::{Disturbance, Disturbed, Motor};
+use octant_faults::rule::UnitEvent;
+use octant_faults::station::{Delivered, Occurrence, Spec, World};
+use octant_faults::trigger::{Repeat, Schedule, Trigger};
+use octant_faults::{Receipt, Setup, Station, Value, Values};
+use octant_sample::{
+    Aiding, DeviceTime, Epoch, GimbalAngles, GimbalCommand, Output, Reference, Sample, Truth,
+};
+
+/// 200 Hz.
+pub const PERIOD_NS: u64 = 5_000_000;
+
+pub fn setup() -> Setup {
+    Setup {
+        seed: 7,
+        sample_period_ns: PERIOD_NS,
+        calibration_samples: 1000,
+        angle_random_walk: 2e-7,
+        velocity_random_walk: 5e-4,
+        turntable_rate_radps: 0.17,
+        id: String::new(),
+    }
+}
+
+/// The clean epoch of a number, from 1: no two samples alike, aiding every 200.
+pub fn clean(epoch: u64) -> Epoch {
+    let k = epoch as i32;
+    Epoch {
+        sample: Sample {
+            sequence: epoch,
+            device_time: DeviceTime::from_ns(epoch * PERIOD_NS),
+            delta_theta: [100_000 + 7 * k, -200_000 + 11 * k, 300_000 - 13 * k],
+            delta_velocity: [1_000 + 17 * k, -2_000 - 19 * k, 52_000_000 + 23 * k],
+            gimbal: GimbalAngles { azimuth: 1000 + 3 * k, roll: 5000 - 2 * k },
+            ..Sample::default()
+        },
+        aiding: epoch.is_multiple_of(200).then(|| Aiding {
+            device_time: DeviceTime::from_ns(epoch * PERIOD_NS),
+            reference: Reference::Velocity([1e-3, -2e-3, epoch as f64 * 1e-6]),
+        }),
+    }
+}
+
+/// A fault of a kind at an epoch for so many.
+pub fn fault(kind: &str, values: &[(&'static str, Value)], first: u64, epochs: u64) -> Spec {
+    let mut all = Values::default();
+    for (name, value) in values {
+        all.set(name, *value);
+    }
+    let kind = octant_faults::kinds::named(kind).unwrap();
+    for parameter in kind.parameters {
+        assert!(all.get(parameter.name).is_some(), "{}: {} is missing", kind.name, parameter.name);
+    }
+    Spec {
+        id: "f".into(),
+        kind,
+        values: all,
+        schedule: Schedule {
+            trigger: Trigger::Epoch(first),
+            duration: Some(epochs),
+            recovery: 0,
+            repeat: Repeat::Once,
+        },
+    }
+}
+
+/// What a plant was told.
+#[derive(Debug, Default)]
+pub struct Log {
+    pub begun: Vec<(u32, Disturbance)>,
+    pub ended: Vec<u32>,
+    pub motor: Motor,
+    pub truth: Option<Truth>,
+}
+
+impl Disturbed for Log {
+    fn motor(&self) -> Motor {
+        self.motor
+    }
+    fn begin(&mut self, handle: u32, disturbance: &Disturbance) {
+        self.begun.push((handle, disturbance.clone()));
+    }
+    fn end(&mut self, handle: u32) {
+        self.ended.push(handle);
+    }
+}
+
+impl World for Log {
+    fn disturbed(&mut self) -> Option<&mut dyn Disturbed> {
+        Some(self)
+    }
+    fn truth(&self) -> Option<Truth> {
+        self.truth
+    }
+}
+
+/// What came of a run of the bench.
+#[derive(Debug, Default)]
+pub struct Outcome {
+    /// What was delivered, with the epoch of the source in which it was.
+    pub delivered: Vec<(u64, Epoch)>,
+    /// Set points that the turntable got.
+    pub commands: Vec<GimbalCommand>,
+    pub receipts: Vec<Receipt>,
+    pub occurrences: Vec<Occurrence>,
+    pub events: Vec<(u64, UnitEvent)>,
+    pub log: Log,
+}
+
+impl Outcome {
+    /// Epochs delivered in a step of the source.
+    pub fn at(&self, epoch: u64) -> Vec<Epoch> {
+        self.delivered.iter().filter(|(at, _)| *at == epoch).map(|(_, epoch)| *epoch).collect()
+    }
+}
+
+/// Runs clean epochs 1 to `epochs` through a station. `answer` is the core's output to epoch k
+/// (0: before the first) and its set point is what goes to the turntable.
+pub fn run_with(specs: &[Spec], epochs: u64, answer: impl Fn(u64) -> Output) -> Outcome {
+    let mut station = Station::new(specs, &setup()).unwrap();
+    let mut outcome = Outcome::default();
+    for k in 1..=epochs {
+        let output = answer(k - 1);
+        let mut command = output.gimbal_command;
+        station.before(&mut command, &output, &mut outcome.log);
+        outcome.commands.push(command);
+        let epoch = clean(k);
+        match station.after(&epoch, &output) {
+            Delivered::Untouched => outcome.delivered.push((k, epoch)),
+            Delivered::These(epochs) => {
+                outcome.delivered.extend(epochs.iter().map(|epoch| (k, *epoch)));
+            }
+        }
+        outcome.events.extend(station.unit_events().iter().map(|event| (k, *event)));
+        outcome.occurrences.extend_from_slice(station.occurrences());
+        station.told();
+    }
+    outcome.receipts = station.receipts();
+    outcome
+}
+
+/// With a core that answers nothing.
+pub fn run(specs: &[Spec], epochs: u64) -> Outcome {
+    run_with(specs, epochs, |_| Output::default())
+}

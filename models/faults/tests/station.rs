@@ -1,0 +1,138 @@
+//! The pipeline: order, receipts, triggers.
+#![allow(clippy::unwrap_used)]
+
+mod common;
+
+use common::{clean, fault, run, run_with};
+use octant_faults::catalogue::Dimension;
+use octant_faults::trigger::{Comparison, Repeat, Signal, Trigger};
+use octant_faults::{Channels, Spec, Value};
+use octant_sample::counts::DELTA_THETA_LSB_RAD;
+use octant_sample::{Mode, Output};
+
+/// A spike of so many counts a sample on the x gyro.
+fn spike(counts: f64, first: u64, epochs: u64) -> Spec {
+    let rate = counts * DELTA_THETA_LSB_RAD / 0.005;
+    fault(
+        "spike",
+        &[
+            ("channels", Value::Channels(Channels::gyro(0))),
+            ("amplitude", Value::Quantity(rate, Dimension::GyroBias)),
+        ],
+        first,
+        epochs,
+    )
+}
+
+fn triggered(trigger: Trigger, epochs: u64) -> Spec {
+    let mut spec = spike(100.0, 1, epochs);
+    spec.schedule.trigger = trigger;
+    spec
+}
+
+/// Epochs in which the x gyro was altered.
+fn altered(outcome: &common::Outcome) -> Vec<u64> {
+    let differs = |(k, epoch): &&(u64, octant_sample::Epoch)| *epoch != clean(*k);
+    outcome.delivered.iter().filter(differs).map(|(k, _)| *k).collect()
+}
+
+#[test]
+fn a_spike_adds_its_area_and_nothing_else() {
+    let outcome = run(&[spike(0.34, 11, 10)], 40);
+    let added: i32 = outcome
+        .delivered
+        .iter()
+        .map(|(k, epoch)| {
+            let clean = clean(*k);
+            let counts = epoch.sample.delta_theta[0] - clean.sample.delta_theta[0];
+            let mut same = *epoch;
+            same.sample.delta_theta[0] -= counts;
+            assert_eq!(same, clean);
+            counts
+        })
+        .sum();
+    assert_eq!(added, 3);
+    let receipt = &outcome.receipts[0];
+    assert_eq!((receipt.firings, receipt.samples_altered), (1, 3));
+    // The remainder passes half a count at the second, the fifth and the eighth sample.
+    assert_eq!(altered(&outcome), [12, 15, 18]);
+    assert_eq!((receipt.first_sample, receipt.last_sample), (Some(12), Some(18)));
+    assert_ne!(receipt.clean_crc32, receipt.faulted_crc32);
+}
+
+#[test]
+fn a_fault_that_has_not_fired_says_so() {
+    let outcome = run(&[spike(5.0, 500, 10)], 400);
+    assert!(altered(&outcome).is_empty());
+    let receipt = &outcome.receipts[0];
+    assert!(receipt.armed && !receipt.fired());
+    assert_eq!((receipt.firings, receipt.first_sample), (0, None));
+}
+
+#[test]
+fn periodic_and_repeated_faults_come_at_their_times() {
+    let periodic = triggered(Trigger::Periodic { first: 10, period: 25, last: Some(70) }, 2);
+    assert_eq!(altered(&run(&[periodic], 200)), [10, 11, 35, 36, 60, 61]);
+    let mut repeated = spike(9.0, 20, 1);
+    repeated.schedule.repeat = Repeat::Times { times: 3, every: 7 };
+    assert_eq!(altered(&run(&[repeated], 200)), [20, 27, 34]);
+}
+
+#[test]
+fn poisson_spikes_have_their_rate_and_need_no_history() {
+    let poisson = triggered(Trigger::Poisson { first: 1, last: None, mean: 50.0 }, 1);
+    let outcome = run(std::slice::from_ref(&poisson), 100_000);
+    let count = altered(&outcome).len() as f64;
+    // Mean distance: 50 waiting, less half an epoch of rounding down, and one for the spike.
+    let expected = 100_000.0 / 50.5;
+    assert!((count - expected).abs() < 5.0 * expected.sqrt(), "{count} {expected}");
+    let again = run(&[poisson], 50_000);
+    let both = altered(&outcome);
+    assert_eq!(altered(&again)[..], both[..altered(&again).len()]);
+}
+
+/// A core that stands at stop 3 from epoch 100 on, moves to 4 from 200 and arrives at 250.
+fn core(k: u64) -> Output {
+    let (stop, moving) = match k {
+        0..100 => (2, true),
+        100..200 => (3, false),
+        200..250 => (4, true),
+        _ => (4, false),
+    };
+    let mode = if k < 300 { Mode::Calibrating } else { Mode::Navigating };
+    let nis = if k == 150 { 30.0 } else { f64::NAN };
+    Output { mode, stop, moving, nis, ..Output::default() }
+}
+
+#[test]
+fn positions_moves_modes_and_conditions_fire() {
+    let mode = Mode::Calibrating;
+    for (trigger, expected) in [
+        // The answer to epoch 100 says "arrived": epoch 101 is the first that can know.
+        (Trigger::Position { stop: 3, mode, delay: 0 }, 101),
+        (Trigger::Position { stop: 4, mode, delay: 10 }, 261),
+        (Trigger::Move { stop: 4, mode, delay: 0 }, 201),
+        (Trigger::Mode { mode: Mode::Navigating, delay: 5 }, 306),
+        (
+            Trigger::Condition {
+                signal: Signal::Nis,
+                comparison: Comparison::Above,
+                value: 25.0,
+                delay: 0,
+            },
+            151,
+        ),
+    ] {
+        let outcome = run_with(&[triggered(trigger.clone(), 1)], 400, core);
+        assert_eq!(altered(&outcome), [expected], "{trigger:?}");
+    }
+}
+
+#[test]
+fn a_fault_can_follow_another() {
+    let mut first = spike(7.0, 50, 10);
+    first.id = "first".into();
+    let after = triggered(Trigger::After { fault: "first".into(), delay: 5 }, 1);
+    assert_eq!(altered(&run(&[after.clone(), first.clone()], 100)).last(), Some(&65));
+    assert_eq!(altered(&run(&[first, after], 100)).last(), Some(&65));
+}
