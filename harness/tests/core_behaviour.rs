@@ -387,7 +387,7 @@ fn damaged_input_is_flagged_and_the_calibration_stays_sane_or_is_refused() {
                 }
                 true
             },
-            Health::INNOVATION_REJECTED,
+            Health::JUMP,
         ),
     ];
     let outcomes = on_two_threads(&damages, |(name, alter, flag)| {
@@ -413,7 +413,7 @@ fn damaged_input_is_flagged_and_the_calibration_stays_sane_or_is_refused() {
     for ((name, _, flag), (mode, refusal, worst, epochs, health)) in damages.iter().zip(outcomes) {
         println!(
             "{name:30} {mode:?} {worst:6.2} σ, {flag:?} in {epochs} epochs {refusal:?} {:?}",
-            &health[..11]
+            &health[..15]
         );
         if epochs == 0 {
             failures.push(format!("{name}: no {flag:?}"));

@@ -34,6 +34,8 @@ const NOISE_SIGMAS: f64 = 8.0;
 const TESTABLE_COUNTS: f64 = 20.0;
 /// Margin on what the turntable's servo makes of its acceleration and rate.
 const SERVO_MARGIN: f64 = 2.0;
+/// A channel that isn't tested.
+const NO_LIMIT: i32 = i32::MAX;
 /// Standard gravity, for a bound.
 const GRAVITY_MPS2: f64 = 9.81;
 /// Longest hold where the motion is known (a base that stands), s, and where the last increments are
@@ -74,8 +76,8 @@ pub struct Screen {
     last: Lanes,
     /// Limit while the gimbals stand and while they move; `floor` is 1 where identical counts are
     /// no accident.
-    limits: [[u32; 8]; 2],
-    floor: [u32; 8],
+    limits: [[i32; 8]; 2],
+    floor: [i32; 8],
     /// Nothing is being held, counted or waited for.
     calm: bool,
     started: bool,
@@ -127,9 +129,8 @@ impl Screen {
             (noise.angle_random_walk * sqrt_s, gyro_step, DELTA_THETA_LSB_RAD, angular),
             (noise.velocity_random_walk * sqrt_s, accel_step, DELTA_VELOCITY_LSB_MPS, linear),
         ];
-        // The lanes that are always zero pass whatever the limit.
-        let mut limits = [[1u32; 8]; 2];
-        let mut floor = [0u32; 8];
+        let mut limits = [[NO_LIMIT; 8]; 2];
+        let mut floor = [0; 8];
         for (triad, (sigma, step, lsb, motion)) in triads.into_iter().enumerate() {
             let sigma_counts = sigma / lsb;
             let testable = sigma_counts >= TESTABLE_COUNTS;
@@ -138,14 +139,14 @@ impl Screen {
                     let noise_counts = NOISE_SIGMAS * core::f64::consts::SQRT_2 * sigma_counts;
                     let counts = noise_counts + 2.0 * step / lsb + motion * square / lsb + 2.0;
                     limit[channel] = if testable && screening.jumps && counts < 1e9 {
-                        counts as u32
+                        counts as i32
                     } else {
-                        u32::MAX
+                        NO_LIMIT
                     };
                 }
                 let coarse = step > sigma;
                 floor[channel] =
-                    u32::from(testable && !coarse && screening.stuck_samples.is_some());
+                    i32::from(testable && !coarse && screening.stuck_samples.is_some());
             }
         }
         let samples = |time_s: f64| (time_s / sample_s + 0.5).max(1.0) as u32;
@@ -171,12 +172,14 @@ impl Screen {
     #[inline]
     pub fn passes(&mut self, lanes: &Lanes, moving: bool) -> bool {
         let limits = &self.limits[usize::from(moving)];
-        let mut good = self.calm;
+        let mut bad = 0;
         for i in 0..8 {
-            // From the floor up to the limit: a difference below the floor wraps around.
-            let difference = lanes[i].wrapping_sub(self.last[i]).unsigned_abs();
-            good &= difference.wrapping_sub(self.floor[i]) < limits[i];
+            // Signed throughout, which the oldest vector instructions compare; the one difference
+            // whose size doesn't fit is below the floor.
+            let difference = lanes[i].wrapping_sub(self.last[i]).wrapping_abs();
+            bad |= i32::from(difference > limits[i]) | i32::from(difference < self.floor[i]);
         }
+        let good = self.calm & (bad == 0);
         if good {
             self.last = *lanes;
         }
@@ -230,7 +233,7 @@ impl Screen {
             // What moves goes on moving while it isn't believed; the limit is twice the motion.
             let moves = moving || expected.is_none();
             let since = if moves { 1.0 + 0.5 * f64::from(self.held[i]) } else { 1.0 };
-            let believed = limit == u32::MAX
+            let believed = limit == NO_LIMIT
                 || near(f64::from(self.last[i]), since * f64::from(limit))
                 || expected.is_some_and(|expected| near(expected[i], f64::from(limit)))
                 // Nothing says how far the truth went while the channel was dead.

@@ -201,10 +201,16 @@ impl Core {
         }
         self.count_repeats(channels);
         self.bridge.gimbal = sample.gimbal;
-        self.integrate(&(taken.delta_theta, taken.delta_velocity), interval_s);
+        self.integrate_bridged(&taken, interval_s);
         if channels == 0 {
             self.end_stretch();
         }
+    }
+
+    /// Out of line: the integration itself belongs to where good samples are.
+    #[inline(never)]
+    fn integrate_bridged(&mut self, taken: &Increments, interval_s: f64) {
+        self.integrate(&(taken.delta_theta, taken.delta_velocity), interval_s);
     }
 
     fn channels_to_bridge(&self, sample: &Sample, found: &Examined) -> u8 {
@@ -426,7 +432,7 @@ impl Core {
             if let Some(filter) = self.filter_mut() {
                 filter.bridge(channels);
             }
-            self.integrate(&(known.delta_theta, known.delta_velocity), interval_s);
+            self.integrate_bridged(&known, interval_s);
         }
         self.bridge.gimbal = to;
         self.bridge.open |= channels;
