@@ -146,3 +146,28 @@ pub fn base_of(ship: &plant::Dockside) -> Base {
         jerk_mps3: bound(shifts, 3),
     })
 }
+
+fn kalman(config: &mut Config) -> &mut Kalman {
+    match &mut config.calibration.as_mut().unwrap().estimator {
+        Estimator::Kalman(kalman) => kalman,
+        _ => unreachable!(),
+    }
+}
+
+/// The same on a moored ship: dock position, sway as white noise. The attitude handed over is level,
+/// the ship's is not at time 0: the case rolls by up to 3°.
+pub fn dockside(case: &Case) -> (plant::Config, Config) {
+    let (mut plant, mut core) = (case.plant(), case.core());
+    let ship = octant_plant::motion::dockside_default(case.seed);
+    core.screening.base = base_of(&ship);
+    plant.motion = plant::Motion::Dockside(ship);
+    plant.aiding.kind = plant::AidingKind::DockPosition { sigma_m: 0.01 };
+    let truth = octant_plant::Plant::new(&plant).unwrap().truth();
+    if let Alignment::Given { q_nb, velocity_mps } = &mut core.alignment {
+        let [w, i, j, k] = truth.q_nb;
+        *q_nb *= UnitQuaternion::new_unchecked(nalgebra::Quaternion::new(w, i, j, k));
+        *velocity_mps += nalgebra::Vector3::from(truth.velocity_mps);
+    }
+    kalman(&mut core).aiding = AidingMode::Position { sigma_m: 0.15 };
+    (plant, core)
+}

@@ -250,6 +250,8 @@ pub struct Screening {
     pub encoder_sigma_rad: f64,
     /// Coarsest step of the increments beyond the format's own, rad and m/s; 0: none.
     pub resolution: (f64, f64),
+    /// Largest change of an increment from one sample to the next by vibration, rad and m/s.
+    pub vibration: (f64, f64),
 }
 
 /// Encoder of a precise turntable, 1σ: 18″ (the turntable of the paper's Table 1), rad.
@@ -271,6 +273,7 @@ impl Screening {
             base: Base::Still,
             encoder_sigma_rad: ENCODER_SIGMA_RAD,
             resolution: (0.0, 0.0),
+            vibration: (0.0, 0.0),
         }
     }
 
@@ -291,7 +294,10 @@ impl Screening {
             jumps: true,
             bridging: true,
             gimbals: true,
-            drift_sigmas: Some(crate::drift::LIMIT_SIGMAS),
+            drift_sigmas: Some(match base {
+                Base::Still => crate::drift::LIMIT_SIGMAS,
+                Base::Moving(_) => crate::drift::LIMIT_MOVING_SIGMAS,
+            }),
             checkpoints: true,
             aiding_stamps: true,
             base,

@@ -211,7 +211,8 @@ impl CalibrationFilter {
             Some(limit) if kalman.estimated == [true; 7] => Some(Drift::new(limit, &covariance)),
             _ => None,
         };
-        let start = Checkpoint { time_s: 0.0, parameters: *initial, covariance: covariance.clone() };
+        let start =
+            Checkpoint { time_s: 0.0, parameters: *initial, covariance: covariance.clone() };
         Self {
             model: kalman.error_model,
             aiding: kalman.aiding,

@@ -104,12 +104,9 @@ impl Screen {
         let sqrt_s = libm::sqrt(sample_s);
         let (base_rate, base_acceleration, force, jerk) = match screening.base {
             Base::Still => (0.0, 0.0, 0.0, 0.0),
-            Base::Moving(motion) => (
-                motion.rate_radps,
-                motion.acceleration_radps2,
-                motion.force_mps2,
-                motion.jerk_mps3,
-            ),
+            Base::Moving(motion) => {
+                (motion.rate_radps, motion.acceleration_radps2, motion.force_mps2, motion.jerk_mps3)
+            }
         };
         let table_rate = SERVO_MARGIN * core::f64::consts::SQRT_2 * turntable.rate_radps;
         let table_acceleration =
@@ -126,18 +123,21 @@ impl Screen {
         let square = sample_s * sample_s;
         let (gyro_step, accel_step) = screening.resolution;
         let triads = [
-            (noise.angle_random_walk * sqrt_s, gyro_step, DELTA_THETA_LSB_RAD, angular),
-            (noise.velocity_random_walk * sqrt_s, accel_step, DELTA_VELOCITY_LSB_MPS, linear),
+            (noise.angle_random_walk, gyro_step, screening.vibration.0, angular),
+            (noise.velocity_random_walk, accel_step, screening.vibration.1, linear),
         ];
         let mut limits = [[NO_LIMIT; 8]; 2];
         let mut floor = [0; 8];
-        for (triad, (sigma, step, lsb, motion)) in triads.into_iter().enumerate() {
+        for (triad, (random_walk, step, vibration, motion)) in triads.into_iter().enumerate() {
+            let lsb = [DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS][triad];
+            let sigma = random_walk * sqrt_s;
             let sigma_counts = sigma / lsb;
             let testable = sigma_counts >= TESTABLE_COUNTS;
             for channel in 3 * triad..3 * triad + 3 {
                 for (limit, motion) in limits.iter_mut().zip(motion) {
                     let noise_counts = NOISE_SIGMAS * core::f64::consts::SQRT_2 * sigma_counts;
-                    let counts = noise_counts + 2.0 * step / lsb + motion * square / lsb + 2.0;
+                    let known = 2.0 * step + vibration + motion * square;
+                    let counts = noise_counts + known / lsb + 2.0;
                     limit[channel] = if testable && screening.jumps && counts < 1e9 {
                         counts as i32
                     } else {
@@ -227,9 +227,8 @@ impl Screen {
                 continue;
             }
             let limit = self.limits[usize::from(moving)][i];
-            let near = |reference: f64, allowed: f64| {
-                (f64::from(lanes[i]) - reference).abs() <= allowed
-            };
+            let near =
+                |reference: f64, allowed: f64| (f64::from(lanes[i]) - reference).abs() <= allowed;
             // What moves goes on moving while it isn't believed; the limit is twice the motion.
             let moves = moving || expected.is_none();
             let since = if moves { 1.0 + 0.5 * f64::from(self.held[i]) } else { 1.0 };

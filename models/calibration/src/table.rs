@@ -14,8 +14,7 @@ pub const TABLE_VERSION: u16 = 2;
 const MAGIC: &[u8; 6] = b"OCTCAL";
 const TRIANGLE: usize = PARAMETER_COUNT * (PARAMETER_COUNT + 1) / 2;
 /// Length of a table of version 1, which ends with the provenance.
-const FIRST_TABLE_BYTES: usize =
-    6 + 2 + 8 * (PARAMETER_COUNT + TRIANGLE) + 8 * 4 + 8 * 6 + 2 + 4;
+const FIRST_TABLE_BYTES: usize = 6 + 2 + 8 * (PARAMETER_COUNT + TRIANGLE) + 8 * 4 + 8 * 6 + 2 + 4;
 /// Length of a table in bytes.
 pub const TABLE_BYTES: usize = FIRST_TABLE_BYTES + 8 * 3;
 
@@ -281,7 +280,8 @@ mod tests {
         let checksum = CRC.checksum(&bytes[..end]);
         bytes[end..][..4].copy_from_slice(&checksum.to_le_bytes());
         let table = CalibrationTable::from_bytes(&bytes[..FIRST_TABLE_BYTES]).unwrap();
-        let quality = Quality { bridged: 0, gimbal_slips: 0, drift_sigmas: 0.0, ..example().quality };
+        let quality =
+            Quality { bridged: 0, gimbal_slips: 0, drift_sigmas: 0.0, ..example().quality };
         assert_eq!(table, CalibrationTable { quality, ..example() });
         assert!(CalibrationTable::from_bytes(&bytes).is_err(), "longer than its version");
     }

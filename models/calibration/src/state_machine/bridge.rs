@@ -9,8 +9,8 @@
 //! What a jump would have turned the attitude by, had it been real, is not known to be wrong: the
 //! attitude is opened along it (one direction, not three), and the measurements decide.
 
-use super::{Core, kalman_of};
 use super::estimation::Estimation;
+use super::{Core, kalman_of};
 use crate::config::{Base, BaseMotion};
 use crate::screen::{ACCELEROMETERS, Examined, GYROS, Lanes, lanes};
 use nalgebra::{Matrix3, Vector3};
@@ -68,10 +68,8 @@ impl Increments {
     }
 
     fn counts(&self) -> [f64; 6] {
-        let (g, a) = (
-            self.delta_theta / DELTA_THETA_LSB_RAD,
-            self.delta_velocity / DELTA_VELOCITY_LSB_MPS,
-        );
+        let (g, a) =
+            (self.delta_theta / DELTA_THETA_LSB_RAD, self.delta_velocity / DELTA_VELOCITY_LSB_MPS);
         [g.x, g.y, g.z, a.x, a.y, a.z]
     }
 }
@@ -342,7 +340,8 @@ impl Core {
             }
         }
         let c = self.strapdown.c_nb();
-        let holds = attitude.trace() > HOLD_RAD * HOLD_RAD && self.config.screening.base != Base::Still;
+        let holds =
+            attitude.trace() > HOLD_RAD * HOLD_RAD && self.config.screening.base != Base::Still;
         let Estimation::Kalman(filter) = &mut self.estimation else { return };
         filter.disturb(
             &self.strapdown,
@@ -358,8 +357,8 @@ impl Core {
     /// of each gimbal that has turned, once, and its axis, which is known to the body axes no better
     /// than the gyros' are before they are calibrated.
     fn encoder_uncertainty(&mut self) -> Matrix3<f64> {
-        let axes_rad = kalman_of(&self.config)
-            .map_or(0.0, |kalman| kalman.prior.of(Group::GyroMisalignment));
+        let axes_rad =
+            kalman_of(&self.config).map_or(0.0, |kalman| kalman.prior.of(Group::GyroMisalignment));
         let sigma = self.config.screening.encoder_sigma_rad;
         let Bridge { start, gimbal, open, .. } = self.bridge;
         let turns = [
@@ -379,7 +378,8 @@ impl Core {
             let across = axes_rad * axes_rad;
             for axis in 0..3 {
                 if open & (1 << axis) != 0 {
-                    variance[(axis, axis)] += across * (1.0 - turn[axis] * turn[axis] / (angle * angle));
+                    variance[(axis, axis)] +=
+                        across * (1.0 - turn[axis] * turn[axis] / (angle * angle));
                 }
             }
         }
@@ -390,11 +390,8 @@ impl Core {
     /// sure since the last account: the square of the largest departure at its end, less that at the
     /// last account.
     fn hold_uncertainty(&mut self, motion: &BaseMotion) -> (f64, f64) {
-        let table = if self.gimbals_may_move() {
-            self.config.turntable.acceleration_radps2
-        } else {
-            0.0
-        };
+        let table =
+            if self.gimbals_may_move() { self.config.turntable.acceleration_radps2 } else { 0.0 };
         let at = |t: f64| {
             let departed = 0.5 * motion.acceleration_radps2 * t * t;
             let bounded = departed.min(2.0 * motion.rate_radps * t).min(2.0 * motion.angle_rad);

@@ -98,7 +98,8 @@ impl Core {
             let turned = (q_cb(gimbal).inverse() * q_cb(sample.gimbal)).angle();
             let axes_rad = turned * kalman.prior.of(Group::GyroMisalignment);
             let sigma = screening.encoder_sigma_rad;
-            let attitude: f64 = (0..3).map(|axis| filter.covariance().at(PHI + axis, PHI + axis)).sum();
+            let attitude: f64 =
+                (0..3).map(|axis| filter.covariance().at(PHI + axis, PHI + axis)).sum();
             let variance = 2.0 * sigma * sigma + axes_rad * axes_rad + attitude;
             let difference = log(&(before.inverse() * q_nc)).norm();
             if difference > SLIP_SIGMAS * libm::sqrt(variance) {

@@ -138,12 +138,7 @@ impl Core {
             mode: Mode::Aligning,
             cursor: None,
             monitor: Monitor::new(config.sample_period_ns, sigmas, config.screening.stuck_samples),
-            screen: Screen::new(
-                &config.screening,
-                &config.noise,
-                &config.turntable,
-                sample_s,
-            ),
+            screen: Screen::new(&config.screening, &config.noise, &config.turntable, sample_s),
             bridge: Bridge::default(),
             slips: Slips::default(),
             alignment,
@@ -293,7 +288,8 @@ impl Core {
             (Mode::Navigating, _) | (Mode::Calibrating, Estimation::Kalman(_)) => {
                 let lanes = lanes(sample);
                 let moving = self.gimbals_may_move();
-                if !self.screen.passes(&lanes, moving) || health.contains(Health::INERTIAL_INVALID) {
+                if !self.screen.passes(&lanes, moving) || health.contains(Health::INERTIAL_INVALID)
+                {
                     self.doubt(sample, &lanes, interval_s, health);
                     return;
                 }
