@@ -128,6 +128,7 @@ fn data() -> ReportData {
         reasons: vec![],
         requirements: vec![],
         faults: vec![],
+        altered_streams: None,
         method: "eight positions".to_owned(),
         calibration: Some(eight),
         navigation: Some(navigation(g(&truth()) - g(&estimate), 1.5)),
@@ -136,6 +137,7 @@ fn data() -> ReportData {
             calibration: Some(six),
             navigation: Some(navigation(g(&truth()) - g(&six_estimate), 2.5)),
             counterfactual: None,
+            faults: vec![],
             stream_hash: "6a1f0c55d0f2f7be6c3c8c5d88a64f6d4c8f4bb0c6a5b8d2e1f30b9a5d7c4e21"
                 .to_owned(),
         }),

@@ -133,8 +133,6 @@ fn the_sigma_has_the_unit_of_its_reference() {
 
 #[test]
 fn what_this_version_has_not_is_said() {
-    let (.., message) = problem(&format!("{HEAD}[[faults]]\nkind = \"spike\"\n"));
-    assert_says(&message, &["fault injection is not part of this version"]);
     let (.., message) = problem(&format!("{HEAD}[endpoint]\nuri = \"serial:/dev/ttyS0\"\n"));
     assert_says(&message, &["in-process", "no other endpoint"]);
 }

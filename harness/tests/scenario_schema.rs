@@ -25,8 +25,47 @@ fn every_shipped_scenario_validates_and_none_does_with_an_unknown_key() {
         assert!(!validator.is_valid(&scenario), "{file} with an unknown key");
         let calibration = scenario["procedure"]["calibration"].as_object_mut().unwrap();
         calibration.remove("dwel");
-        scenario["faults"] = json!([]);
-        assert!(!validator.is_valid(&scenario), "{file} with faults");
+        for (fault, valid) in [
+            (
+                json!({ "id": "a", "kind": "spike", "channels": "gyro x", "amplitude": "1 deg/h",
+                     "trigger": { "at": "5 s" }, "duration": "3 samples" }),
+                true,
+            ),
+            (
+                json!({ "id": "a", "kind": "spike", "channels": ["gyro x", "gyro y"],
+                     "amplitude": "1 deg/h", "repeat": "every time",
+                     "trigger": { "position": 4, "after": "2 s" }, "duration": "1 s" }),
+                true,
+            ),
+            // An unknown kind, no trigger, two triggers, a key of another trigger, no such channel.
+            (
+                json!({ "id": "a", "kind": "spik", "channels": "gyro x", "amplitude": "1 deg/h",
+                     "trigger": { "at": "5 s" } }),
+                false,
+            ),
+            (
+                json!({ "id": "a", "kind": "spike", "channels": "gyro x", "amplitude": "1 deg/h" }),
+                false,
+            ),
+            (
+                json!({ "id": "a", "kind": "spike", "channels": "gyro x", "amplitude": "1 deg/h",
+                     "trigger": { "at": "5 s", "sample": 3 } }),
+                false,
+            ),
+            (
+                json!({ "id": "a", "kind": "spike", "channels": "gyro x", "amplitude": "1 deg/h",
+                     "trigger": { "at": "5 s", "after": "1 s" } }),
+                false,
+            ),
+            (
+                json!({ "id": "a", "kind": "spike", "channels": "gyro", "amplitude": "1 deg/h",
+                     "trigger": { "at": "5 s" }, "chanels": "gyro x" }),
+                false,
+            ),
+        ] {
+            scenario["faults"] = json!([fault]);
+            assert_eq!(validator.is_valid(&scenario), valid, "{file} with {fault}");
+        }
     }
 }
 

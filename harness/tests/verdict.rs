@@ -50,6 +50,7 @@ fn summary() -> Summary {
         }),
         baseline: None,
         reference: None,
+        altered_streams: None,
         counterfactual: None,
         pacing: None,
         stream_hash: "00".to_owned(),
@@ -188,6 +189,9 @@ fn a_refused_calibration_fails_and_a_silent_fault_is_inconclusive() {
         first_sample: None,
         last_sample: None,
         samples_altered: 0,
+        firings: 0,
+        clean_crc32: None,
+        faulted_crc32: None,
     });
     judge(&mut silent, &[], &[]).unwrap();
     assert_eq!(silent.verdict, Verdict::Inconclusive);

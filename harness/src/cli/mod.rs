@@ -4,12 +4,15 @@
 #![allow(clippy::print_stdout, reason = "results go to stdout")]
 
 mod compare;
+mod faults;
+mod minimise;
 mod observe;
 mod progress;
 mod replay;
 mod report;
 mod run;
 mod score;
+mod sweep;
 
 use crate::score::verdict::Verdict;
 use clap::{Args, Parser, Subcommand};
@@ -39,6 +42,8 @@ enum Command {
     Observe(observe::Arguments),
     /// Write the report of a finished run again.
     Report(report::Arguments),
+    /// Tell what kinds of faults there are, and what each does.
+    Faults(faults::Arguments),
     /// Print the JSON Schema of scenarios, for completion in editors.
     Schema,
     #[command(external_subcommand)]
@@ -46,8 +51,8 @@ enum Command {
 }
 
 /// Commands that belong to the plan of the program and are not in this version.
-const LATER: [&str; 9] =
-    ["campaign", "faults", "fmu", "serve", "nightly", "selftest", "watch", "doctor", "verify"];
+const LATER: [&str; 8] =
+    ["campaign", "fmu", "serve", "nightly", "selftest", "watch", "doctor", "verify"];
 
 /// A command that isn't there.
 fn other(words: &[OsString]) -> Failure {
@@ -130,6 +135,7 @@ pub fn main() -> ExitCode {
         Command::Score(arguments) => score::command(&arguments),
         Command::Observe(arguments) => observe::command(&arguments),
         Command::Report(arguments) => report::command(&arguments),
+        Command::Faults(arguments) => faults::command(&arguments),
         Command::Other(words) => Err(other(&words)),
         Command::Schema => {
             print(&format!("{:#}\n", crate::scenario::schema())).map(|()| Verdict::Pass)
@@ -173,7 +179,22 @@ fn load(
     arguments: &ScenarioArguments,
     more: &[String],
 ) -> Result<crate::scenario::Scenario, Failure> {
+    load_fired(arguments, more, &[])
+}
+
+/// As [`load`], with faults fired by hand. What is worth a warning goes to stderr.
+fn load_fired(
+    arguments: &ScenarioArguments,
+    more: &[String],
+    fires: &[String],
+) -> Result<crate::scenario::Scenario, Failure> {
     let mut overrides = arguments.set.clone();
     overrides.extend_from_slice(more);
-    crate::scenario::Scenario::load(&arguments.scenario, &overrides).map_err(Failure::input)
+    let path = &arguments.scenario;
+    let scenario =
+        crate::scenario::Scenario::load_fired(path, &overrides, fires).map_err(Failure::input)?;
+    for warning in scenario.warnings() {
+        eprintln!("octant: {}: {warning}", path.display());
+    }
+    Ok(scenario)
 }

@@ -4,6 +4,7 @@ use super::{Failure, print, print_json};
 use crate::endpoint::{Endpoint, InProcess};
 use crate::recorder::StreamHash;
 use crate::run::method::configurations;
+use crate::run::unit;
 use crate::scenario::Scenario;
 use crate::score::verdict::Verdict;
 use crate::source::{Epoch, Replay, Source};
@@ -63,6 +64,11 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     let mut first_difference_sample = None;
     let (mut epoch, mut output) = (Epoch::default(), Output::default());
     while source.next(&GimbalCommand::default(), &mut epoch).map_err(|e| bad(&e))? {
+        for event in &source.recorded().events {
+            if let Some(event) = unit::of(event).map_err(|e| bad(&e))? {
+                unit::happen(&event, &mut endpoint).map_err(|e| bad(&e))?;
+            }
+        }
         endpoint.step(&epoch, &mut output).map_err(|e| bad(&e))?;
         samples += 1;
         hash.epoch(&epoch.sample, epoch.aiding.as_ref(), &output);

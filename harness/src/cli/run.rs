@@ -1,7 +1,7 @@
 //! `octant run`.
 
 use super::progress::with_progress;
-use super::{Failure, ScenarioArguments, load, print, write};
+use super::{Failure, ScenarioArguments, load_fired, print, write};
 use crate::evidence::{Existing, FolderError, Manifest, RunFacts, RunFolder};
 use crate::report;
 use crate::run::assemble::{parameter_text, text};
@@ -13,6 +13,7 @@ use crate::score::junit::junit;
 use crate::score::verdict::Verdict;
 use clap::Args;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::time::SystemTime;
 
 #[derive(Debug, Args)]
@@ -34,9 +35,15 @@ pub(super) struct Arguments {
     /// Where the core is, instead of the scenario's endpoint.
     #[arg(long, value_name = "URI")]
     endpoint: Option<String>,
+    /// Fire a fault whose trigger is manual, such as spike-1="5050 s".
+    #[arg(long, value_name = "ID=TIME")]
+    fire: Vec<String>,
     /// Pace the run by the clock. Not part of this version.
     #[arg(long)]
     realtime: bool,
+    /// Leave out the twin without faults, which a run with faults is compared with.
+    #[arg(long)]
+    no_twin: bool,
     /// Print summary.json on stdout, and nothing else.
     #[arg(long)]
     json: bool,
@@ -55,7 +62,7 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     if let Some(uri) = &arguments.endpoint {
         more.push(format!("endpoint.uri={uri}"));
     }
-    let scenario = load(&arguments.scenario, &more)?;
+    let scenario = load_fired(&arguments.scenario, &more, &arguments.fire)?;
     let seed = arguments.seed.unwrap_or(scenario.seed);
     // What contradicts itself is said before anything is written.
     for method in methods(&scenario) {
@@ -81,7 +88,7 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         .map_err(|e| Failure::input(format!("failed to {e}")))?;
     write(&folder.path().join("scenario.toml"), scenario.to_resolved_toml(seed, &draws))?;
 
-    let runs = execute(&scenario, seed, folder.path())?;
+    let runs = execute(&scenario, seed, !arguments.no_twin, folder.path())?;
     let interrupted = runs.iter().any(|run| run.ended == crate::run::Ended::Cancelled);
     let mut runs = runs.into_iter();
     let (Some(primary), baseline) = (runs.next(), runs.next()) else {
@@ -158,25 +165,40 @@ fn methods(scenario: &Scenario) -> Vec<Method> {
     std::iter::once(Method::Primary).chain(baseline).collect()
 }
 
-/// Runs the methods of a scenario, each on a thread of its own.
-fn execute(scenario: &Scenario, seed: u64, folder: &Path) -> Result<Vec<MethodRun>, Failure> {
-    let methods = methods(scenario);
-    let controls: Vec<Control> = methods.iter().map(|_| Control::default()).collect();
-    let epochs = scenario.samples().map(|samples| samples * methods.len() as u64);
+/// Runs the methods of a scenario, and their twins without faults, each on a thread of its own.
+fn execute(
+    scenario: &Scenario,
+    seed: u64,
+    twins: bool,
+    folder: &Path,
+) -> Result<Vec<MethodRun>, Failure> {
+    let clean = (twins && !scenario.faults.is_empty()).then(|| scenario.without_faults());
+    let tasks: Vec<(Method, Option<&Scenario>)> = methods(scenario)
+        .into_iter()
+        .flat_map(|method| {
+            let twin = clean.as_ref().map(|clean| (method, Some(clean)));
+            std::iter::once((method, None)).chain(twin)
+        })
+        .collect();
+    let controls: Vec<Control> = tasks.iter().map(|_| Control::default()).collect();
+    let epochs = scenario.samples().map(|samples| samples * tasks.len() as u64);
     let sample_s = scenario.sample_period_ns as f64 * 1e-9;
     let results = with_progress(&controls, epochs, sample_s, || {
         std::thread::scope(|scope| {
-            let threads: Vec<_> = methods
+            let threads: Vec<_> = tasks
                 .iter()
                 .zip(&controls)
-                .map(|(method, control)| {
+                .map(|((method, clean), control)| {
                     let name = match method {
                         Method::Primary => "recording.mcap",
                         Method::Baseline => "baseline.mcap",
                     };
                     let path = folder.join(name);
-                    scope.spawn(move || {
-                        run_method(scenario, *method, seed, Recording::File(&path), control)
+                    scope.spawn(move || match clean {
+                        None => {
+                            run_method(scenario, *method, seed, Recording::File(&path), control)
+                        }
+                        Some(clean) => run_method(clean, *method, seed, Recording::Hash, control),
                     })
                 })
                 .collect();
@@ -189,14 +211,23 @@ fn execute(scenario: &Scenario, seed: u64, folder: &Path) -> Result<Vec<MethodRu
                 .collect::<Vec<_>>()
         })
     });
-    results.into_iter().collect::<Result<_, _>>().map_err(|failure: Failure| Failure {
-        status: failure.status,
-        message: format!(
-            "failed to {}; what was recorded is in {}",
-            failure.message,
-            folder.display()
-        ),
-    })
+    let runs: Vec<MethodRun> =
+        results.into_iter().collect::<Result<_, _>>().map_err(|failure: Failure| Failure {
+            status: failure.status,
+            message: format!(
+                "failed to {}; what was recorded is in {}",
+                failure.message,
+                folder.display()
+            ),
+        })?;
+    let mut paired: Vec<MethodRun> = Vec::with_capacity(runs.len());
+    for (run, (_, clean)) in runs.into_iter().zip(&tasks) {
+        match (clean, paired.last_mut()) {
+            (Some(_), Some(faulted)) => faulted.twin = Some(Arc::new(run)),
+            _ => paired.push(run),
+        }
+    }
+    Ok(paired)
 }
 
 /// Writes summary, JUnit, report and manifest.
@@ -238,6 +269,12 @@ fn rerun(arguments: &Arguments, seed: u64) -> Vec<String> {
             line.extend([name.to_owned(), uri.clone()]);
         }
     }
+    for fire in &arguments.fire {
+        line.extend(["--fire".to_owned(), fire.clone()]);
+    }
+    if arguments.no_twin {
+        line.push("--no-twin".to_owned());
+    }
     line.extend(["--seed".to_owned(), seed.to_string()]);
     line
 }
@@ -278,7 +315,9 @@ pub(super) fn on_recording(
         seed: None,
         source: Some(format!("{kind}:{}", recording.display())),
         endpoint: None,
+        fire: Vec::new(),
         realtime: false,
+        no_twin: false,
         json,
     })
 }

@@ -3,13 +3,15 @@
 use super::{Endpoint, EndpointError, ParameterEstimate};
 use crate::source::Epoch;
 use octant_calibration::{Config, Core};
-use octant_sample::Output;
+use octant_sample::{Output, Parameters};
 
 /// The calibration core, called directly.
 #[derive(Clone, Debug)]
 pub struct InProcess {
     core: Core,
     revision: u32,
+    /// What the core starts from, each time.
+    config: Box<Config>,
 }
 
 impl InProcess {
@@ -18,7 +20,7 @@ impl InProcess {
     /// # Errors
     /// If the configuration contradicts itself.
     pub fn new(config: &Config) -> Result<Self, octant_calibration::state_machine::ConfigError> {
-        Ok(Self { core: Core::new(config)?, revision: 0 })
+        Ok(Self { core: Core::new(config)?, revision: 0, config: Box::new(config.clone()) })
     }
 
     /// The source has ended: see [`Core::end_of_stream`].
@@ -40,6 +42,22 @@ impl Endpoint for InProcess {
     fn step(&mut self, epoch: &Epoch, output: &mut Output) -> Result<(), EndpointError> {
         self.core.step_into(&epoch.sample, epoch.aiding.as_ref(), output);
         self.revision = output.parameters_revision;
+        Ok(())
+    }
+
+    fn restart(&mut self, offset: Option<&Parameters>) -> Result<(), EndpointError> {
+        let mut config = Config::clone(&self.config);
+        if let Some(offset) = offset {
+            let stored = config.initial_parameters.to_array();
+            let offset = offset.to_array();
+            config.initial_parameters =
+                Parameters::from_array(&std::array::from_fn(|i| stored[i] + offset[i]));
+        }
+        self.core = Core::new(&config).map_err(|error| EndpointError::Restart {
+            uri: "in-process".to_owned(),
+            reason: error.to_string(),
+        })?;
+        self.revision = 0;
         Ok(())
     }
 

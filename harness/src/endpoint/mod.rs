@@ -28,6 +28,14 @@ pub trait Endpoint {
     /// If the endpoint failed as a bench part: device gone, process died.
     fn step(&mut self, epoch: &Epoch, output: &mut Output) -> Result<(), EndpointError>;
 
+    /// The core starts anew, as at power on: it forgets everything and waits for its first sample.
+    /// With an offset its stored parameters are by so much (SI) away from those that it was
+    /// configured with; without, they are those.
+    ///
+    /// # Errors
+    /// If the endpoint failed, or can't restart its core.
+    fn restart(&mut self, offset: Option<&Parameters>) -> Result<(), EndpointError>;
+
     /// The parameters as of the last output.
     fn parameters(&self) -> ParameterEstimate;
 }
@@ -41,6 +49,14 @@ pub enum EndpointError {
         /// URI of the endpoint.
         uri: String,
         /// What happened.
+        reason: String,
+    },
+    /// The core behind the endpoint can't be started anew.
+    #[error("restart the core at {uri}: {reason}")]
+    Restart {
+        /// URI of the endpoint.
+        uri: String,
+        /// Why.
         reason: String,
     },
 }

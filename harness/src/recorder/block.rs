@@ -12,14 +12,19 @@ use octant_sample::{Aiding, Output, Sample};
 /// stands at `i` ([`Block::aiding`], [`Block::altered`]) or, for what was said after it, at `i + 1`.
 #[derive(Debug, Default)]
 pub(super) struct Block {
-    /// What reached the core.
+    /// What reached the core; of a lost epoch what the source had delivered.
     pub(super) samples: Vec<Sample>,
-    /// What it answered.
+    /// What it answered; of a lost epoch nothing of meaning.
     pub(super) outputs: Vec<Output>,
     /// Aiding that reached the core, by frame.
     pub(super) aiding: Vec<(u32, Aiding)>,
     /// What the source had delivered, for frames where it differs from what reached the core.
     pub(super) altered: Vec<(u32, Epoch)>,
+    /// Frames of epochs that never reached the core in their step.
+    pub(super) lost: Vec<u32>,
+    /// Frames that reached the core beside another of the same step of the source, with the time
+    /// of the step.
+    pub(super) added: Vec<(u32, u64)>,
     /// Frames on the recording grid.
     pub(super) due: Vec<u32>,
     /// Truth, by position.
@@ -37,6 +42,8 @@ impl Block {
             outputs: Vec::with_capacity(epochs),
             aiding: Vec::with_capacity(64),
             altered: Vec::with_capacity(64),
+            lost: Vec::with_capacity(64),
+            added: Vec::with_capacity(64),
             due: Vec::with_capacity(64),
             truth: Vec::with_capacity(64),
             parameters: Vec::with_capacity(64),
@@ -78,6 +85,25 @@ impl Block {
         self.outputs.push(*frame.output);
     }
 
+    /// Takes an epoch that didn't reach the core in its step.
+    pub(super) fn lost(&mut self, clean: &Epoch, due: bool) {
+        let position = self.position();
+        self.altered.push((position, *clean));
+        self.lost.push(position);
+        if due {
+            self.due.push(position);
+        }
+        self.samples.push(clean.sample);
+        self.outputs.push(Output::default());
+    }
+
+    /// Takes an epoch that reached the core in a step in which another one had.
+    pub(super) fn added(&mut self, step_ns: u64, faulted: &Epoch, output: &Output, due: bool) {
+        let position = self.position();
+        self.added.push((position, step_ns));
+        self.push(&Frame { clean: faulted, faulted, output }, due);
+    }
+
     pub(super) fn extra(&mut self, extra: &Extra) {
         let position = self.position();
         match extra {
@@ -95,6 +121,8 @@ impl Block {
         self.outputs.clear();
         self.aiding.clear();
         self.altered.clear();
+        self.lost.clear();
+        self.added.clear();
         self.due.clear();
         self.truth.clear();
         self.parameters.clear();

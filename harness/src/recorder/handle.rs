@@ -6,12 +6,14 @@
 //! unfinished block from time to time ([`FLUSH_INTERVAL`]), so that a slow run, too, gets into the
 //! file; the asking is one relaxed load of the loop.
 
+use super::altered::{self, AlteredStreams};
 use super::block::Block;
 use super::writer::{RecordingWriter, next_on_grid};
 use super::{
     Counts, Event, Extra, FLUSH_INTERVAL, Frame, RecorderError, RecorderOptions, StreamHash,
 };
-use octant_sample::Mode;
+use crate::source::Epoch;
+use octant_sample::{Mode, Output};
 use std::fs::File;
 use std::io::Write;
 use std::path::Path;
@@ -31,6 +33,8 @@ pub struct RecorderSummary {
     pub aiding: u64,
     /// Epochs in which the core got something else than the source delivered.
     pub altered: u64,
+    /// Checksums of what the source delivered and of what reached the core, where they differ.
+    pub altered_streams: Option<AlteredStreams>,
     /// Messages in the file, by topic.
     pub messages: Counts,
     /// Bytes of the file.
@@ -188,6 +192,63 @@ impl Recorder {
         Ok(())
     }
 
+    /// Takes an epoch that the source delivered and that didn't reach the core in its step: it was
+    /// lost, or is late, or the unit was off.
+    ///
+    /// # Errors
+    /// As [`Recorder::push`].
+    pub fn lost(&mut self, clean: &Epoch) -> Result<(), RecorderError> {
+        let time_ns = clean.sample.device_time.ns;
+        self.make_room(clean.sample.sequence)?;
+        let due = time_ns >= self.next_due_ns;
+        if due {
+            self.next_due_ns = next_on_grid(time_ns, self.period_ns);
+        }
+        self.truth_due = due;
+        if self.worker.is_some() {
+            self.block.lost(clean, due);
+        }
+        Ok(())
+    }
+
+    /// Takes an epoch that reached the core in a step of the source in which another one had:
+    /// `step_ns` is the stamp of what the source delivered in it.
+    ///
+    /// # Errors
+    /// As [`Recorder::push`].
+    pub fn added(
+        &mut self,
+        step_ns: u64,
+        faulted: &Epoch,
+        output: &Output,
+    ) -> Result<(), RecorderError> {
+        self.make_room(output.sequence)?;
+        let due = self.mode != Some(output.mode);
+        self.mode = Some(output.mode);
+        self.truth_due = false;
+        if output.parameters_revision != self.revision {
+            self.revision = output.parameters_revision;
+            self.parameters_due = self.worker.is_some();
+        }
+        if self.worker.is_some() {
+            self.block.added(step_ns, faulted, output, due);
+        }
+        Ok(())
+    }
+
+    /// What has to be before a frame is taken.
+    fn make_room(&mut self, sequence: u64) -> Result<(), RecorderError> {
+        let Some(worker) = &self.worker else { return Ok(()) };
+        if self.parameters_due {
+            let revision = self.revision;
+            return Err(RecorderError::ParametersMissing { sequence, revision });
+        }
+        if self.block.len() >= self.epochs_per_block || worker.wanted.load(Ordering::Relaxed) {
+            self.hand_over()?;
+        }
+        Ok(())
+    }
+
     /// Truth at the frame just given will be kept: ask the source for it.
     #[must_use]
     #[inline]
@@ -292,15 +353,17 @@ fn work<W: Write>(
     wanted: &AtomicBool,
 ) -> Result<RecorderSummary, RecorderError> {
     let mut hash = StreamHash::new();
+    let mut streams = None;
     let mut summary = RecorderSummary::default();
     let mut asked = std::time::Instant::now();
     loop {
         match full.recv_timeout(FLUSH_INTERVAL) {
             Ok(mut block) => {
                 hash_block(&mut hash, &block);
-                summary.epochs += block.len() as u64;
+                altered::take(&mut streams, &block);
+                summary.epochs += (block.len() - block.lost.len()) as u64;
                 summary.aiding += block.aiding.len() as u64;
-                summary.altered += block.altered.len() as u64;
+                summary.altered += (block.altered.len() + block.added.len()) as u64;
                 if let Some(writer) = &mut writer {
                     writer.block(&block)?;
                 }
@@ -320,6 +383,7 @@ fn work<W: Write>(
         }
     }
     summary.stream_hash = hash.hex();
+    summary.altered_streams = streams.map(altered::Streams::finish);
     if let Some(writer) = writer {
         (summary.messages, summary.bytes) = writer.finish()?;
     }
@@ -333,9 +397,13 @@ fn work<W: Write>(
 fn hash_block(hash: &mut StreamHash, block: &Block) {
     let mut aiding = block.aiding.iter().peekable();
     let mut parameters = block.parameters.iter().peekable();
+    let mut lost = block.lost.iter().peekable();
     for position in 0..=block.len() as u32 {
         while let Some((_, estimate)) = parameters.next_if(|(at, _)| *at == position) {
             hash.parameters(estimate);
+        }
+        if lost.next_if(|at| **at == position).is_some() {
+            continue;
         }
         let index = position as usize;
         if let (Some(sample), Some(output)) = (block.samples.get(index), block.outputs.get(index)) {

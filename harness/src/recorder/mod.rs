@@ -4,6 +4,7 @@
 //! own hashes the stream, decimates and writes `recording.mcap`. A [`reader`] gives it all back,
 //! bit for bit.
 
+mod altered;
 mod block;
 mod handle;
 pub mod message;
@@ -13,6 +14,7 @@ mod sink;
 mod stream_hash;
 mod writer;
 
+pub use altered::AlteredStreams;
 pub use handle::{Recorder, RecorderSummary};
 pub use stream_hash::StreamHash;
 

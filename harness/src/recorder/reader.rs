@@ -330,7 +330,8 @@ pub struct RecordedEpoch {
     pub sample: Option<Sample>,
     /// The aiding that reached the core.
     pub aiding: Option<Aiding>,
-    /// The sample that the source delivered, where it differs from `sample`.
+    /// The sample that the source delivered, where it differs from `sample`; alone where it never
+    /// reached the core in its step.
     pub clean_sample: Option<Sample>,
     /// The aiding that the source delivered (`Some(None)`: none), where it differs from `aiding`.
     pub clean_aiding: Option<Option<Aiding>>,
@@ -340,6 +341,8 @@ pub struct RecordedEpoch {
     pub parameters: Option<ParameterEstimate>,
     /// Truth.
     pub truth: Option<Truth>,
+    /// What was told since the epoch before, and before this one reached the core.
+    pub events: Vec<Event>,
 }
 
 /// The epochs of a recording in order: time, truth, output and parameters for scoring, samples and
@@ -349,12 +352,14 @@ pub struct Epochs<R> {
     /// The first message of the next epoch.
     next: Option<(u64, Item)>,
     last_event: Option<Event>,
+    /// Events of the next epoch.
+    events: Vec<Event>,
 }
 
 impl<R: Read> Epochs<R> {
     /// Groups the messages of a recording.
     pub fn new(recording: Recording<R>) -> Self {
-        Self { recording, next: None, last_event: None }
+        Self { recording, next: None, last_event: None, events: Vec::new() }
     }
 
     /// The recording behind.
@@ -384,12 +389,16 @@ impl<R: Read> Epochs<R> {
             };
             let topic = item.topic();
             if let Item::Event(event) = item {
-                self.last_event = Some(event);
+                self.last_event = Some(event.clone());
+                self.events.push(event);
                 continue;
             }
             if last.is_some_and(|last| time_ns != epoch.time_ns || topic <= last) {
                 self.next = Some((time_ns, item));
                 return Ok(Some(epoch));
+            }
+            if last.is_none() {
+                epoch.events = std::mem::take(&mut self.events);
             }
             last = Some(topic);
             epoch.time_ns = time_ns;

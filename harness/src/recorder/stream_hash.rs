@@ -36,11 +36,17 @@ impl StreamHash {
     /// Adds one epoch: what reached the core and what it answered.
     #[inline]
     pub fn epoch(&mut self, sample: &Sample, aiding: Option<&Aiding>, output: &Output) {
+        self.input(sample, aiding);
+        self.put::<OUTPUT_BYTES>(|bytes| canonical::output(output, bytes));
+    }
+
+    /// Adds a sample and its aiding alone.
+    #[inline]
+    pub(super) fn input(&mut self, sample: &Sample, aiding: Option<&Aiding>) {
         self.put::<SAMPLE_BYTES>(|bytes| canonical::sample(sample, bytes));
         if let Some(aiding) = aiding {
             self.put::<AIDING_BYTES>(|bytes| canonical::aiding(aiding, bytes));
         }
-        self.put::<OUTPUT_BYTES>(|bytes| canonical::output(output, bytes));
     }
 
     /// Adds the parameters that changed with the epoch just added.

@@ -149,6 +149,8 @@ impl<W: Write> RecordingWriter<W> {
         let mut truth = block.truth.iter().peekable();
         let mut parameters = block.parameters.iter().peekable();
         let mut events = block.events.iter().peekable();
+        let mut lost = block.lost.iter().peekable();
+        let mut added = block.added.iter().peekable();
         for position in 0..=block.len() as u32 {
             // First what was said after the frame before, in the order of the topics.
             while let Some((_, estimate)) = parameters.next_if(|(at, _)| *at == position) {
@@ -171,10 +173,13 @@ impl<W: Write> RecordingWriter<W> {
             let on_grid = due.next_if(|at| **at == position).is_some();
             let keep = on_grid || self.policy.samples == Samples::Full;
 
-            self.last_time_ns = clean.map_or(sample, |epoch| &epoch.sample).device_time.ns;
+            let lost = lost.next_if(|at| **at == position).is_some();
+            let step = added.next_if(|(at, _)| *at == position).map(|(_, step_ns)| *step_ns);
+            self.last_time_ns =
+                step.unwrap_or_else(|| clean.map_or(sample, |epoch| &epoch.sample).device_time.ns);
             self.last_sequence = sample.sequence;
             if let Some(epoch) = clean {
-                if keep && epoch.sample != *sample {
+                if keep && (lost || epoch.sample != *sample) {
                     message::encode_sample(&epoch.sample, &mut self.bytes);
                     self.put(Topic::ImuClean)?;
                 }
@@ -184,6 +189,9 @@ impl<W: Write> RecordingWriter<W> {
                     message::encode_aiding(epoch.aiding.as_ref(), &mut self.bytes);
                     self.put(Topic::AidingClean)?;
                 }
+            }
+            if lost {
+                continue;
             }
             if let Some(aiding) = aiding {
                 message::encode_aiding(Some(aiding), &mut self.bytes);

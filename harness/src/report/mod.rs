@@ -14,5 +14,6 @@ pub mod number;
 mod page;
 mod parameters;
 pub mod run;
+pub mod sweep;
 
 pub use run::{GimbalPoint, HealthEvent, NisPoint, ParameterPoint, Provenance, ReportData};

@@ -7,6 +7,7 @@ use super::drift::drift;
 use super::number;
 use super::page::{badge, page};
 use crate::score::summary::{Calibration, HeightChannel, Summary};
+use crate::score::verdict::Verdict;
 use maud::{Markup, html};
 use octant_sample::Parameters;
 use octant_sample::parameters::PARAMETER_COUNT;
@@ -96,6 +97,7 @@ pub fn render(data: &ReportData) -> String {
         (header(data))
         (figures(summary))
         (requirements(summary))
+        (faults(summary))
         (counterfactual(summary))
         (drift(summary))
         (calibration(data))
@@ -257,6 +259,43 @@ fn requirements(summary: &Summary) -> Markup {
     }
 }
 
+/// Receipts of the faults; nothing where none was injected.
+fn faults(summary: &Summary) -> Markup {
+    if summary.faults.is_empty() {
+        return html! {};
+    }
+    let number = |value: Option<u64>| value.map_or_else(|| "–".to_owned(), |v| v.to_string());
+    let sum = |sum: &Option<String>| sum.clone().unwrap_or_else(|| "–".to_owned());
+    let verdict = |fired: bool| if fired { Verdict::Pass } else { Verdict::Inconclusive };
+    html! {
+        h2 { "Faults" }
+        p.hint { "What each fault altered, found by comparing samples before and after it. The \
+            checksums (CRC-32) are over the altered samples, as they were and as they became." }
+        table {
+            thead { tr {
+                th { "Fault" } th { "Kind" } th.n { "Firings" } th.n { "First sample" }
+                th.n { "Last sample" } th.n { "Altered" } th.n { "Clean" } th.n { "Faulted" }
+                th.n { "Fired" }
+            } }
+            tbody {
+                @for f in &summary.faults {
+                    tr {
+                        td { strong { (f.id) } }
+                        td { span.mono { (f.kind) } }
+                        td.n { (f.firings) }
+                        td.n { (number(f.first_sample)) }
+                        td.n { (number(f.last_sample)) }
+                        td.n { (f.samples_altered) }
+                        td.n { span.mono { (sum(&f.clean_crc32)) } }
+                        td.n { span.mono { (sum(&f.faulted_crc32)) } }
+                        td.n { (badge(verdict(f.fired))) }
+                    }
+                }
+            }
+        }
+    }
+}
+
 fn sign(sign: &str) -> &str {
     match sign {
         "<=" => "≤",
@@ -339,6 +378,10 @@ fn provenance(data: &ReportData) -> Markup {
                 tr { td { "stream hash" } td.mono { (summary.stream_hash) } }
                 @if let Some(b) = &summary.baseline {
                     tr { td { "stream hash, " (b.label) } td.mono { (b.stream_hash) } }
+                }
+                @if let Some(s) = &summary.altered_streams {
+                    tr { td { "source, from sample " (s.first_sample) " on" } td.mono { (s.clean_blake3) } }
+                    tr { td { "core's input, from there on" } td.mono { (s.faulted_blake3) } }
                 }
                 @for (name, value) in &data.provenance.entries { tr { td { (name) } td.mono { (value) } } }
             }

@@ -2,10 +2,14 @@
 
 use super::drive::Ended;
 use super::method::MethodRun;
+use super::twin::difference;
+use crate::report::counterfactual::in_words;
 use crate::report::{Provenance, ReportData, number};
 use crate::scenario::{Motion, Scenario, Source};
 use crate::score::reference::{ReferenceInput, reference};
-use crate::score::summary::{Baseline, ParameterScore, SCHEMA, Summary};
+use crate::score::summary::{
+    AlteredStreams, Baseline, FaultResult, ParameterScore, SCHEMA, Summary,
+};
 use crate::score::verdict::{Finding, Verdict, judge};
 use octant_earth::units::{DEG, DEG_PER_SQRT_HOUR, MICRO_G};
 use octant_sample::parameters::NAMES;
@@ -45,6 +49,8 @@ pub fn assemble(
         baseline_estimated_g_zz: baseline.as_ref().and_then(g_zz),
     });
     let findings = findings(&primary);
+    let counterfactual = difference(scenario, &primary);
+    let baseline_counterfactual = baseline.as_ref().and_then(|run| difference(scenario, run));
     let mut summary = Summary {
         schema: SCHEMA,
         octant: env!("CARGO_PKG_VERSION").to_owned(),
@@ -53,7 +59,8 @@ pub fn assemble(
         verdict: Verdict::Pass,
         reasons: Vec::new(),
         requirements: Vec::new(),
-        faults: Vec::new(),
+        faults: primary.receipts.iter().map(FaultResult::from).collect(),
+        altered_streams: primary.recorder.altered_streams.as_ref().map(AlteredStreams::from),
         method: primary.label.clone(),
         calibration: primary.calibration.take(),
         navigation: primary.navigation.take(),
@@ -61,11 +68,12 @@ pub fn assemble(
             label: run.label,
             calibration: run.calibration,
             navigation: run.navigation,
-            counterfactual: None,
+            counterfactual: baseline_counterfactual,
             stream_hash: run.recorder.stream_hash,
+            faults: run.receipts.iter().map(FaultResult::from).collect(),
         }),
         reference: Some(references),
-        counterfactual: None,
+        counterfactual,
         pacing: None,
         stream_hash: primary.recorder.stream_hash.clone(),
     };
@@ -155,6 +163,9 @@ pub fn text(summary: &Summary) -> String {
     for met in summary.requirements.iter().filter(|r| r.verdict == Verdict::Pass) {
         line(format!("  {}", met.sentence()));
     }
+    for fault in &summary.faults {
+        line(format!("  {}", fault.sentence()));
+    }
     let methods = std::iter::once((&summary.method, &summary.calibration, &summary.navigation))
         .chain(summary.baseline.iter().map(|b| (&b.label, &b.calibration, &b.navigation)));
     for (label, calibration, navigation) in methods {
@@ -185,6 +196,20 @@ pub fn text(summary: &Summary) -> String {
                 "    radial    max {:.3}, rms {:.3} nmi, {:.4} nmi/h",
                 n.radial_error_nmi.max, n.radial_error_nmi.rms, n.radial_error_nmi.rate_per_h
             ));
+        }
+    }
+    let differences = std::iter::once((&summary.method, &summary.counterfactual))
+        .chain(summary.baseline.iter().map(|b| (&b.label, &b.counterfactual)));
+    for (label, difference) in differences {
+        let Some(difference) = difference else { continue };
+        line(format!("against the twin without faults, {label}"));
+        line(format!("  {}", in_words(difference)));
+        for fault in &difference.faults {
+            let noticed = match (&fault.noticed_by, fault.delay_s) {
+                (Some(by), Some(delay_s)) => format!("noticed as {by} after {delay_s:.3} s"),
+                _ => "not noticed".to_owned(),
+            };
+            line(format!("  {}: {noticed}", fault.id));
         }
     }
     out

@@ -8,7 +8,7 @@ use octant_sample::{GimbalCommand, Mode, Output};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 /// Epochs between two looks at what others want: about a millisecond of wall time.
-const CONTROL_EPOCHS: u64 = 8192;
+pub(super) const CONTROL_EPOCHS: u64 = 8192;
 
 /// What others see of a run, and want of it.
 #[derive(Debug, Default)]
@@ -17,6 +17,14 @@ pub struct Control {
     pub epochs: AtomicU64,
     /// Set to end the run at the next look.
     pub cancel: AtomicBool,
+}
+
+impl Control {
+    /// Tells how far the run is; true if somebody asked for its end.
+    pub(super) fn look(&self, epochs: u64) -> bool {
+        self.epochs.store(epochs, Ordering::Relaxed);
+        self.cancel.load(Ordering::Relaxed)
+    }
 }
 
 /// How the loop ended.
@@ -75,34 +83,55 @@ where
         endpoint.step(&epoch, &mut output)?;
         command = output.gimbal_command;
         recorder.push(Frame { clean: &epoch, faulted: &epoch, output: &output })?;
-        if output.parameters_revision != revision {
-            revision = output.parameters_revision;
-            let estimate = endpoint.parameters();
-            recorder.extra(&Extra::Parameters(estimate));
-            watcher.parameters(&output, &estimate);
-        }
-        let watched = watcher.epoch(&output);
-        if (watched || recorder.truth_due())
-            && let Some(truth) = source.truth()
-        {
-            if recorder.truth_due() {
-                recorder.extra(&Extra::Truth(truth));
-            }
-            if watched {
-                watcher.truth(&output, &truth);
-            }
-        }
+        answered(&output, &mut revision, endpoint, recorder, watcher, source);
         epochs += 1;
-        match output.mode {
-            Mode::Done => return Ok(Ended::Done),
-            Mode::Refused => return Ok(Ended::Refused),
-            Mode::Aligning | Mode::Calibrating | Mode::Navigating => {}
+        if let Some(ended) = over(&output) {
+            return Ok(ended);
         }
-        if epochs.is_multiple_of(CONTROL_EPOCHS) {
-            control.epochs.store(epochs, Ordering::Relaxed);
-            if control.cancel.load(Ordering::Relaxed) {
-                return Ok(Ended::Cancelled);
-            }
+        if epochs.is_multiple_of(CONTROL_EPOCHS) && control.look(epochs) {
+            return Ok(Ended::Cancelled);
         }
+    }
+}
+
+/// Parameters and truth that go with an output.
+#[inline(always)]
+pub(super) fn answered<S, E>(
+    output: &Output,
+    revision: &mut u32,
+    endpoint: &E,
+    recorder: &mut Recorder,
+    watcher: &mut Watcher,
+    source: &S,
+) where
+    S: Source + ?Sized,
+    E: Endpoint + ?Sized,
+{
+    if output.parameters_revision != *revision {
+        *revision = output.parameters_revision;
+        let estimate = endpoint.parameters();
+        recorder.extra(&Extra::Parameters(estimate));
+        watcher.parameters(output, &estimate);
+    }
+    let watched = watcher.epoch(output);
+    if (watched || recorder.truth_due())
+        && let Some(truth) = source.truth()
+    {
+        if recorder.truth_due() {
+            recorder.extra(&Extra::Truth(truth));
+        }
+        if watched {
+            watcher.truth(output, &truth);
+        }
+    }
+}
+
+/// Whether the core has come to its end with an output.
+#[inline(always)]
+pub(super) fn over(output: &Output) -> Option<Ended> {
+    match output.mode {
+        Mode::Done => Some(Ended::Done),
+        Mode::Refused => Some(Ended::Refused),
+        Mode::Aligning | Mode::Calibrating | Mode::Navigating => None,
     }
 }

@@ -2,6 +2,7 @@
 
 use super::concluded;
 use super::drive::{Control, Ended, RunError, drive};
+use super::faulted::{Faulted, drive_faulted};
 use super::watch::Watcher;
 use crate::calibrate::{PassError, in_passes};
 use crate::endpoint::{Endpoint, InProcess};
@@ -12,21 +13,24 @@ use crate::scenario::resolve::{Draws, Seeded};
 use crate::scenario::{Method, Scenario, Source as SourceKind};
 use crate::score::parameters::{nees, score, worst_normalized_error};
 use crate::score::summary::{Calibration, HeightChannel, Navigation};
+use crate::score::trace::Trace;
 use crate::source::{PlantSource, SourceError};
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use octant_calibration::config as core;
 use octant_calibration::state_machine::ConfigError;
 use octant_calibration::table::CalibrationTable;
+use octant_faults::Receipt;
 use octant_plant::Plant;
 use octant_sample::{Mode, Parameters};
 use std::path::Path;
+use std::sync::Arc;
 
 /// What is kept of a method's stream.
 #[derive(Clone, Copy, Debug)]
 pub enum Recording<'a> {
     /// A file, by the scenario's policy.
     File(&'a Path),
-    /// The hash of the stream alone.
+    /// The hash of the stream alone, and the trace by which a twin is compared.
     Hash,
     /// Nothing: for ensembles.
     None,
@@ -44,6 +48,14 @@ pub enum SetupError {
     /// A source could not be opened.
     #[error(transparent)]
     Source(#[from] SourceError),
+    /// A fault can't be injected.
+    #[error("inject fault {id:?}: {reason}")]
+    Fault {
+        /// Its id.
+        id: String,
+        /// Why.
+        reason: String,
+    },
     /// The scenario has no second method.
     #[error("run the baseline: the scenario has no [baseline]")]
     NoBaseline,
@@ -100,6 +112,10 @@ pub struct MethodRun {
     pub truth: Option<Parameters>,
     /// The calibration table, where the calibration was accepted.
     pub table: Option<CalibrationTable>,
+    /// What became of the faults, in the order of the scenario.
+    pub receipts: Vec<Receipt>,
+    /// The same run without its faults.
+    pub twin: Option<Arc<MethodRun>>,
 }
 
 /// Name of a method, for people.
@@ -176,19 +192,47 @@ pub fn run_method(
     };
     let calibration_s = core.calibration.as_ref().map_or(0.0, |c| c.duration_s);
     let mut watcher = Watcher::new(calibration_s);
+    if !scenario.faults.is_empty() || matches!(recording, Recording::Hash) {
+        watcher.trace = Some(Trace::new());
+    }
+    let mut faulted = faulted(scenario, seed)?;
     let ended = match opened {
         // Statically dispatched: this loop passes ten million samples a second.
         None => {
             let samples = scenario.samples().unwrap_or(u64::MAX);
             let mut source = PlantSource::new(&plant, samples).map_err(SetupError::Plant)?;
-            drive(&mut source, &mut endpoint, &mut recorder, &mut watcher, control)?
+            match &mut faulted {
+                None => drive(&mut source, &mut endpoint, &mut recorder, &mut watcher, control)?,
+                Some(faulted) => {
+                    let (endpoint, recorder) = (&mut endpoint, &mut recorder);
+                    drive_faulted(&mut source, faulted, endpoint, recorder, &mut watcher, control)?
+                }
+            }
         }
-        Some(mut source) => {
-            drive(&mut source, &mut endpoint, &mut recorder, &mut watcher, control)?
-        }
+        Some(mut source) => match &mut faulted {
+            None => drive(&mut source, &mut endpoint, &mut recorder, &mut watcher, control)?,
+            Some(faulted) => {
+                let (endpoint, recorder) = (&mut endpoint, &mut recorder);
+                drive_faulted(&mut source, faulted, endpoint, recorder, &mut watcher, control)?
+            }
+        },
     };
+    let receipts = faulted.map_or_else(Vec::new, |faulted| faulted.station.receipts());
     let truth = simulated.then_some(draws.parameters);
-    finish(scenario, method, ended, endpoint, recorder, watcher, truth)
+    let run = finish(scenario, method, ended, endpoint, recorder, watcher, truth)?;
+    Ok(MethodRun { receipts, ..run })
+}
+
+/// The station of a scenario; `None` without faults.
+fn faulted(scenario: &Scenario, seed: u64) -> Result<Option<Faulted>, SetupError> {
+    let station = scenario
+        .station(seed)
+        .map_err(|(id, error)| SetupError::Fault { id, reason: error.to_string() })?;
+    let mut fires: Vec<(u64, String)> = (scenario.faults.iter())
+        .flat_map(|fault| fault.fires.iter().map(|at| (*at, fault.spec.id.clone())))
+        .collect();
+    fires.sort_unstable();
+    Ok(station.map(|station| Faulted { station, fires }))
 }
 
 /// Least squares linearises about its initial parameters, and a real instrument's errors can be
@@ -310,6 +354,8 @@ fn finish(
         watcher,
         truth,
         table,
+        receipts: Vec::new(),
+        twin: None,
     })
 }
 

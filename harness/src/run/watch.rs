@@ -35,6 +35,8 @@ pub struct Watcher {
     troubled: bool,
     /// Device time at which the present navigation began.
     navigation_start_ns: Option<u64>,
+    /// Device time of the last sample of the drift.
+    scored_ns: Option<u64>,
     last_ns: u64,
     drift: DriftScorer,
     drift_samples: u64,
@@ -68,6 +70,7 @@ impl Watcher {
             was_moving: false,
             troubled: false,
             navigation_start_ns: None,
+            scored_ns: None,
             last_ns: 0,
             drift: DriftScorer::new(),
             drift_samples: 0,
@@ -99,7 +102,8 @@ impl Watcher {
         if output.moving != self.was_moving || now_ns >= self.next_standing_ns {
             self.gimbals(output);
         }
-        let due = now_ns >= self.next_score_ns;
+        // Also where time has run back by more than a period: a fault can do that to stamps.
+        let due = self.next_score_ns.wrapping_sub(now_ns).wrapping_sub(1) >= SCORE_PERIOD_NS;
         if due {
             self.next_score_ns = (now_ns / SCORE_PERIOD_NS + 1) * SCORE_PERIOD_NS;
         }
@@ -110,7 +114,10 @@ impl Watcher {
     fn change_mode(&mut self, output: &Output) {
         // The output in which navigation begins holds the state at its start.
         if output.mode == Mode::Navigating {
+            // A core that was started anew navigates anew: the last navigation is the one scored.
+            (self.drift, self.drift_samples) = (DriftScorer::new(), 0);
             self.navigation_start_ns = Some(output.device_time.ns);
+            self.scored_ns = None;
             self.next_score_ns = output.device_time.ns;
         }
         if output.mode == Mode::Done {
@@ -177,9 +184,19 @@ impl Watcher {
     /// Takes the truth of the epoch just given.
     pub fn truth(&mut self, output: &Output, truth: &Truth) {
         let Some(start_ns) = self.navigation_start_ns else { return };
+        let now_ns = output.device_time.ns;
+        // A drift is a function of time: what a faulted stamp puts before what was scored is left
+        // out, and so is a core that starts anew.
+        if now_ns < start_ns
+            || self.scored_ns.is_some_and(|scored_ns| now_ns <= scored_ns)
+            || !matches!(output.mode, Mode::Navigating | Mode::Done)
+        {
+            return;
+        }
+        self.scored_ns = Some(now_ns);
         self.drift_samples += 1;
         let sample = DriftSample {
-            t_s: (output.device_time.ns - start_ns) as f64 * 1e-9,
+            t_s: (now_ns - start_ns) as f64 * 1e-9,
             latitude_error_rad: output.navigation.latitude_rad - truth.latitude_rad,
             longitude_error_rad: output.navigation.longitude_rad - truth.longitude_rad,
             latitude_rad: truth.latitude_rad,
@@ -213,7 +230,7 @@ impl Watcher {
             .iter()
             .map(|episode| HealthEvent {
                 hours: episode.start.seconds() / 3600.0,
-                duration_s: (episode.end.ns - episode.start.ns) as f64 * 1e-9,
+                duration_s: episode.end.ns.saturating_sub(episode.start.ns) as f64 * 1e-9,
                 name: episode.name().to_owned(),
                 detail: format!("{} epochs", episode.epochs),
             })

@@ -3,10 +3,12 @@
 //! Every problem of a single value is found here, so that all are told at once; what concerns
 //! several values together is found when the scenario is read.
 
+use super::condition;
 use super::document::{Node, Table, Value, parse_default};
 use super::error::{Place, Problem, nearest, suggestion};
-use super::keys::{Bounds, Default, Key, Kind, Section};
+use super::keys::{Bounds, Default, Key, Kind, Section, Variants};
 use super::quantity::{self, Dimension, NotAQuantity};
+use octant_faults::Channels;
 
 /// Checks the table and fills in its defaults; problems are added to `problems`.
 pub(crate) fn complete(
@@ -151,6 +153,42 @@ pub(crate) fn check(
                 }
             }
         }
+        (Kind::Vector(dimensions), Value::Array(entries)) => {
+            check_vector(entries, dimensions, path, &place, problems);
+        }
+        (Kind::Times, Value::Array(entries)) => {
+            for (index, entry) in entries.iter().enumerate() {
+                let checked = check_quantity(&entry.value, &[Dimension::TIME], Bounds::NotNegative);
+                if let Err(message) = checked {
+                    let path = format!("{path}[{index}]");
+                    problems.push(Problem { place: entry.place.clone(), path, message });
+                }
+            }
+        }
+        (Kind::Condition, Value::Text(text)) => {
+            if let Err(message) = condition::parse(text) {
+                report(format!("found {found}, {message}"));
+            }
+        }
+        (Kind::Channels, Value::Text(_) | Value::Array(_)) => {
+            let entries = match &node.value {
+                Value::Array(entries) => entries.as_slice(),
+                _ => std::slice::from_ref(&*node),
+            };
+            if entries.is_empty() {
+                report(format!("found {found}, expected {}", expected(kind)));
+            }
+            let names = Channels::NAMES.iter().map(|(name, _)| *name);
+            for entry in entries {
+                let text = if let Value::Text(text) = &entry.value { text } else { "" };
+                if Channels::named(text).is_none() {
+                    let known = suggestion(text, names.clone(), "possible");
+                    let message = format!("found {}, {known}", entry.value.describe());
+                    let (place, path) = (entry.place.clone(), path.to_owned());
+                    problems.push(Problem { place, path, message });
+                }
+            }
+        }
         (Kind::Limit, Value::Integer(_)) => {}
         (Kind::Limit, Value::Number(value)) if value.is_finite() => {}
         (Kind::Limit, Value::Text(text)) => {
@@ -164,6 +202,23 @@ pub(crate) fn check(
         (Kind::Column, Value::Integer(1..=10_000) | Value::Text(_)) => {}
         (Kind::Table(section), Value::Table(table)) => {
             complete(table, section, path, &place, problems);
+        }
+        (Kind::Variants(variants), Value::Table(table)) => {
+            complete_variant(table, variants, path, &place, problems);
+        }
+        (Kind::VariantTables(variants, at_most), Value::Array(entries)) => {
+            if entries.len() > *at_most {
+                report(format!("found {} entries, expected at most {at_most}", entries.len()));
+            }
+            for (index, entry) in entries.iter_mut().enumerate() {
+                let (path, place) = (format!("{path}[{index}]"), entry.place.clone());
+                if let Value::Table(table) = &mut entry.value {
+                    complete_variant(table, variants, &path, &place, problems);
+                } else {
+                    let message = format!("found {}, expected a table", entry.value.describe());
+                    problems.push(Problem { place, path, message });
+                }
+            }
         }
         (Kind::Tables(section, at_least, at_most), Value::Array(entries)) => {
             if !(*at_least..=*at_most).contains(&entries.len()) {
@@ -191,6 +246,61 @@ pub(crate) fn check(
     }
 }
 
+/// Checks a table against the keys of the form that it has.
+fn complete_variant(
+    table: &mut Table,
+    variants: &'static Variants,
+    path: &str,
+    place: &Place,
+    problems: &mut Vec<Problem>,
+) {
+    match variants.section(table) {
+        Some(section) => complete(table, section, path, place, problems),
+        None => problems.push(variants.problem(table, path, place)),
+    }
+}
+
+/// Checks x, y, z of a vector: each a quantity, all of the same dimension.
+fn check_vector(
+    entries: &[Node],
+    dimensions: &[Dimension],
+    path: &str,
+    place: &Place,
+    problems: &mut Vec<Problem>,
+) {
+    let mut report = |place: &Place, path: String, message: String| {
+        problems.push(Problem { place: place.clone(), path, message });
+    };
+    if entries.len() != 3 {
+        let expected = quantity_words(dimensions);
+        let message =
+            format!("found {} entries, expected 3 (x, y, z), each {expected}", entries.len());
+        return report(place, path.to_owned(), message);
+    }
+    let mut of: Option<Dimension> = None;
+    for (index, entry) in entries.iter().enumerate() {
+        let path = format!("{path}[{index}]");
+        if let Err(message) = check_quantity(&entry.value, dimensions, Bounds::Any) {
+            report(&entry.place, path, message);
+            continue;
+        }
+        let Value::Text(text) = &entry.value else { continue };
+        let Ok(quantity) = quantity::parse(text) else { continue };
+        let found = dimensions.iter().find(|dimension| quantity.is(**dimension)).copied();
+        match (of, found) {
+            (None, _) => of = found,
+            (Some(first), Some(other)) if first != other => {
+                let message = format!(
+                    "found {text:?}, {}, beside {}: expected all three alike",
+                    other.name, first.name
+                );
+                report(&entry.place, path, message);
+            }
+            _ => {}
+        }
+    }
+}
+
 fn check_quantity(value: &Value, dimensions: &[Dimension], bounds: Bounds) -> Result<(), String> {
     let expected = quantity_words(dimensions);
     let Value::Text(text) = value else {
@@ -201,6 +311,9 @@ fn check_quantity(value: &Value, dimensions: &[Dimension], bounds: Bounds) -> Re
     if !dimensions.iter().any(|dimension| quantity.is(*dimension)) {
         let is = Dimension::of(quantity).map_or("another dimension", |dimension| dimension.name);
         return Err(format!("found {text:?}, {is}; expected {expected}"));
+    }
+    if quantity.is(Dimension::SAMPLES) && quantity.si.fract() != 0.0 {
+        return Err(format!("found {text:?}, expected a whole number of samples"));
     }
     if bounds.contain(quantity.si) {
         Ok(())
@@ -214,7 +327,7 @@ fn quantity_words(dimensions: &[Dimension]) -> String {
     dimensions.iter().map(each).collect::<Vec<_>>().join(" or ")
 }
 
-fn explain(error: &NotAQuantity) -> String {
+pub(crate) fn explain(error: &NotAQuantity) -> String {
     match error {
         NotAQuantity::NoNumber => "which doesn't start with a finite number".to_owned(),
         NotAQuantity::NoUnit => "a number without unit".to_owned(),
@@ -242,6 +355,7 @@ fn takes(kind: &Kind, value: &Value) -> bool {
             | (Kind::Integer(..), Value::Integer(_))
             | (Kind::Table(_), Value::Table(_))
             | (Kind::Tables(..), Value::Array(_))
+            | (Kind::Variants(_), Value::Table(_))
     )
 }
 
@@ -265,6 +379,15 @@ pub(crate) fn expected(kind: &Kind) -> String {
         Kind::Quantities(dimension, count) => {
             format!("an array of {count}, each {}", quantity_words(&[*dimension]))
         }
+        Kind::Vector(dimensions) => {
+            format!("an array of 3 (x, y, z), each {}", quantity_words(dimensions))
+        }
+        Kind::Times => format!("an array, each {}", quantity_words(&[Dimension::TIME])),
+        Kind::Condition => format!("a text such as {:?}", condition::EXAMPLE),
+        Kind::Channels => {
+            let all = Channels::NAMES.iter().map(|(name, _)| format!("{name:?}"));
+            format!("a channel or an array of them: {}", all.collect::<Vec<_>>().join(", "))
+        }
         Kind::Limit => "a quantity or a number".to_owned(),
         Kind::Column => "a column number from 1, or a column's name".to_owned(),
         Kind::Table(section) if section.one_of => {
@@ -276,6 +399,10 @@ pub(crate) fn expected(kind: &Kind) -> String {
         Kind::Tables(section, ..) => {
             format!("an array of tables with {}", section.names().collect::<Vec<_>>().join(", "))
         }
+        Kind::Variants(variants) => {
+            format!("a table with one of {}", variants.names().collect::<Vec<_>>().join(", "))
+        }
+        Kind::VariantTables(..) => "an array of tables".to_owned(),
         Kind::Either(kinds) => kinds.iter().map(expected).collect::<Vec<_>>().join(", or "),
         Kind::Refused(reason) => (*reason).to_owned(),
     }

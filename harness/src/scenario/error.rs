@@ -14,6 +14,8 @@ pub enum Place {
     },
     /// In the argument of a `--set`.
     Argument(String),
+    /// In the argument of a `--fire`.
+    Fire(String),
     /// The file as a whole: it can't be read.
     Unread,
     /// Nowhere: the default of a key that the scenario leaves out.
@@ -49,6 +51,7 @@ impl fmt::Display for ScenarioError {
             match &problem.place {
                 Place::File { line, column } => write!(f, "{}:{line}:{column}: ", self.file)?,
                 Place::Argument(argument) => write!(f, "--set {argument}: ")?,
+                Place::Fire(argument) => write!(f, "--fire {argument}: ")?,
                 Place::Unread => write!(f, "failed to read {}: ", self.file)?,
                 Place::Default => write!(f, "{}: ", self.file)?,
             }

@@ -6,6 +6,7 @@
 //! on one seed meet the same instrument.
 
 mod complete;
+mod condition;
 mod derive;
 mod document;
 mod error;
@@ -21,9 +22,10 @@ pub(crate) use error::suggestion;
 pub use error::{Place, Problem, ScenarioError};
 pub use keys::SCHEMA;
 pub use quantity::{Dimension, Quantity};
+pub use read::faults::Fault;
 pub use read::source::{FileName, Source};
 pub use schema::schema;
-pub use tour::tour;
+pub use tour::{fault_example, fault_parameters, tour};
 
 use octant_calibration::config as core;
 use octant_plant::config as plant;
@@ -64,6 +66,8 @@ pub struct Scenario {
     pub navigation: Option<core::NavigationPlan>,
     /// Screens and gates.
     pub screening: core::Screening,
+    /// Faults, in the order in which they act.
+    pub faults: Vec<Fault>,
     /// Limits that the results have to keep.
     pub requirements: Vec<Requirement>,
     /// What is recorded.
@@ -220,6 +224,19 @@ impl Scenario {
     /// # Errors
     /// If the file can't be read, isn't TOML, or is not a scenario: every problem with its place.
     pub fn load(path: &Path, overrides: &[String]) -> Result<Self, ScenarioError> {
+        Self::load_fired(path, overrides, &[])
+    }
+
+    /// As [`Scenario::load`], with `--fire` arguments `ID=TIME` applied: times at which faults
+    /// with a manual trigger set in.
+    ///
+    /// # Errors
+    /// As [`Scenario::load`], and if an argument names no fault with a manual trigger.
+    pub fn load_fired(
+        path: &Path,
+        overrides: &[String],
+        fires: &[String],
+    ) -> Result<Self, ScenarioError> {
         let file = path.display().to_string();
         let text = std::fs::read_to_string(path).map_err(|error| ScenarioError {
             file: file.clone(),
@@ -229,8 +246,8 @@ impl Scenario {
                 message: error.to_string(),
             }],
         })?;
-        let folder = path.parent().unwrap_or(Path::new("")).to_owned();
-        Self::parse(&text, &file, &folder, overrides)
+        let folder = path.parent().unwrap_or(Path::new(""));
+        Self::parse_fired(&text, &file, folder, overrides, fires)
     }
 
     /// Checks a scenario's text. `file` names it in errors, `folder` is where relative file names
@@ -244,11 +261,26 @@ impl Scenario {
         folder: &Path,
         overrides: &[String],
     ) -> Result<Self, ScenarioError> {
+        Self::parse_fired(text, file, folder, overrides, &[])
+    }
+
+    fn parse_fired(
+        text: &str,
+        file: &str,
+        folder: &Path,
+        overrides: &[String],
+        fires: &[String],
+    ) -> Result<Self, ScenarioError> {
         let with_file = |problems| ScenarioError { file: file.to_owned(), problems };
         let mut document = document::parse(text).map_err(with_file)?;
         let mut problems = Vec::new();
         for argument in overrides {
             if let Err(problem) = override_set(&mut document, argument) {
+                problems.push(problem);
+            }
+        }
+        for argument in fires {
+            if let Err(problem) = fire(&mut document, argument) {
                 problems.push(problem);
             }
         }
@@ -262,6 +294,29 @@ impl Scenario {
             return Err(with_file(problems));
         }
         read::scenario(document, folder).map_err(|problem| with_file(vec![problem]))
+    }
+
+    /// The same scenario without its faults.
+    #[must_use]
+    pub fn without_faults(&self) -> Self {
+        self.with_faults(|_| false)
+    }
+
+    /// The same scenario with some of its faults, by their numbers from 0.
+    #[must_use]
+    pub fn with_faults(&self, keep: impl Fn(usize) -> bool) -> Self {
+        let mut some = self.clone();
+        let mut numbers = 0..;
+        some.faults.retain(|_| numbers.next().is_some_and(&keep));
+        if some.faults.is_empty() {
+            some.document.remove("faults");
+        } else if let Some(document::Node { value: document::Value::Array(entries), .. }) =
+            some.document.get_mut("faults")
+        {
+            let mut numbers = 0..;
+            entries.retain(|_| numbers.next().is_some_and(&keep));
+        }
+        some
     }
 
     /// Samples of the calibration phase.
@@ -324,5 +379,48 @@ pub(crate) fn override_set(document: &mut document::Table, argument: &str) -> Re
         }
     }
     document.set_at(path, document::parse_argument(value, argument));
+    Ok(())
+}
+
+/// Applies a `--fire ID=TIME`: adds the time to those of a manual trigger.
+fn fire(document: &mut document::Table, argument: &str) -> Result<(), Problem> {
+    use document::{Node, Value};
+    let place = Place::Fire(argument.to_owned());
+    let problem = |message: String| Problem { place: place.clone(), path: String::new(), message };
+    let Some((id, time)) = argument.rsplit_once('=') else {
+        return Err(problem("expected ID=TIME, such as spike-1=\"5050 s\"".to_owned()));
+    };
+    let of = |node: &Node, key: &str| match &node.value {
+        Value::Table(table) => table.get(key).cloned(),
+        _ => None,
+    };
+    let is_it = |node: &&mut Node| {
+        of(node, "id").is_some_and(|node| node.value == Value::Text(id.to_owned()))
+    };
+    let Some(Node { value: Value::Array(faults), .. }) = document.get_mut("faults") else {
+        return Err(problem("the scenario has no faults".to_owned()));
+    };
+    let ids: Vec<String> = (faults.iter())
+        .filter_map(|node| match of(node, "id")?.value {
+            Value::Text(id) => Some(id),
+            _ => None,
+        })
+        .collect();
+    let Some(Node { value: Value::Table(fault), .. }) = faults.iter_mut().find(is_it) else {
+        let known = error::suggestion(id, ids.iter().map(String::as_str), "faults");
+        return Err(problem(format!("no fault has the id {id:?}, {known}")));
+    };
+    let Some(Node { value: Value::Table(trigger), .. }) = fault.get_mut("trigger") else {
+        return Err(problem(format!("fault {id:?} has no trigger that can be fired by hand")));
+    };
+    if trigger.get("manual").is_none() {
+        return Err(problem(format!("the trigger of fault {id:?} is not manual")));
+    }
+    let node = document::parse_argument(time, argument);
+    let node = Node { place: place.clone(), ..node };
+    match trigger.get_mut("fire") {
+        Some(Node { value: Value::Array(times), .. }) => times.push(node),
+        _ => trigger.set("fire", Node { value: Value::Array(vec![node]), place }),
+    }
     Ok(())
 }

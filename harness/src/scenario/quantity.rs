@@ -5,8 +5,8 @@
 
 use octant_earth::units::{ARCMIN, ARCSEC, DEG, NAUTICAL_MILE_M, STANDARD_GRAVITY_MPS2};
 
-/// Powers of metre, second, radian and kelvin, doubled so that roots are whole numbers.
-pub(crate) type Powers = [i16; 4];
+/// Powers of metre, second, radian, kelvin and sample, doubled so that roots are whole numbers.
+pub(crate) type Powers = [i16; 5];
 
 /// What a quantity measures: the powers of its unit, and how to speak of it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -23,36 +23,40 @@ pub struct Dimension {
 }
 
 const fn dimension(
-    [m, s, rad, k]: Powers,
+    [m, s, rad, k, samples]: Powers,
     name: &'static str,
     example: &'static str,
     unit: &'static str,
     si_unit: &'static str,
 ) -> Dimension {
-    Dimension { powers: [m, s, rad, k], name, example, unit, si_unit }
+    Dimension { powers: [m, s, rad, k, samples], name, example, unit, si_unit }
 }
 
 impl Dimension {
     /// Duration or period.
-    pub const TIME: Self = dimension([0, 2, 0, 0], "a time", "12 h", "s", "s");
+    pub const TIME: Self = dimension([0, 2, 0, 0, 0], "a time", "12 h", "s", "s");
+    /// A number of samples, told apart from a ratio: `"20 samples"`.
+    pub const SAMPLES: Self =
+        dimension([0, 0, 0, 0, 2], "a number of samples", "20 samples", "samples", "samples");
     /// Frequency or rate of samples.
-    pub const FREQUENCY: Self = dimension([0, -2, 0, 0], "a frequency", "200 Hz", "Hz", "Hz");
+    pub const FREQUENCY: Self = dimension([0, -2, 0, 0, 0], "a frequency", "200 Hz", "Hz", "Hz");
     /// Angle.
-    pub const ANGLE: Self = dimension([0, 0, 2, 0], "an angle", "30.5 deg", "deg", "rad");
+    pub const ANGLE: Self = dimension([0, 0, 2, 0, 0], "an angle", "30.5 deg", "deg", "rad");
     /// Small angle, written in arcsec.
-    pub const SMALL_ANGLE: Self = dimension([0, 0, 2, 0], "an angle", "40 arcsec", "arcsec", "rad");
+    pub const SMALL_ANGLE: Self =
+        dimension([0, 0, 2, 0, 0], "an angle", "40 arcsec", "arcsec", "rad");
     /// Angular rate of a motion.
     pub const ANGULAR_RATE: Self =
-        dimension([0, -2, 2, 0], "an angular rate", "10 deg/s", "deg/s", "rad/s");
+        dimension([0, -2, 2, 0, 0], "an angular rate", "10 deg/s", "deg/s", "rad/s");
     /// Angular rate of a gyro error.
     pub const GYRO_BIAS: Self =
-        dimension([0, -2, 2, 0], "an angular rate", "0.005 deg/h", "deg/h", "rad/s");
+        dimension([0, -2, 2, 0, 0], "an angular rate", "0.005 deg/h", "deg/h", "rad/s");
     /// Angular acceleration.
     pub const ANGULAR_ACCELERATION: Self =
-        dimension([0, -4, 2, 0], "an angular acceleration", "10 deg/s^2", "deg/s^2", "rad/s^2");
+        dimension([0, -4, 2, 0, 0], "an angular acceleration", "10 deg/s^2", "deg/s^2", "rad/s^2");
     /// Angle random walk.
     pub const ANGLE_RANDOM_WALK: Self = dimension(
-        [0, -1, 2, 0],
+        [0, -1, 2, 0, 0],
         "an angle random walk",
         "0.0007 deg/sqrt(h)",
         "deg/sqrt(h)",
@@ -60,7 +64,7 @@ impl Dimension {
     );
     /// Rate random walk.
     pub const RATE_RANDOM_WALK: Self = dimension(
-        [0, -3, 2, 0],
+        [0, -3, 2, 0, 0],
         "a rate random walk",
         "0.0001 deg/h/sqrt(h)",
         "deg/h/sqrt(h)",
@@ -68,55 +72,78 @@ impl Dimension {
     );
     /// Gyro bias per acceleration.
     pub const G_DEPENDENT: Self = dimension(
-        [-2, 2, 2, 0],
+        [-2, 2, 2, 0, 0],
         "a g-dependent gyro bias",
         "0.0005 deg/h/g",
         "deg/h/g",
         "rad/s/(m/s^2)",
     );
     /// Length.
-    pub const LENGTH: Self = dimension([2, 0, 0, 0], "a length", "0.15 m", "m", "m");
+    pub const LENGTH: Self = dimension([2, 0, 0, 0, 0], "a length", "0.15 m", "m", "m");
     /// Velocity.
-    pub const VELOCITY: Self = dimension([2, -2, 0, 0], "a velocity", "1 mm/s", "m/s", "m/s");
+    pub const VELOCITY: Self = dimension([2, -2, 0, 0, 0], "a velocity", "1 mm/s", "m/s", "m/s");
     /// Acceleration.
     pub const ACCELERATION: Self =
-        dimension([2, -4, 0, 0], "an acceleration", "9.81 m/s^2", "m/s^2", "m/s^2");
+        dimension([2, -4, 0, 0, 0], "an acceleration", "9.81 m/s^2", "m/s^2", "m/s^2");
     /// Acceleration of an accelerometer error.
     pub const ACCEL_BIAS: Self =
-        dimension([2, -4, 0, 0], "an acceleration", "100 ug", "ug", "m/s^2");
+        dimension([2, -4, 0, 0, 0], "an acceleration", "100 ug", "ug", "m/s^2");
     /// Accelerometer noise density.
     pub const VELOCITY_RANDOM_WALK: Self = dimension(
-        [2, -3, 0, 0],
+        [2, -3, 0, 0, 0],
         "an accelerometer noise density",
         "50 ug/sqrt(Hz)",
         "ug/sqrt(Hz)",
         "m/s^2/sqrt(Hz)",
     );
     /// Ratio.
-    pub const RATIO: Self = dimension([0, 0, 0, 0], "a ratio", "30 ppm", "ppm", "m/m");
+    pub const RATIO: Self = dimension([0, 0, 0, 0, 0], "a ratio", "30 ppm", "ppm", "m/m");
     /// Temperature difference.
     pub const TEMPERATURE: Self =
-        dimension([0, 0, 0, 2], "a temperature difference", "20 K", "K", "K");
+        dimension([0, 0, 0, 2, 0], "a temperature difference", "20 K", "K", "K");
     /// Temperature rate.
     pub const TEMPERATURE_RATE: Self =
-        dimension([0, -2, 0, 2], "a temperature rate", "5 K/h", "K/h", "K/s");
+        dimension([0, -2, 0, 2, 0], "a temperature rate", "5 K/h", "K/h", "K/s");
     /// Gyro bias per kelvin.
     pub const GYRO_BIAS_PER_K: Self = dimension(
-        [0, -2, 2, -2],
+        [0, -2, 2, -2, 0],
         "a gyro bias sensitivity",
         "0.0002 deg/h/K",
         "deg/h/K",
         "rad/s/K",
     );
     /// Accelerometer bias per kelvin.
-    pub const ACCEL_BIAS_PER_K: Self =
-        dimension([2, -4, 0, -2], "an accelerometer bias sensitivity", "2 ug/K", "ug/K", "m/s^2/K");
+    pub const ACCEL_BIAS_PER_K: Self = dimension(
+        [2, -4, 0, -2, 0],
+        "an accelerometer bias sensitivity",
+        "2 ug/K",
+        "ug/K",
+        "m/s^2/K",
+    );
     /// Scale factor per kelvin.
     pub const SCALE_PER_K: Self =
-        dimension([0, 0, 0, -2], "a scale factor sensitivity", "0.5 ppm/K", "ppm/K", "1/K");
+        dimension([0, 0, 0, -2, 0], "a scale factor sensitivity", "0.5 ppm/K", "ppm/K", "1/K");
 
-    const ALL: [Self; 21] = [
+    /// Random walk of an accelerometer bias.
+    pub const ACCEL_RANDOM_WALK: Self = dimension(
+        [2, -5, 0, 0, 0],
+        "a random walk of acceleration",
+        "1 ug/sqrt(h)",
+        "ug/sqrt(h)",
+        "m/s^2/sqrt(s)",
+    );
+    /// Power spectral density of a vibration.
+    pub const ACCELERATION_PSD: Self = dimension(
+        [4, -6, 0, 0, 0],
+        "a spectral density of acceleration",
+        "0.01 g^2/Hz",
+        "g^2/Hz",
+        "(m/s^2)^2/Hz",
+    );
+
+    const ALL: [Self; 24] = [
         Self::TIME,
+        Self::SAMPLES,
         Self::FREQUENCY,
         Self::ANGLE,
         Self::SMALL_ANGLE,
@@ -137,6 +164,8 @@ impl Dimension {
         Self::GYRO_BIAS_PER_K,
         Self::ACCEL_BIAS_PER_K,
         Self::SCALE_PER_K,
+        Self::ACCEL_RANDOM_WALK,
+        Self::ACCELERATION_PSD,
     ];
 
     /// The dimension of a parsed quantity, where it is one that scenarios use.
@@ -244,41 +273,43 @@ fn number_length(text: &str) -> usize {
 
 /// Unit names, SI value of one, powers.
 const UNITS: &[(&str, f64, Powers)] = &[
-    ("1", 1.0, [0, 0, 0, 0]),
-    ("rad", 1.0, [0, 0, 2, 0]),
-    ("mrad", 1e-3, [0, 0, 2, 0]),
-    ("urad", 1e-6, [0, 0, 2, 0]),
-    ("deg", DEG, [0, 0, 2, 0]),
-    ("°", DEG, [0, 0, 2, 0]),
-    ("arcmin", ARCMIN, [0, 0, 2, 0]),
-    ("'", ARCMIN, [0, 0, 2, 0]),
-    ("′", ARCMIN, [0, 0, 2, 0]),
-    ("arcsec", ARCSEC, [0, 0, 2, 0]),
-    ("\"", ARCSEC, [0, 0, 2, 0]),
-    ("″", ARCSEC, [0, 0, 2, 0]),
-    ("s", 1.0, [0, 2, 0, 0]),
-    ("ms", 1e-3, [0, 2, 0, 0]),
-    ("us", 1e-6, [0, 2, 0, 0]),
-    ("ns", 1e-9, [0, 2, 0, 0]),
-    ("min", 60.0, [0, 2, 0, 0]),
-    ("h", 3600.0, [0, 2, 0, 0]),
-    ("day", 86400.0, [0, 2, 0, 0]),
-    ("Hz", 1.0, [0, -2, 0, 0]),
-    ("kHz", 1e3, [0, -2, 0, 0]),
-    ("m", 1.0, [2, 0, 0, 0]),
-    ("mm", 1e-3, [2, 0, 0, 0]),
-    ("cm", 1e-2, [2, 0, 0, 0]),
-    ("um", 1e-6, [2, 0, 0, 0]),
-    ("km", 1e3, [2, 0, 0, 0]),
-    ("nmi", NAUTICAL_MILE_M, [2, 0, 0, 0]),
-    ("kn", NAUTICAL_MILE_M / 3600.0, [2, -2, 0, 0]),
-    ("g", STANDARD_GRAVITY_MPS2, [2, -4, 0, 0]),
-    ("mg", 1e-3 * STANDARD_GRAVITY_MPS2, [2, -4, 0, 0]),
-    ("ug", octant_earth::units::MICRO_G, [2, -4, 0, 0]),
-    ("ppm", 1e-6, [0, 0, 0, 0]),
-    ("%", 1e-2, [0, 0, 0, 0]),
-    ("K", 1.0, [0, 0, 0, 2]),
-    ("mK", 1e-3, [0, 0, 0, 2]),
+    ("1", 1.0, [0, 0, 0, 0, 0]),
+    ("rad", 1.0, [0, 0, 2, 0, 0]),
+    ("mrad", 1e-3, [0, 0, 2, 0, 0]),
+    ("urad", 1e-6, [0, 0, 2, 0, 0]),
+    ("deg", DEG, [0, 0, 2, 0, 0]),
+    ("°", DEG, [0, 0, 2, 0, 0]),
+    ("arcmin", ARCMIN, [0, 0, 2, 0, 0]),
+    ("'", ARCMIN, [0, 0, 2, 0, 0]),
+    ("′", ARCMIN, [0, 0, 2, 0, 0]),
+    ("arcsec", ARCSEC, [0, 0, 2, 0, 0]),
+    ("\"", ARCSEC, [0, 0, 2, 0, 0]),
+    ("″", ARCSEC, [0, 0, 2, 0, 0]),
+    ("s", 1.0, [0, 2, 0, 0, 0]),
+    ("ms", 1e-3, [0, 2, 0, 0, 0]),
+    ("us", 1e-6, [0, 2, 0, 0, 0]),
+    ("ns", 1e-9, [0, 2, 0, 0, 0]),
+    ("min", 60.0, [0, 2, 0, 0, 0]),
+    ("h", 3600.0, [0, 2, 0, 0, 0]),
+    ("day", 86400.0, [0, 2, 0, 0, 0]),
+    ("Hz", 1.0, [0, -2, 0, 0, 0]),
+    ("kHz", 1e3, [0, -2, 0, 0, 0]),
+    ("m", 1.0, [2, 0, 0, 0, 0]),
+    ("mm", 1e-3, [2, 0, 0, 0, 0]),
+    ("cm", 1e-2, [2, 0, 0, 0, 0]),
+    ("um", 1e-6, [2, 0, 0, 0, 0]),
+    ("km", 1e3, [2, 0, 0, 0, 0]),
+    ("nmi", NAUTICAL_MILE_M, [2, 0, 0, 0, 0]),
+    ("kn", NAUTICAL_MILE_M / 3600.0, [2, -2, 0, 0, 0]),
+    ("g", STANDARD_GRAVITY_MPS2, [2, -4, 0, 0, 0]),
+    ("mg", 1e-3 * STANDARD_GRAVITY_MPS2, [2, -4, 0, 0, 0]),
+    ("ug", octant_earth::units::MICRO_G, [2, -4, 0, 0, 0]),
+    ("ppm", 1e-6, [0, 0, 0, 0, 0]),
+    ("%", 1e-2, [0, 0, 0, 0, 0]),
+    ("K", 1.0, [0, 0, 0, 2, 0]),
+    ("mK", 1e-3, [0, 0, 0, 2, 0]),
+    ("samples", 1.0, [0, 0, 0, 0, 2]),
+    ("sample", 1.0, [0, 0, 0, 0, 2]),
 ];
 
 /// The names of the units that products are made of.
@@ -340,7 +371,7 @@ impl UnitParser<'_> {
         for _ in 0..exponent.abs() {
             factor = if exponent < 0 { factor / base } else { factor * base };
         }
-        let mut raised = [0; 4];
+        let mut raised = [0; 5];
         for (a, b) in raised.iter_mut().zip(powers) {
             *a = add(0, exponent, b)?;
         }

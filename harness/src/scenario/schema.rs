@@ -2,7 +2,7 @@
 
 use super::complete::expected;
 use super::document::parse_default;
-use super::keys::{Bounds, Default, Key, Kind, SCENARIO, SCHEMA, Section};
+use super::keys::{Bounds, Default, Key, Kind, SCENARIO, SCHEMA, Section, Variants};
 use super::quantity::Dimension;
 use serde_json::{Map, Value, json};
 
@@ -76,7 +76,8 @@ fn kind(kind: &Kind) -> Value {
             json!({ "type": "integer", "minimum": from, "maximum": to })
         }
         Kind::Number(bounds) => match bounds {
-            Bounds::Any => json!({ "type": "number" }),
+            // What schemas of numbers can't say briefly is left to the program.
+            Bounds::Any | Bounds::NotZero => json!({ "type": "number" }),
             Bounds::Positive => json!({ "type": "number", "exclusiveMinimum": 0 }),
             Bounds::NotNegative => json!({ "type": "number", "minimum": 0 }),
             Bounds::Within(from, to, _) => {
@@ -91,6 +92,18 @@ fn kind(kind: &Kind) -> Value {
             let items = quantity(&[*dimension]);
             json!({ "type": "array", "items": items, "minItems": count, "maxItems": count })
         }
+        Kind::Vector(dimensions) => {
+            json!({ "type": "array", "items": quantity(dimensions), "minItems": 3, "maxItems": 3 })
+        }
+        Kind::Times => json!({ "type": "array", "items": quantity(&[Dimension::TIME]) }),
+        Kind::Condition => {
+            json!({ "type": "string", "examples": [crate::scenario::condition::EXAMPLE] })
+        }
+        Kind::Channels => {
+            let names = octant_faults::Channels::NAMES.map(|(name, _)| name);
+            let one = json!({ "enum": names });
+            json!({ "anyOf": [one, { "type": "array", "items": one, "minItems": 1 }] })
+        }
         Kind::Limit => json!({ "anyOf": [{ "type": "number" }, quantity(&[])] }),
         Kind::Column => {
             json!({ "anyOf": [{ "type": "integer", "minimum": 1 }, { "type": "string" }] })
@@ -99,10 +112,19 @@ fn kind(kind: &Kind) -> Value {
         Kind::Tables(section, at_least, at_most) => {
             json!({ "type": "array", "items": object(section), "minItems": at_least, "maxItems": at_most })
         }
+        Kind::Variants(variants) => one_of(variants),
+        Kind::VariantTables(variants, at_most) => {
+            json!({ "type": "array", "items": one_of(variants), "maxItems": at_most })
+        }
         Kind::Either(kinds) => json!({ "anyOf": kinds.iter().map(self::kind).collect::<Vec<_>>() }),
         // Never a property: such a key is known to the check alone.
         Kind::Refused(_) => json!(false),
     }
+}
+
+/// One object for each form.
+fn one_of(variants: &Variants) -> Value {
+    json!({ "oneOf": (variants.forms)().iter().map(|(_, form)| object(form)).collect::<Vec<_>>() })
 }
 
 fn quantity(dimensions: &[Dimension]) -> Value {

@@ -44,6 +44,12 @@ const EXAMPLES: &[(&str, &str)] = &[
         "baseline.stops",
         r#"[{ azimuth = "0 deg", roll = "0 deg", weight = 1.0 }, { azimuth = "0 deg", roll = "90 deg", weight = 1.0 }]"#,
     ),
+    ("faults.id", r#""spike-1""#),
+    ("faults.channels", r#""gyro x""#),
+    ("faults.amplitude", r#""1000 deg/h""#),
+    ("faults.trigger", r#"{ at = "5050 s" }"#),
+    ("faults.duration", r#""100 samples""#),
+    ("faults.repeat", r#"{ times = 3, every = "10 s" }"#),
     ("source.text.gyro.file", r#""gyroscope.txt""#),
     ("source.text.gyro.y", "3"),
     ("source.text.gyro.z", "4"),
@@ -63,6 +69,9 @@ const EXAMPLES: &[(&str, &str)] = &[
     ("source.mcap.accelerometer.y", r#""linear_acceleration.y""#),
     ("source.mcap.accelerometer.z", r#""linear_acceleration.z""#),
 ];
+
+/// The kind of fault that the tour shows.
+const SHOWN_FAULT: &str = "spike";
 
 /// The example of the key at a path, as TOML.
 fn example_at(path: &str, kind: &Kind) -> String {
@@ -124,6 +133,11 @@ fn headed(key: &Key, path: &str) -> Option<(&'static Section, bool)> {
     match &key.kind {
         Kind::Table(section) if !section.one_of => Some((section, false)),
         Kind::Tables(section, ..) if path.is_empty() => Some((section, true)),
+        // The forms of a fault are many: one shows what they have in common.
+        Kind::VariantTables(variants, _) => {
+            let (_, section) = (variants.forms)().iter().find(|(name, _)| *name == SHOWN_FAULT)?;
+            Some((section, true))
+        }
         Kind::Either(kinds) => kinds.iter().find_map(Kind::section).map(|section| (section, false)),
         _ => None,
     }
@@ -136,6 +150,23 @@ fn comment(key: &Key, out: &mut String) {
         Kind::Table(section) if section.one_of => {
             let each = section.keys.iter().map(|key| {
                 format!("{} = {} ({})", key.name, example(&key.kind), key.doc.trim_end_matches('.'))
+            });
+            text += &format!(" One of: {}.", each.collect::<Vec<_>>().join("; "));
+        }
+        Kind::Variants(variants) => {
+            let each = (variants.forms)().iter().map(|(_, section)| {
+                let key = &section.keys[0];
+                let doc = key.doc.trim_end_matches('.');
+                let more: Vec<String> = section.keys[1..]
+                    .iter()
+                    .map(|key| format!("{} = {}", key.name, example(&key.kind)))
+                    .collect();
+                let more = if more.is_empty() {
+                    String::new()
+                } else {
+                    format!("; with it {}", more.join(", "))
+                };
+                format!("{} = {} ({doc}{more})", key.name, example(&key.kind))
             });
             text += &format!(" One of: {}.", each.collect::<Vec<_>>().join("; "));
         }
@@ -153,7 +184,7 @@ fn comment(key: &Key, out: &mut String) {
             let each = texts.map(|kind| format!("{} = {}", key.name, example(kind)));
             text += &format!(" Instead of the table: {}.", each.collect::<Vec<_>>().join(" or "));
         }
-        Kind::Table(_) | Kind::Tables(..) => {}
+        Kind::Table(_) | Kind::Tables(..) | Kind::VariantTables(..) => {}
         kind => text += &format!(" Takes {}.", expected(kind)),
     }
     match key.default {
@@ -199,6 +230,10 @@ fn example(kind: &Kind) -> String {
         Kind::Numbers(count) => repeat("1.0", *count),
         Kind::Quantity(dimensions, _) => format!("{:?}", dimensions[0].example),
         Kind::Quantities(dimension, count) => repeat(&format!("{:?}", dimension.example), *count),
+        Kind::Vector(dimensions) => repeat(&format!("{:?}", dimensions[0].example), 3),
+        Kind::Times => "[\"5050 s\"]".to_owned(),
+        Kind::Condition => format!("{:?}", super::condition::EXAMPLE),
+        Kind::Channels => format!("{:?}", octant_faults::Channels::NAMES[0].0),
         Kind::Limit => "\"20 arcmin\"".to_owned(),
         Kind::Column => "2".to_owned(),
         Kind::Table(section) | Kind::Tables(section, ..) => {
@@ -210,9 +245,80 @@ fn example(kind: &Kind) -> String {
             let table = format!("{{ {} }}", each.collect::<Vec<_>>().join(", "));
             if matches!(kind, Kind::Tables(..)) { format!("[{table}]") } else { table }
         }
+        Kind::Variants(variants) => {
+            let (_, section) = &(variants.forms)()[0];
+            format!("{{ {} }}", given(section).join(", "))
+        }
+        Kind::VariantTables(variants, _) => {
+            let (_, section) = &(variants.forms)()[0];
+            format!("[{{ {} }}]", given(section).join(", "))
+        }
         Kind::Either(kinds) => example(&kinds[0]),
         Kind::Refused(reason) => format!("{reason:?}"),
     }
+}
+
+/// The keys of a table that can't be left out, and those with a value by default, as TOML.
+fn given(section: &Section) -> Vec<String> {
+    let line = |key: &Key| match key.default {
+        Default::Required => Some(format!("{} = {}", key.name, example(&key.kind))),
+        Default::Value(text) => Some(format!("{} = {}", key.name, written(text))),
+        Default::Derived(_) | Default::Absent(_) | Default::Section => None,
+    };
+    section.keys.iter().filter_map(line).collect()
+}
+
+/// Values of examples of faults where that of the form alone makes no fault: kind, key, TOML.
+const FAULT_EXAMPLES: &[(&str, &str, &str)] = &[("spike", "amplitude", r#""1000 deg/h""#)];
+
+/// What the parameters of a kind of fault take, with their bounds, in words.
+#[must_use]
+pub fn fault_parameters(kind: &str) -> Vec<(&'static str, String)> {
+    let takes = |key: &'static Key| {
+        let choices = match &key.kind {
+            Kind::Choice(choices) => choices
+                .iter()
+                .filter(|(_, doc)| !doc.is_empty())
+                .map(|(name, doc)| format!("{name:?}: {doc}"))
+                .collect::<Vec<_>>(),
+            _ => Vec::new(),
+        };
+        let more =
+            if choices.is_empty() { String::new() } else { format!(" ({})", choices.join("; ")) };
+        let bounds = match &key.kind {
+            Kind::Quantity(_, bounds) => format!(", {}", bounds.words()),
+            _ => String::new(),
+        };
+        (key.name, format!("{}{bounds}{more}", expected(&key.kind)))
+    };
+    let section = super::keys::kind_section(kind);
+    section.map_or_else(Vec::new, |section| section.keys.iter().map(takes).collect())
+}
+
+/// An entry of a scenario with a fault of a kind, as TOML; `None` for a kind that isn't there.
+#[must_use]
+pub fn fault_example(kind: &str) -> Option<String> {
+    let section = super::keys::kind_section(kind)?;
+    let mut out = String::from("[[faults]]\n");
+    for key in section.keys {
+        let own = FAULT_EXAMPLES.iter().find(|(of, name, _)| *of == kind && *name == key.name);
+        let value = match (own, key.default) {
+            (Some((.., text)), _) => (*text).to_owned(),
+            (None, Default::Value(text)) => written(text),
+            (None, Default::Required) => match key.name {
+                "id" => format!("{:?}", format!("{kind}-1")),
+                "trigger" => r#"{ at = "100 s" }"#.to_owned(),
+                _ => example(&key.kind),
+            },
+            (None, Default::Absent(_)) if key.name == "duration" => match key.kind {
+                Kind::Refused(_) => continue,
+                _ => r#""1 s""#.to_owned(),
+            },
+            (None, Default::Absent(_) | Default::Derived(_) | Default::Section) => continue,
+        };
+        out += &format!("{} = {value}\n", key.name);
+    }
+    Some(out)
 }
 
 #[cfg(test)]

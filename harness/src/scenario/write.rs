@@ -136,6 +136,15 @@ fn write_table(table: &Table, section: &Section, path: &str, out: &mut String) {
                 });
                 later.push((key.name, *inner, tables.collect(), true));
             }
+            (Some(Kind::VariantTables(variants, _)), Value::Array(entries)) => {
+                for entry in entries {
+                    if let Value::Table(table) = &entry.value
+                        && let Some(inner) = variants.section(table)
+                    {
+                        later.push((key.name, inner, vec![table], true));
+                    }
+                }
+            }
             _ => {
                 _ = write!(out, "{} = ", key.name);
                 write_value(&node.value, out);

@@ -36,6 +36,10 @@ pub struct Counterfactual {
     pub navigation: Option<DriftDifference>,
     /// What became of each fault, in the order of the scenario.
     pub faults: Vec<Noticed>,
+    /// Faults that fired and were not noticed.
+    pub undetected: u64,
+    /// Longest delay of those that were noticed, s; null where none was.
+    pub detection_delay_max_s: Option<f64>,
     /// The calibration was refused, and that of the twin wasn't.
     pub refused: bool,
     /// The fault did harm: a parameter moved by 3 σ or more, or the radial error changed by more than
@@ -150,6 +154,11 @@ pub fn counterfactual(
         worst_shift_sigma,
         parameters,
         navigation,
+        undetected: faults
+            .iter()
+            .filter(|fault| fault.onset_s.is_some() && fault.noticed_by.is_none())
+            .count() as u64,
+        detection_delay_max_s: faults.iter().filter_map(|f| f.delay_s).reduce(f64::max),
         faults,
         refused,
         harmful,

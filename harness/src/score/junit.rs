@@ -5,7 +5,7 @@ use super::verdict::Verdict;
 use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
 
 /// The run as JUnit XML: one suite named for the scenario, one case for each requirement with a
-/// property `verifies`, and one for the run itself. JUnit doesn't know "inconclusive": it becomes
+/// property `verifies`, one for each fault (that it fired), and one for the run itself. JUnit doesn't know "inconclusive": it becomes
 /// an error of that type, because it must never count as passed.
 ///
 /// # Errors
@@ -26,6 +26,26 @@ pub fn junit(summary: &Summary) -> Result<String, quick_junit::SerializeError> {
             TestCase::new(format!("{}: {sentence}", result.id), status(result.verdict, &found));
         case.set_classname(summary.scenario.as_str());
         case.add_property(("verifies", result.id.as_str()));
+        suite.add_test_case(case);
+    }
+    for fault in &summary.faults {
+        let (verdict, found) = match fault.fired {
+            true => (Verdict::Pass, String::new()),
+            false => (Verdict::Inconclusive, format!("fault {} never fired", fault.id)),
+        };
+        let name = format!("fault {} ({}) fired", fault.id, fault.kind);
+        let mut case = TestCase::new(name, status(verdict, &found));
+        case.set_classname(summary.scenario.as_str());
+        for (name, value) in [
+            ("firings", Some(u64::from(fault.firings))),
+            ("first_sample", fault.first_sample),
+            ("last_sample", fault.last_sample),
+            ("samples_altered", Some(fault.samples_altered)),
+        ] {
+            if let Some(value) = value {
+                case.add_property((name, value.to_string().as_str()));
+            }
+        }
         suite.add_test_case(case);
     }
     let mut run = TestCase::new("run", status(summary.verdict, &summary.reasons.join("; ")));

@@ -37,9 +37,26 @@ fn shape(path: &[&str]) -> Shape {
     let error = ["max", "rms", "final", "slope_per_day"];
     let table = |keys: &[&'static str]| Shape::Table(keys.to_vec());
     match path {
-        [] => table(&["calibration", "navigation", "baseline", "reference"]),
-        ["baseline"] => table(&["calibration", "navigation"]),
+        [] => table(&["calibration", "navigation", "counterfactual", "baseline", "reference"]),
+        ["baseline"] => table(&["calibration", "navigation", "counterfactual"]),
         ["baseline", rest @ ..] => shape(rest),
+        ["counterfactual"] => table(&[
+            "outputs_differ_after_s",
+            "parameters",
+            "worst_shift_sigma",
+            "navigation",
+            "undetected",
+            "detection_delay_max_s",
+            "false_alarms",
+        ]),
+        ["counterfactual", "parameters"] => table(&NAMES),
+        ["counterfactual", "parameters", _] => table(&["shift", "sigma"]),
+        ["counterfactual", "navigation"] => table(&[
+            "latitude_max_arcmin",
+            "longitude_max_arcmin",
+            "radial_max_nmi",
+            "twin_radial_max_nmi",
+        ]),
         ["calibration"] => table(&[
             "duration_h",
             "parameters",

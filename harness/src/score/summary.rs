@@ -30,6 +30,9 @@ pub struct Summary {
     pub requirements: Vec<RequirementResult>,
     /// Faults that were injected.
     pub faults: Vec<FaultResult>,
+    /// Checksums of clean and faulted stream; null where they are the same.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub altered_streams: Option<AlteredStreams>,
     /// Name of the method that `calibration` and `navigation` are of.
     pub method: String,
     /// The calibration; null if the run had none.
@@ -140,6 +143,77 @@ pub struct FaultResult {
     pub last_sample: Option<u64>,
     /// Samples that it altered.
     pub samples_altered: u64,
+    /// How often it set in.
+    #[serde(default)]
+    pub firings: u32,
+    /// CRC-32 of what it was given, over what it altered, hexadecimal; null if that is nothing.
+    #[serde(default)]
+    pub clean_crc32: Option<String>,
+    /// CRC-32 of what it made of it.
+    #[serde(default)]
+    pub faulted_crc32: Option<String>,
+}
+
+impl FaultResult {
+    /// `fault spike-1 (spike): fired once, 100 samples from 36001 to 36100`.
+    #[must_use]
+    pub fn sentence(&self) -> String {
+        let times = match self.firings {
+            1 => "once".to_owned(),
+            n => format!("{n} times"),
+        };
+        let what = match (self.first_sample, self.last_sample) {
+            (Some(first), Some(last)) if first == last => format!("fired {times}, sample {first}"),
+            (Some(first), Some(last)) => {
+                format!("fired {times}, {} samples from {first} to {last}", self.samples_altered)
+            }
+            _ if self.firings > 0 => format!("set in {times} and altered nothing"),
+            _ => "never fired".to_owned(),
+        };
+        format!("fault {} ({}): {what}", self.id, self.kind)
+    }
+}
+
+impl From<&octant_faults::Receipt> for FaultResult {
+    fn from(receipt: &octant_faults::Receipt) -> Self {
+        // A fault that touches no sample (of the plant, of the unit) leaves both sums empty.
+        let sums = receipt.fired() && receipt.clean_crc32 != receipt.faulted_crc32;
+        let hex = |sum: u32| sums.then(|| format!("{sum:08x}"));
+        Self {
+            id: receipt.id.clone(),
+            kind: receipt.kind.to_owned(),
+            armed: receipt.armed,
+            fired: receipt.fired(),
+            first_sample: receipt.first_sample,
+            last_sample: receipt.last_sample,
+            samples_altered: receipt.samples_altered,
+            firings: receipt.firings,
+            clean_crc32: hex(receipt.clean_crc32),
+            faulted_crc32: hex(receipt.faulted_crc32),
+        }
+    }
+}
+
+/// Checksums of the streams of a run in which faults altered something: what the source delivered
+/// and what reached the core, both from the first difference on.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct AlteredStreams {
+    /// Sequence number of the first sample that was altered, lost or added.
+    pub first_sample: u64,
+    /// BLAKE3 of what the source delivered from then on.
+    pub clean_blake3: String,
+    /// BLAKE3 of what reached the core from then on.
+    pub faulted_blake3: String,
+}
+
+impl From<&crate::recorder::AlteredStreams> for AlteredStreams {
+    fn from(streams: &crate::recorder::AlteredStreams) -> Self {
+        Self {
+            first_sample: streams.first_sample,
+            clean_blake3: streams.clean_blake3.clone(),
+            faulted_blake3: streams.faulted_blake3.clone(),
+        }
+    }
 }
 
 /// The calibration of one method.
@@ -322,6 +396,9 @@ pub struct Baseline {
     pub counterfactual: Option<Counterfactual>,
     /// BLAKE3 of its stream.
     pub stream_hash: String,
+    /// What became of the faults in it.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub faults: Vec<FaultResult>,
 }
 
 /// Pacing of a run against a real clock.

@@ -204,11 +204,17 @@ pub fn judge(
             reasons.push(format!("calibration of {method} refused: {reason}"));
         }
     }
-    for fault in &summary.faults {
-        if !fault.fired {
-            verdict = verdict.worst(Verdict::Inconclusive);
-            reasons.push(format!("fault {} never fired", fault.id));
-        }
+    let primary = summary.faults.iter().map(|fault| (fault, String::new()));
+    let baseline = summary.baseline.iter().flat_map(|baseline| {
+        baseline.faults.iter().map(|fault| (fault, format!(" in {}", baseline.label)))
+    });
+    for (fault, place) in primary.chain(baseline).filter(|(fault, _)| !fault.fired) {
+        verdict = verdict.worst(Verdict::Inconclusive);
+        let why = match fault.firings {
+            0 => "its trigger never came true",
+            _ => "it set in and altered nothing",
+        };
+        reasons.push(format!("fault {} never fired{place}: {why}", fault.id));
     }
     let results: Vec<RequirementResult> =
         requirements.iter().map(|requirement| evaluate(requirement, &document)).collect();

@@ -19,6 +19,7 @@ pub use text::{
     TimeUnit,
 };
 
+use octant_faults::disturbance::Disturbed;
 use octant_plant::Truth;
 pub use octant_sample::Epoch;
 use octant_sample::GimbalCommand;
@@ -42,6 +43,11 @@ pub trait Source {
 
     /// Samples that the source will deliver in all, where it knows.
     fn samples_total(&self) -> Option<u64>;
+
+    /// The plant, where the source is one that faults can disturb.
+    fn disturbed(&mut self) -> Option<&mut dyn Disturbed> {
+        None
+    }
 }
 
 impl<S: Source + ?Sized> Source for Box<S> {
@@ -55,6 +61,10 @@ impl<S: Source + ?Sized> Source for Box<S> {
 
     fn samples_total(&self) -> Option<u64> {
         (**self).samples_total()
+    }
+
+    fn disturbed(&mut self) -> Option<&mut dyn Disturbed> {
+        (**self).disturbed()
     }
 }
 

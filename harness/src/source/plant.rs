@@ -1,6 +1,7 @@
 //! The plant as a source.
 
 use super::{Epoch, Source, SourceError};
+use octant_faults::disturbance::Disturbed;
 use octant_plant::config::Config;
 use octant_plant::{ConfigError, Plant, Truth};
 use octant_sample::GimbalCommand;
@@ -47,6 +48,10 @@ impl Source for PlantSource {
 
     fn samples_total(&self) -> Option<u64> {
         Some(self.total)
+    }
+
+    fn disturbed(&mut self) -> Option<&mut dyn Disturbed> {
+        Some(&mut self.plant)
     }
 }
 

@@ -89,15 +89,20 @@ impl Replay {
 impl Source for Replay {
     /// The epoch as it reached the recorded core, faults included.
     fn next(&mut self, _command: &GimbalCommand, epoch: &mut Epoch) -> Result<bool, SourceError> {
+        let mut events = Vec::new();
         match &mut self.kind {
             Kind::Foreign(foreign) => Ok(epoch.take(foreign.next()?)),
             Kind::Octant { epochs, .. } => loop {
                 match epochs.next_epoch().map_err(|e| read_error(&self.path, &e))? {
                     None => return Ok(false),
-                    Some(recorded) => {
+                    Some(mut recorded) => {
+                        // What happened beside epochs that never reached the core, and is not to
+                        // be lost with them.
+                        events.append(&mut recorded.events);
                         // Aiding without its sample is where a torn file ends.
                         if let Some(sample) = recorded.sample {
                             *epoch = Epoch { sample, aiding: recorded.aiding };
+                            recorded.events = events;
                             self.last = recorded;
                             return Ok(true);
                         }

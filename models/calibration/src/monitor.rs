@@ -136,33 +136,32 @@ impl Monitor {
     }
 
     /// Channels that give the same count again and again; to be asked for every sample.
-    #[inline]
-    pub fn stuck(&mut self, sample: &Sample) -> Health {
-        let Some(limit) = self.stuck_samples else { return Health::empty() };
-        let [x, y, z] = sample.delta_theta;
-        let [u, v, w] = sample.delta_velocity;
-        let now = [x, y, z, u, v, w];
-        let before = core::mem::replace(&mut self.counts, now);
-        let mut same = [false; 6];
-        for channel in 0..6 {
-            same[channel] = now[channel] == before[channel];
-        }
+    ///
+    /// Each count is an argument of its own, and the call is kept, so that each is read the way it
+    /// was written: a wide read of what single stores have just filled waits for them.
+    #[inline(never)]
+    pub fn stuck(&mut self, x: i32, y: i32, z: i32, u: i32, v: i32, w: i32) -> Health {
+        let before = core::mem::replace(&mut self.counts, [x, y, z, u, v, w]);
         // With noise of many counts there is nothing to do in nearly every sample.
+        let same = x == before[0]
+            || y == before[1]
+            || z == before[2]
+            || u == before[3]
+            || v == before[4]
+            || w == before[5];
         let fresh = core::mem::replace(&mut self.fresh, false);
-        if !fresh && (self.repeats || same != [false; 6]) {
-            self.repeated(&same, limit)
-        } else {
-            Health::empty()
-        }
+        if !fresh && (same || self.repeats) { self.repeated(&before) } else { Health::empty() }
     }
 
     #[cold]
-    fn repeated(&mut self, same: &[bool; 6], limit: u32) -> Health {
+    #[inline(never)]
+    fn repeated(&mut self, before: &[i32; 6]) -> Health {
+        let Some(limit) = self.stuck_samples else { return Health::empty() };
         let mut health = Health::empty();
         let flags = [Health::GYRO_STUCK, Health::ACCELEROMETER_STUCK];
         for channel in 0..6 {
             let run = &mut self.identical[channel];
-            *run = if same[channel] { run.saturating_add(1) } else { 0 };
+            *run = if self.counts[channel] == before[channel] { run.saturating_add(1) } else { 0 };
             if self.testable[channel / 3] && run.saturating_add(1) >= limit {
                 health |= flags[channel / 3];
             }

@@ -17,11 +17,10 @@
 //! right, and the limit wrong: it is doubled.
 
 use crate::config::{Base, Noise, Screening, TurntableRates};
-use octant_sample::Sample;
 use octant_sample::counts::{DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS};
 
-/// Counts of gyros x y z and accelerometers x y z; the last two are always zero.
-pub type Lanes = [i32; 8];
+/// Counts of gyros x y z and accelerometers x y z.
+pub type Counts = [i32; 6];
 
 /// Channels of the gyros as bits.
 pub const GYROS: u8 = 0b00_0111;
@@ -35,7 +34,8 @@ const TESTABLE_COUNTS: f64 = 20.0;
 /// Margin on what the turntable's servo makes of its acceleration and rate.
 const SERVO_MARGIN: f64 = 2.0;
 /// A channel that isn't tested.
-const NO_LIMIT: i32 = i32::MAX;
+/// The largest difference, less the floor of 1, and what is below the floor, stay on their side.
+const NO_LIMIT: u32 = u32::MAX - 1;
 /// Standard gravity, for a bound.
 const GRAVITY_MPS2: f64 = 9.81;
 /// Longest hold where the motion is known (a base that stands), s, and where the last increments are
@@ -47,14 +47,6 @@ const HOLD_LAST_S: f64 = 0.1;
 const JUMPS_MAX: u32 = 50;
 const JUMPS_STRETCH_S: f64 = 10.0;
 const EXPIRED_JUMPS: u32 = 10;
-
-/// Counts of a sample in lanes.
-#[must_use]
-#[inline]
-pub fn lanes(sample: &Sample) -> Lanes {
-    let ([a, b, c], [d, e, f]) = (sample.delta_theta, sample.delta_velocity);
-    [a, b, c, d, e, f, 0, 0]
-}
 
 /// What became of a sample that didn't pass at once.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -73,11 +65,11 @@ pub struct Examined {
 #[derive(Clone, Debug)]
 pub struct Screen {
     /// Last counts that were believed.
-    last: Lanes,
+    last: Counts,
     /// Limit while the gimbals stand and while they move; `floor` is 1 where identical counts are
     /// no accident.
-    limits: [[i32; 8]; 2],
-    floor: [i32; 8],
+    limits: [[u32; 6]; 2],
+    floor: [u32; 6],
     /// Nothing is being held, counted or waited for.
     calm: bool,
     started: bool,
@@ -85,7 +77,7 @@ pub struct Screen {
     hold: [u32; 2],
     stretch: u64,
 
-    seen: Lanes,
+    seen: Counts,
     runs: [u32; 6],
     held: [u32; 6],
     jumps: [u32; 2],
@@ -126,8 +118,8 @@ impl Screen {
             (noise.angle_random_walk, gyro_step, screening.vibration.0, angular),
             (noise.velocity_random_walk, accel_step, screening.vibration.1, linear),
         ];
-        let mut limits = [[NO_LIMIT; 8]; 2];
-        let mut floor = [0; 8];
+        let mut limits = [[NO_LIMIT; 6]; 2];
+        let mut floor = [0; 6];
         for (triad, (random_walk, step, vibration, motion)) in triads.into_iter().enumerate() {
             let lsb = [DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS][triad];
             let sigma = random_walk * sqrt_s;
@@ -139,19 +131,19 @@ impl Screen {
                     let known = 2.0 * step + vibration + motion * square;
                     let counts = noise_counts + known / lsb + 2.0;
                     limit[channel] = if testable && screening.jumps && counts < 1e9 {
-                        counts as i32
+                        counts as u32
                     } else {
                         NO_LIMIT
                     };
                 }
                 let coarse = step > sigma;
                 floor[channel] =
-                    i32::from(testable && !coarse && screening.stuck_samples.is_some());
+                    u32::from(testable && !coarse && screening.stuck_samples.is_some());
             }
         }
         let samples = |time_s: f64| (time_s / sample_s + 0.5).max(1.0) as u32;
         Self {
-            last: [0; 8],
+            last: [0; 6],
             limits,
             floor,
             calm: true,
@@ -159,7 +151,7 @@ impl Screen {
             stuck_limit: screening.stuck_samples.unwrap_or(u32::MAX),
             hold: [samples(HOLD_LAST_S), samples(HOLD_KNOWN_S)],
             stretch: u64::from(samples(JUMPS_STRETCH_S)),
-            seen: [0; 8],
+            seen: [0; 6],
             runs: [0; 6],
             held: [0; 6],
             jumps: [0; 2],
@@ -168,20 +160,22 @@ impl Screen {
     }
 
     /// The sample follows the last one as it should; then it is taken. If not, [`Self::examine`] it.
+    /// Counts one by one: see the caller.
     #[must_use]
     #[inline]
-    pub fn passes(&mut self, lanes: &Lanes, moving: bool) -> bool {
+    #[allow(clippy::too_many_arguments, reason = "in registers")]
+    pub fn passes(&mut self, moving: bool, x: i32, y: i32, z: i32, u: i32, v: i32, w: i32) -> bool {
         let limits = &self.limits[usize::from(moving)];
-        let mut bad = 0;
-        for i in 0..8 {
-            // Signed throughout, which the oldest vector instructions compare; the one difference
-            // whose size doesn't fit is below the floor.
-            let difference = lanes[i].wrapping_sub(self.last[i]).wrapping_abs();
-            bad |= i32::from(difference > limits[i]) | i32::from(difference < self.floor[i]);
+        let counts = [x, y, z, u, v, w];
+        let mut bad = false;
+        for i in 0..6 {
+            // From the floor up to the limit; a difference below the floor wraps around.
+            let difference = counts[i].wrapping_sub(self.last[i]).unsigned_abs();
+            bad |= difference.wrapping_sub(self.floor[i]) > limits[i];
         }
-        let good = self.calm & (bad == 0);
+        let good = self.calm & !bad;
         if good {
-            self.last = *lanes;
+            self.last = counts;
         }
         good
     }
@@ -190,7 +184,7 @@ impl Screen {
     /// where it is known; `tick`: number of the sample.
     pub fn examine(
         &mut self,
-        lanes: &Lanes,
+        counts: &Counts,
         moving: bool,
         expected: Option<&[f64; 6]>,
         tick: u64,
@@ -198,7 +192,7 @@ impl Screen {
         let mut found = Examined::default();
         if !self.started {
             self.started = true;
-            (self.last, self.seen) = (*lanes, *lanes);
+            (self.last, self.seen) = (*counts, *counts);
             return found;
         }
         if self.calm {
@@ -212,7 +206,7 @@ impl Screen {
         let mut calm = true;
         for i in 0..6 {
             let bit = 1u8 << i;
-            let repeats = self.floor[i] != 0 && lanes[i] == self.seen[i];
+            let repeats = self.floor[i] != 0 && counts[i] == self.seen[i];
             let was_stuck = self.runs[i].saturating_add(1) >= self.stuck_limit;
             self.runs[i] = if repeats { self.runs[i].saturating_add(1) } else { 0 };
             let stuck = self.runs[i].saturating_add(1) >= self.stuck_limit;
@@ -228,7 +222,7 @@ impl Screen {
             }
             let limit = self.limits[usize::from(moving)][i];
             let near =
-                |reference: f64, allowed: f64| (f64::from(lanes[i]) - reference).abs() <= allowed;
+                |reference: f64, allowed: f64| (f64::from(counts[i]) - reference).abs() <= allowed;
             // What moves goes on moving while it isn't believed; the limit is twice the motion.
             let moves = moving || expected.is_none();
             let since = if moves { 1.0 + 0.5 * f64::from(self.held[i]) } else { 1.0 };
@@ -238,7 +232,7 @@ impl Screen {
                 // Nothing says how far the truth went while the channel was dead.
                 || (was_stuck && expected.is_none());
             if believed {
-                self.last[i] = lanes[i];
+                self.last[i] = counts[i];
                 self.held[i] = 0;
                 continue;
             }
@@ -250,7 +244,7 @@ impl Screen {
             if self.held[i] > hold {
                 found.expired |= bit;
                 self.jumps[triad] += EXPIRED_JUMPS;
-                self.last[i] = lanes[i];
+                self.last[i] = counts[i];
                 self.held[i] = 0;
             } else {
                 found.jumped |= bit;
@@ -263,7 +257,7 @@ impl Screen {
                 self.widen(triad);
             }
         }
-        self.seen = *lanes;
+        self.seen = *counts;
         self.calm = calm;
         found
     }
@@ -285,7 +279,7 @@ impl Screen {
 
     /// Last counts that were believed.
     #[must_use]
-    pub fn last(&self) -> &Lanes {
+    pub fn last(&self) -> &Counts {
         &self.last
     }
 }

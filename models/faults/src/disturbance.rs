@@ -1,6 +1,8 @@
 //! What faults do to the physical world. The plant realises these before its sensors integrate, so
 //! that gyros, accelerometers and encoders tell one story.
 
+use alloc::vec::Vec;
+
 /// The turntable as it stands when a fault sets in.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Motor {
@@ -19,33 +21,55 @@ pub enum Gimbal {
     Roll,
 }
 
+impl Gimbal {
+    /// Its place in pairs of azimuth and roll.
+    #[must_use]
+    pub const fn index(self) -> usize {
+        match self {
+            Self::Azimuth => 0,
+            Self::Roll => 1,
+        }
+    }
+}
+
 /// What the plant suffers, from the start of the interval in which a fault sets in until the fault
 /// ends. All SI; vectors in body axes unless said otherwise.
+///
+/// Motions are smooth: position, velocity and acceleration have no jump where they begin and end
+/// (that of a shock's acceleration is its pulse).
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Disturbance {
-    /// The sensor block shakes, linearly and angularly: `sum of amplitude · sin(2π f t + phase)`,
-    /// t since the onset, faded in and out so that velocity and attitude have no jump.
+    /// The sensor block shakes against the gimballed body. It is displaced by `r = w(t) Σ d_i
+    /// sin(2π f_i t + φ_i)` and turned by the rotation vector `θ = w(t) Σ α_i sin(2π f_i t + ψ_i)`,
+    /// t since the onset. The window w rises from 0 to 1 within the edge, and falls as long after
+    /// the fault's end, along 10 u³ − 15 u⁴ + 6 u⁵.
     Vibration {
         /// Lines of the motion.
-        lines: alloc::vec::Vec<Line>,
-        /// Time over which it swells and fades, s.
+        lines: Vec<Line>,
+        /// Time over which it swells and fades, s, above 0.
         edge_s: f64,
     },
-    /// A half-sine pulse of acceleration of the sensor block.
+    /// A half-sine pulse of acceleration displaces the sensor block, and its mounts bring it back
+    /// along a polynomial of fifth degree. Velocity and displacement are then what they were; the
+    /// end of the fault changes nothing.
     Shock {
         /// Peak acceleration, m/s².
         peak_mps2: [f64; 3],
-        /// Length of the pulse, s.
+        /// Length of the pulse, s, above 0.
         width_s: f64,
+        /// Time in which the block comes back after the pulse, s, above 0.
+        recoil_s: f64,
     },
-    /// The proof masses sit away from the centre of rotation: row i is that of axis i, m.
+    /// The proof masses sit further away from the centre of rotation, by row i for axis i, m; until
+    /// the fault ends.
     LeverArm([[f64; 3]; 3]),
-    /// Temperature departs linearly and stays; sensitivities of biases and scale factors.
+    /// Temperature departs linearly and stays at its plateau; when the fault ends it returns at the
+    /// same rate. Sensitivities of biases and scale factors.
     Temperature {
-        /// Ramp, K/s.
+        /// Ramp, K/s, not 0.
         ramp_kps: f64,
-        /// Change at which the ramp ends, K.
+        /// Change at which the ramp ends, K, of the ramp's sign.
         plateau_k: f64,
         /// (rad/s)/K.
         gyro_bias_per_k: [f64; 3],
@@ -56,15 +80,23 @@ pub enum Disturbance {
         /// 1/K.
         accel_scale_per_k: [f64; 3],
     },
-    /// The whole case is displaced smoothly in n (north, east, down) and turned about them, and
-    /// comes back the same way: a jerk of the mooring, or sway that nobody told the core of.
+    /// The whole case sways. Displacements are along its mean heading, to starboard and down, m;
+    /// angles are added to its roll, pitch and heading, rad. Window as for a vibration.
     Case {
-        /// Lines of the displacement, amplitude in m in n, angle in rad about n.
-        lines: alloc::vec::Vec<Line>,
-        /// Time over which it swells and fades, s.
+        /// Lines of the motion.
+        lines: Vec<Line>,
+        /// Time over which it swells and fades, s, above 0.
         edge_s: f64,
-        /// A single smooth excursion of this height (m in n) and its length (s), beside the lines.
-        excursion: Option<([f64; 3], f64)>,
+    },
+    /// The whole case makes one excursion and comes back, `64 u³ (1 − u)³` of its height; the end
+    /// of the fault changes nothing. Axes as for the sway.
+    Excursion {
+        /// Displacement at its middle, m.
+        displacement_m: [f64; 3],
+        /// Angle at its middle, rad.
+        angle_rad: [f64; 3],
+        /// Length, s, above 0.
+        length_s: f64,
     },
     /// Something happens to a gimbal.
     Gimbal {
@@ -78,7 +110,7 @@ pub enum Disturbance {
 /// One line of a motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Line {
-    /// Frequency, Hz.
+    /// Frequency, Hz, above 0.
     pub frequency_hz: f64,
     /// Linear displacement amplitude, m.
     pub displacement_m: [f64; 3],
@@ -92,48 +124,55 @@ pub struct Line {
 
 /// What happens to a gimbal. The encoder sits on the drive; the sensors feel the body.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum GimbalAction {
-    /// The body turns against its drive by an angle, smoothly within a time, and stays: the gyros
-    /// feel it. The encoder follows if it sits on the body.
+    /// The body turns against its drive by an angle, along 10 u³ − 15 u⁴ + 6 u⁵ within a time, and
+    /// stays: the gyros feel it. The end of the fault changes nothing.
     Slip {
         /// Angle, rad.
         angle_rad: f64,
-        /// Time that it takes, s.
+        /// Time that it takes, s, above 0.
         within_s: f64,
-        /// The encoder sees it.
+        /// The encoder sits on the body and sees it.
         seen: bool,
     },
-    /// The encoder reads another angle from now on; nothing moves.
+    /// The encoder reads another angle until the fault ends; nothing moves.
     EncoderSlip {
         /// Angle added to what it reads, rad.
         angle_rad: f64,
+        /// It says so: samples are flagged that their gimbal angles are not to be used.
+        flagged: bool,
     },
     /// The drive brakes with its largest deceleration and stands, whatever is commanded; when the
     /// fault ends it goes to the set point.
     Stall,
-    /// The drive turns on at this rate, whatever is commanded; when the fault ends it goes to the
-    /// set point.
+    /// The drive goes to this rate with its largest acceleration and turns on, whatever is
+    /// commanded; when the fault ends it goes to the set point.
     Runaway {
-        /// Rate, rad/s, signed.
+        /// Rate, rad/s, signed, not 0.
         rate_radps: f64,
     },
-    /// Every move goes beyond its target by an angle and comes back.
+    /// Every move that begins before the fault ends goes beyond its target by an angle and comes
+    /// back.
     Overshoot {
-        /// Angle, rad.
+        /// Angle, rad, above 0.
         angle_rad: f64,
     },
-    /// After every move the body rings about the target: `amplitude · exp(−t/decay) · sin(2π f t)`.
+    /// After every move that begins before the fault ends the body rings about the target, t after
+    /// the move: `A exp(−t/τ) sin(2π f t)`, swelling along 10 u³ − 15 u⁴ + 6 u⁵ in its first
+    /// quarter of a period, for 30 τ. The encoder doesn't see it.
     Ringing {
-        /// First amplitude, rad.
+        /// Amplitude A, rad.
         amplitude_rad: f64,
-        /// Frequency, Hz.
+        /// Frequency f, Hz, above 0.
         frequency_hz: f64,
-        /// Decay time, s.
+        /// Decay time τ, s, above 0.
         decay_s: f64,
     },
-    /// The gear gets play: the body lags by half of it, on the side it came from.
+    /// The gear gets more play: the body lags by half of it, on the side it came from. When the
+    /// fault ends the play closes within 0.1 s, along 10 u³ − 15 u⁴ + 6 u⁵.
     Backlash {
-        /// Play, rad.
+        /// Play beside that which the gear has, rad, above 0.
         play_rad: f64,
     },
 }

@@ -8,7 +8,8 @@ use crate::setup::Stream;
 use alloc::boxed::Box;
 use alloc::vec::Vec;
 use core::fmt::Debug;
-use octant_random::normal::{Ziggurat, uniform, words};
+use octant_random::normal::{Ziggurat, uniform};
+use octant_random::philox::block;
 use octant_random::stream::Phase;
 use octant_sample::{Epoch, GimbalCommand, Output, Parameters};
 
@@ -49,6 +50,18 @@ pub struct Context<'a> {
     pub last: &'a Epoch,
     /// The core's last output.
     pub output: &'a Output,
+    /// Set points that the turntable has had.
+    pub set_points: SetPoints,
+}
+
+/// Set points that the turntable has had, after all faults. Before the first they are zero, where
+/// the gimbals start.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct SetPoints {
+    /// That of the epoch before this one.
+    pub last: GimbalCommand,
+    /// The last one before it that was another.
+    pub before: GimbalCommand,
 }
 
 impl Context<'_> {
@@ -61,7 +74,13 @@ impl Context<'_> {
     /// Four random numbers in (0, 1) of this sample.
     #[must_use]
     pub fn uniforms(&self, stream: &Stream) -> [f64; 4] {
-        words(stream.key(self.phase), self.counter).map(uniform)
+        self.uniforms_of(stream, 0)
+    }
+
+    /// Four random numbers in (0, 1) of the `nth` epoch of those that come in in this step, from 0.
+    #[must_use]
+    pub fn uniforms_of(&self, stream: &Stream, nth: usize) -> [f64; 4] {
+        block(stream.key(self.phase), [self.counter, nth as u64, 0, 0]).map(uniform)
     }
 }
 
@@ -74,16 +93,39 @@ pub trait SampleRule: Debug + Send {
     fn looks_back(&self) -> bool {
         false
     }
+
+    /// Whether something of the fault stays after its end: a clock that was set wrong is still
+    /// wrong.
+    fn lingers(&self) -> bool {
+        false
+    }
+
+    /// Acts on one epoch after the fault's end, for as long as something of it
+    /// [stays](Self::lingers).
+    fn afterwards(&mut self, epoch: &mut Epoch, now: &Context<'_>) {
+        let _ = (epoch, now);
+    }
 }
 
 /// Acts on the delivery of epochs.
 pub trait DeliveryRule: Debug + Send {
-    /// Takes an epoch; what is to be delivered now goes to `out`, in order. `active` is false for
-    /// epochs after the fault ended, which a rule sees for as long as it [holds](Self::holds) some.
-    fn on_epoch(&mut self, epoch: Epoch, active: bool, now: &Context<'_>, out: &mut Vec<Epoch>);
+    /// One step of the source: takes the epochs that come in (one, or none or several where
+    /// faults before this one have delayed some); what is to be delivered now goes to `out`, in
+    /// order. `active` is false in steps after the fault's end, which a rule sees for as long as it
+    /// [holds](Self::holds) something.
+    fn on_step(
+        &mut self,
+        incoming: &[Epoch],
+        active: bool,
+        now: &Context<'_>,
+        out: &mut Vec<Epoch>,
+    );
 
-    /// Epochs that are held back.
+    /// Epochs that are held back, at most [`crate::station::FLIGHT_MAX`].
     fn holds(&self) -> usize;
+
+    /// How many epochs can leave in one step of the source in which `incoming` come in.
+    fn most_out(&self, incoming: usize) -> usize;
 }
 
 /// Acts on the set point that the turntable gets.
@@ -100,10 +142,15 @@ pub trait PlantRule: Debug + Send {
 
 /// Acts on the unit under test.
 pub trait UnitRule: Debug + Send {
-    /// What happens to it at this epoch, before it gets the epoch; `None`: nothing.
+    /// What happens to it at this epoch, before it gets the epoch; `None`: nothing. Power is not
+    /// told here but by [`Self::cuts_power`].
     fn on_epoch(&mut self, now: &Context<'_>) -> Option<UnitEvent>;
-    /// What happens to it when the fault ends.
-    fn end(&mut self, now: &Context<'_>) -> Option<UnitEvent>;
+
+    /// Whether the unit is without power while the fault is active. The station tells the endpoint
+    /// when power goes and comes: of several such faults the first onset and the last end count.
+    fn cuts_power(&self) -> bool {
+        false
+    }
 }
 
 /// What happens to the unit under test.
@@ -112,9 +159,9 @@ pub trait UnitRule: Debug + Send {
 pub enum UnitEvent {
     /// It starts anew, as at power on, and forgets everything.
     Restart,
-    /// It loses power: no epoch reaches it and it answers nothing.
+    /// It loses power: from this epoch on none reaches it and it answers nothing.
     PowerOff,
-    /// Power comes back: it starts anew.
+    /// Power comes back: it starts anew, and this epoch is its first.
     PowerOn,
     /// It starts anew with a stored calibration that is `offset` away from the one that it would
     /// have started from, SI.

@@ -8,7 +8,7 @@
 use crate::catalogue::{Acts, Kind, Lasts};
 use crate::disturbance::Disturbed;
 use crate::receipt::{Ledger, Receipt};
-use crate::rule::{Context, Rule, UnitEvent};
+use crate::rule::{Context, Rule, SetPoints, UnitEvent};
 use crate::setup::{BuildError, Setup};
 use crate::trigger::{Clock, News, Scene, Schedule, State, Trigger};
 use crate::values::Values;
@@ -72,9 +72,30 @@ impl Stage {
         matches!(self.clock.state, State::Active { .. } | State::Fading { .. })
     }
 
-    /// It acts, or holds epochs back from when it did.
+    /// It acts, or something is left from when it did.
     fn engaged(&self) -> bool {
-        self.acting() || matches!(&self.rule, Rule::Delivery(rule) if rule.holds() > 0)
+        self.acting()
+            || match &self.rule {
+                Rule::Delivery(rule) => rule.holds() > 0,
+                Rule::Samples(rule) => rule.lingers(),
+                Rule::Plant(_) | Rule::Command(_) | Rule::Unit(_) => false,
+            }
+    }
+
+    fn cuts_power(&self) -> bool {
+        self.acting() && matches!(&self.rule, Rule::Unit(rule) if rule.cuts_power())
+    }
+
+    /// The first epoch that has to be remembered as the one before an onset.
+    fn looks_back_from(&self) -> u64 {
+        match (&self.rule, self.clock.state) {
+            (Rule::Samples(rule), state) if rule.looks_back() => match state {
+                State::Pending(at) => at.saturating_sub(1),
+                State::Spent => u64::MAX,
+                State::Waiting | State::Active { .. } | State::Fading { .. } => 0,
+            },
+            _ => u64::MAX,
+        }
     }
 
     fn context<'a>(&self, shared: &Shared, last: &'a Epoch, output: &'a Output) -> Context<'a> {
@@ -88,6 +109,7 @@ impl Stage {
             strength: self.clock.strength(shared.epoch),
             last,
             output,
+            set_points: shared.set_points,
         }
     }
 }
@@ -99,10 +121,13 @@ struct Shared {
     phase: Phase,
     counter: u64,
     dt_s: f64,
+    set_points: SetPoints,
 }
 
-/// Epochs in flight at most: what a delivery fault can hold back.
+/// Epochs that one delivery fault can hold back at most.
 pub const FLIGHT_MAX: usize = 4096;
+/// Epochs that can be delivered in one step of the source at most, by all faults together.
+pub const BURST_MAX: usize = 16 * FLIGHT_MAX;
 /// Occurrences kept between two looks of the harness.
 const OCCURRENCES_MAX: usize = 256;
 
@@ -123,12 +148,17 @@ pub struct Station {
     busy: bool,
     conditions: bool,
     truth: bool,
-    looks_back: bool,
+    /// Epochs from this one on are remembered.
+    remember: u64,
+    /// Faults act on set points, and want to know those before.
+    commands: bool,
+    set_points: SetPoints,
     last: Epoch,
     flight: Vec<Epoch>,
     landed: Vec<Epoch>,
     occurrences: Vec<Occurrence>,
     events: Vec<UnitEvent>,
+    without_power: bool,
 }
 
 impl Station {
@@ -145,9 +175,8 @@ impl Station {
         }
         let conditions = stages.iter().any(|stage| stage.clock.has_condition());
         let truth = stages.iter().any(|stage| stage.clock.needs_truth());
-        let looks_back = stages
-            .iter()
-            .any(|stage| matches!(&stage.rule, Rule::Samples(rule) if rule.looks_back()));
+        let commands = stages.iter().any(|stage| matches!(stage.rule, Rule::Command(_)));
+        let burst = burst(&stages)?;
         let mut station = Self {
             stages,
             dt_s: setup.dt_s(),
@@ -159,12 +188,15 @@ impl Station {
             busy: false,
             conditions,
             truth,
-            looks_back,
+            remember: u64::MAX,
+            commands,
+            set_points: SetPoints::default(),
             last: Epoch::default(),
-            flight: Vec::with_capacity(FLIGHT_MAX),
-            landed: Vec::with_capacity(FLIGHT_MAX),
+            flight: Vec::with_capacity(burst),
+            landed: Vec::with_capacity(burst),
             occurrences: Vec::with_capacity(OCCURRENCES_MAX),
-            events: Vec::with_capacity(specs.len()),
+            events: Vec::with_capacity(specs.len() + 1),
+            without_power: false,
         };
         station.plan();
         Ok(station)
@@ -209,6 +241,7 @@ impl Station {
     /// Looks what has to be looked at next.
     fn plan(&mut self) {
         self.wake = self.stages.iter().map(|stage| stage.clock.wake()).min().unwrap_or(u64::MAX);
+        self.remember = self.stages.iter().map(Stage::looks_back_from).min().unwrap_or(u64::MAX);
         self.busy = self.conditions || self.stages.iter().any(Stage::engaged);
     }
 
@@ -217,7 +250,11 @@ impl Station {
     #[inline]
     pub fn before(&mut self, command: &mut GimbalCommand, output: &Output, world: &mut dyn World) {
         self.epoch += 1;
-        if self.epoch < self.wake && !self.busy && Scene::of(output).packed() == self.seen {
+        if self.epoch < self.wake
+            && !self.busy
+            && Scene::of(output).packed() == self.seen
+            && (!self.commands || *command == self.set_points.last)
+        {
             return;
         }
         self.look(command, output, world);
@@ -227,16 +264,19 @@ impl Station {
     #[inline]
     #[must_use]
     pub fn is_idle(&self) -> bool {
-        !self.busy && !self.looks_back
+        !self.busy && self.epoch < self.remember
     }
 
     /// With the epoch that the source has made, on its way to the core.
     #[inline]
     pub fn after(&mut self, epoch: &Epoch, output: &Output) -> Delivered<'_> {
-        if self.is_idle() {
-            return Delivered::Untouched;
+        if self.busy {
+            return self.pass(epoch, output);
         }
-        self.pass(epoch, output)
+        if self.epoch >= self.remember {
+            self.last = *epoch;
+        }
+        Delivered::Untouched
     }
 
     fn shared(&self) -> Shared {
@@ -246,7 +286,8 @@ impl Station {
         } else {
             (Phase::Navigation, index - self.calibration_samples)
         };
-        Shared { epoch: self.epoch, phase, counter, dt_s: self.dt_s }
+        let set_points = self.set_points;
+        Shared { epoch: self.epoch, phase, counter, dt_s: self.dt_s, set_points }
     }
 
     #[inline(never)]
@@ -260,12 +301,12 @@ impl Station {
         }
         (self.scene, self.seen) = (Some(scene), scene.packed());
         let shared = self.shared();
+        let events = self.events.len();
         for index in 0..self.stages.len() {
             let stage = &mut self.stages[index];
             let ticked = stage.clock.tick(self.epoch);
             if ticked.ended {
-                let now = stage.context(&shared, &self.last, output);
-                end(stage, index as u32, &now, world, &mut self.events);
+                end(stage, index as u32, world);
                 self.tell(index, false);
                 self.tell_others(index);
             }
@@ -277,7 +318,28 @@ impl Station {
             }
             self.act_before(index, &shared, command, output);
         }
+        self.settle_power(events);
+        if *command != self.set_points.last {
+            self.set_points = SetPoints { last: *command, before: self.set_points.last };
+        }
         self.plan();
+    }
+
+    /// Power goes with the first fault that cuts it and comes back with the last; `from`: number of
+    /// events that there were before this epoch.
+    fn settle_power(&mut self, from: usize) {
+        let without = self.stages.iter().any(Stage::cuts_power);
+        match (self.without_power, without) {
+            (false, false) => return,
+            // Whatever else happens to it in this epoch is forgotten with its state.
+            (false, true) => {
+                self.events.truncate(from);
+                self.events.push(UnitEvent::PowerOff);
+            }
+            (true, true) => self.events.truncate(from),
+            (true, false) => self.events.insert(from, UnitEvent::PowerOn),
+        }
+        self.without_power = without;
     }
 
     /// Those that wait for a fault hear that it has ended.
@@ -322,10 +384,12 @@ impl Station {
                 }
             }
             Rule::Unit(rule) => {
-                if let Some(event) = rule.on_epoch(&now) {
+                let event = rule.on_epoch(&now);
+                // What happens to a unit that is without power already alters nothing.
+                if rule.cuts_power() || (event.is_some() && !self.without_power) {
                     stage.ledger.touched(shared.epoch);
-                    self.events.push(event);
                 }
+                self.events.extend(event);
             }
             Rule::Plant(_) => stage.ledger.touched(shared.epoch),
             Rule::Samples(_) | Rule::Delivery(_) => {}
@@ -349,7 +413,11 @@ impl Station {
                     engaged = true;
                     for epoch in &mut self.flight {
                         let clean = *epoch;
-                        rule.on_epoch(epoch, &now);
+                        if acting {
+                            rule.on_epoch(epoch, &now);
+                        } else {
+                            rule.afterwards(epoch, &now);
+                        }
                         if !epoch.same_bits(&clean) {
                             stage.ledger.touched(shared.epoch);
                             stage.ledger.clean(&clean);
@@ -360,15 +428,11 @@ impl Station {
                 Rule::Delivery(rule) => {
                     engaged = true;
                     self.landed.clear();
-                    for epoch in &self.flight {
-                        let from = self.landed.len();
-                        rule.on_epoch(*epoch, acting, &now, &mut self.landed);
-                        let out = &self.landed[from..];
-                        if out.len() != 1 || !out[0].same_bits(epoch) {
-                            stage.ledger.touched(shared.epoch);
-                            stage.ledger.clean(epoch);
-                            out.iter().for_each(|epoch| stage.ledger.faulted(epoch));
-                        }
+                    rule.on_step(&self.flight, acting, &now, &mut self.landed);
+                    if !same(&self.flight, &self.landed) {
+                        stage.ledger.touched(shared.epoch);
+                        self.flight.iter().for_each(|epoch| stage.ledger.clean(epoch));
+                        self.landed.iter().for_each(|epoch| stage.ledger.faulted(epoch));
                     }
                     core::mem::swap(&mut self.flight, &mut self.landed);
                 }
@@ -425,6 +489,11 @@ impl Station {
         self.stages.iter().map(|stage| stage.id.as_str())
     }
 
+    /// Ids and kinds of the faults, in order.
+    pub fn names(&self) -> impl Iterator<Item = (&str, &'static str)> {
+        self.stages.iter().map(|stage| (stage.id.as_str(), stage.kind.name))
+    }
+
     /// Receipts of all faults, in order.
     #[must_use]
     pub fn receipts(&self) -> Vec<Receipt> {
@@ -445,24 +514,30 @@ fn begin(stage: &mut Stage, handle: u32, now: &Context<'_>, world: &mut dyn Worl
     }
 }
 
-fn end(
-    stage: &mut Stage,
-    handle: u32,
-    now: &Context<'_>,
-    world: &mut dyn World,
-    events: &mut Vec<UnitEvent>,
-) {
-    match &mut stage.rule {
-        Rule::Plant(_) => {
-            if let Some(plant) = world.disturbed() {
-                plant.end(handle);
-            }
-        }
-        Rule::Unit(rule) => {
-            if let Some(event) = rule.end(now) {
-                events.push(event);
-            }
-        }
-        Rule::Samples(_) | Rule::Command(_) | Rule::Delivery(_) => {}
+fn end(stage: &Stage, handle: u32, world: &mut dyn World) {
+    if let (Rule::Plant(_), Some(plant)) = (&stage.rule, world.disturbed()) {
+        plant.end(handle);
     }
+}
+
+/// The same epochs, bit for bit, in the same order.
+fn same(a: &[Epoch], b: &[Epoch]) -> bool {
+    a.len() == b.len() && a.iter().zip(b).all(|(a, b)| a.same_bits(b))
+}
+
+/// Epochs that can leave the last stage in one step of the source.
+fn burst(stages: &[Stage]) -> Result<usize, (String, BuildError)> {
+    let mut most = 1;
+    for stage in stages {
+        let Rule::Delivery(rule) = &stage.rule else { continue };
+        most = rule.most_out(most);
+        if most > BURST_MAX {
+            let problem = alloc::format!(
+                "with the faults before it, up to {most} epochs could be delivered in one step, at \
+                 most {BURST_MAX} are possible"
+            );
+            return Err((stage.id.clone(), BuildError::value("kind", problem)));
+        }
+    }
+    Ok(most)
 }

@@ -5,7 +5,8 @@
 //! approximation, and so do transport rate, Coriolis and curvature terms:
 //! `f = C_cn (v̇ + (2 ω_ie + ω_en) × v − g)` (Titterton and Weston, 2004, sec. 3.5).
 
-use crate::config::{CaseAttitude, Dockside, Motion, Site};
+use crate::config::{self, CaseAttitude, Dockside, Site};
+use crate::disturbed::Motion;
 use crate::sway::{SixDof, Sway};
 use crate::trig::{Near, rx_t, ry_t, rz_t};
 use nalgebra::Vector3;
@@ -64,13 +65,21 @@ struct Ship {
 
 #[derive(Clone, Debug)]
 enum Kind {
-    Static { motion: CaseMotion, site: Site, attitude: CaseAttitude },
+    Static {
+        motion: CaseMotion,
+        site: Site,
+        attitude: CaseAttitude,
+        /// What it is while a fault moves it.
+        adrift: Option<Box<Ship>>,
+    },
     Ship(Box<Ship>),
 }
 
 #[derive(Clone, Debug)]
 pub(crate) struct Case {
     kind: Kind,
+    /// Whether angular acceleration is wanted without disturbances too.
+    accelerations: bool,
 }
 
 fn into_case(
@@ -86,7 +95,7 @@ impl Case {
     /// `nodes_s`: the regular nodes, s from the start of an interval. `accelerations`: whether
     /// the angular acceleration of [`CaseMotion`] is wanted, otherwise it is zero.
     pub(crate) fn new(
-        motion: &Motion,
+        motion: &config::Motion,
         site: Site,
         period_s: f64,
         nodes_s: &[f64],
@@ -94,7 +103,7 @@ impl Case {
     ) -> Self {
         let earth = Ellipsoid::at(site.latitude_rad, site.height_m);
         let kind = match motion {
-            Motion::Static(attitude) => {
+            config::Motion::Static(attitude) => {
                 let heading = libm::sincos(attitude.heading_rad);
                 let pitch = libm::sincos(attitude.pitch_rad);
                 let roll = libm::sincos(attitude.roll_rad);
@@ -104,14 +113,59 @@ impl Case {
                     acceleration: Vector3::zeros(),
                     force: into_case(&up, heading, pitch, roll),
                 };
-                Kind::Static { motion, site, attitude: *attitude }
+                Kind::Static { motion, site, attitude: *attitude, adrift: None }
             }
-            Motion::Dockside(dockside) => {
+            config::Motion::Dockside(dockside) => {
                 let ship = Ship::new(dockside, site, &earth, period_s, nodes_s, accelerations);
                 Kind::Ship(Box::new(ship))
             }
         };
-        Self { kind }
+        Self { kind, accelerations }
+    }
+
+    /// A disturbance is under way: angular acceleration is wanted, and where it `moves` the case,
+    /// a case at rest has to be able to.
+    pub(crate) fn disturbed(&mut self, moves: bool) {
+        match &mut self.kind {
+            Kind::Static { adrift: Some(_), .. } if moves => {}
+            Kind::Static { site, attitude, adrift, .. } => {
+                *adrift = moves.then(|| Box::new(Ship::at_rest(*site, *attitude)));
+            }
+            Kind::Ship(ship) => ship.accelerations = true,
+        }
+    }
+
+    /// None is any more.
+    pub(crate) fn undisturbed(&mut self) {
+        match &mut self.kind {
+            Kind::Static { adrift, .. } => *adrift = None,
+            Kind::Ship(ship) => ship.accelerations = self.accelerations,
+        }
+    }
+
+    /// Motion at a time after the start of the interval with a displacement.
+    pub(crate) fn displaced(&mut self, offset_s: f64, motion: &Motion) -> CaseMotion {
+        match &mut self.kind {
+            Kind::Ship(ship) => {
+                let six = with(ship.sway.at_offset(offset_s), motion);
+                ship.motion(&six)
+            }
+            Kind::Static { adrift: Some(ship), .. } => {
+                ship.motion(&with(SixDof::default(), motion))
+            }
+            Kind::Static { motion, .. } => *motion,
+        }
+    }
+
+    /// Whereabouts with a displacement.
+    pub(crate) fn whereabouts_displaced(&self, time_s: f64, motion: &Motion) -> Whereabouts {
+        match &self.kind {
+            Kind::Ship(ship) => ship.whereabouts(&with(ship.sway.at_time(time_s), motion)),
+            Kind::Static { adrift: Some(ship), .. } => {
+                ship.whereabouts(&with(SixDof::default(), motion))
+            }
+            Kind::Static { .. } => self.whereabouts(time_s),
+        }
     }
 
     pub(crate) fn is_static(&self) -> bool {
@@ -156,7 +210,35 @@ impl Case {
     }
 }
 
+/// A motion in six degrees of freedom with a displacement added.
+fn with(mut six: SixDof, motion: &Motion) -> SixDof {
+    for axis in 0..3 {
+        for (dof, jet) in [(axis, &motion.turn), (3 + axis, &motion.displacement)] {
+            six[dof].value += jet[0][axis];
+            six[dof].rate += jet[1][axis];
+            six[dof].acceleration += jet[2][axis];
+        }
+    }
+    six
+}
+
 impl Ship {
+    /// A case at rest that can be moved.
+    fn at_rest(site: Site, mean: CaseAttitude) -> Self {
+        let earth = Ellipsoid::at(site.latitude_rad, site.height_m);
+        let calm = Dockside {
+            mean,
+            roll: Vec::new(),
+            pitch: Vec::new(),
+            yaw: Vec::new(),
+            surge: Vec::new(),
+            sway: Vec::new(),
+            heave: Vec::new(),
+            mooring_offset_m: [0.0; 3],
+        };
+        Self::new(&calm, site, &earth, 1.0, &[], true)
+    }
+
     fn new(
         dockside: &Dockside,
         site: Site,
@@ -311,7 +393,7 @@ mod tests {
         ship.mean = CaseAttitude { heading_rad: 0.6, pitch_rad: 0.1, roll_rad: -0.2 };
         let site = Site { latitude_rad: 0.9, longitude_rad: 0.2, height_m: 10.0 };
         let (period_s, h) = (0.1, 1e-3);
-        let mut case = Case::new(&Motion::Dockside(ship), site, period_s, &[0.05], true);
+        let mut case = Case::new(&config::Motion::Dockside(ship), site, period_s, &[0.05], true);
         for k in 0..200 {
             let start_s = f64::from(k) * period_s;
             case.enter(start_s);

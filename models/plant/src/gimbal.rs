@@ -53,9 +53,12 @@ impl Arc {
     }
 }
 
-/// Pieces that a drive profile can have: brake, accelerate, cruise, decelerate. The play of the
-/// gear can cut each in two.
-const SEGMENTS_MAX: usize = 8;
+/// Pieces that a drive profile can have: brake, accelerate, cruise, decelerate; after an overshoot
+/// the last three again. The play of the gear can cut each in two.
+const SEGMENTS_MAX: usize = 14;
+
+/// Longer than any run, s.
+const FOR_GOOD_S: f64 = 1e9;
 
 /// Angle over time as pieces of parabolas, at rest from `end_s` on.
 #[derive(Clone, Copy, Debug)]
@@ -172,6 +175,71 @@ impl Profile {
         profile
     }
 
+    /// To a rate with the given acceleration, and on with it: for good.
+    fn onward(rate: f64, now: AxisState, origin_ns: u64, acceleration: f64) -> Self {
+        let change = rate - now.rate;
+        let pull = acceleration.copysign(change);
+        let duration_s = change.abs() / acceleration;
+        let angle = now.angle + 0.5 * (now.rate + rate) * duration_s;
+        let mut profile = Self::rest(origin_ns, angle);
+        // Never through zero inside a piece.
+        let to_stop_s = -now.rate / pull;
+        if to_stop_s > 0.0 && to_stop_s < duration_s {
+            profile.push(to_stop_s, AxisState { acceleration: pull, ..now });
+            let stopped = now.angle + 0.5 * now.rate * to_stop_s;
+            let on = AxisState { angle: stopped, rate: 0.0, acceleration: pull };
+            profile.push(duration_s - to_stop_s, on);
+        } else {
+            profile.push(duration_s, AxisState { acceleration: pull, ..now });
+        }
+        if rate != 0.0 {
+            profile.push(FOR_GOOD_S, AxisState { angle, rate, acceleration: 0.0 });
+            profile.end_angle = angle + FOR_GOOD_S * rate;
+        }
+        profile
+    }
+
+    /// This profile, but beyond its end by an angle and back.
+    fn overshooting(&self, beyond: f64, rate: f64, acceleration: f64) -> Self {
+        let Some(last) = self.segments[..self.len].last() else { return *self };
+        let start = self.at(0.0);
+        let passed = self.end_angle - beyond.copysign(last.acceleration);
+        let mut profile = Self::to(passed, start, self.origin_ns, rate, acceleration);
+        let top = AxisState { angle: passed, ..AxisState::default() };
+        let back = Self::to(self.end_angle, top, 0, rate, acceleration);
+        for index in 0..back.len {
+            let end_s =
+                if index + 1 < back.len { back.segments[index + 1].start_s } else { back.end_s };
+            let segment = back.segments[index];
+            profile.push(end_s - segment.start_s, segment.at(segment.start_s));
+        }
+        profile.end_angle = self.end_angle;
+        profile
+    }
+
+    /// What is left of the profile from a time on.
+    fn after(&self, now_ns: u64) -> Self {
+        let now_s = self.seconds(now_ns);
+        let mut profile = Self::rest(now_ns, self.end_angle);
+        for index in 0..self.len {
+            let segment = self.segments[index];
+            let next = index + 1;
+            let end_s = if next < self.len { self.segments[next].start_s } else { self.end_s };
+            let from_s = segment.start_s.max(now_s);
+            profile.push(end_s - from_s, segment.at(from_s));
+        }
+        profile
+    }
+
+    /// The same with every angle moved.
+    fn shifted(mut self, angle: f64) -> Self {
+        if angle != 0.0 {
+            self.segments.iter_mut().for_each(|segment| segment.angle += angle);
+            self.end_angle += angle;
+        }
+        self
+    }
+
     /// What a body behind a gear with play ±`half` does when the drive follows this profile: it
     /// stands until the drive has crossed the play, then follows at its edge.
     fn behind_play(&self, mut body: f64, half: f64) -> Self {
@@ -210,6 +278,23 @@ impl Profile {
     }
 }
 
+/// What faults have done to a gimbal.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Harm {
+    /// It doesn't follow set points.
+    pub(crate) held: bool,
+    /// Angle by which moves go too far, rad.
+    pub(crate) overshoot: f64,
+    /// Half of the play that the gear got beside its own, rad.
+    pub(crate) half_play: f64,
+    /// Angle by which the body has slipped against its drive, rad.
+    pub(crate) slipped: f64,
+    /// Of that, what the encoder saw.
+    pub(crate) slipped_seen: f64,
+    /// Angle by which the encoder reads wrongly, rad.
+    pub(crate) encoder: f64,
+}
+
 /// A gimbal with its limits.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Gimbal {
@@ -217,6 +302,7 @@ pub(crate) struct Gimbal {
     acceleration: f64,
     half_play: f64,
     target: i32,
+    pub(crate) harm: Harm,
     /// The drive, which the encoder reads.
     pub(crate) drive: Profile,
     /// The body, which the sensors feel.
@@ -231,6 +317,7 @@ impl Gimbal {
             acceleration: acceleration_radps2,
             half_play: 0.5 * backlash_rad,
             target: 0,
+            harm: Harm::default(),
             drive: Profile::rest(0, 0.0),
             body: Profile::rest(0, 0.0),
         }
@@ -249,11 +336,70 @@ impl Gimbal {
     #[cold]
     fn turn_to(&mut self, target: i32, now_ns: u64) {
         self.target = target;
+        if !self.harm.held {
+            self.go(now_ns);
+        }
+    }
+
+    /// Goes to the set point from where it is.
+    pub(crate) fn go(&mut self, now_ns: u64) {
         let now = self.drive.at(self.drive.seconds(now_ns));
-        let body = self.body.at(self.body.seconds(now_ns)).angle;
-        let target_rad = f64::from(target) * octant_sample::counts::GIMBAL_LSB_RAD;
-        self.drive = Profile::to(target_rad, now, now_ns, self.rate, self.acceleration);
-        self.body = self.drive.behind_play(body, self.half_play);
+        let target_rad = f64::from(self.target) * octant_sample::counts::GIMBAL_LSB_RAD;
+        let mut drive = Profile::to(target_rad, now, now_ns, self.rate, self.acceleration);
+        if self.harm.overshoot > 0.0 {
+            drive = drive.overshooting(self.harm.overshoot, self.rate, self.acceleration);
+        }
+        self.take(drive, now_ns);
+    }
+
+    /// Turns on with a rate, 0: brakes and stands.
+    pub(crate) fn run_on(&mut self, rate_radps: f64, now_ns: u64) {
+        let now = self.drive.at(self.drive.seconds(now_ns));
+        self.take(Profile::onward(rate_radps, now, now_ns, self.acceleration), now_ns);
+    }
+
+    fn take(&mut self, drive: Profile, now_ns: u64) {
+        let body = self.body.at(self.body.seconds(now_ns)).angle - self.harm.slipped;
+        self.drive = drive;
+        self.body = self.drive.behind_play(body, self.play()).shifted(self.harm.slipped);
+    }
+
+    fn play(&self) -> f64 {
+        self.half_play + self.harm.half_play
+    }
+
+    /// The gear's play changes by a fault to ±`half` beside its own. Returns the angle by which
+    /// the body is out of it: the body stays where it is, and has to be brought back.
+    pub(crate) fn change_play(&mut self, half: f64, now_ns: u64) -> f64 {
+        self.harm.half_play = half;
+        let drive = self.drive.at(self.drive.seconds(now_ns)).angle;
+        let body = self.body.at(self.body.seconds(now_ns)).angle - self.harm.slipped;
+        let inside = body.clamp(drive - self.play(), drive + self.play());
+        let out = body - inside;
+        self.harm.slipped += out;
+        let left = self.drive.after(now_ns);
+        self.body = left.behind_play(inside, self.play()).shifted(self.harm.slipped);
+        out
+    }
+
+    /// The body has slipped against its drive.
+    pub(crate) fn slipped(&mut self, angle: f64, seen: bool) {
+        self.harm.slipped += angle;
+        if seen {
+            self.harm.slipped_seen += angle;
+        }
+        self.body = self.body.shifted(angle);
+    }
+
+    /// What the encoder has to read at a time, rad, but for its error curve.
+    pub(crate) fn read(&self, now_ns: u64) -> f64 {
+        let drive = self.drive.at(self.drive.seconds(now_ns)).angle;
+        drive + (self.harm.slipped_seen + self.harm.encoder)
+    }
+
+    /// How long the move goes on, s.
+    pub(crate) fn move_left_s(&self, now_ns: u64) -> f64 {
+        self.drive.end_s - self.drive.seconds(now_ns)
     }
 
     /// Drive and body rest from a time on.

@@ -11,7 +11,7 @@ use crate::config::{Imu, Temperature};
 use crate::increments::Increments;
 use crate::processes::Wander;
 use nalgebra::{Matrix3, Vector3};
-use octant_random::stream::Triad;
+use octant_random::stream::{Ahead, Triad};
 use octant_sample::Status;
 use octant_sample::counts::{Accumulator, DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS};
 
@@ -31,7 +31,7 @@ pub(crate) struct Reading {
 struct Triple {
     lsb: f64,
     sigma_counts: f64,
-    noise: Triad,
+    noise: Ahead,
     wanders: Vec<Wander>,
     /// Range in counts per interval; infinite: that of the format.
     limit_counts: f64,
@@ -43,18 +43,12 @@ struct Triple {
 
 impl Triple {
     #[inline(always)]
-    fn count(
-        &mut self,
-        mut reading: Vector3<f64>,
-        sample: u64,
-        words: &[u64; 4],
-        counts: &mut [i32; 3],
-    ) -> bool {
+    fn count(&mut self, mut reading: Vector3<f64>, sample: u64, counts: &mut [i32; 3]) -> bool {
         for wander in &mut self.wanders {
             reading += Vector3::from(wander.increment(sample)) / self.lsb;
         }
         if self.sigma_counts > 0.0 {
-            let noise = self.noise.of(sample, words);
+            let noise = self.noise.at(sample);
             for axis in 0..3 {
                 reading[axis] += self.sigma_counts * noise[axis];
             }
@@ -105,7 +99,7 @@ pub(crate) struct Sensors {
     gyro_bias: Vector3<f64>,
     accel_matrix: Matrix3<f64>,
     accel_bias: Vector3<f64>,
-    temperature: Option<Temperature>,
+    temperatures: Vec<Warmth>,
     gyro: Triple,
     accelerometer: Triple,
 }
@@ -132,7 +126,7 @@ impl Sensors {
         let triple = |lsb: f64, density: f64, name, wanders, range: f64, quantum: f64| Triple {
             lsb,
             sigma_counts: density * root_dt / lsb,
-            noise: Triad::new(seed, name),
+            noise: Ahead::new(Triad::new(seed, name)),
             wanders,
             limit_counts: if range > 0.0 { range * dt / lsb } else { f64::INFINITY },
             quantum_counts: quantum / lsb,
@@ -146,7 +140,7 @@ impl Sensors {
             gyro_bias: Vector3::from(p.gyro_bias) * dt / rad,
             accel_matrix: (Matrix3::identity() + rows(p.accel_matrix())) / mps,
             accel_bias: Vector3::from(p.accel_bias) * dt / mps,
-            temperature: e.temperature,
+            temperatures: e.temperature.into_iter().map(|t| Warmth::from(None, 0, t)).collect(),
             gyro: triple(
                 rad,
                 imu.angle_random_walk,
@@ -194,24 +188,90 @@ impl Sensors {
         delta_velocity: &mut [i32; 3],
     ) -> Status {
         let (mut gyro, mut accelerometer) = (reading.gyro, reading.accelerometer);
-        if let Some(temperature) = &self.temperature {
-            let start_s = start_ns as f64 * 1e-9;
-            let warm = warm(temperature, increments, start_s, self.dt);
+        if !self.temperatures.is_empty() {
+            let warm = self.warm(increments, start_ns);
             (gyro, accelerometer) = (gyro + warm.gyro, accelerometer + warm.accelerometer);
         }
-        // Both blocks before either is used: their chains of multiplications overlap.
-        let gyro_words = self.gyro.noise.words(sample);
-        let accelerometer_words = self.accelerometer.noise.words(sample);
         let mut status = Status::empty();
-        if self.gyro.count(gyro, sample, &gyro_words, delta_theta) {
+        if self.gyro.count(gyro, sample, delta_theta) {
             status |= Status::GYRO_SATURATED;
         }
-        let words = &accelerometer_words;
-        if self.accelerometer.count(accelerometer, sample, words, delta_velocity) {
+        if self.accelerometer.count(accelerometer, sample, delta_velocity) {
             status |= Status::ACCELEROMETER_SATURATED;
         }
         status
     }
+
+    /// What temperatures add to a reading. Those that have returned are forgotten.
+    #[inline(never)]
+    fn warm(&mut self, increments: &Increments, start_ns: u64) -> Reading {
+        let mut sum = Reading::default();
+        for warmth in &self.temperatures {
+            let change = warmth.mean_change_k(start_ns, self.dt);
+            let warm = warm(&warmth.temperature, change, increments, self.dt);
+            sum.gyro += warm.gyro;
+            sum.accelerometer += warm.accelerometer;
+        }
+        self.temperatures.retain(|warmth| !warmth.is_over(start_ns));
+        sum
+    }
+
+    /// A fault changes the temperature.
+    pub(crate) fn heat(&mut self, handle: u32, temperature: Temperature, now_ns: u64) {
+        if temperature.ramp_kps * temperature.plateau_k > 0.0 {
+            self.temperatures.push(Warmth::from(Some(handle), now_ns, temperature));
+        }
+    }
+
+    /// The fault has ended.
+    pub(crate) fn cool(&mut self, handle: u32, now_ns: u64) {
+        for warmth in &mut self.temperatures {
+            if warmth.handle == Some(handle) && warmth.returns.is_none() {
+                let since_s = (now_ns - warmth.from_ns) as f64 * 1e-9;
+                let risen = change_k(&warmth.temperature, since_s);
+                warmth.returns = Some((now_ns, risen));
+            }
+        }
+    }
+}
+
+/// A change of temperature: the configured one, or that of a fault.
+#[derive(Clone, Copy, Debug)]
+struct Warmth {
+    handle: Option<u32>,
+    from_ns: u64,
+    /// When its fault ended, and the change at that time, K.
+    returns: Option<(u64, f64)>,
+    temperature: Temperature,
+}
+
+impl Warmth {
+    fn from(handle: Option<u32>, from_ns: u64, temperature: Temperature) -> Self {
+        Self { handle, from_ns, returns: None, temperature }
+    }
+
+    /// Mean change over an interval, K.
+    fn mean_change_k(&self, start_ns: u64, dt: f64) -> f64 {
+        let Some((ended_ns, risen_k)) = self.returns else {
+            let start_s = (start_ns - self.from_ns) as f64 * 1e-9;
+            return mean_change_k(&self.temperature, start_s, dt);
+        };
+        let way_back = Temperature { plateau_k: risen_k, ..self.temperature };
+        risen_k - mean_change_k(&way_back, (start_ns - ended_ns) as f64 * 1e-9, dt)
+    }
+
+    fn is_over(&self, now_ns: u64) -> bool {
+        self.returns.is_some_and(|(ended_ns, risen_k)| {
+            (now_ns - ended_ns) as f64 * 1e-9 >= risen_k / self.temperature.ramp_kps
+        })
+    }
+}
+
+/// Temperature change at a time after the onset, K.
+fn change_k(temperature: &Temperature, time_s: f64) -> f64 {
+    let plateau = temperature.plateau_k;
+    let risen = temperature.ramp_kps * time_s;
+    if risen.abs() < plateau.abs() { risen } else { plateau }
 }
 
 /// Mean temperature change over an interval, K: a ramp from 0 that ends at a plateau.
@@ -225,9 +285,8 @@ fn mean_change_k(temperature: &Temperature, start_s: f64, dt: f64) -> f64 {
     (on_ramp + temperature.plateau_k * (dt - rising)) / dt
 }
 
-#[inline(never)]
-fn warm(temperature: &Temperature, increments: &Increments, start_s: f64, dt: f64) -> Reading {
-    let change = mean_change_k(temperature, start_s, dt);
+/// What a change of temperature adds to a reading.
+fn warm(temperature: &Temperature, change: f64, increments: &Increments, dt: f64) -> Reading {
     let mut reading = Reading::default();
     for axis in 0..3 {
         reading.gyro[axis] = change

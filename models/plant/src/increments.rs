@@ -6,6 +6,7 @@
 
 use crate::case::{Case, Node};
 use crate::config::{Config, Motion, Vibration};
+use crate::disturbed::{Active, Registry};
 use crate::gimbal::{Arc, Gimbal};
 use crate::trig::{Near, rx_t, ry_t, rz_t};
 use crate::vibration::shaken;
@@ -15,13 +16,13 @@ use std::collections::VecDeque;
 
 /// Nodes of the three-point rule on (−1, 1): 0 and ±√(3/5).
 const GAUSS_NODE: f64 = 0.774_596_669_241_483_4;
-const GAUSS: [(f64, f64); 3] =
+pub(crate) const GAUSS: [(f64, f64); 3] =
     [(-GAUSS_NODE, 5.0 / 18.0), (0.0, 8.0 / 18.0), (GAUSS_NODE, 5.0 / 18.0)];
 
 /// Longest piece, s.
 const PIECE_MAX_S: f64 = 0.01;
 /// Pieces shorter than this are rounding, s.
-const PIECE_MIN_S: f64 = 1e-12;
+pub(crate) const PIECE_MIN_S: f64 = 1e-12;
 /// Both gimbals' knots, with the ends and the time skew's cut.
 const CUTS_MAX: usize = 24;
 
@@ -66,20 +67,26 @@ struct Turn {
 #[derive(Clone, Debug)]
 pub(crate) struct Body {
     period_ns: u64,
-    period_s: f64,
-    piece_s: f64,
+    pub(crate) period_s: f64,
+    pub(crate) piece_s: f64,
     nodes: Vec<(f64, f64)>,
     pub(crate) case: Case,
     pub(crate) azimuth: Gimbal,
     pub(crate) roll: Gimbal,
     azimuth_near: Near,
     roll_near: Near,
-    tilt_sincos: (f64, f64),
-    vibration: Option<Vibration>,
-    lever_arm: Option<[Vector3<f64>; 3]>,
-    rate_at_end: Vector3<f64>,
+    pub(crate) tilt_sincos: (f64, f64),
+    pub(crate) vibration: Option<Vibration>,
+    pub(crate) lever_arm: Option<[Vector3<f64>; 3]>,
+    /// The lever arms without those of faults.
+    pub(crate) own_lever_arm: Option<[Vector3<f64>; 3]>,
+    pub(crate) rate_at_end: Vector3<f64>,
     lag: Option<Lag>,
     constant: bool,
+    /// Faults that have not ended.
+    pub(crate) registry: Registry,
+    /// What faults move at present.
+    pub(crate) active: Option<Box<Active>>,
 }
 
 impl Body {
@@ -122,9 +129,12 @@ impl Body {
             tilt_sincos: libm::sincos(table.non_orthogonality_rad),
             vibration: extensions.vibration,
             lever_arm,
+            own_lever_arm: lever_arm,
             rate_at_end: Vector3::zeros(),
             lag: None,
             constant,
+            registry: Registry::default(),
+            active: None,
         };
         if extensions.time_skew_s > 0.0 {
             body.fill_lag(extensions.time_skew_s);
@@ -172,17 +182,27 @@ impl Body {
     pub(crate) fn command(&mut self, command: &GimbalCommand, now_ns: u64) -> bool {
         let azimuth = self.azimuth.command(command.target.azimuth, now_ns);
         let roll = self.roll.command(command.target.roll, now_ns);
-        azimuth || roll
+        let any = azimuth || roll;
+        if any && (self.active.is_some() || !self.registry.is_empty()) {
+            self.set_out([azimuth, roll], now_ns);
+        }
+        any
     }
 
     /// The increments of every interval from `start_ns` on are the same until a new command.
     #[inline]
     pub(crate) fn is_constant(&self, start_ns: u64) -> bool {
-        self.constant && self.azimuth.rests(start_ns) && self.roll.rests(start_ns)
+        self.constant
+            && self.azimuth.rests(start_ns)
+            && self.roll.rests(start_ns)
+            && self.active.is_none()
     }
 
     /// The increments of the sample whose interval starts at `start_ns`.
     pub(crate) fn increments(&mut self, start_ns: u64) -> Increments {
+        if self.active.is_some() {
+            self.settle(start_ns);
+        }
         let start_s = start_ns as f64 * 1e-9;
         self.case.enter(start_s);
         let Some(cut_s) = self.lag.as_ref().map(|lag| lag.cut_s) else {
@@ -207,6 +227,9 @@ impl Body {
         let mut sum = Increments::default();
         if to_s - from_s < PIECE_MIN_S {
             return sum;
+        }
+        if self.active.is_some() {
+            return self.integrate_disturbed(start_ns, from_s, to_s);
         }
         let mut cuts = [to_s; CUTS_MAX];
         cuts[0] = from_s;
@@ -347,7 +370,9 @@ impl Body {
 
     /// True gimbal angles (azimuth, roll) at a stamp, rad.
     pub(crate) fn gimbal_rad(&self, at_ns: u64) -> [f64; 2] {
-        [&self.azimuth, &self.roll].map(|gimbal| gimbal.body.at(gimbal.body.seconds(at_ns)).angle)
+        let [azimuth, roll] = [&self.azimuth, &self.roll]
+            .map(|gimbal| gimbal.body.at(gimbal.body.seconds(at_ns)).angle);
+        [azimuth + self.beside(0, at_ns), roll + self.beside(1, at_ns)]
     }
 
     pub(crate) fn period_ns(&self) -> u64 {

@@ -15,6 +15,7 @@
 
 mod case;
 pub mod config;
+mod disturbed;
 pub mod draw;
 mod encoder;
 mod gimbal;

@@ -1,15 +1,17 @@
 //! The plant, stepped one sample at a time.
 
-use crate::config::Config;
+use crate::config::{Config, Temperature};
+use crate::disturbed::Motion;
 use crate::encoder::ErrorCurve;
 use crate::imu::{Reading, Sensors};
 use crate::increments::{Body, Increments};
 use crate::reference::Aider;
-
 use crate::validate::{ConfigError, validate};
-use nalgebra::Quaternion;
+use nalgebra::{Quaternion, UnitQuaternion, Vector3};
+use octant_earth::ellipsoid::Ellipsoid;
+use octant_faults::disturbance::{Disturbance, Disturbed, Motor};
 use octant_sample::time::SimulatedTime;
-use octant_sample::{Aiding, DeviceTime, GimbalAngles, GimbalCommand, Sample, Truth};
+use octant_sample::{Aiding, DeviceTime, GimbalAngles, GimbalCommand, Sample, Status, Truth};
 
 /// What one step gives.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -46,6 +48,8 @@ pub struct Plant {
     angles: GimbalAngles,
     /// Whether the drives of azimuth and roll rest, and their angles are read.
     resting: [bool; 2],
+    /// Flags of the encoders.
+    flags: Status,
 }
 
 impl Plant {
@@ -76,6 +80,7 @@ impl Plant {
             is_still: false,
             angles: GimbalAngles::default(),
             resting: [false; 2],
+            flags: Status::empty(),
         })
     }
 
@@ -127,7 +132,7 @@ impl Plant {
         sample.sequence = self.sequence;
         sample.device_time = DeviceTime::from_ns(self.time_ns);
         sample.gimbal = self.angles;
-        sample.status = status;
+        sample.status = status | self.flags;
         self.until_aiding -= 1;
         *aiding = if self.until_aiding == 0 { self.aid(sample.device_time, number) } else { None };
 
@@ -149,10 +154,15 @@ impl Plant {
         let mut read = [self.angles.azimuth, self.angles.roll];
         for (axis, gimbal) in [&self.body.azimuth, &self.body.roll].into_iter().enumerate() {
             if !self.resting[axis] {
-                let angle = gimbal.drive.at(gimbal.drive.seconds(self.time_ns)).angle;
+                let mut angle = gimbal.read(self.time_ns);
+                let mut turns = false;
+                if let Some(active) = &self.body.active {
+                    angle += active.seen(axis, self.time_ns);
+                    turns = active.turns(axis);
+                }
                 let measured = angle + self.encoders[axis].at(angle);
                 read[axis] = GimbalAngles::from_rad(measured, 0.0).azimuth;
-                self.resting[axis] = gimbal.rests(self.time_ns);
+                self.resting[axis] = gimbal.rests(self.time_ns) && !turns;
             }
         }
         self.angles = GimbalAngles { azimuth: read[0], roll: read[1] };
@@ -162,18 +172,14 @@ impl Plant {
     fn aid(&mut self, device_time: DeviceTime, sample: u64) -> Option<Aiding> {
         self.until_aiding = self.aider.period_samples();
         (self.sequence <= self.calibration_samples).then(|| {
-            self.aider.measure(device_time, sample, || self.body.case.whereabouts(self.seconds()))
+            self.aider.measure(device_time, sample, || self.body.whereabouts(self.time_ns))
         })
-    }
-
-    fn seconds(&self) -> f64 {
-        self.time_ns as f64 * 1e-9
     }
 
     /// Truth at the stamp of the last step; before the first, at time 0.
     #[must_use]
     pub fn truth(&self) -> Truth {
-        let at = self.body.case.whereabouts(self.seconds());
+        let at = self.body.whereabouts(self.time_ns);
         let gimbal_rad = self.body.gimbal_rad(self.time_ns);
         let about = |angle_rad: f64, axis: usize| {
             let (s, c) = libm::sincos(0.5 * angle_rad);
@@ -187,7 +193,7 @@ impl Plant {
             * about(gimbal_rad[1], 1)
             * about(self.non_orthogonality_rad, 2)
             * about(gimbal_rad[0], 3);
-        Truth {
+        let truth = Truth {
             time: SimulatedTime::from_ns(self.time_ns),
             latitude_rad: at.latitude_rad,
             longitude_rad: at.longitude_rad,
@@ -195,6 +201,10 @@ impl Plant {
             velocity_mps: at.velocity_mps.into(),
             q_nb: [q.w, q.i, q.j, q.k],
             gimbal_rad,
+        };
+        match self.body.block(self.time_ns) {
+            None => truth,
+            Some((motion, rate)) => displaced(truth, &motion, &rate),
         }
     }
 
@@ -202,5 +212,77 @@ impl Plant {
     #[must_use]
     pub fn saturated_samples(&self) -> u64 {
         self.saturated_samples
+    }
+}
+
+/// Truth of a sensor block that faults have displaced against the gimballed body, whose angular
+/// rate `rate` is, in b.
+fn displaced(truth: Truth, motion: &Motion, rate: &Vector3<f64>) -> Truth {
+    let [w, x, y, z] = truth.q_nb;
+    let c_nb = UnitQuaternion::new_unchecked(Quaternion::new(w, x, y, z));
+    let earth = Ellipsoid::at(truth.latitude_rad, truth.height_m);
+    let over_ground = rate - c_nb.inverse() * earth.earth_rate();
+    let [r, r_rate, _] = motion.displacement;
+    let aside = c_nb * r;
+    let velocity = Vector3::from(truth.velocity_mps) + c_nb * (r_rate + over_ground.cross(&r));
+    let north_rad = aside.x / earth.meridian_radius_m;
+    let east_rad = aside.y / earth.transverse_radius_m;
+    let per_cos = 1.0 / earth.cos_latitude;
+    // North and down are those of the place to which it is displaced.
+    let turn = Vector3::new(east_rad, -north_rad, -east_rad * earth.sin_latitude * per_cos);
+    let q = octant_earth::rotation::exp(&-turn) * c_nb * motion.rotation();
+    Truth {
+        latitude_rad: truth.latitude_rad + north_rad,
+        longitude_rad: truth.longitude_rad + east_rad * per_cos,
+        height_m: truth.height_m - aside.z,
+        velocity_mps: velocity.into(),
+        q_nb: [q.w, q.i, q.j, q.k],
+        ..truth
+    }
+}
+
+impl Disturbed for Plant {
+    fn motor(&self) -> Motor {
+        self.body.motor(self.time_ns)
+    }
+
+    fn begin(&mut self, handle: u32, disturbance: &Disturbance) {
+        if let Disturbance::Temperature {
+            ramp_kps,
+            plateau_k,
+            gyro_bias_per_k,
+            accel_bias_per_k,
+            gyro_scale_per_k,
+            accel_scale_per_k,
+        } = *disturbance
+        {
+            let temperature = Temperature {
+                ramp_kps,
+                plateau_k,
+                gyro_bias_per_k,
+                accel_bias_per_k,
+                gyro_scale_per_k,
+                accel_scale_per_k,
+            };
+            self.sensors.heat(handle, temperature, self.time_ns);
+        }
+        self.body.disturb(handle, disturbance, self.time_ns);
+        self.look_again();
+    }
+
+    fn end(&mut self, handle: u32) {
+        self.sensors.cool(handle, self.time_ns);
+        self.body.calm(handle, self.time_ns);
+        self.look_again();
+    }
+}
+
+impl Plant {
+    /// What was known of samples to come is not any more.
+    fn look_again(&mut self) {
+        self.is_still = false;
+        self.resting = [false; 2];
+        let flagged = self.body.registry.flags_gimbal();
+        self.flags = if flagged { Status::GIMBAL_INVALID } else { Status::empty() };
     }
 }

@@ -5,7 +5,23 @@
 //! ω' = Exp(−θ) ω + θ̇ and f' = Exp(−θ) (f + r̈ + 2 ω × ṙ + ω̇ × r + ω × (ω × r)).
 
 use crate::config::Vibration;
+use crate::disturbed::Motion;
 use nalgebra::Vector3;
+
+/// The vibration as a motion, to be added to others.
+pub(crate) fn motion(vibration: &Vibration, time_s: f64) -> Motion {
+    let cycles = time_s * vibration.frequency_hz;
+    let turn = 2.0 * core::f64::consts::PI * (cycles - libm::floor(cycles));
+    let omega = 2.0 * core::f64::consts::PI * vibration.frequency_hz;
+    let sine = |amplitude: [f64; 3], phase: f64| {
+        let (s, c) = libm::sincos(phase);
+        [s, omega * c, -omega * omega * s].map(|x| Vector3::from(amplitude) * x)
+    };
+    Motion {
+        displacement: sine(vibration.displacement_m, turn),
+        turn: sine(vibration.angle_rad, turn + vibration.phase_rad),
+    }
+}
 
 /// Rate and specific force in the axes of the sensor block.
 #[inline]

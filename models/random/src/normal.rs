@@ -63,12 +63,7 @@ impl Ziggurat {
     /// Three independent standard normals of one counter.
     #[inline(always)]
     pub fn three(&self, key: Key, counter: u64) -> [f64; 3] {
-        self.three_of(key, counter, &words(key, counter))
-    }
-
-    /// The same from the block of the counter, for callers that have several blocks in flight.
-    #[inline(always)]
-    pub fn three_of(&self, key: Key, counter: u64, words: &[u64; 4]) -> [f64; 3] {
+        let words = words(key, counter);
         [
             self.one(key, counter, 0, words[0]),
             self.one(key, counter, 1, words[1]),
@@ -124,6 +119,7 @@ impl Ziggurat {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::vec::Vec;
 
     const N: u64 = 1_000_000;
 

@@ -2,7 +2,7 @@
 //! counter is the sample number in the phase: adding a stream, or lengthening the calibration,
 //! moves no number of any other.
 
-use crate::normal::{self, Ziggurat};
+use crate::normal::Ziggurat;
 use crate::philox::Key;
 
 /// The part of a run that a stream counts in.
@@ -67,27 +67,76 @@ impl Triad {
         self.ziggurat.three(self.current, sample)
     }
 
-    /// The random words of a sample of the present phase.
-    #[inline(always)]
-    pub fn words(&self, sample: u64) -> [u64; 4] {
-        normal::words(self.current, sample)
-    }
-
-    /// The numbers of a sample of the present phase, from its words.
-    #[inline(always)]
-    pub fn of(&self, sample: u64, words: &[u64; 4]) -> [f64; 3] {
-        self.ziggurat.three_of(self.current, sample, words)
-    }
-
     /// The numbers drawn once, for an initial state.
     pub fn initial(&self) -> [f64; 3] {
         self.ziggurat.three(self.initial, 0)
     }
 }
 
+/// Samples whose numbers are made at once.
+const AHEAD: usize = 64;
+/// No sample has this number.
+const NO_SAMPLE: u64 = 1 << 63;
+
+/// A [`Triad`] whose numbers are made ahead, many samples at a time: their long chains of
+/// multiplications then overlap with each other and not with what a sample is used for.
+#[derive(Clone, Debug)]
+pub struct Ahead {
+    triad: Triad,
+    /// Sample of the first numbers.
+    first: u64,
+    numbers: [[f64; 3]; AHEAD],
+}
+
+impl Ahead {
+    /// Nothing is made yet.
+    #[must_use]
+    pub fn new(triad: Triad) -> Self {
+        Self { triad, first: NO_SAMPLE, numbers: [[0.0; 3]; AHEAD] }
+    }
+
+    /// From here on the numbers are those of navigation.
+    pub fn navigate(&mut self) {
+        self.triad.navigate();
+        self.first = NO_SAMPLE;
+    }
+
+    /// The numbers of a sample of the present phase.
+    #[inline(always)]
+    pub fn at(&mut self, sample: u64) -> [f64; 3] {
+        if sample.wrapping_sub(self.first) >= AHEAD as u64 {
+            self.fill(sample);
+        }
+        self.numbers[sample.wrapping_sub(self.first) as usize % AHEAD]
+    }
+
+    #[inline(never)]
+    fn fill(&mut self, first: u64) {
+        self.first = first;
+        for (sample, numbers) in (first..).zip(&mut self.numbers) {
+            *numbers = self.triad.at(sample);
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn numbers_made_ahead_are_the_same() {
+        let mut triad = Triad::new(3, "gyro.noise");
+        let mut ahead = Ahead::new(triad.clone());
+        let samples = (0..200).chain([1000, 7, 8]);
+        for sample in samples.clone() {
+            assert_eq!(ahead.at(sample), triad.at(sample));
+        }
+        triad.navigate();
+        ahead.navigate();
+        for sample in samples {
+            assert_eq!(ahead.at(sample), triad.at(sample));
+        }
+    }
 
     #[test]
     fn keys_differ_in_seed_name_and_phase() {

@@ -3,13 +3,18 @@
 //! Checking, defaults, error messages, the JSON Schema and the test of the tour all read it.
 
 mod calibration;
+mod faults;
 mod instrument;
 mod run;
 mod source;
 
 use super::quantity::Dimension;
 
+pub(crate) use faults::{dimension, kind_section};
 pub(crate) use run::{POSITIONS, SCENARIO};
+
+use super::document::{Table, Value};
+use super::error::{Problem, nearest, suggestion};
 
 /// The version of the format that this program reads.
 pub const SCHEMA: i64 = 1;
@@ -61,13 +66,25 @@ pub(crate) enum Kind {
     Quantity(&'static [Dimension], Bounds),
     /// So many quantities.
     Quantities(Dimension, usize),
+    /// A quantity for each of x, y, z, all of the same one of these dimensions.
+    Vector(&'static [Dimension]),
     /// A quantity of any dimension, or a plain number.
     Limit,
+    /// An array of times of the run.
+    Times,
+    /// A signal, above or below, and a value: `"nis above 25"`.
+    Condition,
+    /// Channels of the sensors: a name, or an array of names.
+    Channels,
     /// A column of a text file: its number from 1, or its name in the header.
     Column,
     Table(&'static Section),
     /// An array of tables: at least so many, at most so many.
     Tables(&'static Section, usize, usize),
+    /// A table whose keys depend on what is in it.
+    Variants(&'static Variants),
+    /// An array of such tables, at most so many.
+    VariantTables(&'static Variants, usize),
     /// One of these, told apart by the kind of TOML value.
     Either(&'static [Kind]),
     /// A key that is known and not possible in this version, with the reason.
@@ -89,6 +106,7 @@ impl Kind {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Bounds {
     Any,
+    NotZero,
     Positive,
     NotNegative,
     /// From, to, and how the user reads it.
@@ -100,6 +118,7 @@ impl Bounds {
         value.is_finite()
             && match self {
                 Self::Any => true,
+                Self::NotZero => value != 0.0,
                 Self::Positive => value > 0.0,
                 Self::NotNegative => value >= 0.0,
                 Self::Within(from, to, _) => (from..=to).contains(&value),
@@ -110,6 +129,7 @@ impl Bounds {
     pub(crate) fn words(self) -> &'static str {
         match self {
             Self::Any => "that is finite",
+            Self::NotZero => "other than 0: with 0 nothing would happen",
             Self::Positive => "above 0",
             Self::NotNegative => "of 0 or more",
             Self::Within(_, _, words) => words,
@@ -133,6 +153,98 @@ impl Section {
     pub(crate) fn names(&self) -> impl Iterator<Item = &'static str> + Clone {
         let possible = |key: &&Key| !matches!(key.kind, Kind::Refused(_));
         self.keys.iter().filter(possible).map(|key| key.name)
+    }
+}
+
+/// What tells the forms of a table apart.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Tag {
+    /// The text under this key.
+    Value(&'static str),
+    /// The key itself: exactly one of the names is a key of the table. The table is called so in
+    /// messages.
+    Key(&'static str),
+}
+
+/// The forms of a table.
+#[derive(Debug)]
+pub(crate) struct Variants {
+    pub(crate) tag: Tag,
+    /// Name and keys of each form.
+    pub(crate) forms: fn() -> &'static [(&'static str, &'static Section)],
+}
+
+impl Variants {
+    pub(crate) fn names(&self) -> impl Iterator<Item = &'static str> + Clone {
+        (self.forms)().iter().map(|(name, _)| *name)
+    }
+
+    fn form(&self, name: &str) -> Option<&'static Section> {
+        (self.forms)().iter().find(|(known, _)| *known == name).map(|(_, section)| *section)
+    }
+
+    /// The keys of a table, by what is in it.
+    pub(crate) fn section(&self, table: &Table) -> Option<&'static Section> {
+        match self.tag {
+            Tag::Value(key) => match &table.get(key)?.value {
+                Value::Text(name) => self.form(name),
+                _ => None,
+            },
+            Tag::Key(_) => {
+                let mut given = table.entries.iter().filter_map(|entry| self.form(&entry.key));
+                given.next().filter(|_| given.next().is_none())
+            }
+        }
+    }
+
+    /// Why a table has no form.
+    pub(crate) fn problem(&self, table: &Table, path: &str, place: &super::Place) -> Problem {
+        let problem = |place: &super::Place, path: String, message: String| Problem {
+            place: place.clone(),
+            path,
+            message,
+        };
+        match self.tag {
+            Tag::Value(key) => {
+                let path = super::complete::join(path, key);
+                let Some(node) = table.get(key) else {
+                    let names = self.names().collect::<Vec<_>>().join(", ");
+                    return problem(place, path, format!("missing, expected one of {names}"));
+                };
+                let found = node.value.describe();
+                let text = if let Value::Text(text) = &node.value { text } else { "" };
+                let known = suggestion(text, self.names(), "possible");
+                problem(&node.place, path, format!("found {found}, {known}"))
+            }
+            Tag::Key(what) => {
+                let names = self.names().collect::<Vec<_>>().join(", ");
+                let given: Vec<&str> = (table.entries.iter())
+                    .filter(|entry| self.form(&entry.key).is_some())
+                    .map(|entry| entry.key.as_str())
+                    .collect();
+                if given.len() > 1 {
+                    let message =
+                        format!("found {}, expected exactly one of {names}", given.join(" and "));
+                    return problem(place, path.to_owned(), message);
+                }
+                let typo = table.entries.iter().find_map(|entry| {
+                    let name = nearest(&entry.key, self.names())?;
+                    Some((entry, name))
+                });
+                match typo {
+                    Some((entry, name)) => problem(
+                        &entry.place,
+                        super::complete::join(path, &entry.key),
+                        format!("unknown key, did you mean \"{name}\"? {what}: one of {names}"),
+                    ),
+                    None => problem(
+                        place,
+                        path.to_owned(),
+                        format!("found no {what}, expected exactly one of {names}"),
+                    ),
+                }
+            }
+        }
     }
 }
 

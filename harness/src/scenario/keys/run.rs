@@ -1,7 +1,8 @@
 //! The root, the site, the motion, and what is done with the results.
 
 use super::{
-    Bounds, Default, Key, Kind, SCHEMA, Section, calibration, instrument, key, section, source,
+    Bounds, Default, Key, Kind, SCHEMA, Section, calibration, faults, instrument, key, section,
+    source,
 };
 use crate::scenario::quantity::Dimension;
 use octant_calibration::positions::SEQUENCES;
@@ -51,9 +52,11 @@ pub(crate) static SCENARIO: Section = section(&[
     ),
     key(
         "faults",
-        Kind::Refused("fault injection is not part of this version: take the faults out"),
-        Default::Absent("none"),
-        "Faults.",
+        Kind::VariantTables(&faults::FAULT, 1000),
+        Default::Absent("no fault is injected"),
+        "Faults that are injected on the way from the instrument to the core, in the order in which \
+         they act. Beside the keys that all have there are those of the kind: `octant faults list` \
+         names all kinds, `octant faults describe KIND` tells what one does and takes.",
     ),
     key("record", Kind::Table(&RECORD), Default::Section, "What is recorded, and how often."),
     key("source", Kind::Table(&source::SOURCE), Default::Section, "Where the samples come from."),

@@ -1,6 +1,7 @@
 //! From a checked and completed document to a [`Scenario`]: units are gone, what depends on several
 //! keys is decided here, and contradictions are told.
 
+pub(crate) mod faults;
 mod instrument;
 mod procedure;
 mod requirement;
@@ -50,6 +51,12 @@ impl<'a> Reader<'a> {
     /// Whether the scenario itself gives the key, not its default.
     pub(super) fn given(&self, key: &str) -> bool {
         self.table.get(key).is_some_and(|node| node.place != Place::Default)
+    }
+
+    /// The key that was written first.
+    pub(super) fn first_key(&self) -> &'a str {
+        let given = |entry: &&super::document::Entry| entry.node.place != Place::Default;
+        self.table.entries.iter().find(given).map_or("", |entry| &entry.key)
     }
 
     fn missing(&self, key: &str) -> Problem {
@@ -199,6 +206,7 @@ pub(super) fn scenario(document: Table, folder: &Path) -> Result<Scenario, Probl
         aiding: procedure.aiding,
         navigation: procedure.navigation,
         screening,
+        faults: Vec::new(),
         requirements: requirement::read(&root)?,
         record: record(&root.table("record")?, sample_period_ns)?,
         source,
@@ -206,7 +214,8 @@ pub(super) fn scenario(document: Table, folder: &Path) -> Result<Scenario, Probl
         folder: folder.to_owned(),
         document: Table::default(),
     };
-    Ok(Scenario { document, ..scenario })
+    let faults = faults::read(&root, &scenario)?;
+    Ok(Scenario { document, faults, ..scenario })
 }
 
 fn check_endpoint(endpoint: &Reader<'_>) -> Result<(), Problem> {

@@ -10,9 +10,9 @@
 //! attitude is opened along it (one direction, not three), and the measurements decide.
 
 use super::estimation::Estimation;
-use super::{Core, kalman_of};
+use super::{Core, increments, kalman_of};
 use crate::config::{Base, BaseMotion};
-use crate::screen::{ACCELEROMETERS, Examined, GYROS, Lanes, lanes};
+use crate::screen::{ACCELEROMETERS, Counts, Examined, GYROS};
 use nalgebra::{Matrix3, Vector3};
 use octant_sample::counts::{DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS};
 use octant_sample::parameters::Group;
@@ -59,12 +59,9 @@ struct Increments {
 }
 
 impl Increments {
-    fn of(lanes: &Lanes) -> Self {
-        let [a, b, c, d, e, f, ..] = lanes.map(f64::from);
-        Self {
-            delta_theta: Vector3::new(a, b, c) * DELTA_THETA_LSB_RAD,
-            delta_velocity: Vector3::new(d, e, f) * DELTA_VELOCITY_LSB_MPS,
-        }
+    fn of(&[x, y, z, u, v, w]: &Counts) -> Self {
+        let (delta_theta, delta_velocity) = increments([x, y, z], [u, v, w]);
+        Self { delta_theta, delta_velocity }
     }
 
     fn counts(&self) -> [f64; 6] {
@@ -72,6 +69,11 @@ impl Increments {
             (self.delta_theta / DELTA_THETA_LSB_RAD, self.delta_velocity / DELTA_VELOCITY_LSB_MPS);
         [g.x, g.y, g.z, a.x, a.y, a.z]
     }
+}
+
+fn counts_of(sample: &Sample) -> Counts {
+    let ([x, y, z], [u, v, w]) = (sample.delta_theta, sample.delta_velocity);
+    [x, y, z, u, v, w]
 }
 
 /// Rotation of the body in its own axes when the gimbals turn from one reading to another.
@@ -141,20 +143,15 @@ impl Core {
     /// A sample that isn't plainly good.
     #[cold]
     #[inline(never)]
-    pub(super) fn doubt(
-        &mut self,
-        sample: &Sample,
-        lanes: &Lanes,
-        interval_s: f64,
-        health: &mut Health,
-    ) {
+    pub(super) fn doubt(&mut self, sample: &Sample, interval_s: f64, health: &mut Health) {
+        let counts = counts_of(sample);
         let standing = !self.gimbals_may_move();
         let still = self.knows_its_motion();
         let turn = self.gimbals_turned(sample, standing);
         let (theta, v) = self.known_motion(&turn, interval_s);
         let known = still.then(|| measured(&self.parameters, &theta, &v, interval_s));
-        let counts = known.map(|known| known.counts());
-        let found = self.screen.examine(lanes, !standing, counts.as_ref(), self.tick);
+        let known_counts = known.map(|known| known.counts());
+        let found = self.screen.examine(&counts, !standing, known_counts.as_ref(), self.tick);
         self.note_runs();
         if found.jumped | found.expired != 0 {
             *health |= Health::JUMP;
@@ -165,7 +162,7 @@ impl Core {
             health.set(Health::ACCELEROMETER_STUCK, found.stuck & ACCELEROMETERS != 0);
         }
 
-        let mut taken = Increments::of(lanes);
+        let mut taken = Increments::of(&counts);
         let mut channels = 0;
         if self.config.screening.bridging {
             channels = self.channels_to_bridge(sample, &found);
@@ -208,7 +205,7 @@ impl Core {
     /// Out of line: the integration itself belongs to where good samples are.
     #[inline(never)]
     fn integrate_bridged(&mut self, taken: &Increments, interval_s: f64) {
-        self.integrate(&(taken.delta_theta, taken.delta_velocity), interval_s);
+        self.navigate(&taken.delta_theta, &taken.delta_velocity, interval_s);
     }
 
     fn channels_to_bridge(&self, sample: &Sample, found: &Examined) -> u8 {
@@ -274,7 +271,7 @@ impl Core {
         standing: bool,
         interval_s: f64,
     ) {
-        let raw = Increments::of(&lanes(sample));
+        let raw = Increments::of(&counts_of(sample));
         for channel in 0..6 {
             if channels & (1 << channel) == 0 {
                 continue;
@@ -455,7 +452,7 @@ impl Core {
 
     /// Encoder angles at the start of this sample's interval, by the turn that the gyros felt in it.
     fn before(&self, sample: &Sample) -> GimbalAngles {
-        let raw = Increments::of(&lanes(sample));
+        let raw = Increments::of(&counts_of(sample));
         let (earth, _) = self.known_motion(&Vector3::zeros(), self.sample_s);
         let turn = raw.delta_theta - earth;
         let (sin, cos) = libm::sincos(sample.gimbal.azimuth_rad());

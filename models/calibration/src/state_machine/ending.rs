@@ -22,6 +22,10 @@ impl Core {
         self.output(Health::empty(), f64::NAN)
     }
 
+    /// Out of the way: the copies that an adjustment makes would give every step a frame of a
+    /// hundred kilobytes, each page of which is touched on entry.
+    #[cold]
+    #[inline(never)]
     pub(super) fn finish_calibration(&mut self, at: DeviceTime) {
         match self.conclude() {
             Err(refusal) => self.refuse(refusal),

@@ -24,7 +24,7 @@ impl Core {
     }
 
     fn hold_last(&mut self, missing: u64) {
-        let measured = self.held;
+        let [x, y, z, u, v, w] = *self.screen.last();
         let integrates = match self.mode {
             Mode::Navigating => true,
             Mode::Calibrating => matches!(self.estimation, Estimation::Kalman(_)),
@@ -40,7 +40,7 @@ impl Core {
             HOLD_MAX_SAMPLES
         };
         for _ in 0..missing.min(hold) {
-            self.integrate(&measured, self.sample_s);
+            self.integrate(self.sample_s, x, y, z, u, v, w);
         }
         self.doubt_gap(missing);
     }

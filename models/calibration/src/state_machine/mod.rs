@@ -18,7 +18,7 @@ use crate::drift::Drift;
 use crate::filter::CalibrationFilter;
 use crate::monitor::{Monitor, MonitorTally, Order};
 use crate::schedule::{Cursor, dwell_s};
-use crate::screen::{Screen, lanes};
+use crate::screen::Screen;
 use crate::strapdown::{Strapdown, Vertical};
 use crate::table::{CalibrationTable, Quality};
 use bridge::Bridge;
@@ -84,9 +84,9 @@ pub struct Core {
     revision: u32,
     compensation: Compensation,
     strapdown: Strapdown,
-    /// Last raw increments, for bridging a gap.
-    held: (Vector3<f64>, Vector3<f64>),
     last_measured_tick: u64,
+    /// Next tick, at the earliest, at which aiding is due: a division is dear at every sample.
+    due_tick: u64,
     nis_running: f64,
     gimbal_disagreements: u64,
     gimbal_tolerance: u64,
@@ -97,6 +97,15 @@ pub struct Core {
     /// What the last output said of the gimbals, and its stamp.
     gimbals: Gimbals,
     answered: (u64, DeviceTime),
+}
+
+/// Increments (rad and m/s) of counts.
+#[inline]
+fn increments(theta: [i32; 3], velocity: [i32; 3]) -> (Vector3<f64>, Vector3<f64>) {
+    (
+        Vector3::from(theta.map(f64::from)) * DELTA_THETA_LSB_RAD,
+        Vector3::from(velocity.map(f64::from)) * DELTA_VELOCITY_LSB_MPS,
+    )
 }
 
 fn ticks(duration_s: f64, sample_s: f64) -> u64 {
@@ -149,8 +158,8 @@ impl Core {
             revision: 0,
             compensation: Compensation::new(&config.initial_parameters),
             strapdown: strapdown_at(&config.site, &q_nb, velocity),
-            held: Default::default(),
             last_measured_tick: 0,
+            due_tick: 0,
             nis_running: 0.0,
             gimbal_disagreements: 0,
             gimbal_tolerance: gimbals::tolerance_counts(&config.screening),
@@ -252,7 +261,9 @@ impl Core {
         self.take(sample, interval_s, &mut health);
         match self.mode {
             Mode::Calibrating => {
-                self.measure(sample, aiding, &mut health, &mut nis);
+                if aiding.is_some() || self.tick >= self.due_tick {
+                    self.measure(sample, aiding, &mut health, &mut nis);
+                }
                 if self.tick >= self.calibration_ticks {
                     self.finish_calibration(sample.device_time);
                 }
@@ -284,23 +295,22 @@ impl Core {
     /// Takes the increments of a sample into whatever runs.
     #[inline]
     fn take(&mut self, sample: &Sample, interval_s: f64, health: &mut Health) {
+        let ([x, y, z], [u, v, w]) = (sample.delta_theta, sample.delta_velocity);
         match (self.mode, &self.estimation) {
             (Mode::Navigating, _) | (Mode::Calibrating, Estimation::Kalman(_)) => {
-                let lanes = lanes(sample);
+                let valid = !health.contains(Health::INERTIAL_INVALID);
                 let moving = self.gimbals_may_move();
-                if !self.screen.passes(&lanes, moving) || health.contains(Health::INERTIAL_INVALID)
-                {
-                    self.doubt(sample, &lanes, interval_s, health);
-                    return;
+                if valid && self.integrate_good(interval_s, moving, x, y, z, u, v, w) {
+                    self.bridge.gimbal = sample.gimbal;
+                } else {
+                    self.doubt(sample, interval_s, health);
                 }
-                self.bridge.gimbal = sample.gimbal;
-                self.integrate(&increments(sample), interval_s);
             }
             (mode, _) => {
-                *health |= self.monitor.stuck(sample);
+                *health |= self.monitor.stuck(x, y, z, u, v, w);
                 match mode {
-                    Mode::Aligning => self.align(&increments(sample), interval_s),
-                    Mode::Calibrating => self.watch(sample, &increments(sample), interval_s),
+                    Mode::Aligning => self.align(sample, interval_s),
+                    Mode::Calibrating => self.watch(sample, interval_s),
                     _ => {}
                 }
             }
@@ -315,20 +325,55 @@ impl Core {
             .is_some_and(|cursor| self.phase_tick() < cursor.arrival_tick() + self.settle_ticks)
     }
 
+    /// Navigates over one interval if its counts pass the screen: of delta_theta, then of
+    /// delta_velocity.
+    ///
+    /// Each count is an argument of its own, and the call is kept, so that each is read the way it
+    /// was written. Read in pairs, right after single ones were stored, they would have to wait
+    /// until those stores are through: more than the rest of the step takes.
+    #[inline(never)]
+    #[allow(clippy::too_many_arguments, reason = "in registers: see above")]
+    fn integrate_good(
+        &mut self,
+        interval_s: f64,
+        moving: bool,
+        x: i32,
+        y: i32,
+        z: i32,
+        u: i32,
+        v: i32,
+        w: i32,
+    ) -> bool {
+        let good = self.screen.passes(moving, x, y, z, u, v, w);
+        if good {
+            self.integrate(interval_s, x, y, z, u, v, w);
+        }
+        good
+    }
+
     #[inline]
-    fn integrate(&mut self, measured: &(Vector3<f64>, Vector3<f64>), interval_s: f64) {
-        let (dtheta, dv) = self.compensation.apply(&measured.0, &measured.1, interval_s);
+    #[allow(clippy::too_many_arguments, reason = "in registers: see above")]
+    fn integrate(&mut self, interval_s: f64, x: i32, y: i32, z: i32, u: i32, v: i32, w: i32) {
+        let (theta, velocity) = increments([x, y, z], [u, v, w]);
+        self.navigate(&theta, &velocity, interval_s);
+    }
+
+    /// Navigates over one interval by its raw increments, rad and m/s.
+    #[inline]
+    fn navigate(&mut self, theta: &Vector3<f64>, velocity: &Vector3<f64>, interval_s: f64) {
+        let (dtheta, dv) = self.compensation.apply(theta, velocity, interval_s);
         self.strapdown.step(&dtheta, &dv, interval_s);
         if let Estimation::Kalman(filter) = &mut self.estimation {
             filter.accumulate(&self.strapdown, &dtheta, &dv, interval_s);
         }
-        self.held = *measured;
     }
 
     #[cold]
-    fn align(&mut self, measured: &(Vector3<f64>, Vector3<f64>), interval_s: f64) {
+    #[inline(never)]
+    fn align(&mut self, sample: &Sample, interval_s: f64) {
         let Some((alignment, until)) = &mut self.alignment else { return };
-        let (dtheta, dv) = self.compensation.apply(&measured.0, &measured.1, interval_s);
+        let (theta, velocity) = increments(sample.delta_theta, sample.delta_velocity);
+        let (dtheta, dv) = self.compensation.apply(&theta, &velocity, interval_s);
         alignment.step(&dtheta, &dv, interval_s);
         if self.tick < *until {
             return;
@@ -345,18 +390,21 @@ impl Core {
     /// A least-squares calibration doesn't navigate: it looks at standstills and at the moves
     /// between them.
     #[inline(never)]
-    fn watch(&mut self, sample: &Sample, measured: &(Vector3<f64>, Vector3<f64>), interval_s: f64) {
+    fn watch(&mut self, sample: &Sample, interval_s: f64) {
         let Some(cursor) = &self.cursor else { return };
         let tick = self.tick;
         let standing = tick > cursor.arrival_tick() + self.settle_ticks;
         if standing {
-            self.standstill.add(measured, interval_s);
+            let measured = increments(sample.delta_theta, sample.delta_velocity);
+            self.standstill.add(&measured, interval_s);
         } else {
             self.standstill = Standstill::default();
         }
         self.estimation.raw_sample(sample, interval_s, standing);
     }
 
+    #[cold]
+    #[inline(never)]
     fn refuse(&mut self, refusal: Refusal) {
         if let Some(filter) = self.filter() {
             self.last_quality = self.quality(filter);
@@ -367,6 +415,7 @@ impl Core {
         self.mode = Mode::Refused;
     }
 
+    #[inline(never)]
     fn measure(
         &mut self,
         sample: &Sample,
@@ -388,6 +437,7 @@ impl Core {
         };
         let period_ticks = kalman.aiding_period_ns / self.config.sample_period_ns;
         let due = self.tick.is_multiple_of(period_ticks);
+        self.due_tick = self.tick.checked_next_multiple_of(period_ticks).unwrap_or(u64::MAX);
         if !due && aiding.is_none() {
             return;
         }
@@ -532,18 +582,6 @@ impl Core {
             gimbal_disagreements: self.gimbal_disagreements,
         }
     }
-}
-
-/// Increments of a sample, rad and m/s.
-#[inline]
-fn increments(sample: &Sample) -> (Vector3<f64>, Vector3<f64>) {
-    let scaled = |counts: &[i32; 3], lsb: f64| {
-        Vector3::new(f64::from(counts[0]), f64::from(counts[1]), f64::from(counts[2])) * lsb
-    };
-    (
-        scaled(&sample.delta_theta, DELTA_THETA_LSB_RAD),
-        scaled(&sample.delta_velocity, DELTA_VELOCITY_LSB_MPS),
-    )
 }
 
 fn kalman_of(config: &Config) -> Option<&Kalman> {

@@ -1,17 +1,18 @@
 //! A constant that is added to channels, in counts with the remainder carried.
 
 use crate::catalogue::Dimension;
+use crate::kinds::channel::{read, saturated, write_saturating};
 use crate::setup::{BuildError, Setup};
 use crate::values::{Channels, Values};
 use octant_sample::Sample;
-use octant_sample::counts::{Accumulator, DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS};
-use octant_sample::imu::Status;
+use octant_sample::counts::{DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS};
 
 /// Adds real numbers of counts to integer channels: a fault that changes a value carries its
 /// remainder too.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Adder {
-    accumulators: [Accumulator; 6],
+    /// What was not yet added, counts.
+    remainders: [f64; 6],
 }
 
 impl Adder {
@@ -21,18 +22,21 @@ impl Adder {
     }
 
     /// Adds to a channel (0 to 2 gyros, counts of rad; 3 to 5 accelerometers, counts of m/s).
-    /// Saturates at the format's range and sets the flag that says so.
+    /// A sum outside the format's range saturates, loses the excess and sets the flag that says so.
+    /// NaN adds nothing and is flagged too.
     pub(crate) fn add(&mut self, sample: &mut Sample, channel: usize, counts: f64) {
-        let whole = self.accumulators[channel].count(counts);
-        let (value, flag) = if channel < 3 {
-            (&mut sample.delta_theta[channel], Status::GYRO_SATURATED)
-        } else {
-            (&mut sample.delta_velocity[channel - 3], Status::ACCELEROMETER_SATURATED)
-        };
-        let sum = i64::from(*value) + i64::from(whole.value);
-        *value = sum.clamp(i64::from(i32::MIN), i64::from(i32::MAX)) as i32;
-        if whole.saturated || i64::from(*value) != sum {
-            sample.status |= flag;
+        let total = self.remainders[channel] + counts;
+        let whole = libm::rint(total);
+        let remainder = total - whole;
+        // Infinite or NaN: there is no remainder.
+        if remainder.is_finite() {
+            self.remainders[channel] = remainder;
+        }
+        // The cast saturates, which leaves the sum outside of the format.
+        let sum = i64::from(read(sample, channel)).saturating_add(whole as i64);
+        write_saturating(sample, channel, sum);
+        if total.is_nan() {
+            sample.status |= saturated(channel);
         }
     }
 }

@@ -1,12 +1,35 @@
 //! The kinds of faults, one family a folder.
 
 mod added;
+mod aiding;
+mod analogue;
+mod chance;
+mod channel;
 mod digital;
+mod mapped;
+mod onset;
+mod physics;
+mod plant;
+mod ring_laser;
+mod six;
+mod span;
+mod time;
+mod turntable;
+mod unit;
 
 use crate::catalogue::Kind;
 
 /// All kinds, in the order of the documentation.
-pub static KINDS: &[&[&Kind]] = &[digital::KINDS];
+pub static KINDS: &[&[&Kind]] = &[
+    physics::KINDS,
+    analogue::KINDS,
+    ring_laser::KINDS,
+    digital::KINDS,
+    time::KINDS,
+    turntable::KINDS,
+    unit::KINDS,
+    aiding::KINDS,
+];
 
 /// All kinds one by one.
 pub fn all() -> impl Iterator<Item = &'static Kind> {

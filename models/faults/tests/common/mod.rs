@@ -1,5 +1,7 @@
 //! A bench for faults: a stream of samples that any test can compute by itself, and a station.
-#![allow(dead_code, clippy::unwrap_used)]
+#![allow(dead_code, clippy::unwrap_used, unreachable_pub)]
+
+pub mod counts;
 
 use octant_faults::disturbance::{Disturbance, Disturbed, Motor};
 use octant_faults::rule::UnitEvent;

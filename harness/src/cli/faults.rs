@@ -1,0 +1,207 @@
+//! `octant faults`: the kinds of faults, and what each does.
+
+use super::{Failure, print, print_json};
+use crate::scenario::{fault_example, suggestion};
+use crate::score::verdict::Verdict;
+use clap::{Args, Subcommand};
+use octant_faults::catalogue::{Acts, Family, Kind, Lasts};
+use octant_faults::kinds;
+use serde::Serialize;
+
+#[derive(Debug, Args)]
+pub(super) struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Name every kind of fault.
+    List {
+        /// Print one JSON object.
+        #[arg(long)]
+        json: bool,
+    },
+    /// Tell what a kind of fault does to samples, what it takes, and how it is written.
+    Describe {
+        /// Name of the kind.
+        #[arg(value_name = "KIND")]
+        kind: String,
+    },
+    /// Run a grid of one fault, and draw which of its forms are invisible and harmful.
+    Sweep(super::sweep::Arguments),
+    /// Find the smallest set of a run's faults that still breaks it.
+    Minimise(super::minimise::Arguments),
+}
+
+pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
+    match &arguments.command {
+        Command::List { json: true } => {
+            print_json(&List { kinds: kinds::all().map(Row::of).collect() })?
+        }
+        Command::List { json: false } => print(&list())?,
+        Command::Describe { kind } => match kinds::named(kind) {
+            Some(kind) => print(&describe(kind))?,
+            None => {
+                let names: Vec<&str> = kinds::all().map(|kind| kind.name).collect();
+                let known = suggestion(kind, names.into_iter(), "kinds");
+                return Err(Failure::input(format!("unknown kind of fault {kind:?}, {known}")));
+            }
+        },
+        Command::Sweep(arguments) => return super::sweep::command(arguments),
+        Command::Minimise(arguments) => return super::minimise::command(arguments),
+    }
+    Ok(Verdict::Pass)
+}
+
+#[derive(Serialize)]
+struct List {
+    kinds: Vec<Row>,
+}
+
+/// A kind as JSON.
+#[derive(Serialize)]
+struct Row {
+    name: &'static str,
+    family: &'static str,
+    acts: &'static str,
+    lasts: &'static str,
+    summary: &'static str,
+    parameters: Vec<ParameterRow>,
+}
+
+#[derive(Serialize)]
+struct ParameterRow {
+    name: &'static str,
+    takes: String,
+    default: Option<&'static str>,
+    doc: &'static str,
+}
+
+impl Row {
+    fn of(kind: &'static Kind) -> Self {
+        let takes = crate::scenario::fault_parameters(kind.name);
+        let parameter = |parameter: &'static octant_faults::catalogue::Parameter| ParameterRow {
+            name: parameter.name,
+            takes: takes
+                .iter()
+                .find(|(name, _)| *name == parameter.name)
+                .map_or_else(String::new, |(_, takes)| takes.clone()),
+            default: parameter.default,
+            doc: parameter.doc,
+        };
+        Self {
+            name: kind.name,
+            family: kind.family.name(),
+            acts: acts(kind.acts),
+            lasts: match kind.lasts {
+                Lasts::Span => "span",
+                Lasts::Fading => "fading",
+                Lasts::Instant => "instant",
+            },
+            summary: kind.summary,
+            parameters: kind.parameters.iter().map(parameter).collect(),
+        }
+    }
+}
+
+fn list() -> String {
+    let width = kinds::all().map(|kind| kind.name.len()).max().unwrap_or_default();
+    let mut out = String::new();
+    for family in Family::ALL {
+        let of: Vec<_> = kinds::all().filter(|kind| kind.family == family).collect();
+        if of.is_empty() {
+            continue;
+        }
+        if !out.is_empty() {
+            out.push('\n');
+        }
+        out += &format!("{}\n", family.name());
+        for kind in of {
+            out += &format!("  {:width$}  {}\n", kind.name, kind.summary);
+        }
+    }
+    out
+}
+
+/// Where a kind acts, in words.
+fn acts(acts: Acts) -> &'static str {
+    match acts {
+        Acts::Plant => "inside the simulated instrument, before its sensors measure",
+        Acts::Command => "on set points on their way from the core to the turntable",
+        Acts::Samples => "on samples and aiding on their way to the core",
+        Acts::Delivery => "on the delivery of samples: lost, late, in another order",
+        Acts::Unit => "on the unit under test itself",
+        _ => "elsewhere",
+    }
+}
+
+fn lasts(lasts: Lasts) -> &'static str {
+    match lasts {
+        Lasts::Span => "as long as its duration (left out: to the end of the run), then it is gone",
+        Lasts::Fading => {
+            "as long as its duration (left out: to the end of the run), then it fades down a \
+             straight line over its recovery"
+        }
+        Lasts::Instant => "an instant: it takes no duration",
+    }
+}
+
+/// The page of a kind.
+fn describe(kind: &'static Kind) -> String {
+    let mut out = format!("{} ({})\n", kind.name, kind.family.name());
+    out += &format!("{}\n\n", wrapped(kind.summary, ""));
+    for paragraph in kind.model.split('\n') {
+        // Equations stand on indented lines and are left as they are.
+        let indented = paragraph.starts_with(' ');
+        out += &if indented { paragraph.to_owned() } else { wrapped(paragraph, "") };
+        out.push('\n');
+    }
+    out += &format!("\n{}\n", wrapped(&format!("Acts {}.", acts(kind.acts)), ""));
+    out += &format!("{}\n\nParameters\n", wrapped(&format!("Lasts {}.", lasts(kind.lasts)), ""));
+    if kind.parameters.is_empty() {
+        out += "  none\n";
+    }
+    let takes = crate::scenario::fault_parameters(kind.name);
+    for parameter in kind.parameters {
+        out += &format!("  {}\n", parameter.name);
+        out += &format!("{}\n", wrapped(parameter.doc, "      "));
+        if let Some((_, takes)) = takes.iter().find(|(name, _)| *name == parameter.name) {
+            out += &format!("{}\n", wrapped(&format!("Takes {takes}."), "      "));
+        }
+        match parameter.default {
+            Some(default) => out += &format!("      Default {default}.\n"),
+            None => out += "      Always given.\n",
+        }
+    }
+    let example = fault_example(kind.name).unwrap_or_default();
+    out += &format!("\nIn a scenario\n\n{}", indent(&example));
+    out
+}
+
+fn indent(text: &str) -> String {
+    text.lines().map(|line| format!("    {line}\n")).collect()
+}
+
+/// Breaks a paragraph into lines.
+fn wrapped(text: &str, indent: &str) -> String {
+    const WIDTH: usize = 92;
+    let mut out = String::new();
+    let mut line = String::new();
+    for word in text.split_whitespace() {
+        if !line.is_empty()
+            && indent.len() + line.chars().count() + 1 + word.chars().count() > WIDTH
+        {
+            out += &format!("{indent}{line}\n");
+            line.clear();
+        }
+        if !line.is_empty() {
+            line.push(' ');
+        }
+        line += word;
+    }
+    if !line.is_empty() {
+        out += &format!("{indent}{line}");
+    }
+    out
+}

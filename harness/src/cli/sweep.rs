@@ -1,0 +1,145 @@
+//! `octant faults sweep`: a grid of one fault on all processors, and its heat map.
+
+use super::progress::with_progress;
+use super::{Failure, ScenarioArguments, load, print, print_json, write};
+use crate::report;
+use crate::run::Control;
+use crate::run::sweep::{Axis, SweepError, cells_of, indices, sweep};
+use crate::scenario::Scenario;
+use crate::score::verdict::Verdict;
+use clap::Args;
+use std::path::PathBuf;
+
+/// Cells of a grid at most: each is a run.
+const CELLS_MAX: usize = 100_000;
+
+#[derive(Debug, Args)]
+pub(super) struct Arguments {
+    #[command(flatten)]
+    scenario: ScenarioArguments,
+    /// A key of the fault and its values, separated by commas (or by semicolons, where a value has
+    /// commas itself): amplitude="1 deg/h, 10 deg/h". The first two span the map, every further one
+    /// has a map for each of its values.
+    #[arg(long, value_name = "KEY=VALUES", required = true)]
+    over: Vec<String>,
+    /// Id of the fault; not needed where the scenario has one.
+    #[arg(long, value_name = "ID")]
+    fault: Option<String>,
+    /// Seed of all runs, instead of the scenario's.
+    #[arg(long, value_name = "N")]
+    seed: Option<u64>,
+    /// Folder for sweep.json, sweep.csv and sweep.html; by default nothing is written.
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Print sweep.json on stdout, and nothing else.
+    #[arg(long)]
+    json: bool,
+}
+
+pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
+    let base = load(&arguments.scenario, &[])?;
+    let fault = the_fault(&base, arguments)?;
+    let axes = arguments.over.iter().map(|text| axis(text)).collect::<Result<Vec<_>, _>>()?;
+    let count = cells_of(&axes);
+    if count > CELLS_MAX {
+        return Err(Failure::input(format!(
+            "failed to sweep: the grid has {count} cells, at most {CELLS_MAX} are expected"
+        )));
+    }
+    // Every cell is checked before any is run.
+    let scenarios = (0..count)
+        .map(|cell| {
+            let sets: Vec<String> = axes
+                .iter()
+                .zip(indices(&axes, cell))
+                .map(|(axis, i)| format!("faults.{fault}.{}={}", axis.key, axis.values[i]))
+                .collect();
+            load(&arguments.scenario, &sets)
+        })
+        .collect::<Result<Vec<_>, _>>()?;
+    let seed = arguments.seed.unwrap_or(base.seed);
+    let controls: Vec<Control> = (0..=count).map(|_| Control::default()).collect();
+    let epochs = base.samples().map(|samples| samples * (count as u64 + 1));
+    let sample_s = base.sample_period_ns as f64 * 1e-9;
+    let result = with_progress(&controls, epochs, sample_s, || {
+        sweep(&scenarios, &axes, &fault, seed, &controls)
+    })
+    .map_err(failure)?;
+    if let Some(folder) = &arguments.out {
+        std::fs::create_dir_all(folder).map_err(|error| {
+            Failure::bench(format!("failed to create {}: {error}", folder.display()))
+        })?;
+        let json = serde_json::to_string_pretty(&result)
+            .map_err(|error| Failure::bench(format!("failed to write sweep.json: {error}")))?;
+        write(&folder.join("sweep.json"), json + "\n")?;
+        write(&folder.join("sweep.csv"), report::sweep::csv(&result))?;
+        write(&folder.join("sweep.html"), report::sweep::render(&result, &rerun(arguments, seed)))?;
+    }
+    if arguments.json {
+        print_json(&result)?;
+    } else {
+        print(&report::sweep::text(&result))?;
+    }
+    Ok(Verdict::Pass)
+}
+
+fn failure(error: SweepError) -> Failure {
+    let message = format!("failed to {error}");
+    match error {
+        SweepError::Method(error) => Failure::from(error),
+        SweepError::TwinRefused(_) => Failure { status: Verdict::Fail.exit_code(), message },
+        SweepError::Cancelled => Failure { status: Verdict::Inconclusive.exit_code(), message },
+    }
+}
+
+/// Id of the fault that is swept.
+fn the_fault(scenario: &Scenario, arguments: &Arguments) -> Result<String, Failure> {
+    let ids: Vec<&str> = scenario.faults.iter().map(|fault| fault.spec.id.as_str()).collect();
+    let file = arguments.scenario.scenario.display();
+    match (&arguments.fault, ids.as_slice()) {
+        (_, []) => Err(Failure::input(format!("failed to sweep {file}: it has no [[faults]]"))),
+        (None, [one]) => Ok((*one).to_owned()),
+        (None, _) => Err(Failure::input(format!(
+            "failed to sweep {file}: it has several faults ({}), give one with --fault",
+            ids.join(", ")
+        ))),
+        (Some(id), _) if ids.contains(&id.as_str()) => Ok(id.clone()),
+        (Some(id), _) => Err(Failure::input(format!(
+            "failed to sweep {file}: no fault {id:?}, {}",
+            crate::scenario::suggestion(id, ids.iter().copied(), "faults")
+        ))),
+    }
+}
+
+/// `KEY=V1,V2,...`
+fn axis(text: &str) -> Result<Axis, Failure> {
+    let wrong = || {
+        Failure::input(format!(
+            "failed to read --over {text:?}: expected KEY=VALUE,VALUE,... such as \
+             amplitude=\"1 deg/h, 10 deg/h\""
+        ))
+    };
+    let (key, values) = text.split_once('=').ok_or_else(wrong)?;
+    let separator = if values.contains(';') { ';' } else { ',' };
+    let values: Vec<String> =
+        values.split(separator).map(|value| value.trim().to_owned()).collect();
+    if key.trim().is_empty() || values.iter().any(String::is_empty) {
+        return Err(wrong());
+    }
+    Ok(Axis { key: key.trim().to_owned(), values })
+}
+
+/// The command line that makes the sweep again.
+fn rerun(arguments: &Arguments, seed: u64) -> String {
+    let mut line = format!("octant faults sweep {}", arguments.scenario.scenario.display());
+    for set in &arguments.scenario.set {
+        line += &format!(" --set '{set}'");
+    }
+    if let Some(fault) = &arguments.fault {
+        line += &format!(" --fault {fault}");
+    }
+    for over in &arguments.over {
+        line += &format!(" --over '{over}'");
+    }
+    line + &format!(" --seed {seed}")
+}

@@ -1,0 +1,70 @@
+//! Checksums of the two streams of a run with faults: what the source delivered, and what reached
+//! the core.
+//!
+//! Both begin with the first epoch in which they differ and go to the end of the run: BLAKE3 over
+//! the canonical bytes of sample and aiding, epoch by epoch. Up to there the streams are one, and
+//! nothing is computed.
+
+use super::StreamHash;
+use super::block::Block;
+
+/// Checksums of the clean and of the faulted stream.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct AlteredStreams {
+    /// Sequence number of the first sample that was altered, lost or added.
+    pub first_sample: u64,
+    /// BLAKE3 of what the source delivered from then on, 64 hexadecimal digits.
+    pub clean_blake3: String,
+    /// BLAKE3 of what reached the core from then on.
+    pub faulted_blake3: String,
+}
+
+/// The two hashes so far.
+#[derive(Debug)]
+pub(super) struct Streams {
+    first_sample: u64,
+    clean: StreamHash,
+    faulted: StreamHash,
+}
+
+impl Streams {
+    pub(super) fn finish(mut self) -> AlteredStreams {
+        AlteredStreams {
+            first_sample: self.first_sample,
+            clean_blake3: self.clean.hex(),
+            faulted_blake3: self.faulted.hex(),
+        }
+    }
+}
+
+/// Takes a block; makes the hashes at the first difference.
+pub(super) fn take(streams: &mut Option<Streams>, block: &Block) {
+    if streams.is_none() && block.altered.is_empty() && block.added.is_empty() {
+        return;
+    }
+    let mut aiding = block.aiding.iter().peekable();
+    let mut altered = block.altered.iter().peekable();
+    let mut lost = block.lost.iter().peekable();
+    let mut added = block.added.iter().peekable();
+    for (position, sample) in block.samples.iter().enumerate() {
+        let at = position as u32;
+        let aiding = aiding.next_if(|(of, _)| *of == at).map(|(_, aiding)| aiding);
+        let clean = altered.next_if(|(of, _)| *of == at).map(|(_, epoch)| epoch);
+        let lost = lost.next_if(|of| **of == at).is_some();
+        let added = added.next_if(|(of, _)| *of == at).is_some();
+        if streams.is_none() && (clean.is_some() || added) {
+            let first_sample = clean.map_or(sample.sequence, |epoch| epoch.sample.sequence);
+            let (clean, faulted) = (StreamHash::new(), StreamHash::new());
+            *streams = Some(Streams { first_sample, clean, faulted });
+        }
+        let Some(streams) = streams else { continue };
+        match clean {
+            Some(epoch) => streams.clean.input(&epoch.sample, epoch.aiding.as_ref()),
+            None if added => {}
+            None => streams.clean.input(sample, aiding),
+        }
+        if !lost {
+            streams.faulted.input(sample, aiding);
+        }
+    }
+}

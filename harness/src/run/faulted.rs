@@ -1,0 +1,186 @@
+//! The loop with faults: source → station → endpoint → recorder.
+//!
+//! One step of the source can bring the core no epoch, one or several. What the source delivered is
+//! recorded beside what reached the core, where they differ.
+
+use super::drive::{CONTROL_EPOCHS, Control, Ended, RunError, answered, over};
+use super::watch::Watcher;
+use crate::endpoint::Endpoint;
+use crate::recorder::{Event, Extra, Frame, Recorder};
+use crate::source::{Epoch, Source};
+use octant_faults::disturbance::Disturbed;
+use octant_faults::rule::UnitEvent;
+use octant_faults::station::{Delivered, World};
+use octant_faults::{Receipt, Station};
+use octant_sample::{GimbalCommand, Output, Truth};
+
+/// A station with what is done to it by hand.
+#[derive(Debug)]
+pub struct Faulted {
+    /// The pipeline.
+    pub station: Station,
+    /// Epochs at which faults are fired by hand, in order, with their ids.
+    pub fires: Vec<(u64, String)>,
+}
+
+/// The source as the station's world.
+struct Behind<'a, S: ?Sized>(&'a mut S);
+
+impl<S: Source + ?Sized> World for Behind<'_, S> {
+    fn disturbed(&mut self) -> Option<&mut dyn Disturbed> {
+        self.0.disturbed()
+    }
+
+    fn truth(&self) -> Option<Truth> {
+        self.0.truth()
+    }
+}
+
+/// As [`drive`](super::drive()), with faults between source and endpoint. Their receipts are
+/// recorded at the end.
+///
+/// # Errors
+/// If source, endpoint or recorder fail; what was recorded before stays readable.
+pub fn drive_faulted<S, E>(
+    source: &mut S,
+    faulted: &mut Faulted,
+    endpoint: &mut E,
+    recorder: &mut Recorder,
+    watcher: &mut Watcher,
+    control: &Control,
+) -> Result<Ended, RunError>
+where
+    S: Source + ?Sized,
+    E: Endpoint + ?Sized,
+{
+    let mut run = Loop {
+        endpoint,
+        recorder,
+        watcher,
+        output: Output::default(),
+        command: GimbalCommand::default(),
+        revision: 0,
+        powered: true,
+    };
+    let station = &mut faulted.station;
+    let mut fires = faulted.fires.iter().peekable();
+    let mut epochs = 0u64;
+    let mut epoch = Epoch::default();
+    let ended = loop {
+        while let Some((_, id)) = fires.next_if(|(at, _)| *at == epochs + 1) {
+            station.fire(id);
+        }
+        let mut command = run.command;
+        station.before(&mut command, &run.output, &mut Behind(source));
+        if !source.next(&command, &mut epoch)? {
+            break Ended::SourceEnded;
+        }
+        for event in station.unit_events() {
+            run.unit(event, epochs + 1)?;
+        }
+        let ended = match station.after(&epoch, &run.output) {
+            Delivered::Untouched => run.deliver(source, &epoch, std::slice::from_ref(&epoch))?,
+            Delivered::These(these) => run.deliver(source, &epoch, these)?,
+        };
+        epochs += 1;
+        if !station.occurrences().is_empty() || !station.unit_events().is_empty() {
+            tell(station, run.recorder);
+            station.told();
+        }
+        if let Some(ended) = ended {
+            break ended;
+        }
+        if epochs.is_multiple_of(CONTROL_EPOCHS) && control.look(epochs) {
+            break Ended::Cancelled;
+        }
+    };
+    run.recorder.event(receipts(&station.receipts()));
+    Ok(ended)
+}
+
+/// What the loop carries from epoch to epoch.
+struct Loop<'a, E: ?Sized> {
+    endpoint: &'a mut E,
+    recorder: &'a mut Recorder,
+    watcher: &'a mut Watcher,
+    output: Output,
+    /// What the core commands; the turntable keeps it while the core answers nothing.
+    command: GimbalCommand,
+    revision: u32,
+    powered: bool,
+}
+
+impl<E: Endpoint + ?Sized> Loop<'_, E> {
+    /// What happens to the unit at an epoch, before it gets it.
+    #[cold]
+    fn unit(&mut self, event: &UnitEvent, epoch: u64) -> Result<(), RunError> {
+        super::unit::happen(event, self.endpoint)?;
+        self.powered = *event != UnitEvent::PowerOff;
+        self.recorder.event(super::unit::event(event, epoch));
+        Ok(())
+    }
+
+    /// Brings the core what is delivered in a step of the source.
+    fn deliver<S: Source + ?Sized>(
+        &mut self,
+        source: &S,
+        clean: &Epoch,
+        these: &[Epoch],
+    ) -> Result<Option<Ended>, RunError> {
+        let these = if self.powered { these } else { &[] };
+        if these.is_empty() {
+            self.recorder.lost(clean)?;
+            if self.recorder.truth_due()
+                && let Some(truth) = source.truth()
+            {
+                self.recorder.extra(&Extra::Truth(truth));
+            }
+            return Ok(None);
+        }
+        for (index, faulted) in these.iter().enumerate() {
+            self.endpoint.step(faulted, &mut self.output)?;
+            let output = &self.output;
+            if index == 0 {
+                self.recorder.push(Frame { clean, faulted, output })?;
+            } else {
+                self.recorder.added(clean.sample.device_time.ns, faulted, output)?;
+            }
+            let (revision, recorder) = (&mut self.revision, &mut *self.recorder);
+            answered(output, revision, &*self.endpoint, recorder, self.watcher, source);
+            self.command = output.gimbal_command;
+            if let Some(ended) = over(output) {
+                return Ok(Some(ended));
+            }
+        }
+        Ok(None)
+    }
+}
+
+/// Records what set in and what ended.
+#[cold]
+fn tell(station: &Station, recorder: &mut Recorder) {
+    for occurrence in station.occurrences() {
+        let Some((id, kind)) = station.names().nth(occurrence.fault) else { continue };
+        recorder.event(Event {
+            kind: "fault".to_owned(),
+            detail: serde_json::json!({
+                "id": id,
+                "kind": kind,
+                "begins": occurrence.begins,
+                "sample": occurrence.epoch,
+            }),
+        });
+    }
+}
+
+/// The receipts of a run as an event.
+fn receipts(receipts: &[Receipt]) -> Event {
+    let one = |receipt: &Receipt| {
+        serde_json::to_value(crate::score::summary::FaultResult::from(receipt))
+            .unwrap_or(serde_json::Value::Null)
+    };
+    Event {
+        kind: "receipts".to_owned(),
+        detail: receipts.iter().map(one).collect::<serde_json::Value>(),
+    }
+}

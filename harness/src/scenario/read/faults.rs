@@ -1,0 +1,195 @@
+//! Faults: from checked keys to what the station is built with, and what can be known before the
+//! run about whether they can act at all.
+
+mod schedule;
+
+use super::Reader;
+use super::source::Source;
+use crate::scenario::document::{Node, Value as Written};
+use crate::scenario::error::{Place, Problem};
+use crate::scenario::{Method, Scenario, keys, quantity};
+use octant_faults::catalogue::{Acts, Kind, Parameter, Takes};
+use octant_faults::station::Spec;
+use octant_faults::{BuildError, Channels, Setup, Station, Value, Values, kinds};
+use schedule::Timing;
+
+/// A fault of a scenario.
+#[derive(Clone, Debug)]
+pub struct Fault {
+    /// What the station is built with.
+    pub spec: Spec,
+    /// Epochs at which it is fired by hand, in order. Empty where its trigger isn't manual, or
+    /// where nobody fires it.
+    pub fires: Vec<u64>,
+    /// Where it was written.
+    pub place: Place,
+}
+
+impl Scenario {
+    /// What faults have to know of a run of one of the methods.
+    #[must_use]
+    pub fn fault_setup(&self, seed: u64) -> Setup {
+        Setup {
+            seed,
+            sample_period_ns: self.sample_period_ns,
+            calibration_samples: self.calibration_samples(),
+            angle_random_walk: self.imu.angle_random_walk,
+            velocity_random_walk: self.imu.velocity_random_walk,
+            turntable_rate_radps: self.turntable.rate_radps,
+            id: String::new(),
+        }
+    }
+
+    /// The station of a run with a seed; `None` without faults.
+    ///
+    /// # Errors
+    /// If a fault can't be built; a scenario that was read has only faults that can.
+    pub fn station(&self, seed: u64) -> Result<Option<Station>, (String, BuildError)> {
+        if self.faults.is_empty() {
+            return Ok(None);
+        }
+        let specs: Vec<Spec> = self.faults.iter().map(|fault| fault.spec.clone()).collect();
+        Station::new(&specs, &self.fault_setup(seed)).map(Some)
+    }
+
+    /// What is worth telling before a run, though it is no error.
+    #[must_use]
+    pub fn warnings(&self) -> Vec<String> {
+        use octant_faults::trigger::Trigger;
+        let idle = |fault: &&Fault| {
+            fault.spec.schedule.trigger == Trigger::Manual && fault.fires.is_empty()
+        };
+        let text = |fault: &Fault| {
+            let id = &fault.spec.id;
+            format!("fault {id:?} is fired by hand, and no --fire {id}=TIME does: it won't fire")
+        };
+        self.faults.iter().filter(idle).map(text).collect()
+    }
+}
+
+/// Reads the faults of a scenario whose other fields are read already.
+pub(super) fn read(root: &Reader<'_>, scenario: &Scenario) -> Result<Vec<Fault>, Problem> {
+    let tables = root.tables("faults");
+    let timing = Timing::of(scenario);
+    let mut all: Vec<Fault> = Vec::with_capacity(tables.len());
+    for table in &tables {
+        let fault = fault(table, scenario, &timing)?;
+        if all.iter().any(|other| other.spec.id == fault.spec.id) {
+            let id = &fault.spec.id;
+            return Err(
+                table.problem("id", format!("found {id:?} a second time, expected unique ids"))
+            );
+        }
+        all.push(fault);
+    }
+    schedule::check_chains(&tables, &all)?;
+    for (index, table) in tables.iter().enumerate() {
+        timing.check(table, &all, index)?;
+    }
+    // One by one first: the problem then has its place.
+    for (table, fault) in tables.iter().zip(&all) {
+        let setup = Setup { id: fault.spec.id.clone(), ..scenario.fault_setup(scenario.seed) };
+        (fault.spec.kind.build)(&fault.spec.values, &setup).map_err(|e| build(table, &e))?;
+    }
+    let specs: Vec<Spec> = all.iter().map(|fault| fault.spec.clone()).collect();
+    match Station::new(&specs, &scenario.fault_setup(scenario.seed)) {
+        Ok(_) => Ok(all),
+        Err((id, error)) => {
+            let at = all.iter().position(|fault| fault.spec.id == id).unwrap_or_default();
+            Err(tables.get(at).map_or_else(
+                || root.problem("faults", error.to_string()),
+                |table| build(table, &error),
+            ))
+        }
+    }
+}
+
+/// A kind's own refusal, at the parameter that it names.
+fn build(table: &Reader<'_>, error: &BuildError) -> Problem {
+    match error {
+        BuildError::Value { parameter, problem } => table.problem(parameter, problem.clone()),
+        other => table.problem("id", other.to_string()),
+    }
+}
+
+fn fault(table: &Reader<'_>, scenario: &Scenario, timing: &Timing) -> Result<Fault, Problem> {
+    let id = table.text("id")?;
+    if id.trim().is_empty() {
+        return Err(table.problem("id", "found an empty text, expected a name"));
+    }
+    let name = table.text("kind")?;
+    let kind = kinds::named(name)
+        .ok_or_else(|| table.problem("kind", format!("found {name:?}, which is no kind")))?;
+    if scenario.source != Source::Plant
+        && let Some(needs) = needs_plant(kind)
+    {
+        let message =
+            format!("{name} {needs}, and the source is a recording: what it holds has happened");
+        return Err(table.problem("kind", message));
+    }
+    let mut values = Values::default();
+    for parameter in kind.parameters {
+        values.set(parameter.name, value(table, parameter)?);
+    }
+    let (schedule, fires) = timing.schedule(table, kind)?;
+    Ok(Fault {
+        spec: Spec { id: id.to_owned(), kind, values, schedule },
+        fires,
+        place: table.place.clone(),
+    })
+}
+
+/// Why a kind needs the simulated instrument.
+fn needs_plant(kind: &Kind) -> Option<&'static str> {
+    match kind.acts {
+        Acts::Plant => Some("acts inside the simulated instrument"),
+        Acts::Command => Some("acts on the set points of the simulated turntable"),
+        _ => None,
+    }
+}
+
+/// The value of a parameter. What the check has passed is there.
+fn value(table: &Reader<'_>, parameter: &'static Parameter) -> Result<Value, Problem> {
+    let key = parameter.name;
+    let missing = || table.problem(key, "missing");
+    Ok(match parameter.takes {
+        Takes::Quantity(dimensions, _) => {
+            let quantity = quantity::parse(table.text(key)?).map_err(|_| missing())?;
+            let fits = |of: &&_| quantity.is(keys::dimension(of));
+            let dimension = dimensions.iter().find(fits).ok_or_else(missing)?;
+            Value::Quantity(quantity.si, *dimension)
+        }
+        Takes::Vector(dimensions) => {
+            let texts = table.texts(key);
+            let all: Option<Vec<_>> = texts.iter().map(|text| quantity::parse(text).ok()).collect();
+            let all = all.filter(|all| all.len() == 3).ok_or_else(missing)?;
+            let fits = |of: &&_| all.iter().all(|quantity| quantity.is(keys::dimension(of)));
+            let dimension = dimensions.iter().find(fits).ok_or_else(missing)?;
+            Value::Vector(std::array::from_fn(|axis| all[axis].si), *dimension)
+        }
+        Takes::Integer(..) => Value::Integer(table.integer(key)?),
+        Takes::Flag => Value::Flag(table.boolean(key)?),
+        Takes::Choice(choices) => {
+            let text = table.text(key)?;
+            let found = choices.iter().find(|(name, _)| *name == text).ok_or_else(missing)?;
+            Value::Choice(found.0)
+        }
+        Takes::Channels => {
+            let names = match table.node(key) {
+                Some(Node { value: Written::Array(_), .. }) => table.texts(key),
+                _ => vec![table.text(key)?],
+            };
+            let sets: Option<Vec<_>> = names.into_iter().map(Channels::named).collect();
+            let set = sets.and_then(|sets| sets.into_iter().reduce(Channels::union));
+            Value::Channels(set.ok_or_else(missing)?)
+        }
+    })
+}
+
+/// The stops of a method, in the words of messages.
+fn method_name(method: Method) -> &'static str {
+    match method {
+        Method::Primary => "the calibration",
+        Method::Baseline => "the calibration of the baseline",
+    }
+}

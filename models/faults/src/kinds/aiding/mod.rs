@@ -1,0 +1,15 @@
+//! The reference of the calibration.
+
+mod late;
+mod lost;
+mod wrong;
+
+use crate::catalogue::Kind;
+
+pub(super) static KINDS: &[&Kind] = &[
+    &wrong::AIDING_WRONG,
+    &wrong::POSITION_JUMP,
+    &wrong::AIDING_NOISE,
+    &lost::AIDING_LOST,
+    &late::AIDING_LATE,
+];

@@ -1,0 +1,79 @@
+//! Scale factors.
+
+use crate::catalogue::{Acts, Bounds, Dimension, Family, Kind, Lasts, Parameter, Takes};
+use crate::kinds::mapped::Mapped;
+use crate::rule::Rule;
+use crate::setup::{BuildError, Setup};
+use crate::values::Values;
+
+const CHANNELS: Parameter = Parameter {
+    name: "channels",
+    takes: Takes::Channels,
+    default: None,
+    doc: "Channels whose scale factor changes; gyros and accelerometers together if you like.",
+};
+
+pub(super) static SCALE_STEP: Kind = Kind {
+    name: "scale-step",
+    family: Family::Analogue,
+    acts: Acts::Samples,
+    summary: "The scale factor of one or more channels jumps.",
+    model: "Every sample of the channels becomes\n\n\
+            \u{20}   Δθ' = (1 + s S) Δθ      or      Δv' = (1 + s S) Δv\n\n\
+            The change s S Δ is taken from the count of the sample, which is exact, and added in \
+            counts with the remainder carried. s is 1 while the fault lasts and falls linearly to \
+            0 over its recovery. A sum outside the format saturates and sets the saturation flag \
+            of its triad.\n\n\
+            The scale factor error of IEEE Std 952 and 1293 sets in at once: a mode jump, another \
+            reference voltage. It multiplies all that is in the count, the instrument's own bias \
+            and noise too, a relative change of S.",
+    parameters: &[
+        CHANNELS,
+        Parameter {
+            name: "error",
+            takes: Takes::Quantity(&[Dimension::Ratio], Bounds::NotZero),
+            default: None,
+            doc: "S: the change of the scale factor, as a part of it.",
+        },
+    ],
+    lasts: Lasts::Fading,
+    build: build_step,
+};
+
+pub(super) static ASYMMETRY: Kind = Kind {
+    name: "asymmetry",
+    family: Family::Analogue,
+    acts: Acts::Samples,
+    summary: "The scale factors for positive and for negative input part.",
+    model: "Every sample of the channels becomes\n\n\
+            \u{20}   Δθ' = Δθ + s (A/2) |Δθ|      or      Δv' = Δv + s (A/2) |Δv|\n\n\
+            so that the scale factor is larger by A/2 for positive input, smaller by A/2 for \
+            negative: A is the difference of the two over their mean (scale factor asymmetry, \
+            IEEE Std 528). The change is added in counts with the remainder carried. s is 1 while the fault lasts \
+            and falls linearly to 0 over its recovery. A sum outside the format saturates and sets \
+            the saturation flag of its triad.\n\n\
+            The sign is that of the sample's increment, the mean over its interval: motion that \
+            changes sign within a sample isn't rectified.",
+    parameters: &[
+        CHANNELS,
+        Parameter {
+            name: "error",
+            takes: Takes::Quantity(&[Dimension::Ratio], Bounds::NotZero),
+            default: None,
+            doc: "A: scale factor for positive input less that for negative, as a part of their \
+                  mean.",
+        },
+    ],
+    lasts: Lasts::Fading,
+    build: build_asymmetry,
+};
+
+fn build_step(values: &Values, _: &Setup) -> Result<Rule, BuildError> {
+    let error = values.quantity("error")?;
+    Ok(Mapped::rule(values.channels("channels")?, move |_, count| error * count))
+}
+
+fn build_asymmetry(values: &Values, _: &Setup) -> Result<Rule, BuildError> {
+    let half = 0.5 * values.quantity("error")?;
+    Ok(Mapped::rule(values.channels("channels")?, move |_, count: f64| half * count.abs()))
+}

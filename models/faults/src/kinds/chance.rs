@@ -1,0 +1,23 @@
+//! Loss at random.
+
+use crate::catalogue::{Bounds, Dimension, Parameter, Takes};
+use crate::setup::BuildError;
+use crate::values::Values;
+
+/// Probability of a loss.
+pub(crate) const LOSS: Parameter = Parameter {
+    name: "loss",
+    takes: Takes::Quantity(&[Dimension::Ratio], Bounds::Within(0.0, 1.0, "above 0, up to 1")),
+    default: Some("1"),
+    doc: "Probability that one is lost, above 0; 1: all are.",
+};
+
+/// The value of [`LOSS`].
+pub(crate) fn loss(values: &Values) -> Result<f64, BuildError> {
+    let loss = values.quantity("loss")?;
+    if loss > 0.0 && loss <= 1.0 {
+        return Ok(loss);
+    }
+    let problem = alloc::format!("{loss}, a probability above 0 up to 1 is expected");
+    Err(BuildError::value("loss", problem))
+}

@@ -1,0 +1,206 @@
+//! Samples without content: they come, but nothing was read into them.
+
+use crate::catalogue::{Acts, Bounds, Dimension, Family, Kind, Lasts, Parameter, Takes};
+use crate::kinds::channel::{counts, write};
+use crate::kinds::onset::Onset;
+use crate::rule::{Context, Rule, SampleRule};
+use crate::setup::{BuildError, Setup, Stream};
+use crate::values::{Channels, Values};
+use alloc::boxed::Box;
+use octant_sample::{Epoch, GimbalAngles, Sample};
+
+const CHANNELS: Parameter = Parameter {
+    name: "channels",
+    takes: Takes::Channels,
+    default: Some("all"),
+    doc: "Channels that drop out.",
+};
+const GIMBAL: Parameter = Parameter {
+    name: "gimbal",
+    takes: Takes::Flag,
+    default: Some("false"),
+    doc: "Whether the gimbal angles drop out with them.",
+};
+
+pub(super) static DROPOUT_ZERO: Kind = Kind {
+    name: "dropout-zero",
+    family: Family::Digital,
+    acts: Acts::Samples,
+    summary: "One or more channels read zero: samples come, but empty.",
+    model: "While it lasts the counts of the channels are 0, with `gimbal` both gimbal angles too. \
+            Stamps, sequence numbers, the other channels and all flags go on as they were: the \
+            sample claims to be good. What the channels would have measured is lost, 1 g on a \
+            vertical accelerometer included.\n\n\
+            A driver that fills missed reads with zeros does this. For samples that don't come at \
+            all take `dropout`.",
+    parameters: &[CHANNELS, GIMBAL],
+    lasts: Lasts::Span,
+    build: build_zero,
+};
+
+pub(super) static DROPOUT_HELD: Kind = Kind {
+    name: "dropout-held",
+    family: Family::Digital,
+    acts: Acts::Samples,
+    summary: "One or more channels repeat their last value: samples come, but stale.",
+    model: "While it lasts the counts of the channels, with `gimbal` both gimbal angles too, are \
+            those of the sample before the onset as it left the source, before any fault (0 if \
+            there was none). Stamps, sequence numbers, the other channels and all flags go on as \
+            they were: the sample claims to be fresh. What the channels would have measured is \
+            lost.\n\n\
+            A driver that fills missed reads with the last message does this. A single sensor \
+            that stands is `stuck-at-current`; samples that don't come at all are `dropout`.",
+    parameters: &[CHANNELS, GIMBAL],
+    lasts: Lasts::Span,
+    build: build_held,
+};
+
+pub(super) static INTERMITTENT: Kind = Kind {
+    name: "intermittent",
+    family: Family::Digital,
+    acts: Acts::Samples,
+    summary: "One or more channels drop out and come back at random.",
+    model: "A two-state Markov chain, one for all its channels (a loose connector): out at the \
+            onset; before each further sample it changes with probability dt/mean_out when out, \
+            dt/mean_in when in, so that the times out and in are geometric with these means. \
+            While in, samples pass. While out, the counts of the channels, with `gimbal` both \
+            gimbal angles too, are 0 (`fill` zero) or those of the last sample that passed it \
+            (`fill` held; at the onset those of the sample before it as it left the source, before \
+            any fault). Stamps, sequence numbers, the other channels and all flags go on as they \
+            were. What isn't delivered is lost.\n\n\
+            The changes depend on the seed, the fault's id and the sample alone. For samples that \
+            don't come at all take `dropout`.",
+    parameters: &[
+        CHANNELS,
+        GIMBAL,
+        Parameter {
+            name: "fill",
+            takes: Takes::Choice(&[
+                ("zero", "the counts are 0"),
+                ("held", "the counts are those of the last sample that passed"),
+            ]),
+            default: Some("zero"),
+            doc: "What the sample holds while it is out.",
+        },
+        Parameter {
+            name: "mean_out",
+            takes: Takes::Quantity(&[Dimension::Time], Bounds::Positive),
+            default: None,
+            doc: "Mean time that it is out, at least a sample.",
+        },
+        Parameter {
+            name: "mean_in",
+            takes: Takes::Quantity(&[Dimension::Time], Bounds::Positive),
+            default: None,
+            doc: "Mean time that it is in, at least a sample.",
+        },
+    ],
+    lasts: Lasts::Span,
+    build: build_intermittent,
+};
+
+fn build_zero(values: &Values, _: &Setup) -> Result<Rule, BuildError> {
+    Dropout::rule(values, false, None)
+}
+
+fn build_held(values: &Values, _: &Setup) -> Result<Rule, BuildError> {
+    Dropout::rule(values, true, None)
+}
+
+fn build_intermittent(values: &Values, setup: &Setup) -> Result<Rule, BuildError> {
+    let chance = |name| {
+        let mean_s = values.quantity(name)?;
+        let chance = setup.dt_s() / mean_s;
+        if chance <= 1.0 {
+            return Ok(chance);
+        }
+        let problem = alloc::format!(
+            "{mean_s} s was found, at least {} s, a sample, is expected",
+            setup.dt_s()
+        );
+        Err(BuildError::value(name, problem))
+    };
+    let chain = Chain {
+        leaves_out: chance("mean_out")?,
+        leaves_in: chance("mean_in")?,
+        stream: setup.stream("contact"),
+    };
+    Dropout::rule(values, values.choice("fill")? == "held", Some(chain))
+}
+
+/// Chances of a change before a sample.
+#[derive(Clone, Copy, Debug)]
+struct Chain {
+    leaves_out: f64,
+    leaves_in: f64,
+    stream: Stream,
+}
+
+/// What a sample is filled with.
+#[derive(Clone, Copy, Debug, Default)]
+struct Fill {
+    counts: [i32; 6],
+    gimbal: GimbalAngles,
+}
+
+impl Fill {
+    fn of(sample: &Sample) -> Self {
+        Self { counts: counts(sample), gimbal: sample.gimbal }
+    }
+}
+
+#[derive(Debug)]
+struct Dropout {
+    channels: Channels,
+    gimbal: bool,
+    held: bool,
+    /// `None`: it is out all the time.
+    chain: Option<Chain>,
+    out: bool,
+    fill: Fill,
+    onset: Onset,
+}
+
+impl Dropout {
+    fn rule(values: &Values, held: bool, chain: Option<Chain>) -> Result<Rule, BuildError> {
+        Ok(Rule::Samples(Box::new(Self {
+            channels: values.channels("channels")?,
+            gimbal: values.flag("gimbal")?,
+            held,
+            chain,
+            out: true,
+            fill: Fill::default(),
+            onset: Onset::default(),
+        })))
+    }
+}
+
+impl SampleRule for Dropout {
+    fn on_epoch(&mut self, epoch: &mut Epoch, now: &Context<'_>) {
+        if self.onset.is_new(now) {
+            self.out = true;
+            if self.held {
+                self.fill = Fill::of(&now.last.sample);
+            }
+        } else if let Some(chain) = &self.chain {
+            let chance = if self.out { chain.leaves_out } else { chain.leaves_in };
+            self.out ^= now.uniforms(&chain.stream)[0] < chance;
+        }
+        if !self.out {
+            if self.held {
+                self.fill = Fill::of(&epoch.sample);
+            }
+            return;
+        }
+        for channel in self.channels.iter() {
+            write(&mut epoch.sample, channel, self.fill.counts[channel]);
+        }
+        if self.gimbal {
+            epoch.sample.gimbal = self.fill.gimbal;
+        }
+    }
+
+    fn looks_back(&self) -> bool {
+        self.held
+    }
+}

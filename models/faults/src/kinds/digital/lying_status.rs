@@ -1,0 +1,68 @@
+//! Flags that don't tell the truth.
+
+use crate::catalogue::{Acts, Family, Kind, Lasts, Parameter, Takes};
+use crate::rule::{Context, Rule, SampleRule};
+use crate::setup::{BuildError, Setup};
+use crate::values::Values;
+use alloc::boxed::Box;
+use octant_sample::Epoch;
+use octant_sample::imu::Status;
+
+pub(super) static LYING_STATUS: Kind = Kind {
+    name: "lying-status",
+    family: Family::Digital,
+    acts: Acts::Samples,
+    summary: "A status flag is set or cleared, whatever is true.",
+    model: "While it lasts the flag of every sample is set (a false alarm: good data that claims \
+            to be bad) or cleared (a missed alarm: bad data that claims to be good). Counts, gimbal \
+            angles, stamps and the other flags aren't altered. A sample whose flag already stands \
+            there isn't altered: clearing a flag shows only where something sets it, an earlier \
+            fault for example, so place this one after it.",
+    parameters: &[
+        Parameter {
+            name: "flag",
+            takes: Takes::Choice(&[
+                ("gyro-saturated", "a gyro count saturated"),
+                ("accelerometer-saturated", "an accelerometer count saturated"),
+                ("gimbal-invalid", "the gimbal angles are not to be used"),
+                ("inertial-invalid", "the inertial counts are not to be used"),
+            ]),
+            default: None,
+            doc: "The flag that lies.",
+        },
+        Parameter {
+            name: "becomes",
+            takes: Takes::Choice(&[
+                ("set", "the flag says that something is wrong"),
+                ("cleared", "the flag says that nothing is wrong"),
+            ]),
+            default: Some("set"),
+            doc: "What becomes of the flag.",
+        },
+    ],
+    lasts: Lasts::Span,
+    build,
+};
+
+fn build(values: &Values, _: &Setup) -> Result<Rule, BuildError> {
+    let flag = match values.choice("flag")? {
+        "gyro-saturated" => Status::GYRO_SATURATED,
+        "accelerometer-saturated" => Status::ACCELEROMETER_SATURATED,
+        "gimbal-invalid" => Status::GIMBAL_INVALID,
+        _ => Status::INERTIAL_INVALID,
+    };
+    let set = values.choice("becomes")? == "set";
+    Ok(Rule::Samples(Box::new(LyingStatus { flag, set })))
+}
+
+#[derive(Debug)]
+struct LyingStatus {
+    flag: Status,
+    set: bool,
+}
+
+impl SampleRule for LyingStatus {
+    fn on_epoch(&mut self, epoch: &mut Epoch, _: &Context<'_>) {
+        epoch.sample.status.set(self.flag, self.set);
+    }
+}

@@ -1,0 +1,88 @@
+//! Channels that are wired or decoded wrongly.
+
+use crate::catalogue::{Acts, Family, Kind, Lasts, Parameter, Takes};
+use crate::kinds::channel::{pair, read, write, write_saturating};
+use crate::rule::{Context, Rule, SampleRule};
+use crate::setup::{BuildError, Setup};
+use crate::values::{Channels, Values};
+use alloc::boxed::Box;
+use octant_sample::Epoch;
+
+pub(super) static SIGN_FLIP: Kind = Kind {
+    name: "sign-flip",
+    family: Family::Digital,
+    acts: Acts::Samples,
+    summary: "One or more channels have the wrong sign.",
+    model: "While it lasts every sample of the channels is Δ' = −Δ. The smallest count, \
+            −2147483648, becomes the largest and sets the saturation flag of its triad; no other \
+            flag changes.\n\n\
+            A swapped pair of wires, a wrong axis convention after a change of software.",
+    parameters: &[Parameter {
+        name: "channels",
+        takes: Takes::Channels,
+        default: None,
+        doc: "Channels with the wrong sign.",
+    }],
+    lasts: Lasts::Span,
+    build: build_flip,
+};
+
+pub(super) static AXIS_SWAP: Kind = Kind {
+    name: "axis-swap",
+    family: Family::Digital,
+    acts: Acts::Samples,
+    summary: "Two channels of a triad are exchanged.",
+    model: "While it lasts every sample has Δ'_first = Δ_second and Δ'_second = Δ_first. No flag \
+            changes. It makes a left-handed triad: no rotation of the instrument explains it.",
+    parameters: &[
+        Parameter {
+            name: "first",
+            takes: Takes::Channels,
+            default: None,
+            doc: "One gyro or one accelerometer.",
+        },
+        Parameter {
+            name: "second",
+            takes: Takes::Channels,
+            default: None,
+            doc: "Another of the same triad.",
+        },
+    ],
+    lasts: Lasts::Span,
+    build: build_swap,
+};
+
+fn build_flip(values: &Values, _: &Setup) -> Result<Rule, BuildError> {
+    Ok(Rule::Samples(Box::new(SignFlip { channels: values.channels("channels")? })))
+}
+
+#[derive(Debug)]
+struct SignFlip {
+    channels: Channels,
+}
+
+impl SampleRule for SignFlip {
+    fn on_epoch(&mut self, epoch: &mut Epoch, _: &Context<'_>) {
+        for channel in self.channels.iter() {
+            let count = read(&epoch.sample, channel);
+            write_saturating(&mut epoch.sample, channel, -i64::from(count));
+        }
+    }
+}
+
+fn build_swap(values: &Values, _: &Setup) -> Result<Rule, BuildError> {
+    Ok(Rule::Samples(Box::new(AxisSwap { channels: pair(values, "first", "second")? })))
+}
+
+#[derive(Debug)]
+struct AxisSwap {
+    channels: [usize; 2],
+}
+
+impl SampleRule for AxisSwap {
+    fn on_epoch(&mut self, epoch: &mut Epoch, _: &Context<'_>) {
+        let counts = self.channels.map(|channel| read(&epoch.sample, channel));
+        write(&mut epoch.sample, self.channels[0], counts[1]);
+        write(&mut epoch.sample, self.channels[1], counts[0]);
+    }
+}

@@ -1,0 +1,44 @@
+//! A change that is a function of the count itself.
+
+use crate::kinds::added::Adder;
+use crate::kinds::channel::read;
+use crate::kinds::onset::Onset;
+use crate::rule::{Context, Rule, SampleRule};
+use crate::values::Channels;
+use alloc::boxed::Box;
+use core::fmt;
+use octant_sample::Epoch;
+
+/// Adds `strength · change(channel, count)` to every channel, in counts, remainder carried.
+pub(crate) struct Mapped<F> {
+    channels: Channels,
+    change: F,
+    adder: Adder,
+    onset: Onset,
+}
+
+impl<F: Fn(usize, f64) -> f64 + Send + 'static> Mapped<F> {
+    pub(crate) fn rule(channels: Channels, change: F) -> Rule {
+        let (adder, onset) = (Adder::default(), Onset::default());
+        Rule::Samples(Box::new(Self { channels, change, adder, onset }))
+    }
+}
+
+impl<F> fmt::Debug for Mapped<F> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Mapped").field("channels", &self.channels).finish_non_exhaustive()
+    }
+}
+
+impl<F: Fn(usize, f64) -> f64 + Send> SampleRule for Mapped<F> {
+    fn on_epoch(&mut self, epoch: &mut Epoch, now: &Context<'_>) {
+        if self.onset.is_new(now) {
+            self.adder.clear();
+        }
+        for channel in self.channels.iter() {
+            let count = f64::from(read(&epoch.sample, channel));
+            let change = now.strength * (self.change)(channel, count);
+            self.adder.add(&mut epoch.sample, channel, change);
+        }
+    }
+}

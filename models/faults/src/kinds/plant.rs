@@ -1,0 +1,99 @@
+//! What kinds that act inside the plant have in common.
+
+use crate::catalogue::{Bounds, Dimension, Parameter, Takes};
+use crate::disturbance::{Disturbance, Motor};
+use crate::rule::{Context, PlantRule, Rule};
+use crate::setup::{BuildError, Setup};
+use crate::values::Values;
+use alloc::boxed::Box;
+use alloc::format;
+
+/// A disturbance that is the same at every onset.
+#[derive(Debug)]
+struct Fixed(Disturbance);
+
+impl PlantRule for Fixed {
+    fn begin(&mut self, _: &Context<'_>, _: &Motor) -> Disturbance {
+        self.0.clone()
+    }
+}
+
+/// The rule of a disturbance that is the same at every onset.
+pub(crate) fn fixed(disturbance: Disturbance) -> Rule {
+    Rule::Plant(Box::new(Fixed(disturbance)))
+}
+
+/// Time over which a motion swells and fades.
+pub(crate) const EDGE: Parameter = Parameter {
+    name: "edge",
+    takes: Takes::Quantity(&[Dimension::Time], Bounds::Positive),
+    default: Some("0.5 s"),
+    doc: "Time over which it swells after the onset and fades after the end.",
+};
+
+/// A vector with at least one entry that isn't zero, each of a size up to `limit`.
+pub(crate) fn something(
+    values: &Values,
+    name: &'static str,
+    limit: f64,
+    unit: &str,
+) -> Result<[f64; 3], BuildError> {
+    let vector = values.vector(name)?;
+    if vector == [0.0; 3] {
+        let problem = "three zeros were found, at least one that isn't zero is expected";
+        return Err(BuildError::value(name, problem));
+    }
+    within(name, &vector, limit, unit)?;
+    Ok(vector)
+}
+
+/// Sizes up to a limit.
+pub(crate) fn within(
+    name: &'static str,
+    values: &[f64],
+    limit: f64,
+    unit: &str,
+) -> Result<(), BuildError> {
+    match values.iter().find(|value| !(value.abs() <= limit)) {
+        Some(value) => {
+            let problem = format!("{value} {unit} was found, at most {limit} {unit} is expected");
+            Err(BuildError::value(name, problem))
+        }
+        None => Ok(()),
+    }
+}
+
+/// One of two vectors has an entry that isn't zero.
+pub(crate) fn not_nothing(
+    name: &'static str,
+    other: &str,
+    vectors: [&[f64; 3]; 2],
+) -> Result<(), BuildError> {
+    if vectors.iter().all(|vector| **vector == [0.0; 3]) {
+        let problem = format!("zeros were found, here or in {other} one that isn't is expected");
+        return Err(BuildError::value(name, problem));
+    }
+    Ok(())
+}
+
+/// A frequency that the plant integrates: at most 100 periods in a sample.
+pub(crate) fn frequency(
+    values: &Values,
+    name: &'static str,
+    setup: &Setup,
+) -> Result<f64, BuildError> {
+    let frequency = values.quantity(name)?;
+    let limit = 100.0 / setup.dt_s();
+    if frequency >= 1e-4 && frequency <= limit {
+        return Ok(frequency);
+    }
+    let problem = format!(
+        "{frequency} Hz was found, 0.0001 Hz to {limit} Hz is expected, 100 periods in a sample"
+    );
+    Err(BuildError::value(name, problem))
+}
+
+/// Angular frequency, rad/s.
+pub(crate) fn angular(frequency_hz: f64) -> f64 {
+    2.0 * core::f64::consts::PI * frequency_hz
+}

@@ -1,0 +1,78 @@
+//! Whose clock is wrong, and by how much.
+
+use crate::catalogue::{Parameter, Takes};
+use crate::setup::BuildError;
+use crate::values::Values;
+use octant_sample::Epoch;
+
+/// Which stamps are wrong.
+pub(super) const CLOCK: Parameter = Parameter {
+    name: "clock",
+    takes: Takes::Choice(&[
+        ("instrument", "the stamps of the samples; aiding keeps its own"),
+        ("reference", "the stamps of the aiding; samples keep theirs"),
+        ("both", "both, as where they share a clock"),
+    ]),
+    default: Some("instrument"),
+    doc: "Whose clock is wrong.",
+};
+
+/// What becomes of a clock's error at the end of the fault.
+pub(super) const AFTERWARDS: &[(&str, &str)] = &[
+    ("stays", "the clock goes on at its right rate from where it is, and keeps its error"),
+    ("corrected", "the clock shows the right time again at once"),
+];
+
+/// Whether a clock keeps its error.
+pub(super) fn stays(values: &Values) -> Result<bool, BuildError> {
+    Ok(values.choice("afterwards")? == "stays")
+}
+
+/// The clocks that are wrong.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Clocks {
+    sample: bool,
+    aiding: bool,
+}
+
+impl Clocks {
+    /// From the parameter [`CLOCK`].
+    pub(super) fn of(values: &Values) -> Result<Self, BuildError> {
+        let choice = values.choice("clock")?;
+        Ok(Self { sample: choice != "reference", aiding: choice != "instrument" })
+    }
+
+    /// Adds an error to the stamps, each by its own time, ns. Stamps stay within the range of the
+    /// format: nothing is before zero.
+    pub(super) fn shift_by(self, epoch: &mut Epoch, error_ns: impl Fn(u64) -> i64) {
+        let shift = |ns: &mut u64| *ns = ns.saturating_add_signed(error_ns(*ns));
+        if self.sample {
+            shift(&mut epoch.sample.device_time.ns);
+        }
+        if let (true, Some(aiding)) = (self.aiding, &mut epoch.aiding) {
+            shift(&mut aiding.device_time.ns);
+        }
+    }
+
+    /// Adds an error to the stamps.
+    pub(super) fn shift(self, epoch: &mut Epoch, error_ns: i64) {
+        self.shift_by(epoch, |_| error_ns);
+    }
+}
+
+/// A time to the nearest nanosecond that isn't none at all.
+pub(super) fn nanoseconds(values: &Values, name: &'static str) -> Result<i64, BuildError> {
+    let seconds = values.quantity(name)?;
+    match to_ns(seconds * 1e9) {
+        0 => {
+            let problem = alloc::format!("{seconds} s, at least half a nanosecond is expected");
+            Err(BuildError::value(name, problem))
+        }
+        ns => Ok(ns),
+    }
+}
+
+/// To the nearest nanosecond; saturates.
+pub(super) fn to_ns(ns: f64) -> i64 {
+    libm::round(ns) as i64
+}

@@ -1,0 +1,114 @@
+//! Stamps that are off by a constant.
+
+use super::clock::{CLOCK, Clocks, nanoseconds, to_ns};
+use crate::catalogue::{Acts, Bounds, Dimension, Family, Kind, Lasts, Parameter, Takes};
+use crate::kinds::onset::Onset;
+use crate::rule::{Context, Rule, SampleRule};
+use crate::setup::{BuildError, Setup};
+use crate::values::Values;
+use alloc::boxed::Box;
+use octant_sample::Epoch;
+
+pub(super) static TIME_OFFSET: Kind = Kind {
+    name: "time-offset",
+    family: Family::Time,
+    acts: Acts::Samples,
+    summary: "Stamps are off by a constant while it lasts.",
+    model: "While it lasts, every stamp of the clock is off by a constant; in its recovery the \
+            clock is brought back at a constant rate:\n\n\
+            \u{20}   t' = t + round(s · offset)      s: 1, then down to 0 over the recovery\n\n\
+            in whole nanoseconds, and never below zero. At its onset the stamps jump by the \
+            offset: from the first sample of a run on there is no jump to be seen, only a wrong \
+            time; later, the first interval is longer or shorter by the offset, and a negative \
+            one of a period or more makes stamps go back. Without recovery the opposite jump \
+            comes at its end. Numbers, counts and order of the samples are untouched.\n\n\
+            With `clock = \"reference\"` samples and aiding disagree about the time: the \
+            synchronisation error of a reference. A core that goes by the arrival of aiding and \
+            not by its stamp doesn't notice.\n\n\
+            A jump that stays for good is `time-step`.",
+    parameters: &[
+        Parameter {
+            name: "offset",
+            takes: Takes::Quantity(&[Dimension::Time], Bounds::NotZero),
+            default: None,
+            doc: "Time that is added to the stamps; negative: they are too early.",
+        },
+        CLOCK,
+    ],
+    lasts: Lasts::Fading,
+    build: build_offset,
+};
+
+fn build_offset(values: &Values, _: &Setup) -> Result<Rule, BuildError> {
+    let (clocks, offset_ns) = (Clocks::of(values)?, nanoseconds(values, "offset")?);
+    Ok(Rule::Samples(Box::new(TimeOffset { clocks, offset_ns })))
+}
+
+#[derive(Debug)]
+struct TimeOffset {
+    clocks: Clocks,
+    offset_ns: i64,
+}
+
+impl SampleRule for TimeOffset {
+    fn on_epoch(&mut self, epoch: &mut Epoch, now: &Context<'_>) {
+        // The product with a strength of 1 is exact up to 104 days.
+        self.clocks.shift(epoch, to_ns(self.offset_ns as f64 * now.strength));
+    }
+}
+
+pub(super) static TIME_STEP: Kind = Kind {
+    name: "time-step",
+    family: Family::Time,
+    acts: Acts::Samples,
+    summary: "The clock is stepped, once or again and again, and stays so.",
+    model: "At its onset the clock jumps, and from there on, to the end of the run, every stamp \
+            is off by it; each further onset adds another step:\n\n\
+            \u{20}   t' = t + n · step      n: onsets so far\n\n\
+            in whole nanoseconds, and never below zero. One interval is longer or shorter by the \
+            step, all others are right: what a leap second, a change of the time source or a \
+            clock set by hand do. A negative step of a period or more makes stamps jump back. \
+            The sample at the onset is the first with the new time.\n\n\
+            A jump that is taken back is `time-offset`.",
+    parameters: &[
+        Parameter {
+            name: "step",
+            takes: Takes::Quantity(&[Dimension::Time], Bounds::NotZero),
+            default: None,
+            doc: "Height of the jump; negative: back in time.",
+        },
+        CLOCK,
+    ],
+    lasts: Lasts::Instant,
+    build: build_step,
+};
+
+fn build_step(values: &Values, _: &Setup) -> Result<Rule, BuildError> {
+    let (clocks, step_ns) = (Clocks::of(values)?, nanoseconds(values, "step")?);
+    Ok(Rule::Samples(Box::new(TimeStep { clocks, step_ns, error_ns: 0, onset: Onset::default() })))
+}
+
+#[derive(Debug)]
+struct TimeStep {
+    clocks: Clocks,
+    step_ns: i64,
+    error_ns: i64,
+    onset: Onset,
+}
+
+impl SampleRule for TimeStep {
+    fn on_epoch(&mut self, epoch: &mut Epoch, now: &Context<'_>) {
+        if self.onset.is_new(now) {
+            self.error_ns = self.error_ns.saturating_add(self.step_ns);
+        }
+        self.clocks.shift(epoch, self.error_ns);
+    }
+
+    fn lingers(&self) -> bool {
+        self.error_ns != 0
+    }
+
+    fn afterwards(&mut self, epoch: &mut Epoch, _: &Context<'_>) {
+        self.clocks.shift(epoch, self.error_ns);
+    }
+}

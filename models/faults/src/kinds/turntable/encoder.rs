@@ -1,0 +1,87 @@
+//! Encoders that read another angle; nothing moves.
+
+use super::gimbal::{GIMBAL, chosen, happens, limited};
+use crate::catalogue::{Acts, Bounds, Dimension, Family, Kind, Lasts, Parameter, Takes};
+use crate::disturbance::{Disturbance, Gimbal, GimbalAction, Motor};
+use crate::rule::{Context, PlantRule, Rule};
+use crate::setup::{BuildError, Setup};
+use crate::values::Values;
+use alloc::boxed::Box;
+
+pub(super) static ENCODER_SLIP: Kind = Kind {
+    name: "encoder-slip",
+    family: Family::Turntable,
+    acts: Acts::Plant,
+    summary: "The encoder of a gimbal slips on its shaft: it reads another angle, and nothing moves.",
+    model: "While the fault lasts the encoder reads as if its gimbal were turned further by the \
+            angle a:\n\n\
+            \u{20}   reading = angle + a + error curve at (angle + a)\n\n\
+            from the stamp at the end of the first interval on. Gyros, accelerometers and truth are \
+            bit for bit those without it, and no flag is set. When the fault ends the encoder has \
+            been set right and reads as before.\n\n\
+            It is a loose coupling or disc, or counts that were lost to dirt on an incremental \
+            encoder: then a is a whole number of its lines.",
+    parameters: &[
+        GIMBAL,
+        Parameter {
+            name: "angle",
+            takes: Takes::Quantity(&[Dimension::Angle], Bounds::NotZero),
+            default: None,
+            doc: "Angle a, at most a turn.",
+        },
+    ],
+    lasts: Lasts::Span,
+    build: build_slip,
+};
+
+fn build_slip(values: &Values, _: &Setup) -> Result<Rule, BuildError> {
+    let angle_rad = limited(values, "angle", 2.0 * core::f64::consts::PI, "rad")?;
+    happens(values, GimbalAction::EncoderSlip { angle_rad, flagged: false })
+}
+
+pub(super) static INDEX_LOSS: Kind = Kind {
+    name: "index-loss",
+    family: Family::Turntable,
+    acts: Acts::Plant,
+    summary: "The encoder of a gimbal loses its index and counts from zero where it stands.",
+    model: "An incremental encoder that loses power, or its index, starts anew: it counts from zero \
+            at the angle α0 at which its drive stood at the onset, and while the fault lasts it \
+            reads\n\n\
+            \u{20}   reading = angle − α0 + error curve at (angle − α0)\n\n\
+            from the stamp at the end of the first interval on. With α0 = 0 nothing but the flag \
+            changes. An encoder that knows that it has no index flags it: every sample then says \
+            that its gimbal angles are not to be used (the flag is one for both gimbals). Gyros, \
+            accelerometers and truth are bit for bit those without it. When the fault ends the index \
+            has been found: angle and flag are as before.\n\n\
+            The drive of the turntable is not disturbed: it has its own feedback.",
+    parameters: &[
+        GIMBAL,
+        Parameter {
+            name: "flagged",
+            takes: Takes::Flag,
+            default: Some("true"),
+            doc: "Whether the encoder knows that it has no index.",
+        },
+    ],
+    lasts: Lasts::Span,
+    build: build_index,
+};
+
+fn build_index(values: &Values, _: &Setup) -> Result<Rule, BuildError> {
+    let (gimbal, flagged) = (chosen(values)?, values.flag("flagged")?);
+    Ok(Rule::Plant(Box::new(IndexLoss { gimbal, flagged })))
+}
+
+#[derive(Debug)]
+struct IndexLoss {
+    gimbal: Gimbal,
+    flagged: bool,
+}
+
+impl PlantRule for IndexLoss {
+    fn begin(&mut self, _: &Context<'_>, motor: &Motor) -> Disturbance {
+        let angle_rad = -motor.angle_rad[self.gimbal.index()];
+        let action = GimbalAction::EncoderSlip { angle_rad, flagged: self.flagged };
+        Disturbance::Gimbal { gimbal: self.gimbal, action }
+    }
+}

@@ -1,0 +1,82 @@
+//! The unit under test loses its state.
+
+use crate::catalogue::{Acts, Family, Kind, Lasts};
+use crate::kinds::onset::Onset;
+use crate::rule::{Context, Rule, UnitEvent, UnitRule};
+use crate::setup::{BuildError, Setup};
+use crate::values::Values;
+use alloc::boxed::Box;
+
+pub(super) static RESTART: Kind = Kind {
+    name: "restart",
+    family: Family::Unit,
+    acts: Acts::Unit,
+    summary: "The unit under test restarts, in calibration, in navigation or when its trigger says.",
+    model: "At its onset the unit under test starts anew, as at power on, without losing an epoch: \
+            the sample of the onset is the first of its new life. It forgets attitude, estimates, \
+            covariance and its place in the procedure, and begins with alignment and the first \
+            position, wherever the turntable stands; the turntable gets the set points of the new \
+            life. The source doesn't notice: numbers and stamps go on, and a unit that takes its \
+            clock for that of the run is wrong. An attitude that was handed over for the start of \
+            the run is handed over again, whether it still holds or not.\n\n\
+            When it happens is its trigger: in the calibration with \
+            `trigger = { position = 5, after = \"60 s\" }` or, in a move, \
+            `trigger = { moving_to = 5 }`; at the start of the navigation with \
+            `trigger = { mode = \"navigating\" }`. A watchdog that bites again and again is one \
+            that repeats. The samples are untouched: the epoch counts as altered in which the \
+            unit restarted. One without power doesn't restart.",
+    parameters: &[],
+    lasts: Lasts::Instant,
+    build: build_restart,
+};
+
+fn build_restart(_: &Values, _: &Setup) -> Result<Rule, BuildError> {
+    Ok(Rule::Unit(Box::new(Once { event: UnitEvent::Restart, onset: Onset::default() })))
+}
+
+/// One event at each onset.
+#[derive(Debug)]
+pub(super) struct Once {
+    pub(super) event: UnitEvent,
+    pub(super) onset: Onset,
+}
+
+impl UnitRule for Once {
+    fn on_epoch(&mut self, now: &Context<'_>) -> Option<UnitEvent> {
+        self.onset.is_new(now).then_some(self.event)
+    }
+}
+
+pub(super) static BROWN_OUT: Kind = Kind {
+    name: "brown-out",
+    family: Family::Unit,
+    acts: Acts::Unit,
+    summary: "The unit under test loses power for a time, and its state with it.",
+    model: "While it lasts, the unit under test is without power: no epoch reaches it and it \
+            answers nothing; the turntable keeps its set point. At its end the unit starts anew, \
+            as at `restart`, and the epoch of the end is the first of its new life. Instrument, \
+            turntable and reference keep their power: time, numbers and motion go on.\n\n\
+            Of several faults that cut the power, it goes with the first onset and comes back with \
+            the last end; what else would happen to the unit meanwhile doesn't. Every epoch that \
+            it missed counts as altered. Without a duration the unit stays off.",
+    parameters: &[],
+    lasts: Lasts::Span,
+    build: build_brown_out,
+};
+
+fn build_brown_out(_: &Values, _: &Setup) -> Result<Rule, BuildError> {
+    Ok(Rule::Unit(Box::new(BrownOut)))
+}
+
+#[derive(Debug)]
+struct BrownOut;
+
+impl UnitRule for BrownOut {
+    fn on_epoch(&mut self, _: &Context<'_>) -> Option<UnitEvent> {
+        None
+    }
+
+    fn cuts_power(&self) -> bool {
+        true
+    }
+}

@@ -1,0 +1,491 @@
+//! What holds for every kind of the catalogue, whatever its values and its trigger: nothing panics,
+//! nothing differs before the first onset, and the receipt is what a comparison of the clean and
+//! the delivered stream finds. Kinds are covered from the day on which they are in the catalogue.
+#![allow(clippy::unwrap_used)]
+
+mod common;
+
+use common::{Log, clean, setup};
+use octant_faults::catalogue::{Acts, Bounds, Dimension, Family, Kind, Lasts, Takes};
+use octant_faults::rule::UnitEvent;
+use octant_faults::station::{Delivered, Occurrence};
+use octant_faults::trigger::{Comparison, Repeat, Schedule, Signal, Trigger};
+use octant_faults::{BuildError, Channels, Receipt, Spec, Station, Value, Values, kinds};
+use octant_sample::canonical::{AIDING_BYTES, SAMPLE_BYTES, aiding, sample};
+use octant_sample::imu::Status;
+use octant_sample::{
+    Aiding, Epoch, GimbalAngles, GimbalCommand, Health, Mode, Output, Reference, Truth,
+};
+use proptest::prelude::*;
+use proptest::sample::select;
+use proptest::strategy::ValueTree;
+use proptest::test_runner::TestRunner;
+
+const EPOCHS: u64 = 400;
+
+/// The source: counts at the limits now and then, both kinds of aiding, flags.
+fn source(k: u64) -> Epoch {
+    let mut epoch = clean(k);
+    if k.is_multiple_of(13) {
+        epoch.sample.delta_theta = [i32::MIN, i32::MAX, 0];
+    }
+    if k.is_multiple_of(17) {
+        epoch.sample.delta_velocity = [i32::MAX, 0, i32::MIN];
+    }
+    if k.is_multiple_of(19) {
+        epoch.sample.status = Status::from_bits_truncate(k as u16);
+    }
+    let reference = match k % 10 {
+        0 => Reference::Velocity([1e-3, -2e-3, k as f64 * 1e-6]),
+        5 => Reference::Position { latitude_rad: 0.5, longitude_rad: -2.0, height_m: k as f64 },
+        _ => return epoch,
+    };
+    epoch.aiding = Some(Aiding { device_time: epoch.sample.device_time, reference });
+    epoch
+}
+
+/// The core: a position every 40 epochs, moves of 10, navigation from 250 on.
+fn answer(k: u64) -> Output {
+    let stop = (k / 40) as u16;
+    Output {
+        sequence: k,
+        mode: if k < 250 { Mode::Calibrating } else { Mode::Navigating },
+        stop,
+        moving: k % 40 < 10,
+        nis: if k % 30 < 10 { f64::NAN } else { (k % 30) as f64 },
+        health: Health::from_bits_truncate(1 << (k / 20 % 12)),
+        gimbal_command: GimbalCommand {
+            target: GimbalAngles { azimuth: 1_000_000 * i32::from(stop), roll: -70 * k as i32 },
+        },
+        ..Output::default()
+    }
+}
+
+/// Everything that a run told.
+#[derive(Debug, PartialEq)]
+struct Told {
+    /// What was delivered for each epoch.
+    delivered: Vec<Vec<Epoch>>,
+    commands: Vec<GimbalCommand>,
+    occurrences: Vec<Occurrence>,
+    events: Vec<UnitEvent>,
+    begun: usize,
+    ended: usize,
+    receipts: Vec<Receipt>,
+}
+
+/// Faults with a manual trigger are fired at epoch 20.
+fn run(specs: &[Spec]) -> Result<Told, (String, BuildError)> {
+    let mut station = Station::new(specs, &setup())?;
+    let mut log = Log { truth: Some(Truth::default()), ..Log::default() };
+    let (mut delivered, mut commands) = (Vec::new(), Vec::new());
+    let (mut occurrences, mut events) = (Vec::new(), Vec::new());
+    for k in 1..=EPOCHS {
+        if k == 20 {
+            specs.iter().for_each(|spec| {
+                let manual = spec.schedule.trigger == Trigger::Manual;
+                assert_eq!(station.fire(&spec.id), manual);
+            });
+        }
+        let output = answer(k - 1);
+        let mut command = output.gimbal_command;
+        station.before(&mut command, &output, &mut log);
+        commands.push(command);
+        let epoch = source(k);
+        delivered.push(match station.after(&epoch, &output) {
+            Delivered::Untouched => vec![epoch],
+            Delivered::These(epochs) => epochs.to_vec(),
+        });
+        events.extend_from_slice(station.unit_events());
+        occurrences.extend_from_slice(station.occurrences());
+        station.told();
+    }
+    let (begun, ended) = (log.begun.len(), log.ended.len());
+    Ok(Told {
+        delivered,
+        commands,
+        occurrences,
+        events,
+        begun,
+        ended,
+        receipts: station.receipts(),
+    })
+}
+
+/// CRC-32 (IEEE 802.3), bit by bit.
+fn crc32(bytes: &[u8]) -> u32 {
+    let mut crc = u32::MAX;
+    for byte in bytes {
+        crc ^= u32::from(*byte);
+        for _ in 0..8 {
+            crc = if crc & 1 == 1 { (crc >> 1) ^ 0xEDB8_8320 } else { crc >> 1 };
+        }
+    }
+    !crc
+}
+
+fn bytes(epochs: &[Epoch]) -> Vec<u8> {
+    let mut all = Vec::new();
+    for epoch in epochs {
+        let mut part = [0; SAMPLE_BYTES];
+        sample(&epoch.sample, &mut part);
+        all.extend_from_slice(&part);
+        if let Some(message) = &epoch.aiding {
+            let mut part = [0; AIDING_BYTES];
+            aiding(message, &mut part);
+            all.extend_from_slice(&part);
+        }
+    }
+    all
+}
+
+fn same(delivered: &[Epoch], k: u64) -> bool {
+    matches!(delivered, [one] if one.same_bits(&source(k)))
+}
+
+/// What is usual for a dimension, SI: values from a thousandth to a thousand times of it are drawn.
+fn usual(dimension: Dimension) -> f64 {
+    match dimension {
+        Dimension::Time => 0.1,
+        Dimension::Samples | Dimension::Frequency => 10.0,
+        Dimension::Angle | Dimension::Length | Dimension::Temperature => 1.0,
+        Dimension::SmallAngle | Dimension::GyroBias | Dimension::AngleRandomWalk => 1e-5,
+        Dimension::RateRandomWalk | Dimension::GDependent | Dimension::GyroBiasPerK => 1e-6,
+        _ => 1e-2,
+    }
+}
+
+fn quantity(dimensions: &'static [Dimension], bounds: Bounds) -> BoxedStrategy<Value> {
+    let size = |dimension| {
+        prop_oneof![
+            8 => (-3.0..3.0f64).prop_map(move |power| usual(dimension) * 10f64.powf(power)),
+            1 => Just(1e-30),
+            1 => Just(1e30),
+        ]
+    };
+    select(dimensions)
+        .prop_flat_map(move |dimension| {
+            let size = size(dimension);
+            let value = match bounds {
+                Bounds::NotZero => {
+                    (size, any::<bool>()).prop_map(|(v, minus)| if minus { -v } else { v }).boxed()
+                }
+                Bounds::Any => prop_oneof![Just(0.0), size.clone(), size.prop_map(|v| -v)].boxed(),
+                Bounds::Positive => size.boxed(),
+                Bounds::NotNegative => prop_oneof![Just(0.0), size].boxed(),
+                Bounds::Within(from, to, _) => prop_oneof![
+                    1 => Just(from),
+                    1 => Just(to),
+                    3 => from..=to,
+                    3 => (-6.0..0.0f64).prop_map(move |p| from + (to - from) * 10f64.powf(p)),
+                ]
+                .boxed(),
+            };
+            value.prop_map(move |value| Value::Quantity(value, dimension))
+        })
+        .boxed()
+}
+
+fn channels() -> impl Strategy<Value = Channels> {
+    let one = || select(&Channels::NAMES[..]).prop_map(|(_, channels)| channels);
+    prop_oneof![4 => one(), 1 => (one(), one()).prop_map(|(a, b)| a.union(b))]
+}
+
+fn value(takes: Takes) -> BoxedStrategy<Value> {
+    match takes {
+        Takes::Quantity(dimensions, bounds) => quantity(dimensions, bounds),
+        Takes::Vector(dimensions) => {
+            let part = || quantity(dimensions, Bounds::Any);
+            (select(dimensions), part(), part(), part())
+                .prop_map(|(dimension, x, y, z)| {
+                    let size = |value| match value {
+                        Value::Quantity(value, _) => value,
+                        _ => unreachable!(),
+                    };
+                    Value::Vector([size(x), size(y), size(z)], dimension)
+                })
+                .boxed()
+        }
+        Takes::Integer(from, to) => {
+            let few = to.min(from.saturating_add(20));
+            prop_oneof![3 => from..=few, 1 => from..=to].prop_map(Value::Integer).boxed()
+        }
+        Takes::Flag => any::<bool>().prop_map(Value::Flag).boxed(),
+        Takes::Choice(names) => select(names).prop_map(|(name, _)| Value::Choice(name)).boxed(),
+        Takes::Channels => channels().prop_map(Value::Channels).boxed(),
+    }
+}
+
+fn values(kind: &'static Kind) -> BoxedStrategy<Values> {
+    let names = kind.parameters.iter().map(|parameter| parameter.name);
+    let names: Vec<_> = names.collect();
+    let each: Vec<_> = kind.parameters.iter().map(|parameter| value(parameter.takes)).collect();
+    each.prop_map(move |each| {
+        let mut values = Values::default();
+        names.iter().zip(each).for_each(|(name, value)| values.set(name, value));
+        values
+    })
+    .boxed()
+}
+
+fn trigger() -> impl Strategy<Value = Trigger> {
+    let epoch = || 0..EPOCHS;
+    let delay = || 0..30u64;
+    let last = || proptest::option::of(0..EPOCHS);
+    let mode = || select(&[Mode::Calibrating, Mode::Navigating][..]);
+    let signal = prop_oneof![
+        Just(Signal::Nis),
+        any::<u32>().prop_map(|bits| Signal::Health(Health::from_bits_truncate(bits))),
+        (0..3usize).prop_map(Signal::Velocity),
+        Just(Signal::LatitudeError),
+        Just(Signal::LongitudeError),
+        (0..2usize).prop_map(Signal::TrueGimbal),
+        (0..3usize).prop_map(Signal::TrueVelocity),
+    ];
+    let comparison = select(&[Comparison::Above, Comparison::Below][..]);
+    prop_oneof![
+        3 => epoch().prop_map(Trigger::Epoch),
+        1 => (0..10u16, mode(), delay())
+            .prop_map(|(stop, mode, delay)| Trigger::Position { stop, mode, delay }),
+        1 => (0..10u16, mode(), delay())
+            .prop_map(|(stop, mode, delay)| Trigger::Move { stop, mode, delay }),
+        1 => (mode(), delay()).prop_map(|(mode, delay)| Trigger::Mode { mode, delay }),
+        1 => (signal, comparison, select(&[-1.0, 0.5, 15.0][..]), delay()).prop_map(
+            |(signal, comparison, value, delay)| {
+                Trigger::Condition { signal, comparison, value, delay }
+            }
+        ),
+        1 => (epoch(), 0..60u64, last())
+            .prop_map(|(first, period, last)| Trigger::Periodic { first, period, last }),
+        1 => (epoch(), 0.1..60.0, last())
+            .prop_map(|(first, mean, last)| Trigger::Poisson { first, mean, last }),
+        1 => delay().prop_map(|delay| Trigger::After { fault: "f0".into(), delay }),
+        1 => Just(Trigger::Manual),
+    ]
+}
+
+fn schedule(lasts: Lasts) -> impl Strategy<Value = Schedule> {
+    let recovery = match lasts {
+        Lasts::Fading => prop_oneof![Just(0), 1..40u64].boxed(),
+        Lasts::Span | Lasts::Instant => Just(0).boxed(),
+    };
+    let repeat = prop_oneof![
+        3 => Just(Repeat::Once),
+        1 => (1..5u32, 0..60u64).prop_map(|(times, every)| Repeat::Times { times, every }),
+        1 => Just(Repeat::EveryTime),
+    ];
+    (trigger(), proptest::option::weighted(0.8, 1..100u64), recovery, repeat).prop_map(
+        |(trigger, duration, recovery, repeat)| Schedule { trigger, duration, recovery, repeat },
+    )
+}
+
+fn spec_of(kind: &'static Kind) -> impl Strategy<Value = Spec> {
+    (values(kind), schedule(kind.lasts)).prop_map(move |(values, schedule)| Spec {
+        id: "f0".into(),
+        kind,
+        values,
+        schedule,
+    })
+}
+
+fn spec() -> impl Strategy<Value = Spec> {
+    select(kinds::all().collect::<Vec<_>>()).prop_flat_map(spec_of)
+}
+
+/// A refusal names what is wrong with the fault: a parameter of the kind, or what it waits for.
+fn refusal_is_fair(specs: &[Spec], (id, error): &(String, BuildError)) {
+    let spec = specs.iter().find(|spec| spec.id == *id).unwrap();
+    match error {
+        BuildError::Value { parameter, problem } => {
+            assert!(
+                spec.kind.parameter(parameter).is_some() || *parameter == "kind",
+                "{}: {parameter}",
+                spec.kind.name
+            );
+            assert!(!problem.is_empty());
+        }
+        BuildError::NoSuchFault { after, .. } => assert_eq!(after, "f0"),
+        BuildError::DuplicateId(_) => panic!("{error}"),
+    }
+}
+
+/// What holds of any receipt beside the streams.
+fn receipt_is_sound(told: &Told, index: usize) {
+    let receipt = &told.receipts[index];
+    let onsets = told.occurrences.iter().filter(|it| it.fault == index && it.begins);
+    let onsets: Vec<u64> = onsets.map(|it| it.epoch).collect();
+    assert!(receipt.armed);
+    assert_eq!(receipt.firings as usize, onsets.len());
+    assert_eq!(receipt.fired(), receipt.first_sample.is_some());
+    assert_eq!(receipt.fired(), receipt.last_sample.is_some());
+    if let (Some(first), Some(last)) = (receipt.first_sample, receipt.last_sample) {
+        assert!(onsets[0] <= first && first <= last && last <= EPOCHS);
+        assert!(receipt.samples_altered <= last - first + 1);
+    } else {
+        assert_eq!((receipt.clean_crc32, receipt.faulted_crc32), (0, 0));
+    }
+}
+
+/// Epochs in which the fault was active, fading included.
+fn active(told: &Told) -> Vec<u64> {
+    let is = |k: u64| {
+        let mut until = told.occurrences.iter().filter(|it| it.epoch <= k);
+        until.next_back().is_some_and(|it| it.begins)
+    };
+    (1..=EPOCHS).filter(|k| is(*k)).collect()
+}
+
+fn one_fault_adds_up(spec: &Spec, told: &Told) {
+    receipt_is_sound(told, 0);
+    let receipt = &told.receipts[0];
+    let first_onset = told.occurrences.first().map_or(u64::MAX, |it| it.epoch);
+    let streams = matches!(spec.kind.acts, Acts::Samples | Acts::Delivery);
+    let epochs = (1..=EPOCHS).zip(&told.delivered);
+    let altered: Vec<u64> = epochs.filter(|(k, out)| !same(out, *k)).map(|(k, _)| k).collect();
+    let commanded = |k: u64| answer(k - 1).gimbal_command;
+    let commands: Vec<u64> =
+        (1..=EPOCHS).filter(|k| told.commands[*k as usize - 1] != commanded(*k)).collect();
+    assert!(altered.iter().chain(&commands).all(|k| *k >= first_onset));
+    assert!(streams || altered.is_empty());
+    assert!(spec.kind.acts == Acts::Command || commands.is_empty());
+    assert!(spec.kind.acts == Acts::Unit || told.events.is_empty());
+    let expected = match spec.kind.acts {
+        Acts::Samples | Acts::Delivery => {
+            let from: Vec<_> = altered.iter().map(|k| source(*k)).collect();
+            let to = altered.iter().flat_map(|k| told.delivered[*k as usize - 1].clone());
+            let to: Vec<_> = to.collect();
+            assert_eq!(receipt.clean_crc32, crc32(&bytes(&from)));
+            assert_eq!(receipt.faulted_crc32, crc32(&bytes(&to)));
+            altered
+        }
+        Acts::Command => {
+            let bytes = |command: GimbalCommand| {
+                [command.target.azimuth.to_le_bytes(), command.target.roll.to_le_bytes()].concat()
+            };
+            let from: Vec<u8> = commands.iter().flat_map(|k| bytes(commanded(*k))).collect();
+            let to = commands.iter().flat_map(|k| bytes(told.commands[*k as usize - 1]));
+            let to: Vec<u8> = to.collect();
+            assert_eq!((receipt.clean_crc32, receipt.faulted_crc32), (crc32(&from), crc32(&to)));
+            commands
+        }
+        Acts::Plant => {
+            assert_eq!(told.begun, receipt.firings as usize);
+            assert!(told.ended == told.begun || told.ended + 1 == told.begun);
+            active(told)
+        }
+        // What the unit does is told in events, not epoch by epoch.
+        _ => return,
+    };
+    assert_eq!(receipt.samples_altered, expected.len() as u64);
+    assert_eq!(receipt.first_sample, expected.first().copied());
+    assert_eq!(receipt.last_sample, expected.last().copied());
+    if matches!(spec.kind.family, Family::Analogue | Family::RingLaser | Family::Digital) {
+        // Nothing of these stays after their end, and no sample is lost or made.
+        let active = active(told);
+        assert!(expected.iter().all(|k| active.binary_search(k).is_ok()));
+        assert!(told.delivered.iter().all(|out| out.len() == 1));
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 512, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn the_receipt_of_a_fault_is_what_a_comparison_finds(spec in spec()) {
+        match run(std::slice::from_ref(&spec)) {
+            Ok(told) => one_fault_adds_up(&spec, &told),
+            Err(error) => refusal_is_fair(&[spec], &error),
+        }
+    }
+
+    #[test]
+    fn several_faults_at_once_stay_in_order(
+        mut specs in proptest::collection::vec(spec(), 2..6)
+    ) {
+        for (index, spec) in specs.iter_mut().enumerate() {
+            spec.id = format!("f{index}");
+        }
+        // A few are refused; the others still make a run.
+        let told = loop {
+            match run(&specs) {
+                Ok(told) => break told,
+                Err(error) => {
+                    refusal_is_fair(&specs, &error);
+                    specs.retain(|spec| spec.id != error.0);
+                }
+            }
+        };
+        for index in 0..specs.len() {
+            receipt_is_sound(&told, index);
+        }
+        let first = |acts: &dyn Fn(Acts) -> bool| {
+            let all = told.occurrences.iter();
+            let mut of = all.filter(|it| it.begins && acts(specs[it.fault].kind.acts));
+            of.next().map_or(u64::MAX, |it| it.epoch)
+        };
+        let onset = first(&|acts| matches!(acts, Acts::Samples | Acts::Delivery));
+        for (k, out) in (1..).zip(&told.delivered) {
+            prop_assert!(k >= onset || same(out, k), "{}", k);
+        }
+        let onset = first(&|acts| acts == Acts::Command);
+        for (k, command) in (1..).zip(&told.commands) {
+            prop_assert!(k >= onset || *command == answer(k - 1).gimbal_command, "{}", k);
+        }
+        // The same again, bit for bit (NaN as its bits).
+        let again = run(&specs).unwrap();
+        prop_assert_eq!(&again.receipts, &told.receipts);
+        let all = |told: &Told| told.delivered.iter().map(|out| bytes(out)).collect::<Vec<_>>();
+        prop_assert_eq!(all(&again), all(&told));
+    }
+}
+
+#[test]
+fn every_kind_can_be_built_and_leaves_a_trace() {
+    let mut runner = TestRunner::deterministic();
+    for kind in kinds::all() {
+        let strategy = values(kind);
+        let traced = (0..500).any(|_| {
+            let values = strategy.new_tree(&mut runner).unwrap().current();
+            let schedule = Schedule {
+                trigger: Trigger::Epoch(15),
+                duration: Some(300),
+                recovery: 0,
+                repeat: Repeat::Once,
+            };
+            let spec = Spec { id: "f0".into(), kind, values, schedule };
+            run(&[spec]).is_ok_and(|told| told.receipts[0].fired() || !told.events.is_empty())
+        });
+        assert!(traced, "{}", kind.name);
+    }
+}
+
+#[test]
+fn the_catalogue_is_in_order() {
+    let mut names = Vec::new();
+    for kind in kinds::all() {
+        let plain = |name: &str, joint: char| {
+            let letters = |part: &str| {
+                !part.is_empty()
+                    && part.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit())
+            };
+            name.split(joint).all(letters)
+        };
+        assert!(plain(kind.name, '-'), "{}", kind.name);
+        assert!(!names.contains(&kind.name), "{}", kind.name);
+        names.push(kind.name);
+        assert!(kind.summary.ends_with('.') && !kind.summary.contains('\n'), "{}", kind.name);
+        assert!(kind.model.len() > 100, "{}", kind.name);
+        let mut keys = vec!["id", "kind", "trigger", "duration", "recovery", "repeat"];
+        for parameter in kind.parameters {
+            assert!(plain(parameter.name, '_'), "{}: {}", kind.name, parameter.name);
+            assert!(!keys.contains(&parameter.name), "{}: {}", kind.name, parameter.name);
+            assert!(parameter.doc.ends_with('.'), "{}: {}", kind.name, parameter.name);
+            keys.push(parameter.name);
+            if let (Takes::Choice(names), Some(default)) = (parameter.takes, parameter.default) {
+                let known = names.iter().any(|(name, _)| *name == default);
+                assert!(known, "{}: {default}", kind.name);
+            }
+        }
+        assert!(kinds::named(kind.name).is_some_and(|found| std::ptr::eq(found, kind)));
+    }
+}

@@ -1,0 +1,55 @@
+//! Disturbances that last: what the plant remembers from their onset to their end.
+
+use octant_faults::disturbance::{Gimbal, GimbalAction};
+
+/// One that has not ended.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Lasting {
+    Gimbal(usize, GimbalAction),
+    LeverArm([[f64; 3]; 3]),
+}
+
+/// Those that have not ended, in the order of their onsets.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Registry {
+    all: Vec<(u32, Lasting)>,
+}
+
+impl Registry {
+    pub(crate) fn is_empty(&self) -> bool {
+        self.all.is_empty()
+    }
+
+    pub(super) fn enter(&mut self, handle: u32, lasting: Lasting) {
+        self.all.push((handle, lasting));
+    }
+
+    /// Takes out one of a handle.
+    pub(super) fn leave(&mut self, handle: u32) -> Option<Lasting> {
+        let found = self.all.iter().position(|(known, _)| *known == handle)?;
+        Some(self.all.remove(found).1)
+    }
+
+    pub(super) fn lever_arms(&self) -> impl Iterator<Item = &[[f64; 3]; 3]> {
+        self.all.iter().filter_map(|(_, lasting)| match lasting {
+            Lasting::LeverArm(arms) => Some(arms),
+            Lasting::Gimbal(..) => None,
+        })
+    }
+
+    /// What happens to a gimbal.
+    pub(super) fn of(&self, gimbal: usize) -> impl Iterator<Item = GimbalAction> + '_ {
+        self.all.iter().filter_map(move |(_, lasting)| match lasting {
+            Lasting::Gimbal(known, action) if *known == gimbal => Some(*action),
+            _ => None,
+        })
+    }
+
+    /// An encoder says that its angle is not to be used.
+    pub(crate) fn flags_gimbal(&self) -> bool {
+        [Gimbal::Azimuth, Gimbal::Roll].into_iter().any(|gimbal| {
+            self.of(gimbal.index())
+                .any(|action| matches!(action, GimbalAction::EncoderSlip { flagged: true, .. }))
+        })
+    }
+}
