@@ -33,8 +33,7 @@ const NOISE_SIGMAS: f64 = 8.0;
 const TESTABLE_COUNTS: f64 = 20.0;
 /// Margin on what the turntable's servo makes of its acceleration and rate.
 const SERVO_MARGIN: f64 = 2.0;
-/// A channel that isn't tested.
-/// The largest difference, less the floor of 1, and what is below the floor, stay on their side.
+/// A channel that isn't tested: no difference is as large, and what is below the floor wraps to more.
 const NO_LIMIT: u32 = u32::MAX - 1;
 /// Standard gravity, for a bound.
 const GRAVITY_MPS2: f64 = 9.81;
@@ -281,5 +280,116 @@ impl Screen {
     #[must_use]
     pub fn last(&self) -> &Counts {
         &self.last
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::config::Recovery;
+
+    const SAMPLE_S: f64 = 0.005;
+
+    fn noise() -> Noise {
+        // Table 1: 0.0007 °/√h and 50 µg/√Hz.
+        Noise { angle_random_walk: 2.036e-7, velocity_random_walk: 4.903e-4 }
+    }
+
+    fn screen(screening: &Screening) -> Screen {
+        let table = TurntableRates { rate_radps: 0.174_533, acceleration_radps2: 0.174_533 };
+        let mut screen = Screen::new(screening, &noise(), &table, SAMPLE_S);
+        assert_eq!(screen.examine(&still(0), false, None, 0), Examined::default());
+        screen
+    }
+
+    /// Counts that differ from sample to sample by less than the noise.
+    fn still(k: i32) -> Counts {
+        [100 + k % 2, 200 + k % 2, 300 + k % 2, k % 2, 1 + k % 2, -52_000_000 + k % 2]
+    }
+
+    fn passes(screen: &mut Screen, [x, y, z, u, v, w]: Counts, moving: bool) -> bool {
+        screen.passes(moving, x, y, z, u, v, w)
+    }
+
+    #[test]
+    fn limits_follow_from_noise_and_motion() {
+        let screen = screen(&Screening::hardened(Base::Still));
+        // 8 √2 × 2.036e-7 √0.005 × 2³⁶ = 11 195; 8 √2 × 4.903e-4 √0.005 × 2³⁰ = 421 200.
+        assert!((11_150..11_250).contains(&screen.limits[0][0]), "{:?}", screen.limits);
+        assert!((419_000..423_000).contains(&screen.limits[0][3]), "{:?}", screen.limits);
+        // Twice √2 of 10 °/s² over 5 ms, and the square of the rate, 0.244: 0.737 × 2.5e-5 × 2³⁶.
+        let motion = screen.limits[1][0] - screen.limits[0][0];
+        assert!((1_250_000..1_280_000).contains(&motion), "{motion}");
+    }
+
+    #[test]
+    fn a_jump_is_held_for_no_longer_than_its_bound() {
+        let mut screen = screen(&Screening::hardened(Base::Still));
+        for k in 1..10 {
+            assert!(passes(&mut screen, still(k), false));
+        }
+        let jumped = |k: i32| {
+            let mut counts = still(k);
+            counts[1] += 1_000_000;
+            counts
+        };
+        let mut held = 0;
+        for k in 10.. {
+            assert!(!passes(&mut screen, jumped(k), false));
+            let found = screen.examine(&jumped(k), false, None, k as u64);
+            if found.expired != 0 {
+                assert_eq!(found.expired, 0b10);
+                break;
+            }
+            assert_eq!(found.jumped, 0b10);
+            held += 1;
+        }
+        // 0.1 s where the motion isn't known.
+        assert_eq!(held, 20);
+        assert!(passes(&mut screen, jumped(1), false), "believed");
+    }
+
+    #[test]
+    fn a_stream_that_keeps_jumping_is_believed_in_the_end() {
+        let mut screen = screen(&Screening::hardened(Base::Still));
+        let mut disbelieved = 0;
+        for k in 1..20_000 {
+            let mut counts = still(k);
+            counts[0] += if k % 4 == 0 { 60_000 } else { 0 };
+            if !passes(&mut screen, counts, false) {
+                let found = screen.examine(&counts, false, None, k as u64);
+                disbelieved += i32::from(found.jumped != 0);
+            }
+        }
+        // Three doublings of 11 200 reach 60 000 after 51 jumps each.
+        assert_eq!(disbelieved, 3 * 51);
+    }
+
+    #[test]
+    fn identical_counts_are_stuck_and_a_bare_screen_passes_everything_else() {
+        for screening in [
+            Screening::hardened(Base::Still),
+            Screening::gated(Recovery::Widening),
+            Screening::none(),
+        ] {
+            let mut screen = screen(&screening);
+            let mut stuck = 0;
+            for k in 1..20 {
+                let mut counts = still(k);
+                counts[4] = 7;
+                if !passes(&mut screen, counts, false) {
+                    let found = screen.examine(&counts, false, None, k as u64);
+                    assert_eq!(found.jumped | found.expired, 0);
+                    stuck += u32::from(found.stuck == 0b1_0000);
+                    assert_eq!(found.found_stuck != 0, found.stuck != 0 && stuck == 1);
+                }
+            }
+            // The eighth of nineteen equal counts is the first that is called stuck.
+            assert_eq!(stuck, if screening.stuck_samples.is_some() { 12 } else { 0 });
+            let wild = [i32::MIN, i32::MAX, 0, i32::MAX, i32::MIN, 5];
+            let good = passes(&mut screen, wild, true);
+            let jumped = !good && screen.examine(&wild, true, None, 20).jumped != 0;
+            assert_eq!(jumped, screening.jumps);
+        }
     }
 }
