@@ -9,6 +9,7 @@ mod instrument;
 
 use instrument::Case;
 use instrument::closed_loop::{ClosedLoop, on_two_threads};
+use octant_calibration::config::{Recovery, Screening};
 use octant_calibration::positions::{EIGHT, SIX};
 use octant_earth::units::*;
 use octant_sample::counts::{DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS, GIMBAL_LSB_RAD};
@@ -405,6 +406,24 @@ fn assert_no_alarm(seeds: u64, hours: f64) {
     assert!(rejections as f64 <= expected + 5.0 * expected.sqrt() + 1.0);
     println!("largest correction: static {:.1}, dockside {:.1} of its σ", largest[0], largest[1]);
     assert!(failures.is_empty(), "{}", failures.join("\n"));
+}
+
+/// Where no screen fires, none is felt.
+#[test]
+fn a_clean_stream_is_answered_bit_for_bit_as_without_the_screens() {
+    let case = Case { calibration_h: 0.5, ..Case::table_1(3, EIGHT) };
+    let mut gated = case.core();
+    gated.screening = Screening::gated(Recovery::Widening);
+    let mut runs = [case.core(), gated].map(|config| ClosedLoop::new(&case.plant(), &config));
+    for _ in 0..1800 * SECOND {
+        let [a, b] = &mut runs;
+        let (a, b) = (a.step(), b.step());
+        assert_eq!((a.navigation, a.health), (b.navigation, b.health), "{}", a.sequence);
+        assert_eq!(a.nis.to_bits(), b.nis.to_bits());
+        assert_eq!((a.parameters_revision, a.mode), (b.parameters_revision, b.mode));
+    }
+    assert_eq!(runs[0].core.parameters(), runs[1].core.parameters());
+    assert_eq!(runs[0].core.sigma(), runs[1].core.sigma());
 }
 
 #[test]
