@@ -19,7 +19,7 @@ use octant_faults::station::Spec;
 use octant_faults::trigger::{Repeat, Schedule, Trigger};
 use octant_faults::{Station, Values};
 use octant_sample::canonical::{AIDING_BYTES, SAMPLE_BYTES, aiding, sample};
-use octant_sample::{GimbalCommand, Mode, Parameters};
+use octant_sample::{GimbalCommand, Mode, Output, Parameters};
 use std::path::Path;
 
 const LOCKSTEP: &str = include_str!("../../fixtures/scenarios/lockstep.toml");
@@ -232,32 +232,38 @@ struct Deliver {
 
 impl DeliveryRule for Deliver {
     /// By its number since the onset: 0 lost; 1 kept; 2 delivered, then the kept one; 3 twice.
-    fn on_epoch(&mut self, epoch: Epoch, _: bool, now: &Context<'_>, out: &mut Vec<Epoch>) {
-        match now.since_onset {
-            0 => {}
-            1 => self.kept = Some(epoch),
-            2 => out.extend([epoch].into_iter().chain(self.kept.take())),
-            3 => out.extend([epoch, epoch]),
-            _ => out.push(epoch),
+    fn on_step(&mut self, incoming: &[Epoch], _: bool, now: &Context<'_>, out: &mut Vec<Epoch>) {
+        for epoch in incoming {
+            match now.since_onset {
+                0 => {}
+                1 => self.kept = Some(*epoch),
+                2 => out.extend([*epoch].into_iter().chain(self.kept.take())),
+                3 => out.extend([*epoch, *epoch]),
+                _ => out.push(*epoch),
+            }
         }
     }
 
     fn holds(&self) -> usize {
         usize::from(self.kept.is_some())
     }
+
+    fn most_out(&self, incoming: usize) -> usize {
+        2 * incoming + 1
+    }
 }
 
-/// Does this at its onset, and that at its end.
+/// Does this at its onset, or is without power.
 #[derive(Clone, Debug)]
-struct Unit(Option<UnitEvent>, Option<UnitEvent>);
+struct Unit(Option<UnitEvent>);
 
 impl UnitRule for Unit {
     fn on_epoch(&mut self, now: &Context<'_>) -> Option<UnitEvent> {
         self.0.filter(|_| now.since_onset == 0)
     }
 
-    fn end(&mut self, _: &Context<'_>) -> Option<UnitEvent> {
-        self.1
+    fn cuts_power(&self) -> bool {
+        self.0.is_none()
     }
 }
 
@@ -276,16 +282,12 @@ macro_rules! test_kind {
     };
 }
 test_kind!(DELIVERY, Acts::Delivery, Rule::Delivery(Box::new(Deliver { kept: None })));
-test_kind!(RESTART, Acts::Unit, Rule::Unit(Box::new(Unit(Some(UnitEvent::Restart), None))));
-test_kind!(
-    POWER,
-    Acts::Unit,
-    Rule::Unit(Box::new(Unit(Some(UnitEvent::PowerOff), Some(UnitEvent::PowerOn))))
-);
+test_kind!(RESTART, Acts::Unit, Rule::Unit(Box::new(Unit(Some(UnitEvent::Restart)))));
+test_kind!(POWER, Acts::Unit, Rule::Unit(Box::new(Unit(None))));
 test_kind!(STORED, Acts::Unit, {
     let mut offset = Parameters::default();
     offset.gyro_bias[0] = 1e-6;
-    Rule::Unit(Box::new(Unit(Some(UnitEvent::RestartWith { offset }), None)))
+    Rule::Unit(Box::new(Unit(Some(UnitEvent::RestartWith { offset }))))
 });
 
 struct Driven {
@@ -404,7 +406,8 @@ fn lost_late_and_repeated_samples_stand_in_the_recording() {
     // The replay delivers what reached the core, in that order.
     let mut replay = Replay::open(&driven.path, None).unwrap();
     let mut numbers = Vec::new();
-    while let Some(epoch) = replay.next(&GimbalCommand::default()).unwrap() {
+    let mut epoch = Epoch::default();
+    while replay.next(&GimbalCommand::default(), &mut epoch).unwrap() {
         numbers.push(epoch.sample.sequence);
     }
     assert_eq!(numbers[998..1006], [999, 1000, 1003, 1002, 1004, 1004, 1005, 1006]);
@@ -473,15 +476,82 @@ fn an_endpoint_starts_anew_from_its_configuration() {
     let mut source = PlantSource::new(&plant, 1000).unwrap();
     let mut fresh = InProcess::new(&core).unwrap();
     let mut used = InProcess::new(&core).unwrap();
+    let (mut epoch, [mut one, mut other]) = (Epoch::default(), [Output::default(); 2]);
     for _ in 0..500 {
-        let epoch = source.next(&GimbalCommand::default()).unwrap().unwrap();
-        used.step(&epoch).unwrap();
+        assert!(source.next(&GimbalCommand::default(), &mut epoch).unwrap());
+        used.step(&epoch, &mut one).unwrap();
     }
     used.restart(None).unwrap();
     for _ in 500..1000 {
-        let epoch = source.next(&GimbalCommand::default()).unwrap().unwrap();
-        assert_eq!(bits(used.step(&epoch).unwrap()), bits(fresh.step(&epoch).unwrap()));
+        assert!(source.next(&GimbalCommand::default(), &mut epoch).unwrap());
+        used.step(&epoch, &mut one).unwrap();
+        fresh.step(&epoch, &mut other).unwrap();
+        assert_eq!(bits(one), bits(other));
     }
+}
+
+/// Kinds of the catalogue of every place where faults act, over one run.
+const EVERYWHERE: &str = r#"
+[[faults]]
+id = "slip"
+kind = "gimbal-slip"
+gimbal = "roll"
+angle = "0.05 deg"
+trigger = { position = 3, after = "5 s" }
+
+[[faults]]
+id = "lost-command"
+kind = "command-lost"
+trigger = { moving_to = 4 }
+duration = "2 s"
+
+[[faults]]
+id = "late"
+kind = "late-delivery"
+delay = "0.1 s"
+trigger = { at = "150 s" }
+duration = "1 s"
+
+[[faults]]
+id = "drop"
+kind = "dropout"
+trigger = { after_fault = "late", after = "10 s" }
+duration = "100 samples"
+
+[[faults]]
+id = "noise"
+kind = "noise-gain"
+channels = "gyro"
+gain = "300 %"
+trigger = { at = "200 s" }
+duration = "10 s"
+recovery = "5 s"
+
+[[faults]]
+id = "restart"
+kind = "restart"
+trigger = { at = "250 s" }
+"#;
+
+#[test]
+fn faults_of_every_place_leave_a_recording_that_replays_bit_for_bit() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("all.toml"), format!("{LOCKSTEP}\n{EVERYWHERE}")).unwrap();
+    let octant = |arguments: &[&str]| {
+        let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_octant"));
+        command.args(arguments).current_dir(folder.path()).output().unwrap()
+    };
+    let run = octant(&["run", "all.toml", "--out", "all"]);
+    assert!(matches!(run.status.code(), Some(0 | 1)), "{}", String::from_utf8_lossy(&run.stderr));
+    let text = std::fs::read_to_string(folder.path().join("all/summary.json")).unwrap();
+    let summary: serde_json::Value = serde_json::from_str(&text).unwrap();
+    for fault in summary["faults"].as_array().unwrap() {
+        assert_eq!(fault["fired"], true, "{fault}");
+    }
+    let replay = octant(&["replay", "all/recording.mcap", "--json"]);
+    let replay: serde_json::Value = serde_json::from_slice(&replay.stdout).unwrap();
+    assert_eq!(replay["outputs_equal"], true, "{replay}");
+    assert_eq!(replay["stream_hash"], summary["stream_hash"]);
 }
 
 #[test]

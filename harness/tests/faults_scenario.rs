@@ -131,9 +131,16 @@ fn the_resolved_scenario_has_the_same_faults() {
 
 #[test]
 fn every_kind_has_an_example_that_parses_and_builds() {
+    let mut wrong = Vec::new();
     for kind in kinds::all() {
         let example = fault_example(kind.name).unwrap();
-        let scenario = read(&format!("{HEAD}{example}"));
+        let scenario = match parse(&format!("{HEAD}{example}")) {
+            Ok(scenario) => scenario,
+            Err(problems) => {
+                wrong.push(format!("{example}{problems:?}"));
+                continue;
+            }
+        };
         let spec = &scenario.faults[0].spec;
         assert_eq!(spec.kind.name, kind.name);
         for parameter in kind.parameters {
@@ -142,6 +149,7 @@ fn every_kind_has_an_example_that_parses_and_builds() {
         }
         Station::new(std::slice::from_ref(spec), &scenario.fault_setup(1)).unwrap();
     }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n\n"));
 }
 
 /// The one problem of a text: line, column, path and message.
@@ -319,6 +327,22 @@ fn a_fault_that_cannot_fire_is_refused_with_the_reason() {
     let itself = spike("trigger = { after_fault = \"a\" }\nduration = \"1 s\"");
     let (.., message) = problem(&itself);
     assert!(message.contains("nothing starts"), "{message}");
+    // A delay that no buffer holds: 4096 samples are 20.48 s.
+    let late = |delay: &str| {
+        format!(
+            "{HEAD}[[faults]]\nid = \"a\"\nkind = \"late-delivery\"\ndelay = \"{delay}\"\n\
+             trigger = {{ at = \"5 s\" }}\nduration = \"1 min\"\n"
+        )
+    };
+    read(&late("20 s"));
+    let (line, column, path, message) = problem(&late("30 s"));
+    assert_eq!((line, column, path.as_str()), (LINES + 4, 9, "faults[0].delay"), "{message}");
+    // What a recording holds has happened: nothing inside the instrument can be changed.
+    let text =
+        format!("{HEAD}{}[source]\nuri = \"replay:x.mcap\"\n", fault_example("shock").unwrap());
+    let (line, column, path, message) = problem(&text);
+    assert_eq!((line, column, path.as_str()), (LINES + 3, 8, "faults[0].kind"));
+    assert!(message.contains("acts inside the simulated instrument"), "{message}");
     // Of a recording there is no truth.
     let text = spike("trigger = { when = \"true azimuth above 10 deg\" }")
         + "[source]\nuri = \"replay:x.mcap\"\n";

@@ -66,7 +66,12 @@ where
     let mut fires = faulted.fires.iter().peekable();
     let mut epochs = 0u64;
     let mut epoch = Epoch::default();
+    let total = source.samples_total().unwrap_or(u64::MAX);
     let ended = loop {
+        // Nothing sets in at a sample that won't come.
+        if epochs == total {
+            break Ended::SourceEnded;
+        }
         while let Some((_, id)) = fires.next_if(|(at, _)| *at == epochs + 1) {
             station.fire(id);
         }

@@ -116,6 +116,7 @@ impl Watcher {
         if output.mode == Mode::Navigating {
             // A core that was started anew navigates anew: the last navigation is the one scored.
             (self.drift, self.drift_samples) = (DriftScorer::new(), 0);
+            self.trace.iter_mut().for_each(Trace::navigation_begins);
             self.navigation_start_ns = Some(output.device_time.ns);
             self.scored_ns = None;
             self.next_score_ns = output.device_time.ns;

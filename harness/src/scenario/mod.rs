@@ -353,6 +353,12 @@ pub(crate) fn override_set(document: &mut document::Table, argument: &str) -> Re
         return Err(problem("", message));
     };
     let path = path.trim();
+    if let Some((id, key)) = path.strip_prefix("faults.").and_then(|rest| rest.split_once('.')) {
+        // What keys a fault has depends on its kind: they are checked with those of the file.
+        let fault = fault_of(document, id).map_err(|message| problem(path, message))?;
+        fault.set_at(key, document::parse_argument(value, argument));
+        return Ok(());
+    }
     let mut section = &keys::SCENARIO;
     let mut names = path.split('.').peekable();
     while let Some(name) = names.next() {
@@ -382,6 +388,32 @@ pub(crate) fn override_set(document: &mut document::Table, argument: &str) -> Re
     Ok(())
 }
 
+/// The table of the fault with an id.
+fn fault_of<'a>(
+    document: &'a mut document::Table,
+    id: &str,
+) -> Result<&'a mut document::Table, String> {
+    use document::{Node, Value};
+    let id_of = |node: &Node| match &node.value {
+        Value::Table(table) => match &table.get("id")?.value {
+            Value::Text(id) => Some(id.clone()),
+            _ => None,
+        },
+        _ => None,
+    };
+    let Some(Node { value: Value::Array(faults), .. }) = document.get_mut("faults") else {
+        return Err("the scenario has no faults".to_owned());
+    };
+    let ids: Vec<String> = faults.iter().filter_map(id_of).collect();
+    match faults.iter_mut().find(|node| id_of(node).is_some_and(|found| found == id)) {
+        Some(Node { value: Value::Table(fault), .. }) => Ok(fault),
+        _ => {
+            let known = error::suggestion(id, ids.iter().map(String::as_str), "faults");
+            Err(format!("no fault has the id {id:?}, {known}"))
+        }
+    }
+}
+
 /// Applies a `--fire ID=TIME`: adds the time to those of a manual trigger.
 fn fire(document: &mut document::Table, argument: &str) -> Result<(), Problem> {
     use document::{Node, Value};
@@ -390,26 +422,7 @@ fn fire(document: &mut document::Table, argument: &str) -> Result<(), Problem> {
     let Some((id, time)) = argument.rsplit_once('=') else {
         return Err(problem("expected ID=TIME, such as spike-1=\"5050 s\"".to_owned()));
     };
-    let of = |node: &Node, key: &str| match &node.value {
-        Value::Table(table) => table.get(key).cloned(),
-        _ => None,
-    };
-    let is_it = |node: &&mut Node| {
-        of(node, "id").is_some_and(|node| node.value == Value::Text(id.to_owned()))
-    };
-    let Some(Node { value: Value::Array(faults), .. }) = document.get_mut("faults") else {
-        return Err(problem("the scenario has no faults".to_owned()));
-    };
-    let ids: Vec<String> = (faults.iter())
-        .filter_map(|node| match of(node, "id")?.value {
-            Value::Text(id) => Some(id),
-            _ => None,
-        })
-        .collect();
-    let Some(Node { value: Value::Table(fault), .. }) = faults.iter_mut().find(is_it) else {
-        let known = error::suggestion(id, ids.iter().map(String::as_str), "faults");
-        return Err(problem(format!("no fault has the id {id:?}, {known}")));
-    };
+    let fault = fault_of(document, id).map_err(problem)?;
     let Some(Node { value: Value::Table(trigger), .. }) = fault.get_mut("trigger") else {
         return Err(problem(format!("fault {id:?} has no trigger that can be fired by hand")));
     };

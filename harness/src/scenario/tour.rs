@@ -4,7 +4,8 @@
 
 use super::complete::{expected, join};
 use super::document::{parse_default, write_value};
-use super::keys::{Default, Key, Kind, SCENARIO, Section};
+use super::keys::{Bounds, Default, Key, Kind, SCENARIO, Section};
+use super::quantity::{self, Dimension};
 
 /// What the tour sets beside the defaults: path and TOML value.
 const SET: &[(&str, &str)] = &[
@@ -159,14 +160,14 @@ fn comment(key: &Key, out: &mut String) {
                 let doc = key.doc.trim_end_matches('.');
                 let more: Vec<String> = section.keys[1..]
                     .iter()
-                    .map(|key| format!("{} = {}", key.name, example(&key.kind)))
+                    .map(|key| format!("{} = {}", key.name, example_in_form(key)))
                     .collect();
                 let more = if more.is_empty() {
                     String::new()
                 } else {
                     format!("; with it {}", more.join(", "))
                 };
-                format!("{} = {} ({doc}{more})", key.name, example(&key.kind))
+                format!("{} = {} ({doc}{more})", key.name, example_in_form(key))
             });
             text += &format!(" One of: {}.", each.collect::<Vec<_>>().join("; "));
         }
@@ -258,10 +259,32 @@ fn example(kind: &Kind) -> String {
     }
 }
 
+/// Examples of keys of triggers and repetitions.
+const FORM_EXAMPLES: &[(&str, &str)] = &[
+    ("at", r#""5050 s""#),
+    ("sample", "1010001"),
+    ("position", "4"),
+    ("moving_to", "5"),
+    ("mode", r#""navigating""#),
+    ("every", r#""60 s""#),
+    ("poisson", r#""6 min""#),
+    ("after_fault", r#""spike-1""#),
+    ("after", r#""2 s""#),
+    ("from", r#""10 min""#),
+    ("until", r#""1 h""#),
+    ("times", "3"),
+];
+
+/// The example of a key of a form.
+fn example_in_form(key: &Key) -> String {
+    let own = FORM_EXAMPLES.iter().find(|(name, _)| *name == key.name);
+    own.map_or_else(|| example(&key.kind), |(_, text)| (*text).to_owned())
+}
+
 /// The keys of a table that can't be left out, and those with a value by default, as TOML.
 fn given(section: &Section) -> Vec<String> {
     let line = |key: &Key| match key.default {
-        Default::Required => Some(format!("{} = {}", key.name, example(&key.kind))),
+        Default::Required => Some(format!("{} = {}", key.name, example_in_form(key))),
         Default::Value(text) => Some(format!("{} = {}", key.name, written(text))),
         Default::Derived(_) | Default::Absent(_) | Default::Section => None,
     };
@@ -269,7 +292,49 @@ fn given(section: &Section) -> Vec<String> {
 }
 
 /// Values of examples of faults where that of the form alone makes no fault: kind, key, TOML.
-const FAULT_EXAMPLES: &[(&str, &str, &str)] = &[("spike", "amplitude", r#""1000 deg/h""#)];
+const FAULT_EXAMPLES: &[(&str, &str, &str)] = &[
+    ("vibration-sine", "frequency", r#""35 Hz""#),
+    ("vibration-sine", "acceleration", r#"["1 m/s^2", "0 m/s^2", "0 m/s^2"]"#),
+    ("vibration-random", "psd", r#"["0.01 g^2/Hz", "0.01 g^2/Hz", "0.01 g^2/Hz"]"#),
+    ("shock", "peak", r#"["0 g", "0 g", "5 g"]"#),
+    ("temperature-ramp", "ramp", r#""5 K/h""#),
+    ("temperature-ramp", "gyro_bias", r#"["0.0002 deg/h/K", "0 deg/h/K", "0 deg/h/K"]"#),
+    ("mooring-jerk", "displacement", r#"["0.3 m", "0 m", "0 m"]"#),
+    ("lever-arm", "accelerometer_x", r#"["0 m", "0.05 m", "0 m"]"#),
+    ("noise-gain", "gain", r#""300 %""#),
+    ("bias-ramp", "rise", r#""10 min""#),
+    ("gauss-markov", "correlation_time", r#""1 h""#),
+    ("cross-axis", "into", r#""gyro y""#),
+    ("axis-swap", "second", r#""gyro y""#),
+    ("dither-residual", "amplitude", r#""0.01 arcsec""#),
+    ("dither-residual", "frequency", r#""37 Hz""#),
+    ("spike", "amplitude", r#""1000 deg/h""#),
+    ("bit-flip", "bit", "20"),
+    ("intermittent", "mean_out", r#""0.1 s""#),
+    ("intermittent", "mean_in", r#""10 s""#),
+    ("sequence-gap", "skip", "10"),
+    ("clock-skew", "skew", r#""50 ppm""#),
+    ("time-jitter", "sigma", r#""0.1 ms""#),
+    ("time-offset", "offset", r#""2 ms""#),
+    ("time-step", "step", r#""1 s""#),
+    ("late-delivery", "delay", r#""0.1 s""#),
+    ("command-late", "delay", r#""0.5 s""#),
+    ("runaway", "rate", r#""1 deg/s""#),
+    ("overshoot", "angle", r#""0.5 deg""#),
+    ("gimbal-slip", "angle", r#""0.05 deg""#),
+    ("encoder-slip", "angle", r#""0.05 deg""#),
+    ("stale-table", "gyro_bias", r#"["0.01 deg/h", "0 deg/h", "0 deg/h"]"#),
+    ("aiding-late", "delay", r#""0.2 s""#),
+];
+
+/// A quantity within its bounds: the dimension's example where that is, else one between them.
+fn quantity_within(dimension: Dimension, bounds: Bounds) -> String {
+    let example = quantity::parse(dimension.example).is_ok_and(|q| bounds.contain(q.si));
+    match bounds {
+        Bounds::Within(from, to, _) if !example => dimension.write(0.5 * (from + to)),
+        _ => dimension.example.to_owned(),
+    }
+}
 
 /// What the parameters of a kind of fault take, with their bounds, in words.
 #[must_use]
@@ -308,7 +373,12 @@ pub fn fault_example(kind: &str) -> Option<String> {
             (None, Default::Required) => match key.name {
                 "id" => format!("{:?}", format!("{kind}-1")),
                 "trigger" => r#"{ at = "100 s" }"#.to_owned(),
-                _ => example(&key.kind),
+                _ => match &key.kind {
+                    Kind::Quantity(dimensions, bounds) => {
+                        format!("{:?}", quantity_within(dimensions[0], *bounds))
+                    }
+                    kind => example(kind),
+                },
             },
             (None, Default::Absent(_)) if key.name == "duration" => match key.kind {
                 Kind::Refused(_) => continue,

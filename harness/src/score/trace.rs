@@ -54,6 +54,13 @@ impl Trace {
         }
     }
 
+    /// A navigation begins; what was taken of one before it, by a core that has started anew since,
+    /// is forgotten.
+    pub fn navigation_begins(&mut self) {
+        self.points.clear();
+        self.stride_s = 1;
+    }
+
     /// Takes a navigation error, `t_s` after the start of the navigation. Those on whole seconds are
     /// kept.
     pub fn drift(&mut self, t_s: f64, latitude_error_rad: f64, longitude_error_rad: f64) {

@@ -39,7 +39,8 @@ pub struct Context<'a> {
     pub counter: u64,
     /// Sample period, s.
     pub dt_s: f64,
-    /// Samples since the fault set in: 0 at the first.
+    /// Samples since the fault set in: 0 at the first that the rule sees of this onset, and at no
+    /// other, whatever faults of delivery before it hold back or let out together.
     pub since_onset: u64,
     /// How often the fault has set in before.
     pub firing: u32,
@@ -102,9 +103,7 @@ pub trait SampleRule: Debug + Send {
 
     /// Acts on one epoch after the fault's end, for as long as something of it
     /// [stays](Self::lingers).
-    fn afterwards(&mut self, epoch: &mut Epoch, now: &Context<'_>) {
-        let _ = (epoch, now);
-    }
+    fn afterwards(&mut self, _epoch: &mut Epoch, _now: &Context<'_>) {}
 }
 
 /// Acts on the delivery of epochs.

@@ -65,6 +65,8 @@ struct Stage {
     rule: Rule,
     clock: Clock,
     ledger: Ledger,
+    /// It has set in, and its rule hasn't seen an epoch since.
+    fresh: bool,
 }
 
 impl Stage {
@@ -77,9 +79,14 @@ impl Stage {
         self.acting()
             || match &self.rule {
                 Rule::Delivery(rule) => rule.holds() > 0,
-                Rule::Samples(rule) => rule.lingers(),
+                Rule::Samples(rule) => rule.lingers() || self.is_owed(),
                 Rule::Plant(_) | Rule::Command(_) | Rule::Unit(_) => false,
             }
+    }
+
+    /// Its instant passed while faults before it held every epoch back: the next one gets it.
+    fn is_owed(&self) -> bool {
+        self.fresh && self.kind.lasts == Lasts::Instant
     }
 
     fn cuts_power(&self) -> bool {
@@ -156,6 +163,8 @@ pub struct Station {
     last: Epoch,
     flight: Vec<Epoch>,
     landed: Vec<Epoch>,
+    /// What both have room for.
+    burst: usize,
     occurrences: Vec<Occurrence>,
     events: Vec<UnitEvent>,
     without_power: bool,
@@ -194,6 +203,7 @@ impl Station {
             last: Epoch::default(),
             flight: Vec::with_capacity(burst),
             landed: Vec::with_capacity(burst),
+            burst,
             occurrences: Vec::with_capacity(OCCURRENCES_MAX),
             events: Vec::with_capacity(specs.len() + 1),
             without_power: false,
@@ -235,7 +245,14 @@ impl Station {
         let setup = Setup { id: spec.id.clone(), ..setup.clone() };
         let rule = (spec.kind.build)(&spec.values, &setup)?;
         let clock = Clock::new(schedule, setup.stream("trigger").key(Phase::Calibration));
-        Ok(Stage { id: spec.id.clone(), kind: spec.kind, rule, clock, ledger: Ledger::default() })
+        Ok(Stage {
+            id: spec.id.clone(),
+            kind: spec.kind,
+            rule,
+            clock,
+            ledger: Ledger::default(),
+            fresh: false,
+        })
     }
 
     /// Looks what has to be looked at next.
@@ -314,6 +331,7 @@ impl Station {
                 let stage = &mut self.stages[index];
                 let now = stage.context(&shared, &self.last, output);
                 begin(stage, index as u32, &now, world);
+                stage.fresh = true;
                 self.tell(index, true);
             }
             self.act_before(index, &shared, command, output);
@@ -407,15 +425,21 @@ impl Station {
                 continue;
             }
             let acting = stage.acting();
+            let instant = stage.kind.lasts == Lasts::Instant;
             let now = stage.context(&shared, &self.last, output);
             match &mut stage.rule {
                 Rule::Samples(rule) => {
                     engaged = true;
                     for epoch in &mut self.flight {
                         let clean = *epoch;
-                        if acting {
-                            rule.on_epoch(epoch, &now);
-                        } else {
+                        if stage.fresh && (acting || instant) {
+                            let strength = if acting { now.strength } else { 1.0 };
+                            rule.on_epoch(epoch, &Context { since_onset: 0, strength, ..now });
+                            stage.fresh = false;
+                        } else if acting && !instant {
+                            let since_onset = now.since_onset.max(1);
+                            rule.on_epoch(epoch, &Context { since_onset, ..now });
+                        } else if rule.lingers() {
                             rule.afterwards(epoch, &now);
                         }
                         if !epoch.same_bits(&clean) {
@@ -429,6 +453,7 @@ impl Station {
                     engaged = true;
                     self.landed.clear();
                     rule.on_step(&self.flight, acting, &now, &mut self.landed);
+                    debug_assert!(self.landed.len() <= self.burst, "{} allocates", stage.kind.name);
                     if !same(&self.flight, &self.landed) {
                         stage.ledger.touched(shared.epoch);
                         self.flight.iter().for_each(|epoch| stage.ledger.clean(epoch));

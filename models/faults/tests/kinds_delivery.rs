@@ -226,8 +226,8 @@ fn what_can_not_be_held_is_refused() {
     let avalanche: Vec<Spec> =
         (0..6).map(|i| Spec { id: format!("{i}"), ..duplicate(8, 0.0, 1, 1) }).collect();
     let (id, error) = Station::new(&avalanche, &setup()).unwrap_err();
-    assert_eq!(id, "3", "17 to the fourth is above the limit");
-    assert!(error.to_string().contains("83521 epochs"), "{error}");
+    assert_eq!(id, "5", "nine to the sixth is above the limit");
+    assert!(error.to_string().contains("531441 epochs"), "{error}");
 }
 
 #[test]

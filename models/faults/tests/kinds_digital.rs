@@ -343,7 +343,7 @@ fn the_reference_is_not_a_number() {
         ("third", [false, false, true]),
     ] {
         for (name, bits) in [
-            ("nan", 0x7FF8_0000_0000_0000u64),
+            ("not-a-number", 0x7FF8_0000_0000_0000u64),
             ("infinity", 0x7FF0_0000_0000_0000),
             ("minus-infinity", 0xFFF0_0000_0000_0000),
         ] {

@@ -200,7 +200,7 @@ fn monotonic_jitter_never_goes_back_and_free_jitter_does() {
     };
     let goes_back = |stamps: &[i64]| stamps.windows(2).filter(|w| w[1] <= w[0]).count();
     let kept = jitter(10e-3, true, 2200);
-    assert!(kept.iter().any(|error| *error == (PERIOD - 1) / 2), "2 sigma of half a period");
+    assert!(kept.contains(&((PERIOD - 1) / 2)), "2 sigma of half a period");
     assert_eq!(goes_back(&stamps(kept)), 0);
     assert!(goes_back(&stamps(jitter(10e-3, false, 2200))) > 500);
 }
@@ -269,4 +269,30 @@ fn what_would_do_nothing_is_refused() {
     assert!(refused(&skew).contains("frozen-clock"));
     let skip = fault("sequence-gap", &[("skip", Value::Integer(0)), afterwards("stays")], 1, 1);
     assert!(refused(&skip).starts_with("skip: 0"));
+}
+
+#[test]
+fn an_onset_that_meets_two_epochs_at_once_is_one_onset() {
+    // Every epoch comes twice: the first of the pair repeats the stamp before, the second has its
+    // own, as the next sample of the run.
+    let copies = [("copies", Value::Integer(1)), ("delay", Value::Quantity(0.0, Dimension::Time))];
+    let doubled = Spec { id: "doubled".into(), ..fault("duplicate", &copies, 1, 20) };
+    let stamp = fault("duplicate-stamp", &[("run", Value::Integer(2))], 10, 2);
+    let outcome = run(&[doubled, stamp], 20);
+    let found: Vec<i64> = [9, 10, 11, 12]
+        .iter()
+        .flat_map(|at| outcome.at(*at).into_iter().map(|epoch| error(*at, &epoch)))
+        .collect();
+    assert_eq!(found, [0, 0, -PERIOD, 0, -PERIOD, 0, 0, 0]);
+}
+
+#[test]
+fn an_instant_in_which_nothing_arrives_happens_to_the_next_epoch() {
+    let loss = ("loss", Value::Quantity(1.0, Dimension::Ratio));
+    let lost = fault("dropout", &[loss, ("aiding", Value::Choice("lost"))], 10, 5);
+    let step = fault("time-step", &[("step", seconds(1.0)), clock("instrument")], 12, 1);
+    let outcome = run(&[Spec { id: "lost".into(), ..lost }, step], 20);
+    let found = errors(&outcome);
+    assert_eq!(found[..9], [0; 9]);
+    assert_eq!(found[9..], [1_000_000_000; 6]);
 }

@@ -143,15 +143,14 @@ impl Case {
         }
     }
 
-    /// Motion at a time after the start of the interval with a displacement.
-    pub(crate) fn displaced(&mut self, offset_s: f64, motion: &Motion) -> CaseMotion {
+    /// Motion under disturbances, with a displacement where there is one.
+    #[inline(never)]
+    pub(crate) fn displaced(&mut self, time_s: f64, motion: Option<&Motion>) -> CaseMotion {
         match &mut self.kind {
-            Kind::Ship(ship) => {
-                let six = with(ship.sway.at_offset(offset_s), motion);
-                ship.motion(&six)
-            }
-            Kind::Static { adrift: Some(ship), .. } => {
-                ship.motion(&with(SixDof::default(), motion))
+            Kind::Ship(ship) | Kind::Static { adrift: Some(ship), .. } => {
+                // A case adrift has no sway of its own: that is zero.
+                let six = ship.sway.at_time(time_s);
+                ship.motion::<true>(&motion.map_or(six, |motion| with(six, motion)))
             }
             Kind::Static { motion, .. } => *motion,
         }
@@ -189,7 +188,7 @@ impl Case {
                     Node::Regular(index) => ship.sway.at_node(index),
                     Node::Offset(offset_s) => ship.sway.at_offset(offset_s),
                 };
-                ship.motion(&six)
+                ship.motion::<false>(&six)
             }
         }
     }
@@ -281,8 +280,10 @@ impl Ship {
         )
     }
 
+    /// `DISTURBED` changes nothing: it makes a copy of its own for who is disturbed, so that the
+    /// other one is inlined where every sample passes.
     #[inline]
-    fn motion(&mut self, six: &SixDof) -> CaseMotion {
+    fn motion<const DISTURBED: bool>(&mut self, six: &SixDof) -> CaseMotion {
         let (latitude, height) = self.latitude_and_height(six);
         let (sin_latitude, cos_latitude) = self.latitude.sincos(latitude);
         let w = 1.0 / (1.0 - ECCENTRICITY_SQUARED * sin_latitude * sin_latitude);

@@ -1,6 +1,8 @@
 //! What is really so: for scoring, never for the core.
 
-/// Truth at one instant, at the centre of rotation of the gimbals.
+/// Truth at one instant, at the centre of rotation of the gimbals. While a fault shakes the sensor
+/// block against the gimballed body, that of the block: position, velocity and attitude of what the
+/// sensors feel.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Truth {
     /// Simulated time, ns since the start.

@@ -82,7 +82,15 @@ fn parameter(parameter: &'static Parameter) -> Key {
         Takes::Choice(choices) => Kind::Choice(choices),
         Takes::Channels => Kind::Channels,
     };
-    let default = parameter.default.map_or(Default::Required, Default::Value);
+    let default = parameter.default.map_or(Default::Required, |text| {
+        // A text stays one where it would read as something else: `nan`, `1`.
+        let is_text = match parameter.takes {
+            Takes::Quantity(..) | Takes::Choice(_) => true,
+            Takes::Channels => !text.starts_with('['),
+            Takes::Vector(_) | Takes::Integer(..) | Takes::Flag => false,
+        };
+        Default::Value(if is_text { format!("{text:?}").leak() } else { text })
+    });
     key(parameter.name, kind, default, parameter.doc)
 }
 

@@ -7,9 +7,9 @@ use crate::values::Values;
 /// Probability of a loss.
 pub(crate) const LOSS: Parameter = Parameter {
     name: "loss",
-    takes: Takes::Quantity(&[Dimension::Ratio], Bounds::Within(0.0, 1.0, "above 0, up to 1")),
-    default: Some("1"),
-    doc: "Probability that one is lost, above 0; 1: all are.",
+    takes: Takes::Quantity(&[Dimension::Ratio], Bounds::Within(0.0, 1.0, "above 0, up to 100 %")),
+    default: Some("100 %"),
+    doc: "Probability that one is lost, above 0; 100 %: all are.",
 };
 
 /// The value of [`LOSS`].

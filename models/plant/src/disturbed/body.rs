@@ -6,7 +6,7 @@ use super::registry::Lasting;
 use super::shake::Shake;
 use super::turning::{Ring, Slip};
 use super::{Active, Motion, Span};
-use crate::case::{Node, Whereabouts};
+use crate::case::Whereabouts;
 use crate::gimbal::AxisState;
 use crate::increments::{Body, GAUSS, Increments, PIECE_MIN_S};
 use crate::trig::{rx_t, ry_t, rz_t};
@@ -18,9 +18,9 @@ const CLOSING_S: f64 = 0.1;
 /// Shortest time that a motion may take, s.
 const SHORTEST_S: f64 = 1e-6;
 
-/// A value to compute with: kinds of faults refuse what is not finite.
+/// A value to compute with: kinds of faults refuse what is not finite or beyond reason.
 fn finite(value: f64) -> f64 {
-    if value.is_finite() { value } else { 0.0 }
+    if value.is_finite() { value.clamp(-1e6, 1e6) } else { 0.0 }
 }
 
 fn length(value: f64) -> f64 {
@@ -150,8 +150,6 @@ impl Body {
     /// Angular rate of the sensor block at the start of the interval that comes next.
     fn rate_at(&self, now_ns: u64) -> Vector3<f64> {
         let mut copy = self.clone();
-        let start_s = now_ns as f64 * 1e-9;
-        copy.case.enter(start_s);
         let active = copy.active.take().unwrap_or_default();
         let gimballed = copy.gimballed(&active, now_ns, 0.0, None, 0.0);
         copy.shaken(&active, now_ns, 0.0, None, &gimballed).0
@@ -374,10 +372,9 @@ impl Body {
         node: Option<i8>,
         inside_s: f64,
     ) -> Gimballed {
-        let case = match active.case(start_ns, at, node) {
-            Some(motion) => self.case.displaced(at, &motion),
-            None => self.case.motion(Node::Offset(at)),
-        };
+        let case = self
+            .case
+            .displaced(start_ns as f64 * 1e-9 + at, active.case(start_ns, at, node).as_ref());
         let axis = |gimbal: &crate::gimbal::Gimbal, index: usize| {
             let arc = gimbal.body.arc(start_ns, inside_s);
             let (angle, rate) = arc.at(at);
@@ -440,7 +437,6 @@ impl Body {
         let active = self.active.as_ref().filter(|active| active.moves_block())?;
         let motion = active.block(now_ns, 0.0, None);
         let mut copy = self.clone();
-        copy.case.enter(now_ns as f64 * 1e-9);
         let rate = copy.gimballed(active, now_ns, 0.0, None, 0.0).rate;
         Some((motion, rate))
     }

@@ -1,6 +1,7 @@
 //! Configurations that the tests start from.
 #![allow(dead_code, reason = "each test file uses its own part")]
 
+pub(crate) mod bench;
 pub(crate) mod strapdown;
 
 use octant_earth::units::{DEG, DEG_PER_SQRT_HOUR, MICRO_G};

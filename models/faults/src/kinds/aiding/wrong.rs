@@ -1,7 +1,6 @@
 //! References that are wrong.
 
 use crate::catalogue::{Acts, Bounds, Dimension, Family, Kind, Lasts, Parameter, Takes};
-use crate::kinds::onset::Onset;
 use crate::rule::{Context, Rule, SampleRule};
 use crate::setup::{BuildError, Setup, Stream};
 use crate::values::{Value, Values};
@@ -82,19 +81,18 @@ pub(super) static POSITION_JUMP: Kind = Kind {
 
 fn build_jump(values: &Values, _: &Setup) -> Result<Rule, BuildError> {
     let jump = Offset::of(values, "jump")?;
-    Ok(Rule::Samples(Box::new(PositionJump { jump, jumps: 0, onset: Onset::default() })))
+    Ok(Rule::Samples(Box::new(PositionJump { jump, jumps: 0 })))
 }
 
 #[derive(Debug)]
 struct PositionJump {
     jump: Offset,
     jumps: u32,
-    onset: Onset,
 }
 
 impl SampleRule for PositionJump {
     fn on_epoch(&mut self, epoch: &mut Epoch, now: &Context<'_>) {
-        if self.onset.is_new(now) {
+        if now.since_onset == 0 {
             self.jumps = self.jumps.saturating_add(1);
         }
         self.afterwards(epoch, now);

@@ -35,11 +35,11 @@ pub(super) static AIDING_NAN: Kind = Kind {
         Parameter {
             name: "value",
             takes: Takes::Choice(&[
-                ("nan", "not a number"),
+                ("not-a-number", "NaN"),
                 ("infinity", "positive infinity"),
                 ("minus-infinity", "negative infinity"),
             ]),
-            default: Some("nan"),
+            default: Some("not-a-number"),
             doc: "What they become.",
         },
     ],

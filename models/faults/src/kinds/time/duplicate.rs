@@ -97,7 +97,8 @@ impl DeliveryRule for Duplicate {
     }
 
     fn most_out(&self, incoming: usize) -> usize {
-        // Its own, the copies that are due, and those that have to make room.
-        incoming.saturating_mul(1 + 2 * self.copies)
+        // Its own, the copies that are due, and those that have to make room for them.
+        let rounds = if self.delay == 0 { 1 } else { 2 };
+        incoming.saturating_mul(1 + rounds * self.copies)
     }
 }

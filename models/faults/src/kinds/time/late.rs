@@ -133,6 +133,7 @@ impl DeliveryRule for LateDelivery {
     }
 
     fn most_out(&self, incoming: usize) -> usize {
-        incoming + FLIGHT_MAX
+        // Each step's for as many steps as the delay has, or what there is room for.
+        incoming + incoming.saturating_mul(self.delay as usize).min(FLIGHT_MAX)
     }
 }

@@ -2,7 +2,6 @@
 
 use super::clock::{CLOCK, Clocks, nanoseconds, to_ns};
 use crate::catalogue::{Acts, Bounds, Dimension, Family, Kind, Lasts, Parameter, Takes};
-use crate::kinds::onset::Onset;
 use crate::rule::{Context, Rule, SampleRule};
 use crate::setup::{BuildError, Setup};
 use crate::values::Values;
@@ -85,7 +84,7 @@ pub(super) static TIME_STEP: Kind = Kind {
 
 fn build_step(values: &Values, _: &Setup) -> Result<Rule, BuildError> {
     let (clocks, step_ns) = (Clocks::of(values)?, nanoseconds(values, "step")?);
-    Ok(Rule::Samples(Box::new(TimeStep { clocks, step_ns, error_ns: 0, onset: Onset::default() })))
+    Ok(Rule::Samples(Box::new(TimeStep { clocks, step_ns, error_ns: 0 })))
 }
 
 #[derive(Debug)]
@@ -93,12 +92,11 @@ struct TimeStep {
     clocks: Clocks,
     step_ns: i64,
     error_ns: i64,
-    onset: Onset,
 }
 
 impl SampleRule for TimeStep {
     fn on_epoch(&mut self, epoch: &mut Epoch, now: &Context<'_>) {
-        if self.onset.is_new(now) {
+        if now.since_onset == 0 {
             self.error_ns = self.error_ns.saturating_add(self.step_ns);
         }
         self.clocks.shift(epoch, self.error_ns);

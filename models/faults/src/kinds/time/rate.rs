@@ -2,7 +2,6 @@
 
 use super::clock::{AFTERWARDS, CLOCK, Clocks, stays, to_ns};
 use crate::catalogue::{Acts, Bounds, Dimension, Family, Kind, Lasts, Parameter, Takes};
-use crate::kinds::onset::Onset;
 use crate::rule::{Context, Rule, SampleRule};
 use crate::setup::{BuildError, Setup};
 use crate::values::Values;
@@ -103,7 +102,7 @@ pub(super) static TIME_BACKWARDS: Kind = Kind {
         Parameter {
             name: "speed",
             takes: Takes::Quantity(&[Dimension::Ratio], Bounds::Positive),
-            default: Some("1"),
+            default: Some("100 %"),
             doc: "How fast the stamps go back, relative to how fast time passes.",
         },
         CLOCK,
@@ -132,7 +131,6 @@ fn rate(change: f64, values: &Values, setup: &Setup) -> Result<Rule, BuildError>
         left_ns: 0,
         gained_ns: 0,
         elapsed_ns: 0,
-        onset: Onset::default(),
     })))
 }
 
@@ -150,7 +148,6 @@ struct WrongRate {
     /// Error gained since the onset.
     gained_ns: i64,
     elapsed_ns: u64,
-    onset: Onset,
 }
 
 impl WrongRate {
@@ -162,7 +159,7 @@ impl WrongRate {
 impl SampleRule for WrongRate {
     fn on_epoch(&mut self, epoch: &mut Epoch, now: &Context<'_>) {
         let stamp_ns = epoch.sample.device_time.ns;
-        if self.onset.is_new(now) {
+        if now.since_onset == 0 {
             self.left_ns = if self.stays { self.error_ns() } else { 0 };
             (self.gained_ns, self.elapsed_ns) = (0, 0);
             self.start_ns = stamp_ns.saturating_sub(self.period_ns);

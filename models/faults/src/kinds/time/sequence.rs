@@ -1,7 +1,6 @@
 //! Numbers that jump although nothing was lost.
 
 use crate::catalogue::{Acts, Family, Kind, Lasts, Parameter, Takes};
-use crate::kinds::onset::Onset;
 use crate::rule::{Context, Rule, SampleRule};
 use crate::setup::{BuildError, Setup};
 use crate::values::Values;
@@ -48,12 +47,7 @@ fn build(values: &Values, _: &Setup) -> Result<Rule, BuildError> {
     if skip == 0 {
         return Err(BuildError::value("skip", "0: no number would change, another is expected"));
     }
-    Ok(Rule::Samples(Box::new(SequenceGap {
-        skip,
-        stays: super::clock::stays(values)?,
-        error: 0,
-        onset: Onset::default(),
-    })))
+    Ok(Rule::Samples(Box::new(SequenceGap { skip, stays: super::clock::stays(values)?, error: 0 })))
 }
 
 #[derive(Debug)]
@@ -61,12 +55,11 @@ struct SequenceGap {
     skip: i64,
     stays: bool,
     error: i64,
-    onset: Onset,
 }
 
 impl SampleRule for SequenceGap {
     fn on_epoch(&mut self, epoch: &mut Epoch, now: &Context<'_>) {
-        if self.onset.is_new(now) {
+        if now.since_onset == 0 {
             let before = if self.stays { self.error } else { 0 };
             self.error = before.saturating_add(self.skip);
         }

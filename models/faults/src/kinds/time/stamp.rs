@@ -1,7 +1,6 @@
 //! Stamps that are given twice.
 
 use crate::catalogue::{Acts, Family, Kind, Lasts, Parameter, Takes};
-use crate::kinds::onset::Onset;
 use crate::rule::{Context, Rule, SampleRule};
 use crate::setup::{BuildError, Setup};
 use crate::values::Values;
@@ -41,7 +40,6 @@ fn build(values: &Values, setup: &Setup) -> Result<Rule, BuildError> {
         period_ns: setup.sample_period_ns,
         nth: 0,
         stamp: DeviceTime::default(),
-        onset: Onset::default(),
     })))
 }
 
@@ -52,13 +50,12 @@ struct DuplicateStamp {
     /// Place in the run: 0 is the sample with its own stamp.
     nth: u64,
     stamp: DeviceTime,
-    onset: Onset,
 }
 
 impl SampleRule for DuplicateStamp {
     fn on_epoch(&mut self, epoch: &mut Epoch, now: &Context<'_>) {
         let own = &mut epoch.sample.device_time;
-        if self.onset.is_new(now) {
+        if now.since_onset == 0 {
             self.nth = 1;
             self.stamp = if now.epoch > 1 {
                 now.last.sample.device_time

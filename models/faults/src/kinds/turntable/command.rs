@@ -1,7 +1,6 @@
 //! Set points on their way from the core to the turntable.
 
 use crate::catalogue::{Acts, Bounds, Dimension, Family, Kind, Lasts, Parameter, Takes};
-use crate::kinds::onset::Onset;
 use crate::kinds::span::samples;
 use crate::rule::{CommandRule, Context, Rule};
 use crate::setup::{BuildError, Setup};
@@ -76,7 +75,6 @@ fn instead(values: &Values, place: fn(&Context<'_>) -> GimbalCommand) -> Result<
         left: 0,
         ordered: GimbalCommand::default(),
         instead: None,
-        onset: Onset::default(),
     })))
 }
 
@@ -91,12 +89,11 @@ struct Instead {
     ordered: GimbalCommand,
     /// What the turntable gets, once a set point was replaced.
     instead: Option<GimbalCommand>,
-    onset: Onset,
 }
 
 impl CommandRule for Instead {
     fn on_command(&mut self, command: &mut GimbalCommand, now: &Context<'_>) {
-        if self.onset.is_new(now) {
+        if now.since_onset == 0 {
             self.left = self.positions;
             self.ordered = now.set_points.last;
             self.instead = None;
@@ -149,7 +146,6 @@ fn build_direction(values: &Values, _: &Setup) -> Result<Rule, BuildError> {
         azimuth: gimbal != "roll",
         roll: gimbal != "azimuth",
         pivot: GimbalCommand::default(),
-        onset: Onset::default(),
     })))
 }
 
@@ -158,12 +154,11 @@ struct WrongDirection {
     azimuth: bool,
     roll: bool,
     pivot: GimbalCommand,
-    onset: Onset,
 }
 
 impl CommandRule for WrongDirection {
     fn on_command(&mut self, command: &mut GimbalCommand, now: &Context<'_>) {
-        if self.onset.is_new(now) {
+        if now.since_onset == 0 {
             self.pivot = now.set_points.last;
         }
         let mirror = |counts: &mut i32, pivot: i32| {
@@ -206,7 +201,7 @@ const DELAY_MAX: u64 = 1_000_000;
 fn build_late(values: &Values, setup: &Setup) -> Result<Rule, BuildError> {
     let delay = samples(values, "delay", 1..=DELAY_MAX, setup)? as usize;
     let ring = alloc::vec![GimbalCommand::default(); delay];
-    Ok(Rule::Command(Box::new(CommandLate { ring, next: 0, onset: Onset::default() })))
+    Ok(Rule::Command(Box::new(CommandLate { ring, next: 0 })))
 }
 
 #[derive(Debug)]
@@ -215,12 +210,11 @@ struct CommandLate {
     ring: Vec<GimbalCommand>,
     /// The oldest of them.
     next: usize,
-    onset: Onset,
 }
 
 impl CommandRule for CommandLate {
     fn on_command(&mut self, command: &mut GimbalCommand, now: &Context<'_>) {
-        if self.onset.is_new(now) {
+        if now.since_onset == 0 {
             self.ring.fill(now.set_points.last);
         }
         core::mem::swap(command, &mut self.ring[self.next]);
@@ -245,21 +239,17 @@ pub(super) static COMMAND_LOST: Kind = Kind {
 };
 
 fn build_lost(_: &Values, _: &Setup) -> Result<Rule, BuildError> {
-    Ok(Rule::Command(Box::new(CommandLost {
-        held: GimbalCommand::default(),
-        onset: Onset::default(),
-    })))
+    Ok(Rule::Command(Box::new(CommandLost { held: GimbalCommand::default() })))
 }
 
 #[derive(Debug)]
 struct CommandLost {
     held: GimbalCommand,
-    onset: Onset,
 }
 
 impl CommandRule for CommandLost {
     fn on_command(&mut self, command: &mut GimbalCommand, now: &Context<'_>) {
-        if self.onset.is_new(now) {
+        if now.since_onset == 0 {
             self.held = now.set_points.last;
         }
         *command = self.held;

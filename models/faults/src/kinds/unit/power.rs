@@ -1,7 +1,6 @@
 //! The unit under test loses its state.
 
 use crate::catalogue::{Acts, Family, Kind, Lasts};
-use crate::kinds::onset::Onset;
 use crate::rule::{Context, Rule, UnitEvent, UnitRule};
 use crate::setup::{BuildError, Setup};
 use crate::values::Values;
@@ -31,19 +30,18 @@ pub(super) static RESTART: Kind = Kind {
 };
 
 fn build_restart(_: &Values, _: &Setup) -> Result<Rule, BuildError> {
-    Ok(Rule::Unit(Box::new(Once { event: UnitEvent::Restart, onset: Onset::default() })))
+    Ok(Rule::Unit(Box::new(Once { event: UnitEvent::Restart })))
 }
 
 /// One event at each onset.
 #[derive(Debug)]
 pub(super) struct Once {
     pub(super) event: UnitEvent,
-    pub(super) onset: Onset,
 }
 
 impl UnitRule for Once {
     fn on_epoch(&mut self, now: &Context<'_>) -> Option<UnitEvent> {
-        self.onset.is_new(now).then_some(self.event)
+        (now.since_onset == 0).then_some(self.event)
     }
 }
 

@@ -2,7 +2,6 @@
 
 use super::power::Once;
 use crate::catalogue::{Acts, Dimension, Family, Kind, Lasts, Parameter, Takes};
-use crate::kinds::onset::Onset;
 use crate::rule::{Rule, UnitEvent};
 use crate::setup::{BuildError, Setup};
 use crate::values::Values;
@@ -79,5 +78,5 @@ fn build(values: &Values, _: &Setup) -> Result<Rule, BuildError> {
         return Err(BuildError::value("gyro_bias", problem));
     }
     let event = UnitEvent::RestartWith { offset };
-    Ok(Rule::Unit(Box::new(Once { event, onset: Onset::default() })))
+    Ok(Rule::Unit(Box::new(Once { event })))
 }
