@@ -260,7 +260,8 @@ fn apply(
     };
     let last = &memory.last;
     match what {
-        What::Nothing | What::Slip(_) => {}
+        // A slip is the turntable's.
+        What::Nothing | What::Slip(_) | What::SeenSlip(_) => {}
         What::Gyro(axis, rate) => {
             add(&mut sample.delta_theta[axis], rate * 0.005 / DELTA_THETA_LSB_RAD);
         }
@@ -287,7 +288,6 @@ fn apply(
             }
         }
         What::Encoder(angle) => sample.gimbal.azimuth += (angle / GIMBAL_LSB_RAD) as i32,
-        What::SeenSlip(_) => {}
         What::Limit => {
             (sample.delta_theta, sample.delta_velocity) = ([i32::MIN; 3], [i32::MAX; 3]);
         }
@@ -338,10 +338,10 @@ fn finish(mut run: ClosedLoop, what: What, from: u64, samples: u64) -> Outcome {
                 *first = first.min((made - from) as f64 / SECOND as f64);
             }
         }
-        if let Some(filter) = run.core.filter() {
-            if made % SECOND == 0 {
-                sigma = filter.parameter_sigmas();
-            }
+        if let Some(filter) = run.core.filter()
+            && made.is_multiple_of(SECOND)
+        {
+            sigma = filter.parameter_sigmas();
         }
     }
     Outcome { parameters: run.core.parameters().to_array(), sigma, run, first }
