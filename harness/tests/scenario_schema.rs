@@ -3,14 +3,20 @@
 
 use serde_json::{Value, json};
 
+/// The shipped scenarios, and those of the kinds of faults.
 fn fixtures() -> Vec<(String, Value)> {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/scenarios");
-    let read = |entry: std::io::Result<std::fs::DirEntry>| {
-        let path = entry.unwrap().path();
-        let text = std::fs::read_to_string(&path).unwrap();
-        (path.display().to_string(), toml::from_str(&text).unwrap())
-    };
-    std::fs::read_dir(folder).unwrap().map(read).collect()
+    let scenario = |path: &std::path::Path| path.is_file() && !path.ends_with("nightly.toml");
+    [folder.to_owned(), format!("{folder}/faults")]
+        .iter()
+        .flat_map(|folder| std::fs::read_dir(folder).unwrap())
+        .map(|entry| entry.unwrap().path())
+        .filter(|path| scenario(path))
+        .map(|path| {
+            let text = std::fs::read_to_string(&path).unwrap();
+            (path.display().to_string(), toml::from_str(&text).unwrap())
+        })
+        .collect()
 }
 
 #[test]

@@ -1,12 +1,13 @@
 //! `octant faults`: the kinds of faults, and what each does.
 
-use super::{Failure, print, print_json};
+use super::{Failure, print, print_json, write};
 use crate::scenario::{fault_example, suggestion};
 use crate::score::verdict::Verdict;
 use clap::{Args, Subcommand};
 use octant_faults::catalogue::{Acts, Family, Kind, Lasts};
 use octant_faults::kinds;
 use serde::Serialize;
+use std::path::PathBuf;
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
@@ -27,6 +28,12 @@ enum Command {
         /// Name of the kind.
         #[arg(value_name = "KIND")]
         kind: String,
+        /// Print it as a page of Markdown.
+        #[arg(long)]
+        markdown: bool,
+        /// Also simulate the example, and draw what it does.
+        #[arg(long, value_name = "FILE.svg")]
+        picture: Option<PathBuf>,
     },
     /// Run a grid of one fault, and draw which of its forms are invisible and harmful.
     Sweep(super::sweep::Arguments),
@@ -40,14 +47,17 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
             print_json(&List { kinds: kinds::all().map(Row::of).collect() })?
         }
         Command::List { json: false } => print(&list())?,
-        Command::Describe { kind } => match kinds::named(kind) {
-            Some(kind) => print(&describe(kind))?,
-            None => {
+        Command::Describe { kind: name, markdown, picture } => {
+            let Some(kind) = kinds::named(name) else {
                 let names: Vec<&str> = kinds::all().map(|kind| kind.name).collect();
-                let known = suggestion(kind, names.into_iter(), "kinds");
-                return Err(Failure::input(format!("unknown kind of fault {kind:?}, {known}")));
+                let known = suggestion(name, names.into_iter(), "kinds");
+                return Err(Failure::input(format!("unknown kind of fault {name:?}, {known}")));
+            };
+            if let Some(file) = picture {
+                write(file, super::fault_page::picture(kind)?)?;
             }
-        },
+            print(&if *markdown { super::fault_page::markdown(kind) } else { describe(kind) })?;
+        }
         Command::Sweep(arguments) => return super::sweep::command(arguments),
         Command::Minimise(arguments) => return super::minimise::command(arguments),
     }
@@ -125,7 +135,7 @@ fn list() -> String {
 }
 
 /// Where a kind acts, in words.
-fn acts(acts: Acts) -> &'static str {
+pub(super) fn acts(acts: Acts) -> &'static str {
     match acts {
         Acts::Plant => "inside the simulated instrument, before its sensors measure",
         Acts::Command => "on set points on their way from the core to the turntable",
@@ -136,7 +146,7 @@ fn acts(acts: Acts) -> &'static str {
     }
 }
 
-fn lasts(lasts: Lasts) -> &'static str {
+pub(super) fn lasts(lasts: Lasts) -> &'static str {
     match lasts {
         Lasts::Span => "as long as its duration (left out: to the end of the run), then it is gone",
         Lasts::Fading => {

@@ -4,6 +4,7 @@
 #![allow(clippy::print_stdout, reason = "results go to stdout")]
 
 mod compare;
+mod fault_page;
 mod faults;
 mod minimise;
 mod observe;

@@ -28,7 +28,10 @@ pub(super) struct Arguments {
     /// Seed of all runs, instead of the scenario's.
     #[arg(long, value_name = "N")]
     seed: Option<u64>,
-    /// Folder for sweep.json, sweep.csv and sweep.html; by default nothing is written.
+    /// Runs at a time; by default as many as there are processors.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    jobs: Option<u16>,
+    /// Folder for sweep.json, sweep.csv, sweep.svg and sweep.html; by default nothing is written.
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Print sweep.json on stdout, and nothing else.
@@ -62,7 +65,7 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     let epochs = base.samples().map(|samples| samples * (count as u64 + 1));
     let sample_s = base.sample_period_ns as f64 * 1e-9;
     let result = with_progress(&controls, epochs, sample_s, || {
-        sweep(&scenarios, &axes, &fault, seed, &controls)
+        sweep(&scenarios, &axes, &fault, seed, arguments.jobs.map(usize::from), &controls)
     })
     .map_err(failure)?;
     if let Some(folder) = &arguments.out {
@@ -73,6 +76,7 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
             .map_err(|error| Failure::bench(format!("failed to write sweep.json: {error}")))?;
         write(&folder.join("sweep.json"), json + "\n")?;
         write(&folder.join("sweep.csv"), report::sweep::csv(&result))?;
+        write(&folder.join("sweep.svg"), report::sweep::figure(&result))?;
         write(&folder.join("sweep.html"), report::sweep::render(&result, &rerun(arguments, seed)))?;
     }
     if arguments.json {

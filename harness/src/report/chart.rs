@@ -328,7 +328,7 @@ impl Frame {
 }
 
 /// Keeps the extremes of every pixel column: at most four points for each.
-fn thinned(points: &[[f64; 2]], columns: usize) -> Vec<[f64; 2]> {
+pub(super) fn thinned(points: &[[f64; 2]], columns: usize) -> Vec<[f64; 2]> {
     if points.len() <= 3 * columns.max(1) {
         return points.to_vec();
     }
@@ -357,8 +357,14 @@ fn thinned(points: &[[f64; 2]], columns: usize) -> Vec<[f64; 2]> {
 }
 
 /// A tenth of a pixel is enough, and keeps the file small.
-fn round(px: f64) -> f64 {
+pub(super) fn round(px: f64) -> f64 {
     libm::round(px * 10.0) / 10.0
+}
+
+/// Whether a number is a whole multiple of a step.
+pub(super) fn multiples_of(number: f64, step: f64) -> bool {
+    let ratio = number / step;
+    (ratio - libm::round(ratio)).abs() < 1e-6
 }
 
 fn is_round(step: f64) -> bool {
@@ -366,14 +372,14 @@ fn is_round(step: f64) -> bool {
     (mantissa - libm::round(mantissa)).abs() < 1e-6
 }
 
-fn span(values: impl Iterator<Item = f64>) -> Option<[f64; 2]> {
+pub(super) fn span(values: impl Iterator<Item = f64>) -> Option<[f64; 2]> {
     values.fold(None, |range, v| {
         Some(range.map_or([v, v], |[low, high]: [f64; 2]| [low.min(v), high.max(v)]))
     })
 }
 
 /// Multiples of 1, 2 or 5 times a power of ten within the range, about `count` of them.
-fn nice_ticks(range: [f64; 2], count: u32, step: Option<f64>) -> Vec<f64> {
+pub(super) fn nice_ticks(range: [f64; 2], count: u32, step: Option<f64>) -> Vec<f64> {
     let raw = (range[1] - range[0]) / f64::from(count);
     let power = libm::pow(10.0, libm::floor(libm::log10(raw)));
     let nice = [1.0, 2.0, 2.5, 5.0, 10.0].into_iter().find(|m| m * power >= raw).unwrap_or(10.0);

@@ -2,6 +2,7 @@
 //!
 //! - [`run`] makes `report.html` of one run
 //! - [`compare`] makes `compare.html` and the plain text of `octant compare`
+//! - [`fault_picture`] draws what a fault does
 //! - [`chart`] draws lines as inline SVG that follows the colours of the page
 //! - [`number`] writes numbers as people read them
 
@@ -10,6 +11,7 @@ pub mod chart;
 pub mod compare;
 pub mod counterfactual;
 mod drift;
+pub mod fault_picture;
 pub mod number;
 mod page;
 mod parameters;

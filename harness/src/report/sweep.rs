@@ -1,9 +1,9 @@
-//! `sweep.html`, the heat map of a sweep, and its plain text and CSV.
+//! `sweep.html`, the heat map of a sweep, alone as `sweep.svg`, and its plain text and CSV.
 
 use super::number;
 use super::page::page;
 use crate::run::sweep::{Axis, Cell, Sweep, indices};
-use maud::{Markup, html};
+use maud::{Markup, PreEscaped, html};
 
 /// Width and height of a cell of the map, px.
 const CELL: [f64; 2] = [92.0, 46.0];
@@ -79,33 +79,92 @@ pub fn render(sweep: &Sweep, rerun: &str) -> String {
 /// The heat map of one panel as SVG.
 #[must_use]
 pub fn map(sweep: &Sweep, cells: &[&Cell]) -> Markup {
+    let [width, height] = size(sweep);
+    html! {
+        svg.map viewBox={ "0 0 " (width) " " (height) } width=(width) role="img" aria-label="heat map of the sweep" {
+            (drawing(sweep, cells))
+        }
+    }
+}
+
+/// All panels as one SVG that stands by itself, with its own colours.
+#[must_use]
+pub fn figure(sweep: &Sweep) -> String {
+    const HEAD: f64 = 30.0;
+    const FOOT: f64 = 24.0;
+    let panels = panels(sweep);
+    let [width, panel] = size(sweep);
+    let width = width.max(640.0);
+    let above = |name: &str| if name.is_empty() { 0.0 } else { 22.0 };
+    let height: f64 = HEAD + FOOT + panels.iter().map(|(name, _)| above(name) + panel).sum::<f64>();
+    let mut top = HEAD;
+    let drawn: Vec<(f64, f64, &str, Markup)> = panels
+        .iter()
+        .map(|(name, cells)| {
+            let at = top + above(name);
+            top = at + panel;
+            (at, at - 8.0, name.as_str(), drawing(sweep, cells))
+        })
+        .collect();
+    html! {
+        svg xmlns="http://www.w3.org/2000/svg" viewBox={ "0 0 " (width) " " (height) } width=(width) height=(height)
+            role="img" aria-label={ "sweep of " (sweep.fault) } {
+            style { (PreEscaped(STYLE)) }
+            rect class="paper" width=(width) height=(height) {}
+            text class="title" x="4" y="18" { (sweep.kind) ": largest shift of a parameter, in σ of the run without the fault" }
+            @for (at, name_at, name, body) in &drawn {
+                @if !name.is_empty() { text class="title" x="4" y=(name_at) { (name) } }
+                g transform={ "translate(0 " (at) ")" } { (body) }
+            }
+            text class="tick" x="4" y=(height - 8.0) {
+                "dashed: the core reported nothing; heavy: it reported nothing, and a parameter moved by "
+                (number::plain(sweep.harmful_shift_sigma, 2)) " σ or more"
+            }
+        }
+    }
+    .into_string()
+}
+
+/// Colours of a figure that stands by itself: those of the page.
+const STYLE: &str = "\
+svg{font:12px Inter,'Segoe UI','Helvetica Neue','Liberation Sans',Arial,sans-serif}\
+.paper{fill:#fff}.tick{font-size:11.5px;fill:#5b6470}.tick.x{text-anchor:middle}\
+.title{fill:#1b1f24;font-size:13.5px;font-weight:600}.heat{fill:#c4500a}.frame{fill:none;stroke:none}\
+.unnoticed{stroke:#1b1f24;stroke-width:1.2;stroke-dasharray:4 3}.missed{stroke:#1b1f24;stroke-width:3}\
+.heat-value,.heat-note{text-anchor:middle;fill:#1b1f24;font-size:12.5px}.heat-note{font-size:9.5px}\
+@media(prefers-color-scheme:dark){.paper{fill:#14181d}.tick{fill:#9aa4af}.title{fill:#e4e8ec}\
+.heat{fill:#f0a04b}.unnoticed,.missed{stroke:#e4e8ec}.heat-value,.heat-note{fill:#e4e8ec}}";
+
+/// Width and height of a panel, px.
+fn size(sweep: &Sweep) -> [f64; 2] {
+    let count = |axis: usize| sweep.axes.get(axis).map_or(1, |axis| axis.values.len()) as f64;
+    [LEFT + CELL[0] * count(1) + 10.0, TOP + CELL[1] * count(0) + 10.0]
+}
+
+fn drawing(sweep: &Sweep, cells: &[&Cell]) -> Markup {
     let empty = Axis { key: String::new(), values: vec![String::new()] };
     let down = sweep.axes.first().unwrap_or(&empty);
     let across = sweep.axes.get(1).unwrap_or(&empty);
-    let width = LEFT + CELL[0] * across.values.len() as f64 + 10.0;
-    let height = TOP + CELL[1] * down.values.len() as f64 + 10.0;
     let x = |i: usize| LEFT + CELL[0] * i as f64;
     let y = |i: usize| TOP + CELL[1] * i as f64;
     html! {
-        svg.map viewBox={ "0 0 " (width) " " (height) } width=(width) role="img" aria-label="heat map of the sweep" {
-            text class="tick" x=(LEFT) y="14" { (across.key) }
-            text class="tick" x="4" y=(TOP - 8.0) { (down.key) }
-            @for (i, label) in across.values.iter().enumerate() {
-                text class="tick x" x=(x(i) + 0.5 * CELL[0]) y=(TOP - 8.0) { (label) }
-            }
-            @for (i, label) in down.values.iter().enumerate() {
-                text class="tick" x="4" y=(y(i) + 0.5 * CELL[1] + 4.0) { (label) }
-            }
-            @for cell in cells {
-                @let (i, j) = (cell.at.first().copied().unwrap_or(0), cell.at.get(1).copied().unwrap_or(0));
-                g {
-                    rect class="heat" x=(x(j) + 1.0) y=(y(i) + 1.0) width=(CELL[0] - 2.0) height=(CELL[1] - 2.0)
-                        fill-opacity=(number::fixed(heat(cell), 3)) {}
-                    rect class=(frame(cell)) x=(x(j) + 2.5) y=(y(i) + 2.5) width=(CELL[0] - 5.0) height=(CELL[1] - 5.0) {}
-                    text class="heat-value" x=(x(j) + 0.5 * CELL[0]) y=(y(i) + 0.5 * CELL[1]) { (value(cell)) }
-                    text class="heat-note" x=(x(j) + 0.5 * CELL[0]) y=(y(i) + 0.5 * CELL[1] + 14.0) { (short(notice(cell))) }
-                    title { (value(cell)) ", " (notice(cell)) }
-                }
+        text class="tick" x=(LEFT) y="14" { (across.key) }
+        text class="tick" x="4" y=(TOP - 8.0) { (down.key) }
+        @for (i, label) in across.values.iter().enumerate() {
+            text class="tick x" x=(x(i) + 0.5 * CELL[0]) y=(TOP - 8.0) { (label) }
+        }
+        @for (i, label) in down.values.iter().enumerate() {
+            text class="tick" x="4" y=(y(i) + 0.5 * CELL[1] + 4.0) { (label) }
+        }
+        @for cell in cells {
+            @let (i, j) = (cell.at.first().copied().unwrap_or(0), cell.at.get(1).copied().unwrap_or(0));
+            g {
+                rect class="heat" x=(x(j) + 1.0) y=(y(i) + 1.0) width=(CELL[0] - 2.0) height=(CELL[1] - 2.0)
+                    fill-opacity=(number::fixed(heat(cell), 3)) {}
+                rect class=(frame(cell)) x=(x(j) + 2.5) y=(y(i) + 2.5) width=(CELL[0] - 5.0) height=(CELL[1] - 5.0) {}
+                text class="heat-value" x=(x(j) + 0.5 * CELL[0]) y=(y(i) + 0.5 * CELL[1]) { (value(cell)) }
+                text class="heat-note" x=(x(j) + 0.5 * CELL[0]) y=(y(i) + 0.5 * CELL[1] + 14.0) { (short(notice(cell))) }
+                title { (value(cell)) ", " (notice(cell)) }
             }
         }
     }

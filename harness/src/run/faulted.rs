@@ -142,6 +142,7 @@ impl<E: Endpoint + ?Sized> Loop<'_, E> {
             }
             return Ok(None);
         }
+        self.watcher.source_time = Some(clean.sample.device_time);
         for (index, faulted) in these.iter().enumerate() {
             self.endpoint.step(faulted, &mut self.output)?;
             let output = &self.output;

@@ -224,7 +224,7 @@ pub fn run_method(
 }
 
 /// The station of a scenario; `None` without faults.
-fn faulted(scenario: &Scenario, seed: u64) -> Result<Option<Faulted>, SetupError> {
+pub(super) fn faulted(scenario: &Scenario, seed: u64) -> Result<Option<Faulted>, SetupError> {
     let station = scenario
         .station(seed)
         .map_err(|(id, error)| SetupError::Fault { id, reason: error.to_string() })?;

@@ -11,6 +11,7 @@ pub mod method;
 pub mod minimise;
 pub mod paired;
 pub mod raw_counts;
+pub mod side_by_side;
 pub mod sweep;
 pub mod twin;
 pub mod unit;

@@ -99,7 +99,8 @@ pub fn indices(axes: &[Axis], mut cell: usize) -> Vec<usize> {
 }
 
 /// Runs the scenario of every cell, and their common twin, on all processors. The order in which
-/// they run doesn't show in the result. `controls` has one entry for the twin and one for each cell.
+/// they run doesn't show in the result. `jobs` run at a time, by default as many as there are
+/// processors. `controls` has one entry for the twin and one for each cell.
 ///
 /// # Errors
 /// If a run gives no result.
@@ -108,11 +109,12 @@ pub fn sweep(
     axes: &[Axis],
     fault: &str,
     seed: u64,
+    jobs: Option<usize>,
     controls: &[Control],
 ) -> Result<Sweep, SweepError> {
     let Some(first) = scenarios.first() else { return Err(SweepError::Cancelled) };
     let clean = first.without_faults();
-    let runs = on_all_processors(scenarios.len() + 1, |task| {
+    let runs = on_processors(jobs, scenarios.len() + 1, |task| {
         let control = controls.get(task).ok_or(SweepError::Cancelled)?;
         let (scenario, recording) = match task.checked_sub(1).and_then(|i| scenarios.get(i)) {
             None => (&clean, Recording::Hash),
@@ -169,13 +171,15 @@ fn cell(
     }
 }
 
-/// Does tasks 0 to `count` on all processors; results in order. After a failure no more are begun,
+/// Does tasks 0 to `count`, so many at a time; results in order. After a failure no more are begun,
 /// and the first in order is told.
-fn on_all_processors<T: Send, E: Send>(
+fn on_processors<T: Send, E: Send>(
+    jobs: Option<usize>,
     count: usize,
     work: impl Fn(usize) -> Result<T, E> + Sync,
 ) -> Result<Vec<T>, E> {
-    let threads = std::thread::available_parallelism().map_or(1, usize::from).min(count);
+    let processors = || std::thread::available_parallelism().map_or(1, usize::from);
+    let threads = jobs.unwrap_or_else(processors).clamp(1, count.max(1));
     let next = AtomicUsize::new(0);
     let results: Mutex<Vec<Option<Result<T, E>>>> = Mutex::new((0..count).map(|_| None).collect());
     std::thread::scope(|scope| {
@@ -218,9 +222,9 @@ mod tests {
 
     #[test]
     fn results_are_in_order_and_the_first_failure_is_told() {
-        let doubled = on_all_processors(50, |i| Ok::<_, usize>(2 * i)).unwrap();
+        let doubled = on_processors(Some(3), 50, |i| Ok::<_, usize>(2 * i)).unwrap();
         assert!(doubled.iter().enumerate().all(|(i, d)| *d == 2 * i));
-        let failed = on_all_processors(50, |i| if i % 7 == 3 { Err(i) } else { Ok(i) });
+        let failed = on_processors(Some(3), 50, |i| if i % 7 == 3 { Err(i) } else { Ok(i) });
         assert_eq!(failed, Err(3));
     }
 }

@@ -9,7 +9,7 @@ use crate::score::drift::{DriftSample, DriftScorer};
 use crate::score::health::HealthMonitor;
 use crate::score::trace::Trace;
 use octant_plant::Truth;
-use octant_sample::{Health, Mode, Output};
+use octant_sample::{DeviceTime, Health, Mode, Output};
 
 /// Grid on which truth is compared with the navigation solution, ns.
 const SCORE_PERIOD_NS: u64 = 1_000_000_000;
@@ -44,6 +44,8 @@ pub struct Watcher {
     pub trace: Option<Trace>,
     /// Health and NIS over the run.
     pub health: HealthMonitor,
+    /// Time of the source at the output that comes next, where faults may have altered its stamp.
+    pub source_time: Option<DeviceTime>,
     /// How the parameters came about.
     pub convergence: Vec<ParameterPoint>,
     /// NIS of the measurements.
@@ -76,6 +78,7 @@ impl Watcher {
             drift_samples: 0,
             trace: None,
             health: HealthMonitor::new(),
+            source_time: None,
             convergence: Vec::new(),
             nis: Vec::new(),
             gimbals: Vec::new(),
@@ -129,7 +132,7 @@ impl Watcher {
 
     #[inline(never)]
     fn measurement(&mut self, output: &Output) {
-        self.health.push(output);
+        self.health.push_at(output, self.source_time.unwrap_or(output.device_time));
         if output.nis.is_finite() {
             self.measurements += 1;
             if self.nis.len() >= NIS_POINTS_MAX {

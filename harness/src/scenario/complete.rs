@@ -352,8 +352,8 @@ fn takes(kind: &Kind, value: &Value) -> bool {
     matches!(
         (kind, value),
         (Kind::Choice(_), Value::Text(_))
-            | (Kind::Integer(..), Value::Integer(_))
-            | (Kind::Number(_), Value::Integer(_) | Value::Float(_))
+            | (Kind::Integer(..) | Kind::Number(_), Value::Integer(_))
+            | (Kind::Number(_), Value::Number(_))
             | (Kind::Table(_), Value::Table(_))
             | (Kind::Tables(..), Value::Array(_))
             | (Kind::Variants(_), Value::Table(_))

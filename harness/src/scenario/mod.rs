@@ -10,11 +10,13 @@ mod condition;
 mod derive;
 mod document;
 mod error;
+mod examples;
 mod keys;
 mod quantity;
 mod read;
 pub mod resolve;
 mod schema;
+pub mod suite;
 mod tour;
 mod write;
 

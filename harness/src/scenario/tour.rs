@@ -4,6 +4,7 @@
 
 use super::complete::{expected, join};
 use super::document::{parse_default, write_value};
+use super::examples;
 use super::keys::{Bounds, Default, Key, Kind, SCENARIO, Section};
 use super::quantity::{self, Dimension};
 
@@ -291,42 +292,6 @@ fn given(section: &Section) -> Vec<String> {
     section.keys.iter().filter_map(line).collect()
 }
 
-/// Values of examples of faults where that of the form alone makes no fault: kind, key, TOML.
-const FAULT_EXAMPLES: &[(&str, &str, &str)] = &[
-    ("vibration-sine", "frequency", r#""35 Hz""#),
-    ("vibration-sine", "acceleration", r#"["1 m/s^2", "0 m/s^2", "0 m/s^2"]"#),
-    ("vibration-random", "psd", r#"["0.01 g^2/Hz", "0.01 g^2/Hz", "0.01 g^2/Hz"]"#),
-    ("shock", "peak", r#"["0 g", "0 g", "5 g"]"#),
-    ("temperature-ramp", "ramp", r#""5 K/h""#),
-    ("temperature-ramp", "gyro_bias", r#"["0.0002 deg/h/K", "0 deg/h/K", "0 deg/h/K"]"#),
-    ("mooring-jerk", "displacement", r#"["0.3 m", "0 m", "0 m"]"#),
-    ("lever-arm", "accelerometer_x", r#"["0 m", "0.05 m", "0 m"]"#),
-    ("noise-gain", "gain", r#""300 %""#),
-    ("bias-ramp", "rise", r#""10 min""#),
-    ("gauss-markov", "correlation_time", r#""1 h""#),
-    ("cross-axis", "into", r#""gyro y""#),
-    ("axis-swap", "second", r#""gyro y""#),
-    ("dither-residual", "amplitude", r#""0.01 arcsec""#),
-    ("dither-residual", "frequency", r#""37 Hz""#),
-    ("spike", "amplitude", r#""1000 deg/h""#),
-    ("bit-flip", "bit", "20"),
-    ("intermittent", "mean_out", r#""0.1 s""#),
-    ("intermittent", "mean_in", r#""10 s""#),
-    ("sequence-gap", "skip", "10"),
-    ("clock-skew", "skew", r#""50 ppm""#),
-    ("time-jitter", "sigma", r#""0.1 ms""#),
-    ("time-offset", "offset", r#""2 ms""#),
-    ("time-step", "step", r#""1 s""#),
-    ("late-delivery", "delay", r#""0.1 s""#),
-    ("command-late", "delay", r#""0.5 s""#),
-    ("runaway", "rate", r#""1 deg/s""#),
-    ("overshoot", "angle", r#""0.5 deg""#),
-    ("gimbal-slip", "angle", r#""0.05 deg""#),
-    ("encoder-slip", "angle", r#""0.05 deg""#),
-    ("stale-table", "gyro_bias", r#"["0.01 deg/h", "0 deg/h", "0 deg/h"]"#),
-    ("aiding-late", "delay", r#""0.2 s""#),
-];
-
 /// A quantity within its bounds: the dimension's example where that is, else one between them.
 fn quantity_within(dimension: Dimension, bounds: Bounds) -> String {
     let example = quantity::parse(dimension.example).is_ok_and(|q| bounds.contain(q.si));
@@ -366,7 +331,7 @@ pub fn fault_example(kind: &str) -> Option<String> {
     let section = super::keys::kind_section(kind)?;
     let mut out = String::from("[[faults]]\n");
     for key in section.keys {
-        let own = FAULT_EXAMPLES.iter().find(|(of, name, _)| *of == kind && *name == key.name);
+        let own = examples::FAULTS.iter().find(|(of, name, _)| *of == kind && *name == key.name);
         let value = match (own, key.default) {
             (Some((.., text)), _) => (*text).to_owned(),
             (None, Default::Value(text)) => written(text),

@@ -88,6 +88,12 @@ impl HealthMonitor {
 
     /// Takes the output of one epoch.
     pub fn push(&mut self, output: &Output) {
+        self.push_at(output, output.device_time);
+    }
+
+    /// As [`Self::push`], with the time at which it is to be listed: the output's own is that of a
+    /// stamp that a fault may have altered.
+    pub fn push_at(&mut self, output: &Output, now: DeviceTime) {
         let rejected = output.health.contains(Health::INNOVATION_REJECTED);
         if output.nis.is_finite() || rejected {
             self.counts.measurements += 1;
@@ -100,7 +106,7 @@ impl HealthMonitor {
             return;
         }
         for cause in output.health.iter() {
-            self.count(cause, output.device_time);
+            self.count(cause, now);
         }
     }
 

@@ -7,11 +7,13 @@ mod faults;
 mod instrument;
 mod run;
 mod source;
+mod suite;
 
 use super::quantity::Dimension;
 
 pub(crate) use faults::{dimension, kind_section};
 pub(crate) use run::{POSITIONS, SCENARIO};
+pub(crate) use suite::SUITE;
 
 use super::document::{Table, Value};
 use super::error::{Problem, nearest, suggestion};

@@ -27,7 +27,7 @@ pub(super) struct Reader<'a> {
 }
 
 impl<'a> Reader<'a> {
-    fn root(table: &'a Table) -> Self {
+    pub(super) fn root(table: &'a Table) -> Self {
         Self { table, path: String::new(), place: Place::File { line: 1, column: 1 } }
     }
 

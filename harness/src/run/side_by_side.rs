@@ -1,0 +1,131 @@
+//! A short run with a fault beside the same run without it, epoch by epoch: what a picture of the
+//! fault is drawn from.
+
+use super::drive::{Control, drive};
+use super::faulted::drive_faulted;
+use super::method::{MethodError, SetupError, configurations, faulted};
+use super::watch::Watcher;
+use crate::endpoint::{Endpoint, EndpointError, InProcess, ParameterEstimate};
+use crate::recorder::Recorder;
+use crate::scenario::{Method, Scenario};
+use crate::source::{Epoch, PlantSource, Source, SourceError};
+use octant_faults::Receipt;
+use octant_faults::disturbance::Disturbed;
+use octant_sample::{GimbalCommand, Output, Parameters, Truth};
+use std::cell::RefCell;
+use std::rc::Rc;
+
+/// What happened in one step of the source.
+#[derive(Clone, Debug, Default)]
+pub struct Step {
+    /// Set point that the turntable had.
+    pub command: GimbalCommand,
+    /// What reached the core.
+    pub delivered: Vec<Epoch>,
+    /// The core's last answer; `None` where nothing reached it.
+    pub output: Option<Output>,
+}
+
+/// Both runs, step by step from the start.
+#[derive(Clone, Debug)]
+pub struct SideBySide {
+    /// Without the faults.
+    pub clean: Vec<Step>,
+    /// With them.
+    pub faulted: Vec<Step>,
+    /// What became of the faults.
+    pub receipts: Vec<Receipt>,
+}
+
+/// Runs the first steps of a scenario with its faults and without.
+///
+/// # Errors
+/// If a run can't be set up, or breaks off.
+pub fn side_by_side(scenario: &Scenario, seed: u64, steps: u64) -> Result<SideBySide, MethodError> {
+    let (clean, _) = watched(&scenario.without_faults(), seed, steps)?;
+    let (faulted, receipts) = watched(scenario, seed, steps)?;
+    Ok(SideBySide { clean, faulted, receipts })
+}
+
+type Steps = Rc<RefCell<Vec<Step>>>;
+
+fn watched(
+    scenario: &Scenario,
+    seed: u64,
+    steps: u64,
+) -> Result<(Vec<Step>, Vec<Receipt>), MethodError> {
+    let (plant, core, _) = configurations(scenario, Method::Primary, seed)?;
+    let seen = Steps::default();
+    let source = PlantSource::new(&plant, steps).map_err(SetupError::Plant)?;
+    let mut source = WatchedSource { source, seen: Rc::clone(&seen) };
+    let endpoint = InProcess::new(&core).map_err(SetupError::Core)?;
+    let mut endpoint = WatchedEndpoint { endpoint, seen: Rc::clone(&seen) };
+    let calibration_s = core.calibration.as_ref().map_or(0.0, |c| c.duration_s);
+    let (mut recorder, mut watcher) = (Recorder::none(), Watcher::new(calibration_s));
+    let control = Control::default();
+    let receipts = match faulted(scenario, seed)? {
+        None => {
+            drive(&mut source, &mut endpoint, &mut recorder, &mut watcher, &control)?;
+            Vec::new()
+        }
+        Some(mut faulted) => {
+            let (recorder, watcher) = (&mut recorder, &mut watcher);
+            drive_faulted(&mut source, &mut faulted, &mut endpoint, recorder, watcher, &control)?;
+            faulted.station.receipts()
+        }
+    };
+    Ok((seen.take(), receipts))
+}
+
+/// Notes every step of the source.
+struct WatchedSource {
+    source: PlantSource,
+    seen: Steps,
+}
+
+impl Source for WatchedSource {
+    fn next(&mut self, command: &GimbalCommand, epoch: &mut Epoch) -> Result<bool, SourceError> {
+        let more = self.source.next(command, epoch)?;
+        if more {
+            self.seen.borrow_mut().push(Step { command: *command, ..Step::default() });
+        }
+        Ok(more)
+    }
+
+    fn truth(&self) -> Option<Truth> {
+        self.source.truth()
+    }
+
+    fn samples_total(&self) -> Option<u64> {
+        self.source.samples_total()
+    }
+
+    fn disturbed(&mut self) -> Option<&mut dyn Disturbed> {
+        self.source.disturbed()
+    }
+}
+
+/// Notes what reaches the core.
+struct WatchedEndpoint {
+    endpoint: InProcess,
+    seen: Steps,
+}
+
+impl Endpoint for WatchedEndpoint {
+    fn step(&mut self, epoch: &Epoch, output: &mut Output) -> Result<(), EndpointError> {
+        self.endpoint.step(epoch, output)?;
+        if let Some(step) = self.seen.borrow_mut().last_mut() {
+            step.delivered.push(*epoch);
+            step.output = Some(*output);
+        }
+        Ok(())
+    }
+
+    fn restart(&mut self, offset: Option<&Parameters>) -> Result<(), EndpointError> {
+        self.endpoint.restart(offset)
+    }
+
+    fn parameters(&self) -> ParameterEstimate {
+        self.endpoint.parameters()
+    }
+}

@@ -1,0 +1,190 @@
+//! A suite: scenarios, and how each of them has to end.
+//!
+//! ```toml
+//! schema = 1
+//!
+//! [[cases]]
+//! scenario = "spike.toml"
+//! expect = "pass"
+//!
+//! [[cases]]
+//! scenario = "bias-step.toml"
+//! expect = "fail"
+//! because = "refused"
+//! ```
+
+use super::complete::complete;
+use super::document::{self, Table};
+use super::error::{Place, Problem, ScenarioError};
+use super::keys::SUITE;
+use super::read::Reader;
+use crate::score::verdict::Verdict;
+use std::path::{Path, PathBuf};
+
+/// A list of scenarios with the ends that are expected of them.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Suite {
+    /// The cases, in the order of the file.
+    pub cases: Vec<Case>,
+}
+
+/// One scenario, and how it has to end.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Case {
+    /// File of the scenario.
+    pub scenario: PathBuf,
+    /// The verdict.
+    pub expect: Verdict,
+    /// Words that every reason has to contain; given wherever a pass isn't expected.
+    pub because: Option<String>,
+}
+
+impl Suite {
+    /// Reads a suite file. Names of scenarios start at its folder.
+    ///
+    /// # Errors
+    /// If the file can't be read, isn't TOML, or is not a suite: every problem with its place.
+    pub fn load(path: &Path) -> Result<Self, ScenarioError> {
+        let file = path.display().to_string();
+        let text = std::fs::read_to_string(path).map_err(|error| ScenarioError {
+            file: file.clone(),
+            problems: vec![Problem {
+                place: Place::Unread,
+                path: String::new(),
+                message: error.to_string(),
+            }],
+        })?;
+        Self::parse(&text, &file, path.parent().unwrap_or(Path::new("")))
+    }
+
+    /// Reads the text of a suite. `file` names it in errors, `folder` is where scenarios are.
+    ///
+    /// # Errors
+    /// If it isn't TOML or not a suite: every problem with its place.
+    pub fn parse(text: &str, file: &str, folder: &Path) -> Result<Self, ScenarioError> {
+        let with_file = |problems| ScenarioError { file: file.to_owned(), problems };
+        let mut document = document::parse(text).map_err(with_file)?;
+        let mut problems = Vec::new();
+        let start = Place::File { line: 1, column: 1 };
+        complete(&mut document, &SUITE, "", &start, &mut problems);
+        if !problems.is_empty() {
+            return Err(with_file(problems));
+        }
+        cases(&document, folder).map_err(|problem| with_file(vec![problem]))
+    }
+}
+
+fn cases(document: &Table, folder: &Path) -> Result<Suite, Problem> {
+    let mut cases: Vec<Case> = Vec::new();
+    for table in Reader::root(document).tables("cases") {
+        let name = table.text("scenario")?;
+        let scenario = folder.join(name);
+        if cases.iter().any(|case| case.scenario == scenario) {
+            let message = format!("found {name:?} a second time, expected one case a scenario");
+            return Err(table.problem("scenario", message));
+        }
+        let expect = match table.text("expect")? {
+            "pass" => Verdict::Pass,
+            "fail" => Verdict::Fail,
+            _ => Verdict::Inconclusive,
+        };
+        let because = table.optional_text("because").map(str::to_owned);
+        match (expect, because.as_deref()) {
+            (Verdict::Pass, Some(_)) => {
+                return Err(table.problem("because", "found a reason, and a pass needs none"));
+            }
+            (Verdict::Pass, None) => {}
+            (_, None) => {
+                let message =
+                    "missing, expected words that the reasons of the verdict have to contain";
+                return Err(table.problem("because", message));
+            }
+            (_, Some(text)) if text.trim().is_empty() => {
+                return Err(table.problem("because", "found an empty text, expected words"));
+            }
+            (_, Some(_)) => {}
+        }
+        cases.push(Case { scenario, expect, because });
+    }
+    Ok(Suite { cases })
+}
+
+impl Case {
+    /// Holds what came against what is expected: the verdict, and that there is no reason for it but
+    /// the expected one.
+    ///
+    /// # Errors
+    /// In words: what was found and what was expected.
+    pub fn hold(&self, verdict: Verdict, reasons: &[String]) -> Result<(), String> {
+        let expected = self.because.as_deref().map_or_else(
+            || self.expect.name().to_owned(),
+            |because| format!("{}, because of {because:?}", self.expect.name()),
+        );
+        let alone = |because: &str| {
+            !reasons.is_empty() && reasons.iter().all(|reason| reason.contains(because))
+        };
+        if verdict == self.expect && self.because.as_deref().is_none_or(alone) {
+            return Ok(());
+        }
+        Err(format!("found {} ({}), expected {expected}", verdict.name(), reasons.join("; ")))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn parse(cases: &str) -> Result<Suite, String> {
+        let text = format!("schema = 1\n{cases}");
+        Suite::parse(&text, "s.toml", Path::new("f")).map_err(|error| error.to_string())
+    }
+
+    #[test]
+    fn a_suite_is_read() {
+        let text = "[[cases]]\nscenario = \"a.toml\"\nexpect = \"pass\"\n\n\
+                    [[cases]]\nscenario = \"b.toml\"\nexpect = \"fail\"\nbecause = \"refused\"\n";
+        let suite = parse(text).unwrap();
+        assert_eq!(suite.cases[0].scenario, Path::new("f/a.toml"));
+        let [good, bad] = &suite.cases[..] else { panic!() };
+        assert_eq!((good.expect, good.because.as_deref()), (Verdict::Pass, None));
+        assert_eq!((bad.expect, bad.because.as_deref()), (Verdict::Fail, Some("refused")));
+        good.hold(Verdict::Pass, &[]).unwrap();
+        let reasons = ["calibration refused: no".to_owned()];
+        bad.hold(Verdict::Fail, &reasons).unwrap();
+        let more = [reasons[0].clone(), "X: 3".to_owned()];
+        assert!(bad.hold(Verdict::Fail, &more).unwrap_err().contains("X: 3"));
+        assert_eq!(
+            bad.hold(Verdict::Fail, &["X: 3".to_owned()]).unwrap_err(),
+            "found fail (X: 3), expected fail, because of \"refused\""
+        );
+        assert_eq!(
+            good.hold(Verdict::Fail, &reasons).unwrap_err(),
+            "found fail (calibration refused: no), expected pass"
+        );
+    }
+
+    #[test]
+    fn mistakes_have_file_line_and_field() {
+        let case = |more: &str| parse(&format!("[[cases]]\nscenario = \"a.toml\"\n{more}"));
+        for (more, problem) in [
+            ("expect = \"well\"", "s.toml:4:10: cases[0].expect: found \"well\""),
+            ("expect = \"fail\"", "s.toml:2:1: cases[0].because: missing"),
+            (
+                "expect = \"pass\"\nbecause = \"x\"",
+                "s.toml:5:11: cases[0].because: found a reason, and a pass needs none",
+            ),
+            (
+                "expct = \"pass\"",
+                "s.toml:4:1: cases[0].expct: unknown key, did you mean \"expect\"",
+            ),
+            (
+                "expect = \"pass\"\n[[cases]]\nscenario = \"a.toml\"\nexpect = \"pass\"",
+                "s.toml:6:12: cases[1].scenario: found \"a.toml\" a second time",
+            ),
+        ] {
+            let found = case(more).unwrap_err();
+            assert!(found.starts_with(problem), "{found}");
+        }
+        assert!(parse("").unwrap_err().contains("cases: missing"));
+    }
+}
