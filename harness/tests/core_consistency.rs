@@ -4,8 +4,8 @@
 
 mod instrument;
 
-use instrument::Case;
 use instrument::closed_loop::{ClosedLoop, on_two_threads};
+use instrument::{Case, dockside};
 use nalgebra::{Quaternion, UnitQuaternion};
 use octant_calibration::config::*;
 use octant_calibration::positions::{Degrees, EIGHT, SIX};
@@ -15,13 +15,6 @@ use octant_plant::motion::dockside_default;
 use octant_sample::parameters::Group;
 use octant_sample::{Mode, Parameters};
 
-fn kalman(config: &mut Config) -> &mut Kalman {
-    match &mut config.calibration.as_mut().unwrap().estimator {
-        Estimator::Kalman(kalman) => kalman,
-        _ => unreachable!(),
-    }
-}
-
 /// Attitude and velocity of the truth at time 0, with the error that the case draws.
 fn hand_over(plant: &plant::Config, core: &mut Config) {
     let truth = octant_plant::Plant::new(plant).unwrap().truth();
@@ -30,15 +23,6 @@ fn hand_over(plant: &plant::Config, core: &mut Config) {
         *q_nb *= UnitQuaternion::new_unchecked(Quaternion::new(w, i, j, k));
         *velocity_mps += nalgebra::Vector3::from(truth.velocity_mps);
     }
-}
-
-fn dockside(case: &Case) -> (plant::Config, Config) {
-    let (mut plant, mut core) = (case.plant(), case.core());
-    plant.motion = plant::Motion::Dockside(dockside_default(case.seed));
-    plant.aiding.kind = plant::AidingKind::DockPosition { sigma_m: 0.01 };
-    hand_over(&plant, &mut core);
-    kalman(&mut core).aiding = AidingMode::Position { sigma_m: 0.15 };
-    (plant, core)
 }
 
 /// Error of position, north and east, arcmin.
@@ -69,7 +53,9 @@ fn perfect(dockside: bool) -> ClosedLoop {
     plant.imu.parameters = Parameters::default();
     plant.imu.velocity_random_walk = 0.0;
     if dockside {
-        plant.motion = plant::Motion::Dockside(dockside_default(1));
+        let ship = dockside_default(1);
+        core.screening.base = instrument::base_of(&ship);
+        plant.motion = plant::Motion::Dockside(ship);
     }
     core.calibration = None;
     core.alignment = Alignment::Given {

@@ -9,7 +9,7 @@ mod instrument;
 
 use instrument::Case;
 use instrument::closed_loop::{ClosedLoop, on_two_threads};
-use octant_calibration::config::{Gate, Recovery, Screening};
+use octant_calibration::config::{Recovery, Screening};
 use octant_calibration::positions::EIGHT;
 use octant_earth::units::*;
 use octant_sample::counts::{DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS};
@@ -148,15 +148,15 @@ fn shift(faulted: &Outcome, clean: &Outcome) -> f64 {
         .fold(0.0, f64::max)
 }
 
-fn gate(recovery: Recovery) -> Screening {
-    Screening { gate: Some(Gate { nis: 25.0, rejections: 5, recovery }), stuck_samples: Some(8) }
-}
-
 fn screenings() -> [Screening; 3] {
     [
-        Screening { gate: None, stuck_samples: None },
-        gate(Recovery::Reset { attitude_rad: 600.0 * ARCSEC, velocity_mps: 1.0, position_m: 10.0 }),
-        gate(Recovery::Widening),
+        Screening::none(),
+        Screening::gated(Recovery::Reset {
+            attitude_rad: 600.0 * ARCSEC,
+            velocity_mps: 1.0,
+            position_m: 10.0,
+        }),
+        Screening::gated(Recovery::Widening),
     ]
 }
 

@@ -50,7 +50,7 @@ fn config(positions: &[(f64, f64, f64)], hours: f64, g_dph_per_g: f64) -> Config
             velocity_random_walk: 50.0 * MICRO_G,
         },
         initial_parameters: Parameters::default(),
-        screening: Screening { gate: None, stuck_samples: None },
+        screening: Screening::none(),
     }
 }
 

@@ -16,6 +16,12 @@ pub(crate) fn derive(document: &mut Table) {
     if document.at("procedure.calibration").is_some() {
         calibration(document);
     }
+    let as_text = text(document, "source.uri").is_some_and(|uri| uri.starts_with("text:"));
+    set(document, "screening.jumps", if as_text { "off" } else { "on" });
+    let dockside = text(document, "motion.kind") == Some("dockside");
+    let (still, moving) =
+        (octant_calibration::drift::LIMIT_SIGMAS, octant_calibration::drift::LIMIT_MOVING_SIGMAS);
+    set(document, "screening.drift", &format!("{:?}", if dockside { moving } else { still }));
     for table in ["source.text", "source.mcap"] {
         if document.at(table).is_some() {
             let rate = text(document, "imu.rate").unwrap_or("200 Hz").to_owned();

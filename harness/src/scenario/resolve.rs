@@ -233,8 +233,33 @@ impl Scenario {
                 velocity_random_walk: self.imu.velocity_random_walk,
             },
             initial_parameters: self.initial_parameters,
-            screening: self.screening,
+            screening: self.screening_for(draws),
         })
+    }
+
+    /// The screens with what bounds them: how the base moves, what the encoders and the increments
+    /// are worth.
+    fn screening_for(&self, draws: &Draws) -> core::Screening {
+        let extensions = &self.imu.extensions;
+        let vibration = extensions.vibration.map_or((0.0, 0.0), |vibration| {
+            // Two increments differ by no more than four amplitudes of the angle, and of the
+            // velocity; gravity turns with the angle.
+            let omega = 2.0 * std::f64::consts::PI * vibration.frequency_hz;
+            let angle = Vector3::from(vibration.angle_rad).norm();
+            let speed = Vector3::from(vibration.displacement_m).norm() * omega;
+            let sample_s = self.sample_period_ns as f64 * 1e-9;
+            (4.0 * angle, 4.0 * speed + 2.0 * 9.81 * angle * sample_s)
+        });
+        core::Screening {
+            base: match self.plant_motion(draws) {
+                plant::Motion::Static(_) => core::Base::Still,
+                plant::Motion::Dockside(ship) => core::Base::Moving(bounds(&ship)),
+            },
+            encoder_sigma_rad: self.turntable.encoder_sigma_rad,
+            resolution: (extensions.gyro_quantization_rad, extensions.accel_quantization_mps),
+            vibration,
+            ..self.screening
+        }
     }
 
     /// Mean attitude of the case with the gimbals at zero, `q_nb`: the true one when static.
@@ -244,6 +269,27 @@ impl Scenario {
             Motion::Static(mean) => case_attitude(mean),
             Motion::Dockside(ship) => case_attitude(&ship.mean),
         }
+    }
+}
+
+/// Bounds of a ship's motion: amplitudes of all its components on all axes, added up, and doubled,
+/// because nobody knows a sway that well.
+fn bounds(ship: &plant::Dockside) -> core::BaseMotion {
+    let largest = |motions: [&[plant::Sinusoid]; 3], order: i32| {
+        let of = |s: &plant::Sinusoid| {
+            let omega = 2.0 * std::f64::consts::PI / s.period_s;
+            s.amplitude.abs() * (0..order).map(|_| omega).product::<f64>()
+        };
+        2.0 * motions.into_iter().flatten().map(of).sum::<f64>()
+    };
+    let angles = [&ship.roll[..], &ship.pitch, &ship.yaw];
+    let shifts = [&ship.surge[..], &ship.sway, &ship.heave];
+    core::BaseMotion {
+        angle_rad: largest(angles, 0),
+        rate_radps: largest(angles, 1),
+        acceleration_radps2: largest(angles, 2),
+        force_mps2: largest(shifts, 2),
+        jerk_mps3: largest(shifts, 3),
     }
 }
 

@@ -46,6 +46,10 @@ pub fn name(cause: Health) -> &'static str {
         Health::AIDING_LOST => "aiding lost",
         Health::INCONSISTENT => "innovations contradict the tuning",
         Health::NUMERIC => "number kept out of the state",
+        Health::JUMP => "increments jumped",
+        Health::GIMBAL_SLIPPED => "gyros and encoders disagree on a turn",
+        Health::DRIFTING => "a parameter drifts",
+        Health::AIDING_STALE => "aiding of another time",
         _ => "several causes",
     }
 }
@@ -144,6 +148,10 @@ impl HealthMonitor {
             Health::AIDING_LOST => &mut counts.aiding_lost,
             Health::INCONSISTENT => &mut counts.inconsistent,
             Health::NUMERIC => &mut counts.numeric,
+            Health::JUMP => &mut counts.jumps,
+            Health::GIMBAL_SLIPPED => &mut counts.gimbal_slips,
+            Health::DRIFTING => &mut counts.drifting,
+            Health::AIDING_STALE => &mut counts.aiding_stale,
             _ => return,
         };
         *count += 1;

@@ -83,6 +83,10 @@ fn shape(path: &[&str]) -> Shape {
             "aiding_lost",
             "inconsistent",
             "numeric",
+            "jumps",
+            "gimbal_slips",
+            "drifting",
+            "aiding_stale",
         ]),
         ["navigation"] => table(&[
             "duration_h",

@@ -285,6 +285,14 @@ pub struct HealthCounts {
     pub inconsistent: u64,
     /// Numbers that are not finite, kept out.
     pub numeric: u64,
+    /// Increments jumped as no motion can, and were not believed.
+    pub jumps: u64,
+    /// Gyros and encoders did not show the same turn.
+    pub gimbal_slips: u64,
+    /// A parameter was found to drift.
+    pub drifting: u64,
+    /// Aiding carried another stamp than its sample, not used.
+    pub aiding_stale: u64,
 }
 
 /// What was done with the vertical channel during free navigation.

@@ -121,10 +121,53 @@ impl Case {
                 velocity_random_walk: 50.0 * MICRO_G,
             },
             initial_parameters: Parameters::default(),
-            screening: Screening {
-                gate: Some(Gate { nis: 25.0, rejections: 5, recovery: Recovery::Widening }),
-                stuck_samples: Some(8),
-            },
+            screening: Screening::hardened(Base::Still),
         }
     }
+}
+
+/// Bounds of a moored ship's motion: the sums of its sinusoids' amplitudes, on all axes, doubled.
+pub fn base_of(ship: &plant::Dockside) -> Base {
+    let bound = |motions: [&Vec<plant::Sinusoid>; 3], order: i32| -> f64 {
+        let sum: f64 = motions
+            .into_iter()
+            .flatten()
+            .map(|s| s.amplitude * (2.0 * std::f64::consts::PI / s.period_s).powi(order))
+            .sum();
+        2.0 * sum
+    };
+    let angles = [&ship.roll, &ship.pitch, &ship.yaw];
+    let shifts = [&ship.surge, &ship.sway, &ship.heave];
+    Base::Moving(BaseMotion {
+        angle_rad: bound(angles, 0),
+        rate_radps: bound(angles, 1),
+        acceleration_radps2: bound(angles, 2),
+        force_mps2: bound(shifts, 2),
+        jerk_mps3: bound(shifts, 3),
+    })
+}
+
+fn kalman(config: &mut Config) -> &mut Kalman {
+    match &mut config.calibration.as_mut().unwrap().estimator {
+        Estimator::Kalman(kalman) => kalman,
+        _ => unreachable!(),
+    }
+}
+
+/// The same on a moored ship: dock position, sway as white noise. The attitude handed over is level,
+/// the ship's is not at time 0: the case rolls by up to 3°.
+pub fn dockside(case: &Case) -> (plant::Config, Config) {
+    let (mut plant, mut core) = (case.plant(), case.core());
+    let ship = octant_plant::motion::dockside_default(case.seed);
+    core.screening.base = base_of(&ship);
+    plant.motion = plant::Motion::Dockside(ship);
+    plant.aiding.kind = plant::AidingKind::DockPosition { sigma_m: 0.01 };
+    let truth = octant_plant::Plant::new(&plant).unwrap().truth();
+    if let Alignment::Given { q_nb, velocity_mps } = &mut core.alignment {
+        let [w, i, j, k] = truth.q_nb;
+        *q_nb *= UnitQuaternion::new_unchecked(nalgebra::Quaternion::new(w, i, j, k));
+        *velocity_mps += nalgebra::Vector3::from(truth.velocity_mps);
+    }
+    kalman(&mut core).aiding = AidingMode::Position { sigma_m: 0.15 };
+    (plant, core)
 }

@@ -61,10 +61,7 @@ fn config(calibration: bool) -> Config {
             velocity_random_walk: 50.0 * MICRO_G,
         },
         initial_parameters: Parameters::default(),
-        screening: Screening {
-            gate: Some(Gate { nis: 25.0, rejections: 5, recovery: Recovery::Widening }),
-            stuck_samples: Some(8),
-        },
+        screening: Screening::hardened(Base::Still),
     }
 }
 

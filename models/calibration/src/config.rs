@@ -227,6 +227,108 @@ pub struct Screening {
     pub gate: Option<Gate>,
     /// Identical counts in a row that make a channel "stuck"; `None`: no test.
     pub stuck_samples: Option<u32>,
+    /// Samples that jump as no motion of turntable and base can are not believed; see
+    /// [`crate::screen`].
+    pub jumps: bool,
+    /// Samples that are missing, flagged invalid, stuck or not believed are bridged by what is known
+    /// of the motion, with the uncertainty that this has. Without it they are used as they are, and
+    /// a gap is bridged by holding the last increments.
+    pub bridging: bool,
+    /// Gyros and encoders are held against each other, and the encoders against the set point.
+    pub gimbals: bool,
+    /// Correction of a parameter over a stretch of the calibration, in the standard deviations that
+    /// it should have, above which the calibration is refused; `None`: no test. See
+    /// [`crate::drift`].
+    pub drift_sigmas: Option<f64>,
+    /// A recovery goes back to the parameters of one to two minutes before it.
+    pub checkpoints: bool,
+    /// A reference that doesn't carry the stamp of its sample is not used.
+    pub aiding_stamps: bool,
+    /// How the base may move: what the limits of the screens follow from.
+    pub base: Base,
+    /// 1σ of a gimbal angle as the encoders give it, rad.
+    pub encoder_sigma_rad: f64,
+    /// Coarsest step of the increments beyond the format's own, rad and m/s; 0: none.
+    pub resolution: (f64, f64),
+    /// Largest change of an increment from one sample to the next by vibration, rad and m/s.
+    pub vibration: (f64, f64),
+}
+
+/// Encoder of a precise turntable, 1σ: 18″ (the turntable of the paper's Table 1), rad.
+const ENCODER_SIGMA_RAD: f64 = 8.726_646_259_971_648e-5;
+
+impl Screening {
+    /// Nothing is screened: the bare core.
+    #[must_use]
+    pub const fn none() -> Self {
+        Self {
+            gate: None,
+            stuck_samples: None,
+            jumps: false,
+            bridging: false,
+            gimbals: false,
+            drift_sigmas: None,
+            checkpoints: false,
+            aiding_stamps: false,
+            base: Base::Still,
+            encoder_sigma_rad: ENCODER_SIGMA_RAD,
+            resolution: (0.0, 0.0),
+            vibration: (0.0, 0.0),
+        }
+    }
+
+    /// An innovation gate with this recovery and the flag for stuck channels, nothing else.
+    #[must_use]
+    pub const fn gated(recovery: Recovery) -> Self {
+        Self {
+            gate: Some(Gate { nis: 25.0, rejections: 5, recovery }),
+            stuck_samples: Some(8),
+            ..Self::none()
+        }
+    }
+
+    /// Everything that there is, for a base that moves like this.
+    #[must_use]
+    pub const fn hardened(base: Base) -> Self {
+        Self {
+            jumps: true,
+            bridging: true,
+            gimbals: true,
+            drift_sigmas: Some(match base {
+                Base::Still => crate::drift::LIMIT_SIGMAS,
+                Base::Moving(_) => crate::drift::LIMIT_MOVING_SIGMAS,
+            }),
+            checkpoints: true,
+            aiding_stamps: true,
+            base,
+            ..Self::gated(Recovery::Widening)
+        }
+    }
+}
+
+/// How what the instrument's case stands on may move.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Base {
+    /// Fixed to the ground.
+    #[default]
+    Still,
+    /// On a ship, at most like this.
+    Moving(BaseMotion),
+}
+
+/// Bounds of the motion of a base, each for the norm of the vector.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BaseMotion {
+    /// Angle from the mean attitude, rad.
+    pub angle_rad: f64,
+    /// Angular rate, rad/s.
+    pub rate_radps: f64,
+    /// Angular acceleration, rad/s².
+    pub acceleration_radps2: f64,
+    /// Acceleration of the instrument, m/s².
+    pub force_mps2: f64,
+    /// Rate of change of that, m/s³.
+    pub jerk_mps3: f64,
 }
 
 /// Innovation gate and its recovery.

@@ -48,6 +48,36 @@ impl Transition {
     /// Carries the transition on over one interval: `Φ ← (I + F h) Φ`, with the attitude error in
     /// the middle of the interval driving velocity and the velocity error position.
     pub fn advance(&mut self, model: ErrorModel, interval: &Interval, earth: &Ellipsoid) {
+        let input = parameter_input(interval, [true; 3], true);
+        self.advance_by(model, interval, earth, &input);
+    }
+
+    /// The same over an interval in which some of the gyros (x, y, z), or the accelerometers, were
+    /// not used, but what is known of the motion: their parameters had no effect. Specific force
+    /// that isn't measured is taken as that of a base at rest in n, and turns with no attitude error.
+    pub fn advance_bridged(
+        &mut self,
+        model: ErrorModel,
+        interval: &Interval,
+        earth: &Ellipsoid,
+        gyros_used: [bool; 3],
+        accelerometers_used: bool,
+    ) {
+        let input = parameter_input(interval, gyros_used, accelerometers_used);
+        let mut interval = *interval;
+        if !accelerometers_used {
+            interval.delta_velocity_n = Vector3::zeros();
+        }
+        self.advance_by(model, &interval, earth, &input);
+    }
+
+    fn advance_by(
+        &mut self,
+        model: ErrorModel,
+        interval: &Interval,
+        earth: &Ellipsoid,
+        input: &[Row; 6],
+    ) {
         let h = interval.interval_s;
         let v = &interval.velocity_mps;
         let (rm, rn) = (earth.meridian_radius_m, earth.transverse_radius_m);
@@ -73,7 +103,6 @@ impl Transition {
         let (g_n, g_e) = ((on - 1.0) * g / rm, (on - 1.0) * g / rn);
         let g_d = 2.0 * g / rm;
 
-        let input = parameter_input(interval);
         let rows = &mut self.rows;
         for j in 0..rows[0].len() {
             let phi = [rows[PHI][j], rows[PHI + 1][j], rows[PHI + 2][j]];
@@ -129,12 +158,18 @@ impl Transition {
 }
 
 /// What the parameter errors add to φ (rows 0 to 2) and δv (rows 3 to 5) in the interval.
-fn parameter_input(interval: &Interval) -> [Row; 6] {
+fn parameter_input(
+    interval: &Interval,
+    gyros_used: [bool; 3],
+    accelerometers_used: bool,
+) -> [Row; 6] {
     let h = interval.interval_s;
     let (dtheta, dv) = (&interval.delta_theta, &interval.delta_velocity);
     let mut input: [Row; 6] = [[0.0; 40]; 6];
     for i in 0..3 {
-        let c = [interval.c_nb[(i, 0)], interval.c_nb[(i, 1)], interval.c_nb[(i, 2)]];
+        let full = [interval.c_nb[(i, 0)], interval.c_nb[(i, 1)], interval.c_nb[(i, 2)]];
+        let c: [f64; 3] =
+            core::array::from_fn(|axis| if gyros_used[axis] { full[axis] } else { 0.0 });
         let phi = &mut input[i][PARAMETERS..];
         for axis in 0..3 {
             phi[axis] = -c[axis] * h;
@@ -146,6 +181,7 @@ fn parameter_input(interval: &Interval) -> [Row; 6] {
         for (k, (row, column)) in GYRO_OFF_DIAGONAL.into_iter().enumerate() {
             phi[6 + k] = -c[row] * dtheta[column];
         }
+        let c = if accelerometers_used { full } else { [0.0; 3] };
         let velocity = &mut input[3 + i][PARAMETERS..];
         for axis in 0..3 {
             velocity[21 + axis] = c[axis] * h;

@@ -4,9 +4,11 @@
 //! when a measurement is due. Every estimate is fed back at once, so the error states are zero
 //! between measurements.
 
-use crate::config::{AidingMode, ErrorModel, Gate, Kalman, Noise, Recovery, Site};
+use crate::config::{AidingMode, ErrorModel, Gate, Kalman, Noise, Recovery, Screening, Site};
 use crate::covariance::{Covariance, DR, DV, PARAMETERS, PHI, STATE_COUNT, Transition};
+use crate::drift::Drift;
 use crate::error_model::{Interval, computer_frame_error};
+use crate::screen::ACCELEROMETERS;
 use crate::strapdown::Strapdown;
 use nalgebra::{Matrix3, Vector3};
 use octant_sample::parameters::{Group, PARAMETER_COUNT};
@@ -35,6 +37,11 @@ const CAPTURE_AZIMUTH_RAD: f64 = 0.052;
 /// is not followed.
 const CAPTURE_VELOCITY_MAX_MPS: f64 = 1e4;
 const CAPTURE_POSITION_MAX_M: f64 = 1e6;
+
+/// Age between which a checkpoint is gone back to, s: no less than the first, no more than twice. A
+/// fault opens the gate within seconds, or within a minute or so where it grows slowly; what was
+/// learned in two minutes is soon learned again.
+const CHECKPOINT_S: f64 = 60.0;
 
 /// What came of a measurement.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -70,6 +77,14 @@ enum Stage {
     Settle(f64),
 }
 
+/// Parameters and covariance of an earlier time.
+#[derive(Clone, Debug)]
+struct Checkpoint {
+    time_s: f64,
+    parameters: Parameters,
+    covariance: Covariance,
+}
+
 /// The filter.
 #[derive(Clone, Debug)]
 pub struct CalibrationFilter {
@@ -90,6 +105,9 @@ pub struct CalibrationFilter {
     rejected_in_a_row: u32,
     stage: Stage,
     tally: Tally,
+    drift: Option<Drift>,
+    /// The older one and the newer one.
+    checkpoints: Option<[Checkpoint; 2]>,
 }
 
 /// Sums over the samples of one sub-step.
@@ -102,6 +120,8 @@ struct SubStep {
     delta_theta: Vector3<f64>,
     delta_velocity: Vector3<f64>,
     delta_velocity_n: Vector3<f64>,
+    /// Channels that were bridged somewhere in it, as bits.
+    bridged: u8,
 }
 
 impl SubStep {
@@ -114,6 +134,7 @@ impl SubStep {
             delta_theta: Vector3::zeros(),
             delta_velocity: Vector3::zeros(),
             delta_velocity_n: Vector3::zeros(),
+            bridged: 0,
         }
     }
 }
@@ -179,17 +200,27 @@ impl CalibrationFilter {
         kalman: &Kalman,
         site: &Site,
         noise: &Noise,
-        gate: Option<Gate>,
+        screening: &Screening,
+        initial: &Parameters,
         sample_period_ns: u64,
     ) -> Self {
+        let covariance = Covariance::from_sigmas(&prior_sigmas(kalman));
+        // A filter that leaves a group of parameters out sees it in the others, which then don't
+        // stand still: by design, and no fault of the sensors.
+        let drift = match screening.drift_sigmas {
+            Some(limit) if kalman.estimated == [true; 7] => Some(Drift::new(limit, &covariance)),
+            _ => None,
+        };
+        let start =
+            Checkpoint { time_s: 0.0, parameters: *initial, covariance: covariance.clone() };
         Self {
             model: kalman.error_model,
             aiding: kalman.aiding,
             site: *site,
-            gate,
+            gate: screening.gate,
             gyro_variance_per_s: noise.angle_random_walk * noise.angle_random_walk,
             accel_variance_per_s: noise.velocity_random_walk * noise.velocity_random_walk,
-            covariance: Covariance::from_sigmas(&prior_sigmas(kalman)),
+            covariance,
             transition: Transition::identity(),
             sub_step: SubStep::new(sub_step_samples(sample_period_ns, kalman.aiding_period_ns)),
             elapsed_s: 0.0,
@@ -198,6 +229,8 @@ impl CalibrationFilter {
             rejected_in_a_row: 0,
             stage: Stage::Normal,
             tally: Tally::default(),
+            drift,
+            checkpoints: screening.checkpoints.then(|| [start.clone(), start]),
         }
     }
 
@@ -224,6 +257,33 @@ impl CalibrationFilter {
         }
     }
 
+    /// The next interval takes what is known of the motion in place of these channels' counts.
+    pub fn bridge(&mut self, channels: u8) {
+        self.sub_step.bridged |= channels;
+    }
+
+    /// Attitude (n, rad²) and velocity (n, (m/s)²) are less sure than the noise says, from now on.
+    pub fn disturb(
+        &mut self,
+        strapdown: &Strapdown,
+        attitude: &Matrix3<f64>,
+        velocity: &Matrix3<f64>,
+    ) {
+        self.propagate(strapdown);
+        for i in 0..3 {
+            for j in i..3 {
+                self.covariance.add(PHI + i, PHI + j, attitude[(i, j)]);
+                self.covariance.add(DV + i, DV + j, velocity[(i, j)]);
+            }
+        }
+    }
+
+    /// The attitude may be off by more than its linear error model bears: until it has settled, the
+    /// parameters are held.
+    pub fn hold(&mut self) {
+        self.stage = Stage::Capture(self.time_s + CAPTURE_S);
+    }
+
     fn close_sub_step(&mut self, strapdown: &Strapdown) {
         let fresh = SubStep::new(self.sub_step.samples_max);
         let step = core::mem::replace(&mut self.sub_step, fresh);
@@ -243,7 +303,18 @@ impl CalibrationFilter {
             delta_velocity_n: step.delta_velocity_n,
             velocity_mps: *strapdown.velocity_mps(),
         };
-        self.transition.advance(self.model, &interval, strapdown.earth());
+        if step.bridged == 0 {
+            self.transition.advance(self.model, &interval, strapdown.earth());
+        } else {
+            let used = |channel: u8| step.bridged & (1 << channel) == 0;
+            self.transition.advance_bridged(
+                self.model,
+                &interval,
+                strapdown.earth(),
+                [used(0), used(1), used(2)],
+                step.bridged & ACCELEROMETERS == 0,
+            );
+        }
         self.elapsed_s += step.elapsed_s;
         self.force_sum += step.delta_velocity_n;
     }
@@ -300,6 +371,7 @@ impl CalibrationFilter {
                     self.tally.rejected += 1;
                     return Some(Measured { nis, rejected: true, recovery_started });
                 }
+                self.go_back(parameters);
                 self.start_recovery(&gate, &error, strapdown);
                 recovery_started = true;
             }
@@ -322,6 +394,10 @@ impl CalibrationFilter {
             self.tally.held += 1;
         } else {
             self.tally.nis_sum += nis;
+            self.remember(parameters);
+            if let Some(drift) = &mut self.drift {
+                drift.watch(self.time_s, parameters, &self.covariance);
+            }
         }
         Some(Measured { nis, rejected: false, recovery_started })
     }
@@ -390,6 +466,28 @@ impl CalibrationFilter {
             *value += change;
         }
         *parameters = Parameters::from_array(&all);
+    }
+
+    /// Keeps the parameters of one to two minutes ago.
+    fn remember(&mut self, parameters: &Parameters) {
+        let Some([older, newer]) = &mut self.checkpoints else { return };
+        if self.time_s - newer.time_s >= CHECKPOINT_S {
+            core::mem::swap(older, newer);
+            newer.time_s = self.time_s;
+            newer.parameters = *parameters;
+            newer.covariance.clone_from(&self.covariance);
+        }
+    }
+
+    /// What leaked into the parameters before the gate shut is undone.
+    fn go_back(&mut self, parameters: &mut Parameters) {
+        let Some([older, newer]) = &mut self.checkpoints else { return };
+        newer.clone_from(older);
+        *parameters = older.parameters;
+        self.covariance.clone_from(&older.covariance);
+        if let Some(drift) = &mut self.drift {
+            drift.go_back(older.time_s);
+        }
     }
 
     fn start_recovery(&mut self, gate: &Gate, error: &Vector3<f64>, strapdown: &mut Strapdown) {
@@ -468,6 +566,19 @@ impl CalibrationFilter {
     #[must_use]
     pub fn tally(&self) -> &Tally {
         &self.tally
+    }
+
+    /// The watch over the parameters, where there is one.
+    #[must_use]
+    pub fn drift(&self) -> Option<&Drift> {
+        self.drift.as_ref()
+    }
+
+    /// Brings the watch over the parameters up to the end of the calibration.
+    pub fn finish_drift(&mut self, parameters: &Parameters) {
+        if let Some(drift) = &mut self.drift {
+            drift.finish(self.time_s, parameters, &self.covariance);
+        }
     }
 
     /// A recovery is under way: the parameters are held.

@@ -12,12 +12,14 @@
 //! | [`config`] | what the core is given before the first sample |
 //! | [`sequence`], [`positions`], [`schedule`] | the stops, the published ones, and when the gimbals turn |
 //! | [`monitor`] | what is wrong with a sample on its face: gaps, stuck channels, saturation |
+//! | [`screen`] | increments that jump as no motion makes them |
 //! | [`compensation`] | subtracting the estimated errors |
 //! | [`alignment`] | the first attitude, from gravity and Earth rate |
 //! | [`strapdown`] | attitude, velocity and position from increments |
 //! | [`error_model`] | how errors grow: phi-angle and psi-angle form (paper, eq. 1 to 3) |
 //! | [`covariance`] | the 39 × 39 covariance and its kernels |
 //! | [`filter`] | the closed-loop Kalman filter, its gate and its recovery |
+//! | [`drift`] | do the parameters stand still while they are estimated? |
 //! | [`least_squares`] | the second estimator: static attitudes and the moves between them |
 //! | [`external_turntable`] | the third: an external turntable's angles are the reference |
 //! | [`state_machine`] | the procedure, and [`Core`] |
@@ -28,6 +30,7 @@ pub mod alignment;
 pub mod compensation;
 pub mod config;
 pub mod covariance;
+pub mod drift;
 pub mod error_model;
 pub mod external_turntable;
 pub mod filter;
@@ -35,6 +38,7 @@ pub mod least_squares;
 pub mod monitor;
 pub mod positions;
 pub mod schedule;
+pub mod screen;
 pub mod sequence;
 pub mod state_machine;
 pub mod strapdown;

@@ -54,6 +54,8 @@ pub struct Monitor {
     identical: [u32; 6],
     /// One of those is not zero.
     repeats: bool,
+    /// There are no counts yet to compare with.
+    fresh: bool,
     tally: MonitorTally,
 }
 
@@ -80,11 +82,13 @@ impl Monitor {
             counts: [0; 6],
             identical: [0; 6],
             repeats: false,
+            fresh: true,
             tally: MonitorTally::default(),
         }
     }
 
-    /// How this sample follows the last, and its health flags.
+    /// How this sample follows the last, and its health flags but those of stuck channels, which
+    /// [`Self::stuck`] or a [`crate::screen::Screen`] looks for.
     #[inline]
     pub fn check(&mut self, sample: &Sample) -> (Order, Health) {
         let mut health = Health::empty();
@@ -106,10 +110,6 @@ impl Monitor {
         ) {
             self.tally.invalid += 1;
             health |= Health::INERTIAL_INVALID;
-        }
-        if self.stuck_samples.is_some() {
-            let ([x, y, z], [u, v, w]) = (sample.delta_theta, sample.delta_velocity);
-            health |= self.stuck(x, y, z, u, v, w);
         }
         self.last = Some(Last { sequence: sample.sequence, time_ns: sample.device_time.ns });
         (order, health)
@@ -135,10 +135,12 @@ impl Monitor {
         if periods >= 2 { Order::Gap { missing: periods - 1 } } else { Order::Next(interval_ns) }
     }
 
+    /// Channels that give the same count again and again; to be asked for every sample.
+    ///
     /// Each count is an argument of its own, and the call is kept, so that each is read the way it
     /// was written: a wide read of what single stores have just filled waits for them.
     #[inline(never)]
-    fn stuck(&mut self, x: i32, y: i32, z: i32, u: i32, v: i32, w: i32) -> Health {
+    pub fn stuck(&mut self, x: i32, y: i32, z: i32, u: i32, v: i32, w: i32) -> Health {
         let before = core::mem::replace(&mut self.counts, [x, y, z, u, v, w]);
         // With noise of many counts there is nothing to do in nearly every sample.
         let same = x == before[0]
@@ -147,16 +149,14 @@ impl Monitor {
             || u == before[3]
             || v == before[4]
             || w == before[5];
-        if same || self.repeats { self.repeated(&before) } else { Health::empty() }
+        let fresh = core::mem::replace(&mut self.fresh, false);
+        if !fresh && (same || self.repeats) { self.repeated(&before) } else { Health::empty() }
     }
 
     #[cold]
     #[inline(never)]
     fn repeated(&mut self, before: &[i32; 6]) -> Health {
-        // The first sample has nothing before it.
-        let (Some(_), Some(limit)) = (self.last, self.stuck_samples) else {
-            return Health::empty();
-        };
+        let Some(limit) = self.stuck_samples else { return Health::empty() };
         let mut health = Health::empty();
         let flags = [Health::GYRO_STUCK, Health::ACCELEROMETER_STUCK];
         for channel in 0..6 {
@@ -171,6 +171,11 @@ impl Monitor {
             self.tally.stuck += 1;
         }
         health
+    }
+
+    /// Takes note of a sample with a channel that a screen found stuck.
+    pub fn note_stuck(&mut self) {
+        self.tally.stuck += 1;
     }
 
     /// Counts since the start.

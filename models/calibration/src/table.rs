@@ -2,18 +2,21 @@
 //! can be stored and loaded.
 //!
 //! Layout, little-endian: magic `OCTCAL`, version u16, then the fields of [`CalibrationTable`] in
-//! order (the covariance as its upper triangle by rows), then CRC-32 (ISO-HDLC) of all before.
+//! order (the covariance as its upper triangle by rows; of the quality its first four fields, the
+//! others follow the provenance since version 2), then CRC-32 (ISO-HDLC) of all before.
 
 use octant_sample::Parameters;
 use octant_sample::parameters::PARAMETER_COUNT;
 
 /// Version of the layout that this core writes, and the newest that it reads.
-pub const TABLE_VERSION: u16 = 1;
+pub const TABLE_VERSION: u16 = 2;
 
 const MAGIC: &[u8; 6] = b"OCTCAL";
 const TRIANGLE: usize = PARAMETER_COUNT * (PARAMETER_COUNT + 1) / 2;
+/// Length of a table of version 1, which ends with the provenance.
+const FIRST_TABLE_BYTES: usize = 6 + 2 + 8 * (PARAMETER_COUNT + TRIANGLE) + 8 * 4 + 8 * 6 + 2 + 4;
 /// Length of a table in bytes.
-pub const TABLE_BYTES: usize = 6 + 2 + 8 * (PARAMETER_COUNT + TRIANGLE) + 8 * 4 + 8 * 6 + 2 + 4;
+pub const TABLE_BYTES: usize = FIRST_TABLE_BYTES + 8 * 3;
 
 const CRC: crc::Crc<u32> = crc::Crc::<u32>::new(&crc::CRC_32_ISO_HDLC);
 
@@ -42,6 +45,13 @@ pub struct Quality {
     pub rejected: u64,
     /// Recoveries of the filter.
     pub recoveries: u64,
+    /// Samples that were not used, or missing, and bridged by what is known of the motion.
+    pub bridged: u64,
+    /// Times that gyros and encoders did not show the same turn.
+    pub gimbal_slips: u64,
+    /// Largest correction of a parameter over a stretch of the calibration, in the standard
+    /// deviations that it should have; 0 where it was not looked at.
+    pub drift_sigmas: f64,
 }
 
 /// How a calibration was made.
@@ -67,10 +77,12 @@ pub struct Provenance {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum TableError {
     /// Wrong length.
-    #[error("calibration table has {found} bytes, {TABLE_BYTES} are expected")]
+    #[error("calibration table has {found} bytes, {expected} are expected")]
     Length {
         /// Bytes found.
         found: usize,
+        /// Bytes of a table of its version.
+        expected: usize,
     },
     /// Wrong magic.
     #[error("not a calibration table: it does not begin with OCTCAL")]
@@ -153,6 +165,9 @@ impl CalibrationTable {
             w.put(&value.to_le_bytes());
         }
         w.put(&p.method.to_le_bytes());
+        w.put(&self.quality.bridged.to_le_bytes());
+        w.put(&self.quality.gimbal_slips.to_le_bytes());
+        w.put(&self.quality.drift_sigmas.to_le_bytes());
         let at = w.at;
         let checksum = CRC.checksum(&bytes[..at]);
         bytes[at..].copy_from_slice(&checksum.to_le_bytes());
@@ -171,10 +186,11 @@ impl CalibrationTable {
         if version > TABLE_VERSION {
             return Err(TableError::Version { found: version });
         }
-        if bytes.len() != TABLE_BYTES {
-            return Err(TableError::Length { found: bytes.len() });
+        let expected = if version < 2 { FIRST_TABLE_BYTES } else { TABLE_BYTES };
+        if bytes.len() != expected {
+            return Err(TableError::Length { found: bytes.len(), expected });
         }
-        let (body, tail) = bytes.split_at(TABLE_BYTES - 4);
+        let (body, tail) = bytes.split_at(expected - 4);
         let found = u32::from_le_bytes([tail[0], tail[1], tail[2], tail[3]]);
         let computed = CRC.checksum(body);
         if found != computed {
@@ -192,25 +208,29 @@ impl CalibrationTable {
                 covariance[j][i] = covariance[i][j];
             }
         }
-        Ok(Self {
-            parameters: Parameters::from_array(&all),
-            covariance,
-            quality: Quality {
-                nis_mean: r.f64(),
-                used: r.u64(),
-                rejected: r.u64(),
-                recoveries: r.u64(),
-            },
-            provenance: Provenance {
-                ended_ns: r.u64(),
-                duration_s: r.f64(),
-                stops: r.u64(),
-                latitude_rad: r.f64(),
-                longitude_rad: r.f64(),
-                height_m: r.f64(),
-                method: u16::from_le_bytes(r.take()),
-            },
-        })
+        let mut quality = Quality {
+            nis_mean: r.f64(),
+            used: r.u64(),
+            rejected: r.u64(),
+            recoveries: r.u64(),
+            ..Quality::default()
+        };
+        let provenance = Provenance {
+            ended_ns: r.u64(),
+            duration_s: r.f64(),
+            stops: r.u64(),
+            latitude_rad: r.f64(),
+            longitude_rad: r.f64(),
+            height_m: r.f64(),
+            method: u16::from_le_bytes(r.take()),
+        };
+        if version >= 2 {
+            quality.bridged = r.u64();
+            quality.gimbal_slips = r.u64();
+            quality.drift_sigmas = r.f64();
+        }
+        let parameters = Parameters::from_array(&all);
+        Ok(Self { parameters, covariance, quality, provenance })
     }
 }
 
@@ -225,7 +245,15 @@ mod tests {
             covariance: core::array::from_fn(|i| {
                 core::array::from_fn(|j| (i.min(j) * 100 + i.max(j)) as f64)
             }),
-            quality: Quality { nis_mean: 3.0, used: 7, rejected: 8, recoveries: 9 },
+            quality: Quality {
+                nis_mean: 3.0,
+                used: 7,
+                rejected: 8,
+                recoveries: 9,
+                bridged: 10,
+                gimbal_slips: 11,
+                drift_sigmas: 2.5,
+            },
             provenance: Provenance {
                 ended_ns: 1,
                 duration_s: 2.0,
@@ -242,6 +270,20 @@ mod tests {
     fn a_table_survives_its_bytes() {
         let table = example();
         assert_eq!(CalibrationTable::from_bytes(&table.to_bytes()), Ok(table));
+    }
+
+    #[test]
+    fn a_table_of_version_1_is_read() {
+        let mut bytes = example().to_bytes();
+        bytes[6] = 1;
+        let end = FIRST_TABLE_BYTES - 4;
+        let checksum = CRC.checksum(&bytes[..end]);
+        bytes[end..][..4].copy_from_slice(&checksum.to_le_bytes());
+        let table = CalibrationTable::from_bytes(&bytes[..FIRST_TABLE_BYTES]).unwrap();
+        let quality =
+            Quality { bridged: 0, gimbal_slips: 0, drift_sigmas: 0.0, ..example().quality };
+        assert_eq!(table, CalibrationTable { quality, ..example() });
+        assert!(CalibrationTable::from_bytes(&bytes).is_err(), "longer than its version");
     }
 
     #[test]

@@ -64,6 +64,15 @@ bitflags::bitflags! {
         const INCONSISTENT = 1 << 9;
         /// A number that is not finite was kept out of the state.
         const NUMERIC = 1 << 10;
+        /// Increments jumped as no motion can; they were not believed.
+        const JUMP = 1 << 11;
+        /// Gyros and encoders do not show the same turn: one of them, or the gimbal, slipped.
+        const GIMBAL_SLIPPED = 1 << 12;
+        /// A parameter's corrections are larger than its uncertainty allows; a calibration in which
+        /// this was so is refused.
+        const DRIFTING = 1 << 13;
+        /// A reference carried another stamp than its sample; it was not used.
+        const AIDING_STALE = 1 << 14;
     }
 }
 

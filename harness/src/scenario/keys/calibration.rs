@@ -424,7 +424,47 @@ pub(crate) static SCREENING: Section = section(&[
         Default::Value("8"),
         "Identical counts in a row that make a channel stuck.",
     ),
+    key(
+        "jumps",
+        ON_OFF,
+        Default::Derived("recordings as text: \"off\"; else \"on\""),
+        "Samples that jump as no motion of turntable and base can are not believed.",
+    ),
+    key(
+        "bridging",
+        ON_OFF,
+        Default::Value("on"),
+        "Samples missing, invalid, stuck or not believed are bridged by what is known of the motion; \
+         off: used as they are.",
+    ),
+    key(
+        "gimbals",
+        ON_OFF,
+        Default::Value("on"),
+        "Turns by gyros and by encoders are compared, and encoders with the set point.",
+    ),
+    key(
+        "drift",
+        Kind::Either(&[Kind::Choice(&[("off", "no test")]), Kind::Number(Bounds::Positive)]),
+        Default::Derived("static: 6; dockside: 8"),
+        "Correction of a parameter over a stretch of the calibration, in its standard deviations, \
+         above which the calibration is refused.",
+    ),
+    key(
+        "checkpoints",
+        ON_OFF,
+        Default::Value("on"),
+        "A recovery goes back to the parameters of one to two minutes before it.",
+    ),
+    key(
+        "aiding_stamps",
+        ON_OFF,
+        Default::Value("on"),
+        "Aiding that doesn't carry the stamp of its sample is not used.",
+    ),
 ]);
+
+const ON_OFF: Kind = Kind::Choice(&[("on", "done"), ("off", "not done")]);
 
 static GATE: Section = section(&[
     key(

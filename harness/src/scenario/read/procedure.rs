@@ -396,6 +396,7 @@ fn navigation(table: &Reader<'_>, setting: &Setting<'_>) -> Result<core::Navigat
     Ok(core::NavigationPlan { duration_s, rotation, dwell_s: table.si("dwell")? })
 }
 
+/// How base and instrument bound the screens comes with the draws: see [`super::super::resolve`].
 pub(super) fn screening(table: &Reader<'_>) -> Result<core::Screening, Problem> {
     let gate = match table.optional_table("gate") {
         None => None,
@@ -416,5 +417,19 @@ pub(super) fn screening(table: &Reader<'_>) -> Result<core::Screening, Problem> 
         Some(_) => None,
         None => Some(table.integer("stuck_samples")?),
     };
-    Ok(core::Screening { gate, stuck_samples })
+    let on = |key: &str| table.text(key).map(|text| text == "on");
+    Ok(core::Screening {
+        gate,
+        stuck_samples,
+        jumps: on("jumps")?,
+        bridging: on("bridging")?,
+        gimbals: on("gimbals")?,
+        drift_sigmas: match table.optional_text("drift") {
+            Some(_) => None,
+            None => Some(table.number("drift")?),
+        },
+        checkpoints: on("checkpoints")?,
+        aiding_stamps: on("aiding_stamps")?,
+        ..core::Screening::none()
+    })
 }

@@ -1,6 +1,6 @@
 //! What a configuration has to keep before a core is made from it.
 
-use crate::config::{AidingMode, Alignment, Config, Estimator};
+use crate::config::{AidingMode, Alignment, Base, BaseMotion, Config, Estimator};
 use crate::schedule::DoesNotFit;
 
 /// Longest calibration or navigation, s: thirty years. Its ticks can be multiplied by anything that
@@ -124,6 +124,21 @@ pub(super) fn check(config: &Config) -> Result<(), ConfigError> {
     }
     if let Some(gate) = config.screening.gate {
         positive("gate of the innovations", gate.nis)?;
+    }
+    let screening = &config.screening;
+    finite("encoder sigma", screening.encoder_sigma_rad)?;
+    for value in [screening.resolution, screening.vibration] {
+        finite("resolution or vibration of the increments", value.0 + value.1)?;
+    }
+    if let Some(limit) = screening.drift_sigmas {
+        positive("limit of the drift", limit)?;
+    }
+    if let Base::Moving(motion) = screening.base {
+        let BaseMotion { angle_rad, rate_radps, acceleration_radps2, force_mps2, jerk_mps3 } =
+            motion;
+        for value in [angle_rad, rate_radps, acceleration_radps2, force_mps2, jerk_mps3] {
+            finite("a bound of the base's motion", value)?;
+        }
     }
     positive("turntable rate", config.turntable.rate_radps)?;
     positive("turntable acceleration", config.turntable.acceleration_radps2)?;

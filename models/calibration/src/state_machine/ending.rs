@@ -39,13 +39,16 @@ impl Core {
     /// Brings the estimation to its end: judged, parameters and attitude in place.
     fn conclude(&mut self) -> Result<Quality, Refusal> {
         if let (Estimation::Kalman(filter), Some(kalman)) =
-            (&self.estimation, kalman_of(&self.config))
+            (&mut self.estimation, kalman_of(&self.config))
         {
+            filter.finish_drift(&self.parameters);
             let period = kalman.aiding_period_ns;
             // A stream that ended early could bring no more.
             let ticks = self.calibration_ticks.min(self.tick);
             let expected = ticks * self.config.sample_period_ns / period;
-            return judge(filter, kalman, expected);
+            let (bridged, gimbal_slips) = (self.bridge.samples, self.slips.count);
+            let quality = judge(filter, kalman, expected, (bridged, ticks))?;
+            return Ok(Quality { bridged, gimbal_slips, ..quality });
         }
         let Some(adjusted) = self.estimation.adjust() else { return Err(Refusal::Numeric) };
         let estimate = adjusted?;

@@ -25,7 +25,8 @@ impl Estimation {
                 kalman,
                 &config.site,
                 &config.noise,
-                config.screening.gate,
+                &config.screening,
+                &config.initial_parameters,
                 config.sample_period_ns,
             )),
             Estimator::LeastSquares(settings) => Self::LeastSquares(LeastSquaresEstimator::new(

@@ -2,28 +2,46 @@
 
 use super::Core;
 use super::estimation::Estimation;
-use octant_sample::Mode;
+use crate::config::Base;
+use octant_sample::{Mode, Sample};
 
 /// Missing samples over which the last increments are held; what is longer is lost.
 const HOLD_MAX_SAMPLES: u64 = 400;
+/// The same where bridging is on and the base moves, s: see [`crate::screen`].
+const HOLD_MOVING_S: f64 = 0.1;
 
 impl Core {
-    /// Bridges missing samples by holding the last increments, up to a bound: a hold without one
-    /// makes a fault at the start of a move worse.
+    /// Bridges the missing samples before this one: by what is known of the motion, else by holding
+    /// the last increments, up to a bound: a hold without one makes a fault at the start of a move
+    /// worse.
     #[cold]
-    pub(super) fn bridge(&mut self, missing: u64) {
-        let [x, y, z, u, v, w] = self.held;
+    pub(super) fn bridge(&mut self, missing: u64, sample: &Sample) {
+        if !self.bridge_known(missing, sample) {
+            self.hold_last(missing);
+        }
+        // The clock of the procedure goes on: the turntable does too.
+        self.tick = self.tick.saturating_add(missing);
+    }
+
+    fn hold_last(&mut self, missing: u64) {
+        let [x, y, z, u, v, w] = *self.screen.last();
         let integrates = match self.mode {
             Mode::Navigating => true,
             Mode::Calibrating => matches!(self.estimation, Estimation::Kalman(_)),
             _ => false,
         };
-        if integrates {
-            for _ in 0..missing.min(HOLD_MAX_SAMPLES) {
-                self.integrate(self.sample_s, x, y, z, u, v, w);
-            }
+        if !integrates {
+            return;
         }
-        // The clock of the procedure goes on: the turntable does too.
-        self.tick = self.tick.saturating_add(missing);
+        let screening = &self.config.screening;
+        let hold = if screening.bridging && screening.base != Base::Still {
+            super::ticks(HOLD_MOVING_S, self.sample_s)
+        } else {
+            HOLD_MAX_SAMPLES
+        };
+        for _ in 0..missing.min(hold) {
+            self.integrate(self.sample_s, x, y, z, u, v, w);
+        }
+        self.doubt_gap(missing);
     }
 }

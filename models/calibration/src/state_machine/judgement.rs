@@ -1,8 +1,10 @@
 //! Can a calibration be vouched for? If not, why.
 
 use crate::config::Kalman;
+use crate::drift::Largest;
 use crate::filter::CalibrationFilter;
 use crate::table::Quality;
+use octant_sample::parameters::{NAMES, PARAMETER_COUNT};
 
 /// Share of measurements that the gate may reject before a calibration is refused.
 const REJECTED_SHARE_MAX: f64 = 0.02;
@@ -14,6 +16,10 @@ const MEASURED_SHARE_MIN: f64 = 0.5;
 /// Share of the expected measurements that must have gone into the parameters: recoveries hold
 /// these, and one that never ends would hold them for ever.
 const ESTIMATING_SHARE_MIN: f64 = 0.5;
+
+/// Share of the samples that may be bridged by what is known of the motion: what is bridged
+/// calibrates nothing, and the motion is known no better than that the base stands.
+const BRIDGED_SHARE_MAX: f64 = 0.02;
 
 /// Why a calibration was refused.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
@@ -58,6 +64,28 @@ pub enum Refusal {
         /// Measurements expected.
         expected: u64,
     },
+    /// Too many samples were not used, or missing.
+    #[error("{bridged} of {total} samples were missing, stuck or not to be believed")]
+    Bridged {
+        /// Samples bridged.
+        bridged: u64,
+        /// Samples of the calibration.
+        total: u64,
+    },
+    /// A parameter did not stand still while it was estimated.
+    #[error(
+        "{} drifted: between {:.0} s and {:.0} s it was corrected by {sigmas:.1} times what its \
+         uncertainty allows",
+        NAMES[*parameter % PARAMETER_COUNT], between_s.0, between_s.1
+    )]
+    Drift {
+        /// Index of the parameter, in the order of [`NAMES`].
+        parameter: usize,
+        /// Correction in the standard deviations that it should have.
+        sigmas: f64,
+        /// From and until, s since the calibration began to measure.
+        between_s: (f64, f64),
+    },
     /// The least-squares adjustment gave no result.
     #[error("{0}")]
     Adjustment(#[from] crate::least_squares::Refusal),
@@ -77,14 +105,18 @@ pub(super) fn quality_of(filter: &CalibrationFilter) -> Quality {
         used: tally.used,
         rejected: tally.rejected,
         recoveries: u64::from(tally.recoveries),
+        drift_sigmas: filter.drift().map_or(0.0, |drift| drift.largest().sigmas),
+        ..Quality::default()
     }
 }
 
-/// Judges a filter at the end of its calibration, in which `expected` measurements were due.
+/// Judges a filter at the end of its calibration, in which `expected` measurements were due, and
+/// `bridged` of `total` samples had to be bridged.
 pub(super) fn judge(
     filter: &CalibrationFilter,
     kalman: &Kalman,
     expected: u64,
+    (bridged, samples): (u64, u64),
 ) -> Result<Quality, Refusal> {
     let (tally, quality) = (filter.tally(), quality_of(filter));
     let total = tally.used + tally.rejected;
@@ -111,6 +143,15 @@ pub(super) fn judge(
             mean: quality.nis_mean,
             limit: kalman.refuse_above_mean_nis,
         });
+    }
+    if bridged as f64 > BRIDGED_SHARE_MAX * samples as f64 {
+        return Err(Refusal::Bridged { bridged, total: samples });
+    }
+    if let Some(drift) = filter.drift()
+        && drift.is_found()
+    {
+        let &Largest { sigmas, parameter, between_s } = drift.largest();
+        return Err(Refusal::Drift { parameter, sigmas, between_s });
     }
     Ok(quality)
 }

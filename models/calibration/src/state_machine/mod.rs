@@ -1,5 +1,6 @@
 //! The procedure: alignment, calibration through the stops, compensation, navigation.
 
+mod bridge;
 mod check;
 mod ending;
 mod estimation;
@@ -13,12 +14,16 @@ pub use judgement::Refusal;
 use crate::alignment::CoarseAlignment;
 use crate::compensation::Compensation;
 use crate::config::{Alignment, Calibration, Config, Estimator, Kalman, Site};
+use crate::drift::Drift;
 use crate::filter::CalibrationFilter;
 use crate::monitor::{Monitor, MonitorTally, Order};
 use crate::schedule::{Cursor, dwell_s};
+use crate::screen::Screen;
 use crate::strapdown::{Strapdown, Vertical};
 use crate::table::{CalibrationTable, Quality};
+use bridge::Bridge;
 use estimation::{Estimation, Standstill};
+use gimbals::Slips;
 use judgement::quality_of;
 use nalgebra::{UnitQuaternion, Vector3};
 use octant_sample::counts::{DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS};
@@ -68,6 +73,9 @@ pub struct Core {
     mode: Mode,
     cursor: Option<Cursor>,
     monitor: Monitor,
+    screen: Screen,
+    bridge: Bridge,
+    slips: Slips,
     alignment: Option<(CoarseAlignment, u64)>,
     estimation: Estimation,
     standstill: Standstill,
@@ -76,13 +84,12 @@ pub struct Core {
     revision: u32,
     compensation: Compensation,
     strapdown: Strapdown,
-    /// Counts of the last sample integrated, for bridging a gap.
-    held: [i32; 6],
     last_measured_tick: u64,
     /// Next tick, at the earliest, at which aiding is due: a division is dear at every sample.
     due_tick: u64,
     nis_running: f64,
     gimbal_disagreements: u64,
+    gimbal_tolerance: u64,
     refusal: Option<Refusal>,
     /// Quality of a filter that was refused.
     last_quality: Quality,
@@ -140,6 +147,9 @@ impl Core {
             mode: Mode::Aligning,
             cursor: None,
             monitor: Monitor::new(config.sample_period_ns, sigmas, config.screening.stuck_samples),
+            screen: Screen::new(&config.screening, &config.noise, &config.turntable, sample_s),
+            bridge: Bridge::default(),
+            slips: Slips::default(),
             alignment,
             estimation: Estimation::Idle,
             standstill: Standstill::default(),
@@ -148,11 +158,11 @@ impl Core {
             revision: 0,
             compensation: Compensation::new(&config.initial_parameters),
             strapdown: strapdown_at(&config.site, &q_nb, velocity),
-            held: [0; 6],
             last_measured_tick: 0,
             due_tick: 0,
             nis_running: 0.0,
             gimbal_disagreements: 0,
+            gimbal_tolerance: gimbals::tolerance_counts(&config.screening),
             refusal: None,
             last_quality: Quality { nis_mean: f64::NAN, ..Quality::default() },
             table: None,
@@ -241,17 +251,18 @@ impl Core {
             Order::Behind => return self.answer(sample, health, nis, output),
             Order::Next(interval_ns) => interval_ns,
             Order::Gap { missing } => {
-                self.bridge(missing);
+                self.bridge(missing, sample);
                 self.config.sample_period_ns
             }
         };
         self.tick = self.tick.saturating_add(1);
         let regular = interval_ns == self.config.sample_period_ns;
-        self.take(sample, if regular { self.sample_s } else { interval_ns as f64 * 1e-9 });
+        let interval_s = if regular { self.sample_s } else { interval_ns as f64 * 1e-9 };
+        self.take(sample, interval_s, &mut health);
         match self.mode {
             Mode::Calibrating => {
                 if aiding.is_some() || self.tick >= self.due_tick {
-                    self.measure(aiding, &mut health, &mut nis);
+                    self.measure(sample, aiding, &mut health, &mut nis);
                 }
                 if self.tick >= self.calibration_ticks {
                     self.finish_calibration(sample.device_time);
@@ -283,33 +294,78 @@ impl Core {
 
     /// Takes the increments of a sample into whatever runs.
     #[inline]
-    fn take(&mut self, sample: &Sample, interval_s: f64) {
+    fn take(&mut self, sample: &Sample, interval_s: f64, health: &mut Health) {
+        let ([x, y, z], [u, v, w]) = (sample.delta_theta, sample.delta_velocity);
         match (self.mode, &self.estimation) {
             (Mode::Navigating, _) | (Mode::Calibrating, Estimation::Kalman(_)) => {
-                let ([x, y, z], [u, v, w]) = (sample.delta_theta, sample.delta_velocity);
-                self.integrate(interval_s, x, y, z, u, v, w);
+                let valid = !health.contains(Health::INERTIAL_INVALID);
+                let moving = self.gimbals_may_move();
+                if valid && self.integrate_good(interval_s, moving, x, y, z, u, v, w) {
+                    self.bridge.gimbal = sample.gimbal;
+                } else {
+                    self.doubt(sample, interval_s, health);
+                }
             }
-            (Mode::Aligning, _) => self.align(sample, interval_s),
-            (Mode::Calibrating, _) => self.watch(sample, interval_s),
-            (Mode::Refused | Mode::Done, _) => {}
+            (mode, _) => {
+                *health |= self.monitor.stuck(x, y, z, u, v, w);
+                match mode {
+                    Mode::Aligning => self.align(sample, interval_s),
+                    Mode::Calibrating => self.watch(sample, interval_s),
+                    _ => {}
+                }
+            }
         }
     }
 
-    /// Navigates over one interval: counts of delta_theta, then of delta_velocity.
+    /// The gimbals are on their way, or may still settle.
+    #[inline]
+    fn gimbals_may_move(&self) -> bool {
+        self.cursor
+            .as_ref()
+            .is_some_and(|cursor| self.phase_tick() < cursor.arrival_tick() + self.settle_ticks)
+    }
+
+    /// Navigates over one interval if its counts pass the screen: of delta_theta, then of
+    /// delta_velocity.
     ///
     /// Each count is an argument of its own, and the call is kept, so that each is read the way it
     /// was written. Read in pairs, right after single ones were stored, they would have to wait
     /// until those stores are through: more than the rest of the step takes.
     #[inline(never)]
     #[allow(clippy::too_many_arguments, reason = "in registers: see above")]
+    fn integrate_good(
+        &mut self,
+        interval_s: f64,
+        moving: bool,
+        x: i32,
+        y: i32,
+        z: i32,
+        u: i32,
+        v: i32,
+        w: i32,
+    ) -> bool {
+        let good = self.screen.passes(moving, x, y, z, u, v, w);
+        if good {
+            self.integrate(interval_s, x, y, z, u, v, w);
+        }
+        good
+    }
+
+    #[inline]
+    #[allow(clippy::too_many_arguments, reason = "in registers: see above")]
     fn integrate(&mut self, interval_s: f64, x: i32, y: i32, z: i32, u: i32, v: i32, w: i32) {
         let (theta, velocity) = increments([x, y, z], [u, v, w]);
-        let (dtheta, dv) = self.compensation.apply(&theta, &velocity, interval_s);
+        self.navigate(&theta, &velocity, interval_s);
+    }
+
+    /// Navigates over one interval by its raw increments, rad and m/s.
+    #[inline]
+    fn navigate(&mut self, theta: &Vector3<f64>, velocity: &Vector3<f64>, interval_s: f64) {
+        let (dtheta, dv) = self.compensation.apply(theta, velocity, interval_s);
         self.strapdown.step(&dtheta, &dv, interval_s);
         if let Estimation::Kalman(filter) = &mut self.estimation {
             filter.accumulate(&self.strapdown, &dtheta, &dv, interval_s);
         }
-        self.held = [x, y, z, u, v, w];
     }
 
     #[cold]
@@ -351,7 +407,7 @@ impl Core {
     #[inline(never)]
     fn refuse(&mut self, refusal: Refusal) {
         if let Some(filter) = self.filter() {
-            self.last_quality = quality_of(filter);
+            self.last_quality = self.quality(filter);
         }
         self.refusal = Some(refusal);
         self.estimation = Estimation::Idle;
@@ -360,9 +416,22 @@ impl Core {
     }
 
     #[inline(never)]
-    fn measure(&mut self, aiding: Option<&Aiding>, health: &mut Health, nis: &mut f64) {
-        let (Estimation::Kalman(filter), Some(kalman)) =
-            (&mut self.estimation, kalman_of(&self.config))
+    fn measure(
+        &mut self,
+        sample: &Sample,
+        aiding: Option<&Aiding>,
+        health: &mut Health,
+        nis: &mut f64,
+    ) {
+        let mut aiding = aiding;
+        if self.config.screening.aiding_stamps
+            && aiding.is_some_and(|aiding| aiding.device_time != sample.device_time)
+        {
+            // Where the instrument was at another time, or is yet to be.
+            aiding = None;
+            *health |= Health::AIDING_STALE;
+        }
+        let (Estimation::Kalman(_), Some(kalman)) = (&self.estimation, kalman_of(&self.config))
         else {
             return;
         };
@@ -372,6 +441,12 @@ impl Core {
         if !due && aiding.is_none() {
             return;
         }
+        self.account();
+        let (Estimation::Kalman(filter), Some(kalman)) =
+            (&mut self.estimation, kalman_of(&self.config))
+        else {
+            return;
+        };
         filter.propagate(&self.strapdown);
         let before = self.parameters;
         let measured = aiding.and_then(|aiding| {
@@ -403,9 +478,13 @@ impl Core {
         if filter.is_recovering() {
             *health |= Health::RECOVERING;
         }
+        if filter.drift().is_some_and(Drift::is_found) {
+            *health |= Health::DRIFTING;
+        }
         if self.nis_running > kalman.refuse_above_mean_nis {
             *health |= Health::INCONSISTENT;
         }
+        self.compare_turns(sample, health);
     }
 
     #[inline]
@@ -473,11 +552,27 @@ impl Core {
         }
     }
 
+    fn filter_mut(&mut self) -> Option<&mut CalibrationFilter> {
+        match &mut self.estimation {
+            Estimation::Kalman(filter) => Some(filter),
+            _ => None,
+        }
+    }
+
+    /// Quality of a filter's calibration so far.
+    fn quality(&self, filter: &CalibrationFilter) -> Quality {
+        Quality {
+            bridged: self.bridge.samples,
+            gimbal_slips: self.slips.count,
+            ..quality_of(filter)
+        }
+    }
+
     /// Counts so far.
     #[must_use]
     pub fn diagnostics(&self) -> Diagnostics {
         let quality = match (self.filter(), &self.table) {
-            (Some(filter), _) => quality_of(filter),
+            (Some(filter), _) => self.quality(filter),
             (None, Some(table)) => table.quality,
             (None, None) => self.last_quality,
         };
