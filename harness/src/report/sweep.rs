@@ -6,7 +6,7 @@ use crate::run::sweep::{Axis, Cell, Sweep, indices};
 use maud::{Markup, PreEscaped, html};
 
 /// Width and height of a cell of the map, px.
-const CELL: [f64; 2] = [92.0, 46.0];
+const CELL: [f64; 2] = [112.0, 46.0];
 /// Room for the labels on the left and above, px.
 const LEFT: f64 = 150.0;
 const TOP: f64 = 44.0;
@@ -172,7 +172,7 @@ fn drawing(sweep: &Sweep, cells: &[&Cell]) -> Markup {
 
 /// At most so many letters as fit into a cell.
 fn short(text: &str) -> String {
-    const LETTERS: usize = 16;
+    const LETTERS: usize = 20;
     if text.chars().count() <= LETTERS {
         text.to_owned()
     } else {
@@ -203,16 +203,16 @@ fn table(sweep: &Sweep) -> Markup {
             thead { tr {
                 @for axis in &sweep.axes { th { (axis.key) } }
                 th.n { "Shift, σ" } th style="padding-left:14px" { "Parameter" } th.n { "Drift, nmi" }
-                th style="padding-left:14px" { "Noticed as" } th.n { "After, s" } th { "Refused" }
+                th style="padding-left:14px" { "Noticed as" } th.n { "After, s" } th style="padding-left:14px" { "Refused" }
             } }
             tbody { @for cell in &sweep.cells { tr {
-                @for (axis, i) in sweep.axes.iter().zip(&cell.at) { td { (axis.values[*i]) } }
+                @for (axis, i) in sweep.axes.iter().zip(&cell.at) { td style="white-space:nowrap" { (axis.values[*i]) } }
                 td.n { (cell.worst_shift_sigma.map_or_else(|| "–".to_owned(), |s| number::significant(s, 3))) }
                 td.mono style="padding-left:14px" { (cell.worst_parameter.as_deref().unwrap_or("–")) }
                 td.n { (cell.radial_max_nmi.map_or_else(|| "–".to_owned(), |r| number::significant(r, 3))) }
-                td style="padding-left:14px" { (notice(cell)) }
+                td style="padding-left:14px;white-space:nowrap" { (notice(cell)) }
                 td.n { (cell.delay_s.map_or_else(|| "–".to_owned(), |s| number::fixed(s, 3))) }
-                td { (cell.refused.as_deref().unwrap_or("")) }
+                td style="padding-left:14px" { (cell.refused.as_deref().unwrap_or("")) }
             } } }
         }
     }

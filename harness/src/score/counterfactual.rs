@@ -247,7 +247,8 @@ fn noticed(
     let after: Vec<&&Episode> = new.iter().filter(|e| e.start.seconds() >= onset_s).collect();
     if let Some(first) = after.iter().min_by_key(|episode| episode.start.ns) {
         found.noticed_by = Some(name(first.cause).to_owned());
-        found.delay_s = Some(first.start.seconds() - onset_s);
+        // To the nanosecond that stamps have: a limit of 5 ms is kept by a delay of 5 ms.
+        found.delay_s = Some(((first.start.seconds() - onset_s) * 1e9).round() / 1e9);
         let last_s = after.iter().map(|e| e.end.seconds()).fold(0.0, f64::max);
         found.last_report_s = Some(last_s);
         // Measurements come once a second: one that reports at the very end hasn't ended.
@@ -342,6 +343,8 @@ mod tests {
         let c = compare((&faulted, &late), (&twin, &gap), Some(129.5));
         assert_eq!(c.faults[0].noticed_by.as_deref(), Some("gyro stuck"));
         assert_eq!((c.faults[0].delay_s, c.faults[0].last_report_s), (Some(0.5), Some(160.0)));
+        let c = compare((&faulted, &late), (&twin, &gap), Some(129.995));
+        assert_eq!(c.faults[0].delay_s, Some(0.005), "to the nanosecond");
         assert!(c.faults[0].recovered && !c.harmful);
     }
 
