@@ -353,7 +353,7 @@ fn takes(kind: &Kind, value: &Value) -> bool {
         (kind, value),
         (Kind::Choice(_), Value::Text(_))
             | (Kind::Integer(..), Value::Integer(_))
-            | (Kind::Number(_), Value::Integer(_) | Value::Float(_))
+            | (Kind::Number(_), Value::Integer(_) | Value::Number(_))
             | (Kind::Table(_), Value::Table(_))
             | (Kind::Tables(..), Value::Array(_))
             | (Kind::Variants(_), Value::Table(_))
