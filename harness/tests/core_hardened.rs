@@ -3,7 +3,7 @@
 //!
 //! Eight positions, 4 h, Table 1, static. The figure is the largest shift of a parameter against the
 //! run without the fault, in posterior σ.
-#![allow(clippy::unwrap_used)]
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
 
 mod instrument;
 
