@@ -14,7 +14,7 @@ use super::{Core, increments, kalman_of};
 use crate::config::{Base, BaseMotion};
 use crate::screen::{ACCELEROMETERS, Counts, Examined, GYROS};
 use nalgebra::{Matrix3, Vector3};
-use octant_sample::counts::{DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS};
+use octant_sample::counts::{DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS, GIMBAL_LSB_RAD};
 use octant_sample::parameters::Group;
 use octant_sample::{GimbalAngles, Health, Mode, Parameters, Sample, Status};
 
@@ -27,6 +27,9 @@ const OPEN_MAX_MPS: f64 = 1.0;
 const HOLD_RAD: f64 = 2.9e-3;
 /// Turn of a gimbal that is none, rad: 20″. Encoders of a standing gimbal flicker.
 const TURNED_RAD: f64 = 1e-4;
+/// Turn in one interval that is a motion and not the flicker of a reading, rad: 1″. Less than that is
+/// what the first sample of a move turns, and no loss if it isn't believed.
+const TURNS_RAD: f64 = 5e-6;
 
 /// What is remembered of the stretch that is being bridged.
 #[derive(Clone, Debug, Default)]
@@ -131,6 +134,18 @@ impl Core {
         (theta, up - theta.cross(&up) * 0.5)
     }
 
+    /// The encoders show a turn in this sample's interval, planned or not: a drive that stalled and
+    /// goes on, a set point that came late. What turns is no jump.
+    fn gimbals_turn(&self, sample: &Sample) -> bool {
+        let turned = |now: i32, before: i32| {
+            f64::from(now.wrapping_sub(before)).abs() * GIMBAL_LSB_RAD > TURNS_RAD
+        };
+        let before = self.bridge.gimbal;
+        !sample.status.contains(Status::GIMBAL_INVALID)
+            && (turned(sample.gimbal.azimuth, before.azimuth)
+                || turned(sample.gimbal.roll, before.roll))
+    }
+
     /// Turn of the gimbals in this sample's interval; none where the encoders can't be used or say
     /// what the turntable can't do.
     fn gimbals_turned(&self, sample: &Sample, standing: bool) -> Vector3<f64> {
@@ -145,7 +160,7 @@ impl Core {
     #[inline(never)]
     pub(super) fn doubt(&mut self, sample: &Sample, interval_s: f64, health: &mut Health) {
         let counts = counts_of(sample);
-        let standing = !self.gimbals_may_move();
+        let standing = !self.gimbals_may_move() && !self.gimbals_turn(sample);
         let still = self.knows_its_motion();
         let turn = self.gimbals_turned(sample, standing);
         let (theta, v) = self.known_motion(&turn, interval_s);

@@ -424,9 +424,12 @@ impl Core {
         nis: &mut f64,
     ) {
         let mut aiding = aiding;
-        if self.config.screening.aiding_stamps
-            && aiding.is_some_and(|aiding| aiding.device_time != sample.device_time)
-        {
+        // The reference's clock and the instrument's may jitter against each other.
+        let stale = |aiding: &Aiding| {
+            let apart_ns = aiding.device_time.ns.abs_diff(sample.device_time.ns);
+            apart_ns > self.config.sample_period_ns / 2
+        };
+        if self.config.screening.aiding_stamps && aiding.is_some_and(stale) {
             // Where the instrument was at another time, or is yet to be.
             aiding = None;
             *health |= Health::AIDING_STALE;
