@@ -385,25 +385,16 @@ fn assert_no_alarm(seeds: u64, hours: f64) {
         (run.health, run.output.mode, run.core.refusal().copied(), run.core.diagnostics().quality)
     });
     let mut largest = [0.0f64; 4];
-    let mut rejections = 0;
     let mut failures = Vec::new();
     for ((seed, moored, six), (health, mode, refusal, quality)) in cases.iter().zip(runs) {
         let kind = usize::from(*moored) + 2 * usize::from(*six);
         largest[kind] = largest[kind].max(quality.drift_sigmas);
-        // A gate at 25 rejects 1.5e-5 of good measurements (χ² of three).
-        let rejected = health[Health::INNOVATION_REJECTED.bits().trailing_zeros() as usize];
-        rejections += rejected;
-        let others: u64 = health.iter().sum::<u64>() - rejected;
-        if others != 0 || mode != Mode::Done || quality.bridged != 0 {
+        if health.iter().sum::<u64>() != 0 || mode != Mode::Done || quality.bridged != 0 {
             failures.push(format!(
                 "seed {seed}, moored {moored}, six {six}: {mode:?} {refusal:?} {health:?} {quality:?}"
             ));
         }
     }
-    let expected = 1.54e-5 * hours * 3600.0 * cases.len() as f64;
-    println!("{rejections} measurements rejected, at most {expected:.1} of good ones expected");
-    // Dockside tuning shows a NIS of 2.7 and no outliers; Poisson, five σ.
-    assert!(rejections as f64 <= expected + 5.0 * expected.sqrt() + 1.0);
     println!("largest correction: static {:.1}, dockside {:.1} of its σ", largest[0], largest[1]);
     assert!(failures.is_empty(), "{}", failures.join("\n"));
 }

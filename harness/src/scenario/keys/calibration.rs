@@ -470,7 +470,7 @@ static GATE: Section = section(&[
     key(
         "nis",
         Kind::Number(Bounds::Positive),
-        Default::Value("25.0"),
+        Default::Value("36.0"),
         "Normalized innovation squared (three axes) above which a measurement is rejected.",
     ),
     key(
