@@ -3,7 +3,7 @@
 use super::chart::{Chart, Line, Role};
 use super::number;
 use crate::score::counterfactual::{Counterfactual, DriftDifference, HARMFUL_SHIFT_SIGMA};
-use crate::score::summary::Summary;
+use crate::score::summary::{Calibration, Summary};
 use maud::{Markup, html};
 use octant_sample::parameters::NAMES;
 
@@ -11,11 +11,13 @@ use octant_sample::parameters::NAMES;
 const LISTED: usize = 12;
 
 pub(super) fn counterfactual(summary: &Summary) -> Markup {
-    let primary = summary.counterfactual.as_ref().map(|c| (summary.method.as_str(), c));
-    let baseline = summary
-        .baseline
+    let primary = summary
+        .counterfactual
         .as_ref()
-        .and_then(|b| b.counterfactual.as_ref().map(|c| (b.label.as_str(), c)));
+        .map(|c| (summary.method.as_str(), c, summary.calibration.as_ref()));
+    let baseline = summary.baseline.as_ref().and_then(|b| {
+        b.counterfactual.as_ref().map(|c| (b.label.as_str(), c, b.calibration.as_ref()))
+    });
     if primary.is_none() && baseline.is_none() {
         return html! {};
     }
@@ -24,11 +26,11 @@ pub(super) fn counterfactual(summary: &Summary) -> Markup {
         h2 { "What the faults did" }
         p.hint { "Every difference to the twin is the faults' doing: the twin met the same instrument and \
             the same noise without them." }
-        @for (label, c) in primary.into_iter().chain(baseline) {
+        @for (label, c, calibration) in primary.into_iter().chain(baseline) {
             @if both { h3 { (label) } }
             p { (in_words(c)) }
             (noticed(c))
-            (shifts(c))
+            (shifts(c, calibration))
             @if let Some(difference) = &c.navigation { (drift(difference)) }
         }
     }
@@ -93,7 +95,9 @@ fn noticed(c: &Counterfactual) -> Markup {
     }
 }
 
-fn shifts(c: &Counterfactual) -> Markup {
+fn shifts(c: &Counterfactual, calibration: Option<&Calibration>) -> Markup {
+    let unit =
+        |name: &str| calibration.and_then(|c| c.parameters.get(name)).map_or("", |p| &p.unit);
     let mut moved: Vec<_> =
         NAMES.iter().filter_map(|name| c.parameters.get(*name).map(|s| (*name, s))).collect();
     moved.sort_by(|a, b| b.1.sigma.abs().total_cmp(&a.1.sigma.abs()));
@@ -108,7 +112,7 @@ fn shifts(c: &Counterfactual) -> Markup {
             tbody { @for (name, shift) in moved.iter().take(LISTED) {
                 tr {
                     td.mono { (name) }
-                    td.n { (number::significant(shift.shift, 3)) }
+                    td.n { (number::significant(shift.shift, 3)) " " span.soft { (unit(name)) } }
                     td.n { (number::significant(shift.sigma, 3)) }
                     td.n { @if shift.sigma.abs() >= HARMFUL_SHIFT_SIGMA { "harmful" } }
                 }

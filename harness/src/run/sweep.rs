@@ -114,25 +114,21 @@ pub fn sweep(
 ) -> Result<Sweep, SweepError> {
     let Some(first) = scenarios.first() else { return Err(SweepError::Cancelled) };
     let clean = first.without_faults();
-    let runs = on_processors(jobs, scenarios.len() + 1, |task| {
+    let run = |scenario: &Scenario, recording: Recording<'_>, task: usize| {
         let control = controls.get(task).ok_or(SweepError::Cancelled)?;
-        let (scenario, recording) = match task.checked_sub(1).and_then(|i| scenarios.get(i)) {
-            None => (&clean, Recording::Hash),
-            Some(scenario) => (scenario, Recording::None),
-        };
         let run = run_method(scenario, Method::Primary, seed, recording, control)?;
         if run.ended == Ended::Cancelled { Err(SweepError::Cancelled) } else { Ok(run) }
-    })?;
-    let Some((twin, runs)) = runs.split_first() else { return Err(SweepError::Cancelled) };
+    };
+    // The twin first: a cell is held against it as soon as it has run, and only the result is kept.
+    let twin = run(&clean, Recording::Hash, 0)?;
     if let Some(reason) = twin.calibration.as_ref().and_then(|c| c.refused.as_ref()) {
         return Err(SweepError::TwinRefused(reason.clone()));
     }
-    let cells = runs
-        .iter()
-        .zip(scenarios)
-        .enumerate()
-        .map(|(i, (run, scenario))| cell(scenario, run, twin, fault, indices(axes, i)))
-        .collect();
+    let cells = on_processors(jobs, scenarios.len(), |i| {
+        let scenario = scenarios.get(i).ok_or(SweepError::Cancelled)?;
+        let faulted = run(scenario, Recording::None, i + 1)?;
+        Ok::<_, SweepError>(cell(scenario, &faulted, &twin, fault, indices(axes, i)))
+    })?;
     let kind = first.faults.iter().find(|f| f.spec.id == fault).map_or("", |f| f.spec.kind.name);
     Ok(Sweep {
         schema: SCHEMA,
