@@ -7,6 +7,7 @@ pub mod calibrate;
 pub mod cli;
 pub mod endpoint;
 pub mod evidence;
+pub mod fmu;
 pub mod observe;
 pub mod recorder;
 pub mod report;

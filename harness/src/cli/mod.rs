@@ -6,6 +6,7 @@
 mod compare;
 mod fault_page;
 mod faults;
+mod fmu;
 mod minimise;
 mod observe;
 mod progress;
@@ -45,6 +46,8 @@ enum Command {
     Report(report::Arguments),
     /// Tell what kinds of faults there are, and what each does.
     Faults(faults::Arguments),
+    /// Make, check and step FMUs.
+    Fmu(fmu::Arguments),
     /// Print the JSON Schema of scenarios, for completion in editors.
     Schema,
     #[command(external_subcommand)]
@@ -52,8 +55,7 @@ enum Command {
 }
 
 /// Commands that belong to the plan of the program and are not in this version.
-const LATER: [&str; 8] =
-    ["campaign", "fmu", "serve", "nightly", "selftest", "watch", "doctor", "verify"];
+const LATER: [&str; 7] = ["campaign", "serve", "nightly", "selftest", "watch", "doctor", "verify"];
 
 /// A command that isn't there.
 fn other(words: &[OsString]) -> Failure {
@@ -137,6 +139,7 @@ pub fn main() -> ExitCode {
         Command::Observe(arguments) => observe::command(&arguments),
         Command::Report(arguments) => report::command(&arguments),
         Command::Faults(arguments) => faults::command(&arguments),
+        Command::Fmu(arguments) => fmu::command(&arguments),
         Command::Other(words) => Err(other(&words)),
         Command::Schema => {
             print(&format!("{:#}\n", crate::scenario::schema())).map(|()| Verdict::Pass)

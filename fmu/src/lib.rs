@@ -1,0 +1,20 @@
+//! The calibration core and the plant as Functional Mock-up Units, FMI 2.0 and FMI 3.0.
+//!
+//! | module | idea |
+//! |---|---|
+//! | [`table`] | what a variable is; one table makes descriptions, value references and documentation |
+//! | [`values`] | the values of all variables of an instance, flat |
+//! | [`component`] | what a model has to do: be made from its parameters, and step |
+//! | [`calibrator`] | the calibration core as a component |
+//! | [`plant`] | motion, turntable, sensors and faults as a component |
+//! | [`c`] | the C interface of both standards, the same for every component |
+//!
+//! One shared library holds both models and both standards: the token given at instantiation
+//! chooses the model.
+
+pub mod c;
+pub mod calibrator;
+pub mod component;
+pub mod plant;
+pub mod table;
+pub mod values;

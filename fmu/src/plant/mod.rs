@@ -1,0 +1,1 @@
+//! Motion, turntable, sensors and faults as a component.

@@ -1,0 +1,135 @@
+//! What a variable is. A model's table makes its descriptions, value references and documentation.
+//!
+//! Every variable owns as many consecutive *slots* as it has elements; slot 0 is time. In FMI 2.0
+//! every element is a scalar variable `name[1]`, `name[2]`, …, whose value reference is its slot; in
+//! FMI 3.0 the variable is an array whose value reference is its first slot.
+
+/// Type of a variable's elements.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Kind {
+    /// Float64; Real in FMI 2.0.
+    Real,
+    /// Int32; Integer in FMI 2.0.
+    Integer,
+    /// UInt64; in FMI 2.0 a Real that holds a whole number, exact up to 2⁵³.
+    Count,
+    /// Boolean.
+    Boolean,
+    /// One of some named values: Enumeration in both.
+    Enumeration(&'static Enumeration),
+}
+
+/// A type with named values.
+#[derive(Debug, PartialEq)]
+pub struct Enumeration {
+    /// Name of the type.
+    pub name: &'static str,
+    /// What it is.
+    pub description: &'static str,
+    /// Value, name and description of each item.
+    pub items: &'static [(i32, &'static str, &'static str)],
+}
+
+/// What a variable is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Causality {
+    /// Set before the start.
+    Parameter,
+    /// Follows from parameters.
+    CalculatedParameter,
+    /// Comes from outside.
+    Input,
+    /// Goes outside.
+    Output,
+    /// For looking at.
+    Local,
+}
+
+/// When a variable changes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Variability {
+    /// After initialization never.
+    Fixed,
+    /// Between steps, by the importer.
+    Tunable,
+    /// At samples only: nothing interpolates it.
+    Discrete,
+}
+
+/// A unit with its factors: value in SI base units = factor · value.
+#[derive(Debug, PartialEq)]
+pub struct Unit {
+    /// The name, as written in descriptions: `rad/s`.
+    pub name: &'static str,
+    /// Exponents of kg, m, s, A, K, mol, cd, rad.
+    pub exponents: [i8; 8],
+    /// SI value of one of it.
+    pub factor: f64,
+    /// Units in which people like to see it: name, and how many of them one of this unit is.
+    pub display: &'static [(&'static str, f64)],
+}
+
+/// What a quantity is: a unit, and the display unit among those of the unit.
+#[derive(Debug, PartialEq)]
+pub struct Quantity {
+    /// Name of the type in descriptions: `AngularRate`.
+    pub name: &'static str,
+    /// Its unit.
+    pub unit: &'static Unit,
+    /// The display unit, where it isn't the unit itself.
+    pub display: Option<&'static str>,
+}
+
+/// One variable of a model.
+#[derive(Debug)]
+pub struct Variable {
+    /// Structured name: `gyro.delta_theta`.
+    pub name: &'static str,
+    /// What it is, with frame, sign and order of elements.
+    pub description: &'static str,
+    /// Type of its elements.
+    pub kind: Kind,
+    /// Number of elements; 0: a scalar.
+    pub elements: usize,
+    /// What it is for.
+    pub causality: Causality,
+    /// When it changes.
+    pub variability: Variability,
+    /// Unit; `None`: a number.
+    pub quantity: Option<&'static Quantity>,
+    /// Smallest legal value of an element.
+    pub min: Option<f64>,
+    /// Largest legal value of an element.
+    pub max: Option<f64>,
+    /// Its usual size.
+    pub nominal: Option<f64>,
+    /// Start value of each element (one: of all of them), where the variable has one; numbers,
+    /// and 0 or 1 for Booleans.
+    pub start: &'static [f64],
+    /// Names of the inputs on which an output depends directly (in FMI's sense: within one instant);
+    /// outputs that change at the end of a step only have none.
+    pub depends_on: &'static [&'static str],
+}
+
+impl Variable {
+    /// Slots that it occupies.
+    #[must_use]
+    pub const fn slots(&self) -> usize {
+        if self.elements == 0 { 1 } else { self.elements }
+    }
+}
+
+/// A model: its name, and its variables.
+#[derive(Debug)]
+pub struct Model {
+    /// `Calibrator`.
+    pub name: &'static str,
+    /// Stem of the model identifier: `calibrator` gives `calibrator_fmi2` and `calibrator_fmi3`.
+    pub stem: &'static str,
+    /// What it is.
+    pub description: &'static str,
+    /// Its variables, in the order of their slots, from slot 1 on.
+    pub variables: &'static [Variable],
+    /// The smallest and the largest number of sample periods in a communication step.
+    pub periods_per_step: (u64, u64),
+}

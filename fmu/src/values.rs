@@ -1,0 +1,98 @@
+//! The values of all variables of an instance.
+
+use crate::table::{Kind, Model};
+
+/// One cell a slot; what is in a cell is known from the model's table.
+#[derive(Clone, Debug)]
+pub struct Values {
+    cells: Box<[u64]>,
+}
+
+impl Values {
+    /// All variables at their start values; what has none is zero.
+    #[must_use]
+    pub fn new(model: &Model) -> Self {
+        let mut cells = vec![0u64];
+        for variable in model.variables {
+            for element in 0..variable.slots() {
+                let start =
+                    variable.start.get(element).or(variable.start.first()).copied().unwrap_or(0.0);
+                cells.push(match variable.kind {
+                    Kind::Real => start.to_bits(),
+                    Kind::Count => start as u64,
+                    Kind::Integer | Kind::Enumeration(_) => i64::from(start as i32) as u64,
+                    Kind::Boolean => u64::from(start != 0.0),
+                });
+            }
+        }
+        Self { cells: cells.into() }
+    }
+
+    /// The cells as they are.
+    #[must_use]
+    pub fn cells(&self) -> &[u64] {
+        &self.cells
+    }
+
+    /// The cells as they are.
+    pub fn cells_mut(&mut self) -> &mut [u64] {
+        &mut self.cells
+    }
+
+    /// A Real.
+    #[must_use]
+    pub fn real(&self, slot: usize) -> f64 {
+        f64::from_bits(self.cells[slot])
+    }
+
+    /// `N` Reals.
+    #[must_use]
+    pub fn reals<const N: usize>(&self, slot: usize) -> [f64; N] {
+        core::array::from_fn(|i| self.real(slot + i))
+    }
+
+    /// An Integer or an enumeration's value.
+    #[must_use]
+    pub fn integer(&self, slot: usize) -> i32 {
+        self.cells[slot] as i32
+    }
+
+    /// A Count.
+    #[must_use]
+    pub fn count(&self, slot: usize) -> u64 {
+        self.cells[slot]
+    }
+
+    /// A Boolean.
+    #[must_use]
+    pub fn boolean(&self, slot: usize) -> bool {
+        self.cells[slot] != 0
+    }
+
+    /// Sets a Real.
+    pub fn set_real(&mut self, slot: usize, value: f64) {
+        self.cells[slot] = value.to_bits();
+    }
+
+    /// Sets `N` Reals.
+    pub fn set_reals<const N: usize>(&mut self, slot: usize, values: &[f64; N]) {
+        for (cell, value) in self.cells[slot..slot + N].iter_mut().zip(values) {
+            *cell = value.to_bits();
+        }
+    }
+
+    /// Sets an Integer or an enumeration's value.
+    pub fn set_integer(&mut self, slot: usize, value: i32) {
+        self.cells[slot] = i64::from(value) as u64;
+    }
+
+    /// Sets a Count.
+    pub fn set_count(&mut self, slot: usize, value: u64) {
+        self.cells[slot] = value;
+    }
+
+    /// Sets a Boolean.
+    pub fn set_boolean(&mut self, slot: usize, value: bool) {
+        self.cells[slot] = u64::from(value);
+    }
+}
