@@ -2,8 +2,10 @@
 //!
 //! | module | idea |
 //! |---|---|
+//! | [`archive`] | files of others opened and unpacked safely |
 //! | [`description`] | what a `modelDescription.xml` says, of both standards in one form |
 //! | [`instance`] | an FMU that runs, of both standards and both kinds, behind one trait |
 
+pub mod archive;
 pub mod description;
 pub mod instance;
