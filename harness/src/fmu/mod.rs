@@ -2,8 +2,10 @@
 //!
 //! | module | idea |
 //! |---|---|
+//! | [`build`] | our own FMUs, from their tables |
 //! | [`description`] | what a `modelDescription.xml` says, of both standards in one form |
 //! | [`instance`] | an FMU that runs, of both standards and both kinds, behind one trait |
 
+pub mod build;
 pub mod description;
 pub mod instance;

@@ -532,6 +532,12 @@ impl Core {
         &self.config
     }
 
+    /// How things stand: before the first sample, or as it was last answered, without flags.
+    #[must_use]
+    pub fn latest(&self) -> Output {
+        self.output(Health::empty(), f64::NAN)
+    }
+
     /// Estimated parameters.
     #[must_use]
     pub fn parameters(&self) -> &Parameters {
