@@ -4,7 +4,9 @@ use super::read::{
     causality, default_initial, default_variability, initial, interface, optional, variability,
 };
 use super::xml::Element;
-use super::{Causality, Description, DescriptionError, Kind, Unknown, Variability, Variable};
+use super::{
+    Causality, Description, DescriptionError, Kind, Standard, Unknown, Variability, Variable,
+};
 use std::collections::BTreeMap;
 
 /// Types of a variable, by their element.
@@ -172,7 +174,8 @@ fn read_variable<'a, 't: 'a>(
         enumeration: declared.filter(|_| kind == Kind::Enumeration).map(str::to_owned),
         causality,
         variability,
-        initial: initial(element)?.or_else(|| default_initial(causality, variability)),
+        initial: initial(element)?
+            .or_else(|| default_initial(Standard::Fmi2, causality, variability)),
         dimensions: Vec::new(),
         start: value.text("start").map(str::to_owned).into_iter().collect(),
         min: number("min")?,

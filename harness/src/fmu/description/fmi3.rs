@@ -8,7 +8,7 @@ use super::read::{
 use super::xml::Element;
 use super::{
     Alias, Causality, Clock, Description, DescriptionError, Dimension, IntervalVariability, Kind,
-    Unknown, Variable,
+    Standard, Unknown, Variable,
 };
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -155,7 +155,7 @@ fn read_variable<'a, 't: 'a>(
         .collect::<Result<_, DescriptionError>>()?;
     let initial = match kind {
         Kind::Clock => None,
-        _ => initial(element)?.or_else(|| default_initial(causality, variability)),
+        _ => initial(element)?.or_else(|| default_initial(Standard::Fmi3, causality, variability)),
     };
     Ok(Variable {
         name,

@@ -264,9 +264,14 @@ pub(super) fn default_variability(kind: Kind, causality: Causality) -> Variabili
 }
 
 /// `initial` of a variable that has none: the table of both standards (FMI 2.0, 2.2.7; FMI 3.0,
-/// 2.4.7.5). `None`: there is none.
-pub(super) fn default_initial(causality: Causality, variability: Variability) -> Option<Initial> {
+/// 2.4.7.5). `None`: it can have none, as an input of FMI 2.0.
+pub(crate) fn default_initial(
+    standard: Standard,
+    causality: Causality,
+    variability: Variability,
+) -> Option<Initial> {
     match (causality, variability) {
+        (Causality::Input, _) if standard == Standard::Fmi3 => Some(Initial::Exact),
         (Causality::Parameter | Causality::StructuralParameter, _)
         | (Causality::Output | Causality::Local, Variability::Constant) => Some(Initial::Exact),
         (Causality::CalculatedParameter | Causality::Output | Causality::Local, _) => {
