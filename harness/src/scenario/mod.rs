@@ -20,7 +20,7 @@ pub mod suite;
 mod tour;
 mod write;
 
-pub(crate) use error::suggestion;
+pub(crate) use error::{nearest, suggestion};
 pub use error::{Place, Problem, ScenarioError};
 pub use keys::SCHEMA;
 pub use quantity::{Dimension, Quantity};

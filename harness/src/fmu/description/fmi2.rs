@@ -46,7 +46,6 @@ pub(super) fn read<'a, 't: 'a>(
         let mut derivatives = Vec::new();
         for element in list.children() {
             if element.name() != "ScalarVariable" {
-                element.tolerate("unknown element", || "no ScalarVariable, left out".into());
                 continue;
             }
             let (variable, state) = read_variable(element, &types)?;
@@ -79,7 +78,6 @@ fn types<'a, 't: 'a>(
         let name = element.required("name")?;
         let known = |child: &Element<'_, '_>| TYPES.iter().any(|(tag, _)| *tag == child.name());
         let Some(definition) = element.children().find(known) else {
-            element.tolerate("unknown type", || "a type of no known kind, left out".into());
             continue;
         };
         if definition.name() == "Enumeration" {
@@ -249,7 +247,7 @@ fn structure(root: Element<'_, '_>, description: &mut Description) -> Result<(),
             "Outputs" => description.structure.outputs = unknowns,
             "Derivatives" => description.structure.derivatives = unknowns,
             "InitialUnknowns" => description.structure.initial_unknowns = unknowns,
-            _ => part.tolerate("unknown element", || "unknown, left out".into()),
+            _ => {}
         }
     }
     Ok(())
