@@ -90,6 +90,10 @@ impl octant_state::State for Profile {
         (self.end_s, self.end_angle) = from.value("end")?;
         self.len = from.value("len")?;
         octant_state::check_below("len", self.len as u64, SEGMENTS_MAX as u64)?;
+        if self.len == 0 && !(self.end_s <= 0.0) {
+            let problem = "a profile without pieces has ended when it begins";
+            return Err(octant_state::StateError::value("end", problem));
+        }
         for segment in &mut self.segments[..self.len] {
             *segment = from.value("segment")?;
         }
