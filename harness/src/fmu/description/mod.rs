@@ -1,7 +1,9 @@
 //! What a `modelDescription.xml` says, of FMI 2.0 and FMI 3.0 in one form.
 
+use serde::{Deserialize, Serialize};
+
 /// The standard that an FMU follows.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Standard {
     /// FMI 2.0.
     Fmi2,
@@ -10,7 +12,7 @@ pub enum Standard {
 }
 
 /// A model description.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Description {
     /// The standard.
     pub standard: Standard,
@@ -52,7 +54,7 @@ pub struct Description {
 }
 
 /// Capabilities of an interface type.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Interface {
     /// `modelIdentifier`: stem of the library.
     pub model_identifier: String,
@@ -85,7 +87,7 @@ pub struct Interface {
 }
 
 /// The default experiment.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Experiment {
     /// Start, s.
     pub start_s: Option<f64>,
@@ -98,7 +100,7 @@ pub struct Experiment {
 }
 
 /// A unit: value in SI base units = factor · value + offset.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Unit {
     /// Its name.
     pub name: String,
@@ -109,7 +111,7 @@ pub struct Unit {
 }
 
 /// What a unit is in SI.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct BaseUnit {
     /// Exponents of kg, m, s, A, K, mol, cd, rad.
     pub exponents: [i8; 8],
@@ -120,7 +122,7 @@ pub struct BaseUnit {
 }
 
 /// Type of a variable.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[allow(missing_docs, reason = "named as in FMI 3.0")]
 pub enum Kind {
     Float64,
@@ -141,7 +143,7 @@ pub enum Kind {
 }
 
 /// What a variable is for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[allow(missing_docs, reason = "named as in the standards")]
 pub enum Causality {
     StructuralParameter,
@@ -154,7 +156,7 @@ pub enum Causality {
 }
 
 /// When a variable changes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[allow(missing_docs, reason = "named as in the standards")]
 pub enum Variability {
     Constant,
@@ -165,7 +167,7 @@ pub enum Variability {
 }
 
 /// Where a variable's first value comes from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[allow(missing_docs, reason = "named as in the standards")]
 pub enum Initial {
     Exact,
@@ -174,7 +176,7 @@ pub enum Initial {
 }
 
 /// One dimension of an array.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Dimension {
     /// So many.
     Fixed(u64),
@@ -183,7 +185,7 @@ pub enum Dimension {
 }
 
 /// A variable.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Variable {
     /// Its name.
     pub name: String,
@@ -228,7 +230,7 @@ pub struct Variable {
 }
 
 /// The structure of a model, as value references.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Structure {
     /// Outputs with their dependencies.
     pub outputs: Vec<Unknown>,
@@ -243,7 +245,7 @@ pub struct Structure {
 }
 
 /// An unknown and what it depends on.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Unknown {
     /// Value reference.
     pub reference: u32,
