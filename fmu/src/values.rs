@@ -15,8 +15,7 @@ impl Values {
         let mut cells = vec![0u64];
         for variable in model.variables {
             for element in 0..variable.slots() {
-                let start =
-                    variable.start.get(element).or(variable.start.first()).copied().unwrap_or(0.0);
+                let start = variable.start_of(element).unwrap_or(0.0);
                 cells.push(match variable.kind {
                     Kind::Real => start.to_bits(),
                     Kind::Count => start as u64,
