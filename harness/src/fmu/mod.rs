@@ -2,10 +2,12 @@
 //!
 //! | module | idea |
 //! |---|---|
+//! | [`build`] | our own FMUs, from their tables |
 //! | [`description`] | what a `modelDescription.xml` says, of both standards in one form |
 //! | [`instance`] | an FMU that runs, of both standards and both kinds, behind one trait |
 //! | [`master`] | several FMUs together: system structures, order, loops, faults on connections |
 
+pub mod build;
 pub mod description;
 pub mod instance;
 pub mod master;
