@@ -12,7 +12,7 @@ mod document;
 mod error;
 mod examples;
 mod keys;
-mod quantity;
+pub(crate) mod quantity;
 mod read;
 pub mod resolve;
 mod schema;

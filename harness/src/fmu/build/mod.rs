@@ -15,16 +15,22 @@ mod documentation;
 mod element;
 mod library;
 mod licences;
+mod names;
+mod parameters;
 mod prose;
+mod reference;
 #[cfg(test)]
 mod sample;
+mod ssp;
+mod target;
 mod terminals;
 
 use archive::{File, archive};
 use documentation::{Standard, documentation};
 use library::Library;
 use octant_fmu::table::Model;
-use std::path::{Path, PathBuf};
+use reference::Reference;
+use std::path::PathBuf;
 
 /// Log categories of the library, with what is logged in each.
 const LOG_CATEGORIES: [(&str, &str); 5] = [
@@ -40,8 +46,11 @@ const LOG_CATEGORIES: [(&str, &str); 5] = [
 pub struct Options {
     /// The folder that the files go into.
     pub out: PathBuf,
-    /// The shared library; `None`: the one that was built with the program.
-    pub library: Option<PathBuf>,
+    /// Shared libraries, each for a platform of its own; none: the one that was built with the
+    /// program.
+    pub libraries: Vec<PathBuf>,
+    /// Targets that cargo builds a library for, beside these.
+    pub targets: Vec<String>,
 }
 
 /// Why nothing, or not everything, was built.
@@ -80,6 +89,29 @@ pub enum BuildError {
         /// Why not.
         reason: String,
     },
+    /// Two libraries are for one platform.
+    #[error("{} and {} are both for {platform}", first.display(), second.display())]
+    SamePlatform {
+        /// One of them.
+        first: PathBuf,
+        /// The other.
+        second: PathBuf,
+        /// Name of the platform.
+        platform: &'static str,
+    },
+    /// The source isn't there.
+    #[error(
+        "a library for a target is built from the source of Octant, which isn't in the current folder: run it there"
+    )]
+    NoSource,
+    /// A library for a target can't be built.
+    #[error("failed to build the library for {target}: {reason}")]
+    Target {
+        /// The target.
+        target: String,
+        /// Why.
+        reason: String,
+    },
     /// A file can't be written.
     #[error("failed to write {}: {source}", path.display())]
     Write {
@@ -107,46 +139,70 @@ fn icons(model: &Model) -> Icons {
     }
 }
 
+/// One of our models, with what goes into its FMUs.
+struct Own {
+    model: &'static Model,
+    token: String,
+    reference: Reference,
+}
+
+/// The libraries, each for another platform.
+fn libraries(options: &Options) -> Result<Vec<Library>, BuildError> {
+    let mut found: Vec<(PathBuf, Library)> = Vec::new();
+    let mut add = |path: PathBuf| {
+        let library = Library::read(&path)?;
+        if let Some((first, _)) = found.iter().find(|(_, other)| other.platform == library.platform)
+        {
+            let platform = library.platform.fmi3;
+            return Err(BuildError::SamePlatform { first: first.clone(), second: path, platform });
+        }
+        found.push((path, library));
+        Ok(())
+    };
+    for path in &options.libraries {
+        add(path.clone())?;
+    }
+    for target in &options.targets {
+        add(target::library(target)?)?;
+    }
+    // One that was named or built for the program's own platform takes its place.
+    if options.libraries.is_empty() {
+        match add(library::beside_program()?) {
+            Ok(()) | Err(BuildError::SamePlatform { .. }) => {}
+            Err(error) => return Err(error),
+        }
+    }
+    Ok(found.into_iter().map(|(_, library)| library).collect())
+}
+
+/// Our models.
+fn own() -> Result<Vec<Own>, BuildError> {
+    Ok(Vec::new())
+}
+
 /// Builds everything; the files that were written.
 ///
 /// # Errors
-/// If the library isn't there or isn't one of ours, or a file can't be written.
-pub fn build(
-    models: &[(&'static Model, &str)],
-    options: &Options,
-) -> Result<Vec<PathBuf>, BuildError> {
-    let path = match &options.library {
-        Some(path) => path.clone(),
-        None => library::beside_program()?,
-    };
-    let libraries = [Library::read(&path)?];
-    let write = |name: String, bytes: Vec<u8>| {
-        let path = options.out.join(name);
-        std::fs::write(&path, bytes)
-            .map(|()| path.clone())
-            .map_err(|source| BuildError::Write { path, source })
-    };
-    std::fs::create_dir_all(&options.out)
-        .map_err(|source| BuildError::Write { path: options.out.clone(), source })?;
+/// If a library isn't there, isn't one of ours or can't be built, or a file can't be written.
+pub fn build(options: &Options) -> Result<Vec<PathBuf>, BuildError> {
+    let libraries = libraries(options)?;
+    let failed = |path: PathBuf| move |source| BuildError::Write { path, source };
+    std::fs::create_dir_all(&options.out).map_err(failed(options.out.clone()))?;
     let mut written = Vec::new();
-    for (model, token) in models {
+    for own in own()? {
         for standard in [Standard::Fmi2, Standard::Fmi3] {
-            let name = format!("{}_{}.fmu", model.stem, standard.suffix());
-            let bytes = fmu(model, standard, token, &libraries)
-                .map_err(|source| BuildError::Write { path: Path::new(&name).into(), source })?;
-            written.push(write(name, bytes)?);
+            let path = options.out.join(format!("{}_{}.fmu", own.model.stem, standard.suffix()));
+            let bytes = fmu(&own, standard, &libraries).map_err(failed(path.clone()))?;
+            std::fs::write(&path, bytes).map_err(failed(path.clone()))?;
+            written.push(path);
         }
     }
     Ok(written)
 }
 
 /// One FMU.
-fn fmu(
-    model: &'static Model,
-    standard: Standard,
-    token: &str,
-    libraries: &[Library],
-) -> std::io::Result<Vec<u8>> {
+fn fmu(own: &Own, standard: Standard, libraries: &[Library]) -> std::io::Result<Vec<u8>> {
+    let (model, token) = (own.model, &own.token);
     let identifier = format!("{}_{}", model.stem, standard.suffix());
     let icons = icons(model);
     let description = match standard {
@@ -163,6 +219,7 @@ fn fmu(
         files.push(File::new(path, library.bytes.clone()));
     }
     files.push(File::new("documentation/index.html", documentation(model, standard, icons.svg)));
+    files.extend(reference::files(&own.reference, standard));
     files.extend(licences::files(&identifier));
     match standard {
         Standard::Fmi2 => files.push(File::new("model.png", icons.png)),
@@ -184,14 +241,17 @@ fn fmu(
 mod tests {
     #![allow(clippy::unwrap_used, reason = "tests")]
 
+    use super::sample::Sample;
     use super::*;
     use std::io::{Cursor, Read};
 
     fn files(standard: Standard) -> Vec<(String, Vec<u8>)> {
         let platform = library::Platform { fmi2: "linux64", fmi3: "x86_64-linux", extension: "so" };
         let libraries = [Library { bytes: b"library".to_vec(), platform }];
-        let bytes = fmu(&sample::SAMPLE, standard, "{token}", &libraries).unwrap();
-        assert_eq!(bytes, fmu(&sample::SAMPLE, standard, "{token}", &libraries).unwrap());
+        let [reference, _] = reference::closed_loop::<Sample, Sample>().unwrap();
+        let own = Own { model: &sample::SAMPLE, token: "{token}".to_owned(), reference };
+        let bytes = fmu(&own, standard, &libraries).unwrap();
+        assert_eq!(bytes, fmu(&own, standard, &libraries).unwrap());
         let mut archive = zip::ZipArchive::new(Cursor::new(bytes)).unwrap();
         (0..archive.len())
             .map(|index| {
@@ -208,24 +268,30 @@ mod tests {
         let names = |standard| -> Vec<String> {
             files(standard).into_iter().map(|(name, _)| name).collect()
         };
-        let documentation = [
-            "documentation/index.html",
-            "documentation/licenses/LICENSE-APACHE.txt",
-            "documentation/licenses/LICENSE-MIT.txt",
-            "documentation/licenses/license.spdx",
-            "documentation/licenses/license.txt",
-        ];
-        let second = ["modelDescription.xml", "binaries/linux64/sample_fmi2.so"];
-        assert_eq!(names(Standard::Fmi2), [&second[..], &documentation, &["model.png"]].concat());
-        let third = ["modelDescription.xml", "binaries/x86_64-linux/sample_fmi3.so"];
-        let pictures = [
-            "terminalsAndIcons/icon.png",
-            "terminalsAndIcons/icon.svg",
-            "terminalsAndIcons/terminal.png",
-            "terminalsAndIcons/terminal.svg",
-            "terminalsAndIcons/terminalsAndIcons.xml",
-        ];
-        assert_eq!(names(Standard::Fmi3), [&third[..], &documentation, &pictures].concat());
+        let expected =
+            |text: &str| -> Vec<String> { text.split_whitespace().map(str::to_owned).collect() };
+        assert_eq!(
+            names(Standard::Fmi2),
+            expected(
+                "modelDescription.xml binaries/linux64/sample_fmi2.so documentation/index.html
+                 documentation/sample_fmi2_in.csv documentation/sample_fmi2_ref.csv
+                 documentation/sample_fmi2_ref.opt documentation/licenses/LICENSE-APACHE.txt
+                 documentation/licenses/LICENSE-MIT.txt documentation/licenses/license.spdx
+                 documentation/licenses/license.txt model.png"
+            )
+        );
+        assert_eq!(
+            names(Standard::Fmi3),
+            expected(
+                "modelDescription.xml binaries/x86_64-linux/sample_fmi3.so documentation/index.html
+                 documentation/sample_fmi3_in.csv documentation/sample_fmi3_ref.csv
+                 documentation/sample_fmi3_ref.opt documentation/licenses/LICENSE-APACHE.txt
+                 documentation/licenses/LICENSE-MIT.txt documentation/licenses/license.spdx
+                 documentation/licenses/license.txt terminalsAndIcons/icon.png
+                 terminalsAndIcons/icon.svg terminalsAndIcons/terminal.png
+                 terminalsAndIcons/terminal.svg terminalsAndIcons/terminalsAndIcons.xml"
+            )
+        );
     }
 
     /// Every file that the page links to is in the archive, and every place in it is on the page.

@@ -1,7 +1,9 @@
 //! A model with every kind of variable, for tests.
 
+use octant_fmu::component::Component;
 use octant_fmu::quantities;
 use octant_fmu::table::{Enumeration, Kind, Model, Variable};
+use octant_fmu::values::Values;
 
 static COLOUR: Enumeration = Enumeration {
     name: "Colour",
@@ -54,3 +56,37 @@ pub(super) static SAMPLE: Model = Model {
     ],
     periods_per_step: (1, 1),
 };
+
+/// Counts its steps.
+#[derive(Clone, Debug)]
+pub(super) struct Sample {
+    steps: u64,
+}
+
+impl Component for Sample {
+    const MODEL: &'static Model = &SAMPLE;
+
+    fn initialize(_: &mut Values) -> Result<Self, String> {
+        Ok(Self { steps: 0 })
+    }
+
+    fn period_ns(&self) -> u64 {
+        5_000_000
+    }
+
+    fn step(&mut self, values: &mut Values) -> Result<(), String> {
+        self.steps += 1;
+        values.set_count(SAMPLE.slot("answer.sequence"), self.steps);
+        values.set_real(SAMPLE.slot("navigation.latitude"), self.steps as f64 * 0.1);
+        Ok(())
+    }
+
+    fn save(&self, bytes: &mut Vec<u8>) {
+        bytes.extend(self.steps.to_le_bytes());
+    }
+
+    fn load(bytes: &[u8], _: &Values) -> Result<Self, String> {
+        let bytes = bytes.try_into().map_err(|_| "eight bytes are expected".to_owned())?;
+        Ok(Self { steps: u64::from_le_bytes(bytes) })
+    }
+}

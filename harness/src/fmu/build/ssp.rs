@@ -5,6 +5,7 @@
 
 use super::describe::{TOOL, base_unit, units};
 use super::element::{Element, number};
+use super::names::scalar_names;
 use octant_fmu::table::{Causality, Kind, Model, Variable};
 
 /// The parameter values of one component, as [`super::parameters`] makes them.
@@ -34,7 +35,7 @@ pub(super) fn structure(components: &[Component; 2], stop_s: f64, step_s: f64) -
     let connections: Vec<Wire> = connections.collect();
     let elements = components.iter().map(|one| component(one, &connections, step_s));
     let wired = connections.iter().flat_map(|wire| {
-        wire.variable.scalar_names().map(|name| {
+        scalar_names(wire.variable).into_iter().map(|name| {
             Element::new("ssd:Connection")
                 .with("startElement", wire.from.stem)
                 .with("startConnector", name.clone())
@@ -47,9 +48,8 @@ pub(super) fn structure(components: &[Component; 2], stop_s: f64, step_s: f64) -
         .with("description", "Plant and calibration core in a closed loop")
         .child(Element::new("ssd:Elements").children(elements))
         .child(Element::new("ssd:Connections").children(wired));
-    let algorithm = Element::new("osp:Algorithm").child(
-        Element::new("osp:FixedStepAlgorithm").with("baseStepSize", number(step_s)),
-    );
+    let algorithm = Element::new("osp:Algorithm")
+        .child(Element::new("osp:FixedStepAlgorithm").with("baseStepSize", number(step_s)));
     let experiment = Element::new("ssd:DefaultExperiment")
         .with("startTime", "0")
         .with("stopTime", number(stop_s))
@@ -67,10 +67,14 @@ pub(super) fn structure(components: &[Component; 2], stop_s: f64, step_s: f64) -
 }
 
 /// A file of parameter values.
-pub(super) fn parameter_set(model: &'static Model, name: &str, values: &ParameterValues) -> Element {
+pub(super) fn parameter_set(
+    model: &'static Model,
+    name: &str,
+    values: &ParameterValues,
+) -> Element {
     let parameters = values.iter().filter_map(|(name, values)| {
         let (_, variable) = model.find(name)?;
-        Some(variable.scalar_names().zip(values).map(move |(name, value)| {
+        Some(scalar_names(variable).into_iter().zip(values).map(move |(name, value)| {
             Element::new("ssv:Parameter").with("name", name).child(parameter(variable, *value))
         }))
     });
@@ -127,7 +131,7 @@ fn component(component: &Component, wires: &[Wire], step_s: f64) -> Element {
             _ => None,
         };
         kind.into_iter().flat_map(move |kind| {
-            variable.scalar_names().map(move |name| {
+            scalar_names(variable).into_iter().map(move |name| {
                 Element::new("ssd:Connector")
                     .with("name", name)
                     .with("kind", kind)
@@ -161,9 +165,7 @@ fn is_result(variable: &Variable) -> bool {
 
 fn connector_type(variable: &Variable) -> Element {
     match variable.kind {
-        Kind::Real | Kind::Count => {
-            Element::new("ssc:Real").with_some("unit", unit_of(variable))
-        }
+        Kind::Real | Kind::Count => Element::new("ssc:Real").with_some("unit", unit_of(variable)),
         Kind::Integer | Kind::Enumeration(_) => Element::new("ssc:Integer"),
         Kind::Boolean => Element::new("ssc:Boolean"),
     }
@@ -185,20 +187,4 @@ fn unit_list<const N: usize>(element: &'static str, models: [&'static Model; N])
 fn annotation(content: Element) -> Element {
     Element::new("ssd:Annotations")
         .child(Element::new("ssc:Annotation").with("type", OSP_TYPE).child(content))
-}
-
-/// Names of a variable's elements in FMI 2.0.
-pub(super) trait ScalarNames {
-    /// `name`, or `name[1]`, `name[2]` and so on.
-    fn scalar_names(&self) -> impl Iterator<Item = String> + use<Self>;
-}
-
-impl ScalarNames for Variable {
-    fn scalar_names(&self) -> impl Iterator<Item = String> + use<> {
-        let (name, elements) = (self.name, self.elements);
-        (0..self.slots()).map(move |element| match elements {
-            0 => name.to_owned(),
-            _ => format!("{name}[{}]", element + 1),
-        })
-    }
 }

@@ -73,15 +73,14 @@ fn variables(model: &Model) -> Element {
 }
 
 fn scalar(variable: &Variable, element: usize, slot: usize) -> Element {
-    let (name, mut description) = match variable.elements {
-        0 => (variable.name.to_owned(), variable.description.to_owned()),
-        count => (
-            format!("{}[{}]", variable.name, element + 1),
-            format!("{} ({} of {count})", variable.description, element + 1),
-        ),
-    };
+    let mut description = variable.description.to_owned();
     if let Kind::Enumeration(enumeration) = variable.kind {
-        description = format!("{description}: {}", meanings(enumeration));
+        description += &format!(" {}.", meanings(enumeration));
+    }
+    let mut name = variable.name.to_owned();
+    if variable.elements > 0 {
+        name += &format!("[{}]", element + 1);
+        description += &format!(" Element {} of {}.", element + 1, variable.elements);
     }
     let initial = if has_start(variable) { "exact" } else { "calculated" };
     Element::new("ScalarVariable")
@@ -127,9 +126,9 @@ fn typed(variable: &Variable, element: usize) -> Element {
     }
 }
 
-/// `0 none, 1 velocity, 2 position`.
+/// `0: none, 1: velocity, 2: position`.
 fn meanings(enumeration: &Enumeration) -> String {
-    let items = enumeration.items.iter().map(|(value, name, _)| format!("{value} {name}"));
+    let items = enumeration.items.iter().map(|(value, name, _)| format!("{value}: {name}"));
     items.collect::<Vec<_>>().join(", ")
 }
 
