@@ -46,6 +46,9 @@ mod models;
 mod registry;
 mod state;
 mod step;
+#[cfg(test)]
+#[allow(unsafe_code, reason = "C functions are called")]
+mod tests;
 mod token;
 
 pub use log::CATEGORIES;
