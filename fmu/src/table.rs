@@ -82,7 +82,7 @@ pub struct Quantity {
 }
 
 /// One variable of a model.
-#[derive(Debug)]
+#[derive(Clone, Copy, Debug)]
 pub struct Variable {
     /// Structured name: `gyro.delta_theta`.
     pub name: &'static str,
@@ -293,6 +293,27 @@ impl Model {
     pub fn find(&self, name: &str) -> Option<(usize, &'static Variable)> {
         self.with_slots().find(|(_, variable)| variable.name == name)
     }
+}
+
+/// Parts of a table, one after another.
+///
+/// # Panics
+/// If `N` isn't their number of variables.
+#[must_use]
+pub const fn concatenated<const N: usize>(parts: &[&[Variable]]) -> [Variable; N] {
+    let mut all = [Variable::parameter("", Kind::Real); N];
+    let (mut n, mut part) = (0, 0);
+    while part < parts.len() {
+        let mut i = 0;
+        while i < parts[part].len() {
+            all[n] = parts[part][i];
+            n += 1;
+            i += 1;
+        }
+        part += 1;
+    }
+    assert!(n == N, "N is the number of variables");
+    all
 }
 
 const fn same(a: &[u8], b: &[u8]) -> bool {

@@ -13,7 +13,7 @@ mod error;
 mod examples;
 mod keys;
 mod ports;
-mod quantity;
+pub(crate) mod quantity;
 mod read;
 pub mod resolve;
 mod schema;

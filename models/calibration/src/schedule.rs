@@ -107,6 +107,16 @@ pub struct Cursor {
     command: GimbalCommand,
 }
 
+#[cfg(feature = "state")]
+octant_state::state! {
+    Cursor {
+        values: stop, arrival_s, departure_s, arrival_tick, departure_tick, command;
+        parts: ;
+        kept: sequence, rates, dwell_s, sample_s, endless;
+        check: |cursor: &Self| octant_state::check_count("arrival_tick", cursor.arrival_tick)
+    }
+}
+
 impl Cursor {
     /// Starts towards the first stop from gimbals at `from`.
     #[must_use]
@@ -189,6 +199,12 @@ impl Cursor {
     fn target(&self) -> Stop {
         let stops = self.sequence.stops();
         stops[self.stop as usize % stops.len()]
+    }
+
+    /// It walks for ever, as in navigation.
+    #[must_use]
+    pub fn is_endless(&self) -> bool {
+        self.endless
     }
 
     /// Stop that the gimbals are at or move to, from 0, over all passes.
