@@ -2,14 +2,20 @@
 //!
 //! | module | idea |
 //! |---|---|
-//! | [`archive`] | files of others opened and unpacked safely |
 //! | [`build`] | our own FMUs, from their tables |
+//! | [`archive`] | files of others opened and unpacked safely |
+//! | [`check`] | what is wrong with an FMU, by the rules of the standards |
 //! | [`description`] | what a `modelDescription.xml` says, of both standards in one form |
+//! | [`library`] | the shared library of an unpacked FMU |
+//! | [`mapping`] | which of its variables is what |
 //! | [`instance`] | an FMU that runs, of both standards and both kinds, behind one trait |
 //! | [`master`] | several FMUs together: system structures, order, loops, faults on connections |
 
 pub mod archive;
 pub mod build;
+pub mod check;
 pub mod description;
 pub mod instance;
+pub mod library;
+pub mod mapping;
 pub mod master;

@@ -41,14 +41,24 @@ pub(super) fn check(model: &Model<'_, '_>, archive: &Archive, findings: &mut Fin
     for entry in archive.entries() {
         let top = entry.name.split('/').next().unwrap_or_default();
         let known = match top {
-            "modelDescription.xml" | "documentation" | "sources" | "binaries" | "resources"
-            | "extra" | "terminalsAndIcons" => true,
+            "modelDescription.xml"
+            | "documentation"
+            | "sources"
+            | "binaries"
+            | "resources"
+            | "extra"
+            | "terminalsAndIcons" => true,
             "model.png" | "licenses" => model.is_fmi2(),
             _ => false,
         };
         if !known && seen.insert(top) {
             let place = of_file(top, "");
-            findings.add(&FILES_UNKNOWN, place, "a file or folder of no meaning", "extra/ for others");
+            findings.add(
+                &FILES_UNKNOWN,
+                place,
+                "a file or folder of no meaning",
+                "extra/ for others",
+            );
         }
     }
     if model.is_fmi2() {
@@ -85,7 +95,8 @@ pub(super) fn build_description(
     for configuration in root.children().filter(|child| child.name() == "BuildConfiguration") {
         let identifier = configuration.text("modelIdentifier").unwrap_or_default();
         let at = |element: Element<'_, '_>| Some(element.line());
-        let place = |element, subject| Place { entry: BUILD_DESCRIPTION, line: at(element), subject };
+        let place =
+            |element, subject| Place { entry: BUILD_DESCRIPTION, line: at(element), subject };
         if !identifiers.contains(identifier) {
             let found = format!("model identifier {identifier:?}");
             let expected = identifiers.iter().copied().collect::<Vec<_>>().join(" or ");
@@ -93,7 +104,8 @@ pub(super) fn build_description(
         }
         let platform = configuration.text("platform");
         if !platforms.insert((identifier, platform)) {
-            let found = format!("a second configuration for {}", platform.unwrap_or("any platform"));
+            let found =
+                format!("a second configuration for {}", platform.unwrap_or("any platform"));
             findings.add(&SOURCES_IDENTIFIER, place(configuration, identifier), found, "one");
         }
         for set in configuration.children().filter(|child| child.name() == "SourceFileSet") {

@@ -76,7 +76,8 @@ fn interfaces(model: &Model<'_, '_>, findings: &mut Findings) {
     }
     // FMI 3.0 allows them for other interfaces, which ignore them.
     if model.is_fmi2() && description.event_indicators > 0 && description.model_exchange.is_none() {
-        let found = format!("{} event indicators without ModelExchange", description.event_indicators);
+        let found =
+            format!("{} event indicators without ModelExchange", description.event_indicators);
         findings.add(&INTERFACE_STATES, model.at(model.root, ""), found, "none");
     }
 }
@@ -130,11 +131,49 @@ pub(super) fn of_file<'a>(entry: &'a str, subject: &'a str) -> Place<'a> {
 /// It can be the name of a function in C.
 pub(super) fn is_c_identifier(name: &str) -> bool {
     const WORDS: [&str; 44] = [
-        "auto", "break", "case", "char", "const", "continue", "default", "do", "double", "else",
-        "enum", "extern", "float", "for", "goto", "if", "inline", "int", "long", "register",
-        "restrict", "return", "short", "signed", "sizeof", "static", "struct", "switch", "typedef",
-        "union", "unsigned", "void", "volatile", "while", "_Alignas", "_Alignof", "_Atomic",
-        "_Bool", "_Complex", "_Generic", "_Imaginary", "_Noreturn", "_Static_assert",
+        "auto",
+        "break",
+        "case",
+        "char",
+        "const",
+        "continue",
+        "default",
+        "do",
+        "double",
+        "else",
+        "enum",
+        "extern",
+        "float",
+        "for",
+        "goto",
+        "if",
+        "inline",
+        "int",
+        "long",
+        "register",
+        "restrict",
+        "return",
+        "short",
+        "signed",
+        "sizeof",
+        "static",
+        "struct",
+        "switch",
+        "typedef",
+        "union",
+        "unsigned",
+        "void",
+        "volatile",
+        "while",
+        "_Alignas",
+        "_Alignof",
+        "_Atomic",
+        "_Bool",
+        "_Complex",
+        "_Generic",
+        "_Imaginary",
+        "_Noreturn",
+        "_Static_assert",
         "_Thread_local",
     ];
     let mut bytes = name.bytes();

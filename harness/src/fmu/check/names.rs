@@ -29,7 +29,8 @@ pub(super) fn check(model: &Model<'_, '_>, findings: &mut Findings) {
         }
     }
     for (base, missing, present) in arrays.gaps() {
-        let index = model.variables.iter().find(|declared| declared.variable.name.starts_with(&base));
+        let index =
+            model.variables.iter().find(|declared| declared.variable.name.starts_with(&base));
         if let Some(declared) = index {
             let found = format!("{base}[…] has {present} elements, but no {base}[{missing}]");
             model.broken(findings, &VARIABLE_ARRAY_GAPS, declared, found, "all elements");
@@ -47,7 +48,11 @@ fn one(model: &Model<'_, '_>, declared: &Declared<'_, '_>, name: &str, findings:
     } else if model.description.structured_names
         && let Err(at) = structured(name)
     {
-        let found = format!("{:?} at character {} of {name:?}", &name[at..], name[..at].chars().count() + 1);
+        let found = format!(
+            "{:?} at character {} of {name:?}",
+            &name[at..],
+            name[..at].chars().count() + 1
+        );
         let expected = "identifiers or 'quoted names' with [indices], separated by dots, or der(…)";
         model.broken(findings, &VARIABLE_STRUCTURED, declared, found, expected);
     }
@@ -149,12 +154,17 @@ impl Reader<'_> {
                     Some(b'\\') => {
                         self.at += 1;
                         match self.peek() {
-                            Some(b'\'' | b'"' | b'?' | b'\\' | b'a' | b'b' | b'f' | b'n' | b'r'
-                                | b't' | b'v') => self.at += 1,
+                            Some(
+                                b'\'' | b'"' | b'?' | b'\\' | b'a' | b'b' | b'f' | b'n' | b'r'
+                                | b't' | b'v',
+                            ) => self.at += 1,
                             _ => return Err(self.at),
                         }
                     }
-                    Some(b) if b.is_ascii_alphanumeric() || b"_!#$%&()*+,-./:;<>=?@[]^{}|~ ".contains(&b) => {
+                    Some(b)
+                        if b.is_ascii_alphanumeric()
+                            || b"_!#$%&()*+,-./:;<>=?@[]^{}|~ ".contains(&b) =>
+                    {
                         self.at += 1;
                     }
                     _ => return Err(self.at),
@@ -204,7 +214,8 @@ impl Arrays {
             // From 0 or from 1, as the tool counts.
             let low: Vec<u32> = (0..rank).map(|axis| limit(u32::min, axis).min(1)).collect();
             let high: Vec<u32> = (0..rank).map(|axis| limit(u32::max, axis)).collect();
-            let sizes = low.iter().zip(&high).map(|(&low, &high)| u64::from(high) - u64::from(low) + 1);
+            let sizes =
+                low.iter().zip(&high).map(|(&low, &high)| u64::from(high) - u64::from(low) + 1);
             let expected = sizes.fold(1u64, u64::saturating_mul);
             if expected == present.len() as u64 {
                 continue;
@@ -234,15 +245,38 @@ mod tests {
     #[test]
     fn structured_names_follow_the_grammar() {
         for name in [
-            "v_min", "vehicle.engine.speed", "robot.axis.'motor #234'", "der(x)",
-            "der(pipe[3,4].T[14],2)", "a[1].b[2,3]", "'\\''", "_x1", "'a.b[1]'.c",
+            "v_min",
+            "vehicle.engine.speed",
+            "robot.axis.'motor #234'",
+            "der(x)",
+            "der(pipe[3,4].T[14],2)",
+            "a[1].b[2,3]",
+            "'\\''",
+            "_x1",
+            "'a.b[1]'.c",
         ] {
             assert_eq!(structured(name), Ok(()), "{name}");
         }
         for (name, at) in [
-            ("", 0), ("1a", 0), ("a b", 1), ("a..b", 2), ("a.", 2), ("a[]", 2), ("a[1", 3),
-            ("a[1,]", 4), ("a[i]", 2), ("der(x", 5), ("der(x,)", 6), ("der()", 4), ("''", 1),
-            ("'a", 2), ("'\\x'", 2), ("ä", 0), ("a[-1]", 2), ("a(1)", 1), ("a]", 1),
+            ("", 0),
+            ("1a", 0),
+            ("a b", 1),
+            ("a..b", 2),
+            ("a.", 2),
+            ("a[]", 2),
+            ("a[1", 3),
+            ("a[1,]", 4),
+            ("a[i]", 2),
+            ("der(x", 5),
+            ("der(x,)", 6),
+            ("der()", 4),
+            ("''", 1),
+            ("'a", 2),
+            ("'\\x'", 2),
+            ("ä", 0),
+            ("a[-1]", 2),
+            ("a(1)", 1),
+            ("a]", 1),
         ] {
             assert_eq!(structured(name), Err(at), "{name}");
         }
@@ -253,7 +287,11 @@ mod tests {
         let gaps = |names: &[&str]| {
             let mut arrays = Arrays::default();
             names.iter().for_each(|name| arrays.add(name));
-            arrays.gaps().into_iter().map(|(base, missing, _)| format!("{base}[{missing}]")).collect::<Vec<_>>()
+            arrays
+                .gaps()
+                .into_iter()
+                .map(|(base, missing, _)| format!("{base}[{missing}]"))
+                .collect::<Vec<_>>()
         };
         assert!(gaps(&["a[1]", "a[2]", "b[0]", "b[1]", "c[1,1]", "c[1,2]", "x"]).is_empty());
         assert_eq!(gaps(&["a[1]", "a[3]"]), ["a[2]"]);

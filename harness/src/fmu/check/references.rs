@@ -66,7 +66,10 @@ fn aliases(model: &Model<'_, '_>, findings: &mut Findings) {
         };
         let mut set_by = set.iter().filter(|declared| settable(declared.variable));
         if let (Some(one), Some(other)) = (set_by.next(), set_by.next()) {
-            let found = format!("it can be set, and so can {:?} with the same reference", one.variable.name);
+            let found = format!(
+                "it can be set, and so can {:?} with the same reference",
+                one.variable.name
+            );
             model.broken(findings, &VARIABLE_ALIAS, other, found, "one that can be set");
         }
         for declared in &set[1..] {
@@ -76,12 +79,16 @@ fn aliases(model: &Model<'_, '_>, findings: &mut Findings) {
                     Some(unit) => format!("unit {unit:?}"),
                     None => "no unit".to_owned(),
                 };
-                let expected = format!("{} as {:?} with the same reference", unit(first), first.name);
+                let expected =
+                    format!("{} as {:?} with the same reference", unit(first), first.name);
                 model.broken(findings, &VARIABLE_ALIAS, declared, unit(variable), expected);
             }
             let constant = |variable: &Variable| variable.variability == Variability::Constant;
             if constant(variable) != constant(first) {
-                let found = format!("only one of it and {:?} with the same reference is constant", first.name);
+                let found = format!(
+                    "only one of it and {:?} with the same reference is constant",
+                    first.name
+                );
                 model.broken(findings, &VARIABLE_ALIAS, declared, found, "all or none");
             } else if constant(variable) && variable.start != first.start {
                 let found = format!("another value than {:?} with the same reference", first.name);
@@ -98,12 +105,19 @@ fn array(model: &Model<'_, '_>, declared: &Declared<'_, '_>, findings: &mut Find
         let size = match *dimension {
             Dimension::Fixed(0) => {
                 let expected = "at least one element";
-                model.broken(findings, &VARIABLE_DIMENSION, declared, "a dimension of size 0", expected);
+                model.broken(
+                    findings,
+                    &VARIABLE_DIMENSION,
+                    declared,
+                    "a dimension of size 0",
+                    expected,
+                );
                 return;
             }
             Dimension::Fixed(size) => Some(size),
             Dimension::Of(reference) => {
-                let parameter = model.by_reference.get(&reference).map(|&i| model.variables[i].variable);
+                let parameter =
+                    model.by_reference.get(&reference).map(|&i| model.variables[i].variable);
                 let is_size = parameter.is_some_and(|parameter| {
                     parameter.kind == Kind::UInt64
                         && (parameter.causality == Causality::StructuralParameter
@@ -112,7 +126,9 @@ fn array(model: &Model<'_, '_>, declared: &Declared<'_, '_>, findings: &mut Find
                 if !is_size {
                     let found = match parameter {
                         Some(p) => format!("a dimension given by {:?} ({})", p.name, p.kind.name()),
-                        None => format!("a dimension given by value reference {reference}, which no variable has"),
+                        None => format!(
+                            "a dimension given by value reference {reference}, which no variable has"
+                        ),
                     };
                     let expected = "a UInt64 that is a structural parameter or constant";
                     model.broken(findings, &VARIABLE_DIMENSION, declared, found, expected);
@@ -134,7 +150,13 @@ fn array(model: &Model<'_, '_>, declared: &Declared<'_, '_>, findings: &mut Find
             1 => "one".to_owned(),
             _ => format!("one, or {elements}"),
         };
-        model.broken(findings, &VARIABLE_START_COUNT, declared, format!("{count} start values"), expected);
+        model.broken(
+            findings,
+            &VARIABLE_START_COUNT,
+            declared,
+            format!("{count} start values"),
+            expected,
+        );
     }
 }
 
@@ -161,7 +183,8 @@ fn clocked(model: &Model<'_, '_>, declared: &Declared<'_, '_>, findings: &mut Fi
         return;
     }
     if !matches!(variable.variability, Variability::Discrete | Variability::Tunable) {
-        let found = format!("a clocked variable that is {}", super::variables::word(variable.variability));
+        let found =
+            format!("a clocked variable that is {}", super::variables::word(variable.variability));
         model.broken(findings, &VARIABLE_CLOCKS, declared, found, "discrete or tunable");
     }
     for reference in &variable.clocks {
@@ -191,7 +214,9 @@ fn has_previous(
     } else {
         match previous {
             None => format!("previous {reference}, a value reference that no variable has"),
-            Some(other) if std::ptr::eq(other, variable) => "the previous value of itself".to_owned(),
+            Some(other) if std::ptr::eq(other, variable) => {
+                "the previous value of itself".to_owned()
+            }
             Some(other) if other.kind != variable.kind => {
                 format!("previous {:?}, which is {}", other.name, other.kind.name())
             }

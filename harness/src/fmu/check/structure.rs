@@ -192,7 +192,12 @@ fn outputs<'m, 'a: 'm, 't: 'a>(
     if let Some(pair) = listed.windows(2).find(|pair| pair[0] > pair[1]) {
         let name = |index: usize| format!("{:?}", model.variables[index].variable.name);
         let found = format!("{} after {}", name(pair[1]), name(pair[0]));
-        findings.add(&STRUCTURE_OUTPUT_ORDER, model.at(root, ""), found, "the order of the variables");
+        findings.add(
+            &STRUCTURE_OUTPUT_ORDER,
+            model.at(root, ""),
+            found,
+            "the order of the variables",
+        );
     }
 }
 
@@ -215,22 +220,29 @@ fn derivatives<'m, 'a: 'm, 't: 'a>(
         };
         let Some(&state) = model.by_reference.get(&reference) else { continue };
         // FMI 2.0 names the state by index: an alias of the state is another variable.
-        let state = match declared.value.text("derivative").and_then(|text| text.trim().parse().ok()) {
-            Some(number) if model.is_fmi2() => index(model, number).unwrap_or(state),
-            _ => state,
-        };
-        if declared.variable.variability != Variability::Continuous || !declared.variable.kind.is_float() {
+        let state =
+            match declared.value.text("derivative").and_then(|text| text.trim().parse().ok()) {
+                Some(number) if model.is_fmi2() => index(model, number).unwrap_or(state),
+                _ => state,
+            };
+        if declared.variable.variability != Variability::Continuous
+            || !declared.variable.kind.is_float()
+        {
             let found = "a state derivative that isn't a continuous real variable";
             findings.add(&STRUCTURE_DERIVATIVES, place, found, "continuous");
         }
         if !seen.insert(model.variables[state].variable.reference) {
-            let found = format!("a second derivative of {:?}", model.variables[state].variable.name);
+            let found =
+                format!("a second derivative of {:?}", model.variables[state].variable.name);
             findings.add(&STRUCTURE_DERIVATIVES, place, found, "one of each state");
         }
         states.push(state);
         let variable = model.variables[state].variable;
         let causality = matches!(variable.causality, Causality::Local | Causality::Output);
-        if !causality || variable.variability != Variability::Continuous || !variable.kind.is_float() {
+        if !causality
+            || variable.variability != Variability::Continuous
+            || !variable.kind.is_float()
+        {
             let found = format!(
                 "a state that is {}, {}, {}",
                 model.variables[state].type_name(),
@@ -359,8 +371,13 @@ fn dependencies(
             _ => states.contains(&known.reference) || !known.clocks.is_empty(),
         };
         if !is_known {
-            let found = format!("{:?} in {} depends on {:?}, which is {}", variable.name,
-                entry.list.name(), known.name, name(known.causality));
+            let found = format!(
+                "{:?} in {} depends on {:?}, which is {}",
+                variable.name,
+                entry.list.name(),
+                known.name,
+                name(known.causality)
+            );
             let expected = match entry.list {
                 List::InitialUnknowns => "inputs, the independent variable, and what is exact",
                 _ => "inputs, states, parameters and the independent variable",
@@ -392,6 +409,7 @@ fn dependencies(
     } else {
         return;
     };
-    let expected = "a kind for each; factors of real variables only, and constant ones at the start";
+    let expected =
+        "a kind for each; factors of real variables only, and constant ones at the start";
     findings.add(&STRUCTURE_KINDS, place, found, expected);
 }

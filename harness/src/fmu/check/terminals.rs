@@ -37,7 +37,8 @@ pub(super) fn check(
         };
         findings.add(&TERMINALS_VERSION, place, format!("version {version:?}"), expected);
     }
-    if root.child("GraphicalRepresentation").is_some_and(|graphic| graphic.child("Icon").is_some()) {
+    if root.child("GraphicalRepresentation").is_some_and(|graphic| graphic.child("Icon").is_some())
+    {
         icon(place, "icon", has, findings);
     } else if has("terminalsAndIcons/icon.svg") {
         icon(place, "icon", has, findings);
@@ -115,7 +116,8 @@ fn members(
             };
             let causality = model.variables[index].variable.causality;
             let kind = member.text("variableKind");
-            let is_restricted = kind.is_none_or(|kind| matches!(kind, "signal" | "inflow" | "outflow"));
+            let is_restricted =
+                kind.is_none_or(|kind| matches!(kind, "signal" | "inflow" | "outflow"));
             if is_restricted
                 && !matches!(
                     causality,
@@ -126,7 +128,12 @@ fn members(
                 )
             {
                 let found = format!("{name:?}, which is {}", super::variables::name(causality));
-                findings.add(&TERMINALS_CAUSALITY, place, found, "an input, an output or a parameter");
+                findings.add(
+                    &TERMINALS_CAUSALITY,
+                    place,
+                    found,
+                    "an input, an output or a parameter",
+                );
             }
         }
     }

@@ -218,7 +218,8 @@ fn variable(
                 if let (Some(mine), Some(other)) = (base(own), base(theirs))
                     && mine.exponents != other.exponents
                 {
-                    let found = format!("{:?} ({})", own.unwrap_or_default(), dimension(mine.exponents));
+                    let found =
+                        format!("{:?} ({})", own.unwrap_or_default(), dimension(mine.exponents));
                     let expected = format!(
                         "a unit like {:?} of its type {name:?} ({})",
                         theirs.unwrap_or_default(),
@@ -252,12 +253,14 @@ fn derivative(
     if time.is_some_and(|unit| unit != "s") || variable.kind != Kind::Float64 {
         return;
     }
-    if let (Some(rate), Some(value)) = (base(variable.unit.as_deref()), base(state.unit.as_deref())) {
+    if let (Some(rate), Some(value)) = (base(variable.unit.as_deref()), base(state.unit.as_deref()))
+    {
         let mut expected = value.exponents;
         expected[2] = expected[2].saturating_sub(1);
         // The radian comes and goes.
         if rate.exponents[..7] != expected[..7] {
-            let found = format!("{} for the derivative of {:?}", dimension(rate.exponents), state.name);
+            let found =
+                format!("{} for the derivative of {:?}", dimension(rate.exponents), state.name);
             model.broken(findings, &UNIT_DERIVATIVE, declared, found, dimension(expected));
         }
     }

@@ -59,11 +59,7 @@ fn variability(model: &Model<'_, '_>, declared: &Declared<'_, '_>) -> Variabilit
 }
 
 /// Causality, variability and initial; false where they make no sense, so that nothing follows.
-fn causality(
-    model: &Model<'_, '_>,
-    declared: &Declared<'_, '_>,
-    findings: &mut Findings,
-) -> bool {
+fn causality(model: &Model<'_, '_>, declared: &Declared<'_, '_>, findings: &mut Findings) -> bool {
     let variable = declared.variable;
     let variability = variability(model, declared);
     if variable.kind == Kind::Clock {
@@ -85,7 +81,8 @@ fn causality(
     if let Some(text) = declared.element.text("initial") {
         let allowed = allowed_initial(model.standard(), variable.causality, variability);
         if !variable.initial.is_some_and(|initial| allowed.contains(&initial)) {
-            let found = format!("initial {text:?} of {} {}", word(variability), name(variable.causality));
+            let found =
+                format!("initial {text:?} of {} {}", word(variability), name(variable.causality));
             let expected = match allowed {
                 [] => "no initial".to_owned(),
                 _ => allowed.iter().map(|&one| initial_word(one)).collect::<Vec<_>>().join(" or "),
@@ -142,7 +139,13 @@ fn start(model: &Model<'_, '_>, declared: &Declared<'_, '_>, findings: &mut Find
             | (_, None) => name(variable.causality),
             (_, Some(initial)) => initial_word(initial),
         };
-        model.broken(findings, &VARIABLE_START, declared, format!("no start, but it is {what}"), "a start value");
+        model.broken(
+            findings,
+            &VARIABLE_START,
+            declared,
+            format!("no start, but it is {what}"),
+            "a start value",
+        );
     }
     if forbids && has_start {
         let what = match variable.causality {
@@ -162,9 +165,14 @@ fn values(model: &Model<'_, '_>, declared: &Declared<'_, '_>, findings: &mut Fin
     if matches!(variable.kind, Kind::String | Kind::Binary | Kind::Boolean | Kind::Clock) {
         return;
     }
-    let items = variable.enumeration.as_deref().and_then(|name| model.description.enumeration(name));
+    let items =
+        variable.enumeration.as_deref().and_then(|name| model.description.enumeration(name));
     for (index, text) in variable.start.iter().enumerate() {
-        let of = if variable.start.len() > 1 { format!(" of element {}", index + 1) } else { String::new() };
+        let of = if variable.start.len() > 1 {
+            format!(" of element {}", index + 1)
+        } else {
+            String::new()
+        };
         // What isn't a number breaks the schema, and is said there.
         let Some(value) = real(text) else { continue };
         if variable.kind == Kind::Enumeration
@@ -174,7 +182,13 @@ fn values(model: &Model<'_, '_>, declared: &Declared<'_, '_>, findings: &mut Fin
             let names: Vec<String> =
                 items.iter().take(12).map(|(value, name)| format!("{value} ({name})")).collect();
             let found = format!("start {value}{of}");
-            model.broken(findings, &ENUMERATION_START, declared, found, format!("one of {}", names.join(", ")));
+            model.broken(
+                findings,
+                &ENUMERATION_START,
+                declared,
+                found,
+                format!("one of {}", names.join(", ")),
+            );
             return;
         }
         if !value.is_finite() {
@@ -187,7 +201,13 @@ fn values(model: &Model<'_, '_>, declared: &Declared<'_, '_>, findings: &mut Fin
         if below.is_some() || above.is_some() {
             let limit = |limit: Option<f64>| limit.map_or("…".into(), |limit| limit.to_string());
             let expected = format!("{} to {}", limit(variable.min), limit(variable.max));
-            model.broken(findings, &VARIABLE_START_RANGE, declared, format!("start {value}{of}"), expected);
+            model.broken(
+                findings,
+                &VARIABLE_START_RANGE,
+                declared,
+                format!("start {value}{of}"),
+                expected,
+            );
             return;
         }
     }
@@ -205,7 +225,13 @@ fn limits(model: &Model<'_, '_>, declared: &Declared<'_, '_>, findings: &mut Fin
     if let Some(nominal) = variable.nominal {
         if nominal == 0.0 || !nominal.is_finite() {
             let expected = "a finite number but 0";
-            model.broken(findings, &VARIABLE_NOMINAL, declared, format!("nominal {nominal}"), expected);
+            model.broken(
+                findings,
+                &VARIABLE_NOMINAL,
+                declared,
+                format!("nominal {nominal}"),
+                expected,
+            );
         } else if nominal < 0.0 {
             let found = format!("nominal {nominal}");
             model.broken(findings, &VARIABLE_NOMINAL_SIGN, declared, found, "a positive number");

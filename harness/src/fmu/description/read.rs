@@ -163,7 +163,12 @@ fn units(list: Element<'_, '_>) -> Result<Vec<Unit>, DescriptionError> {
         for child in element.children().filter(|child| child.name() == "DisplayUnit") {
             let name = child.required("name")?.to_owned();
             if let Some((factor, offset)) = conversion(child)? {
-                display.push(DisplayUnit { name, factor, offset, inverse: child.boolean("inverse")? });
+                display.push(DisplayUnit {
+                    name,
+                    factor,
+                    offset,
+                    inverse: child.boolean("inverse")?,
+                });
             }
         }
         units.push(Unit { name, base, display });

@@ -79,11 +79,8 @@ static SOURCE_FILES: Node = node("SourceFiles", &[], &[some(0, &FILE)]);
 static FILE: Node = node("File", &[must("name", Type::Line)], &[]);
 
 static UNIT_DEFINITIONS: Node = node("UnitDefinitions", &[], &[some(0, &UNIT)]);
-static UNIT: Node = node(
-    "Unit",
-    &[must("name", Type::Line)],
-    &[optional(0, &BASE_UNIT), any(1, &DISPLAY_UNIT)],
-);
+static UNIT: Node =
+    node("Unit", &[must("name", Type::Line)], &[optional(0, &BASE_UNIT), any(1, &DISPLAY_UNIT)]);
 pub(super) static BASE_UNIT: Node = node(
     "BaseUnit",
     &[

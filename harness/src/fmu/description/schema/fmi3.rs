@@ -76,21 +76,27 @@ macro_rules! interface {
     };
 }
 
-static MODEL_EXCHANGE: Node = interface!("ModelExchange", [
-    may("needsCompletedIntegratorStep", Type::Boolean),
-    may("providesEvaluateDiscreteStates", Type::Boolean)
-]);
-static CO_SIMULATION: Node = interface!("CoSimulation", [
-    may("canHandleVariableCommunicationStepSize", Type::Boolean),
-    may("fixedInternalStepSize", Type::Double),
-    may("maxOutputDerivativeOrder", Type::UNSIGNED_INT),
-    may("recommendedIntermediateInputSmoothness", Type::INT),
-    may("providesIntermediateUpdate", Type::Boolean),
-    may("mightReturnEarlyFromDoStep", Type::Boolean),
-    may("canReturnEarlyAfterIntermediateUpdate", Type::Boolean),
-    may("hasEventMode", Type::Boolean),
-    may("providesEvaluateDiscreteStates", Type::Boolean)
-]);
+static MODEL_EXCHANGE: Node = interface!(
+    "ModelExchange",
+    [
+        may("needsCompletedIntegratorStep", Type::Boolean),
+        may("providesEvaluateDiscreteStates", Type::Boolean)
+    ]
+);
+static CO_SIMULATION: Node = interface!(
+    "CoSimulation",
+    [
+        may("canHandleVariableCommunicationStepSize", Type::Boolean),
+        may("fixedInternalStepSize", Type::Double),
+        may("maxOutputDerivativeOrder", Type::UNSIGNED_INT),
+        may("recommendedIntermediateInputSmoothness", Type::INT),
+        may("providesIntermediateUpdate", Type::Boolean),
+        may("mightReturnEarlyFromDoStep", Type::Boolean),
+        may("canReturnEarlyAfterIntermediateUpdate", Type::Boolean),
+        may("hasEventMode", Type::Boolean),
+        may("providesEvaluateDiscreteStates", Type::Boolean)
+    ]
+);
 static SCHEDULED_EXECUTION: Node = interface!("ScheduledExecution", []);
 
 static UNIT_DEFINITIONS: Node = node("UnitDefinitions", &[], &[some(0, &UNIT)]);
@@ -158,8 +164,7 @@ macro_rules! typed {
     };
 }
 
-const ARRAY: &[Child] =
-    &[optional(0, &ANNOTATIONS), any(1, &DIMENSION), any(3, &ALIAS)];
+const ARRAY: &[Child] = &[optional(0, &ANNOTATIONS), any(1, &DIMENSION), any(3, &ALIAS)];
 const FLOAT_ARRAY: &[Child] =
     &[optional(0, &ANNOTATIONS), any(1, &DIMENSION), any(3, &FLOAT_ALIAS)];
 const TEXT_ARRAY: &[Child] =

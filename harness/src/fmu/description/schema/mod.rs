@@ -200,7 +200,12 @@ fn walk_element(
                 .map(|other| other.node.name)
                 .collect();
             let found = format!("it comes after {}", before.join(" or "));
-            report(violation(Breaks::Order, child, found, format!("before {}", before.join(" and "))));
+            report(violation(
+                Breaks::Order,
+                child,
+                found,
+                format!("before {}", before.join(" and ")),
+            ));
         }
         place = place.max(known.place);
         if depth < DEPTH_MAX {
@@ -212,7 +217,8 @@ fn walk_element(
     }
     let mut missing: Vec<u8> = Vec::new();
     for child in node.children.iter().filter(|child| child.min > 0) {
-        let alternatives = || node.children.iter().zip(&counts).filter(|(c, _)| c.place == child.place);
+        let alternatives =
+            || node.children.iter().zip(&counts).filter(|(c, _)| c.place == child.place);
         let count: u32 = alternatives().map(|(_, &count)| count).sum();
         if count < child.min && !missing.contains(&child.place) {
             missing.push(child.place);

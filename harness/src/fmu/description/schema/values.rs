@@ -87,7 +87,8 @@ impl std::fmt::Display for Type {
 /// `xs:double` is narrower than what Rust reads: no `inf`, `infinity`, `nan`.
 fn is_double(text: &str) -> bool {
     matches!(text, "INF" | "-INF" | "+INF" | "NaN")
-        || (text.parse::<f64>().is_ok() && text.bytes().all(|b| !b.is_ascii_alphabetic() || b | 32 == b'e'))
+        || (text.parse::<f64>().is_ok()
+            && text.bytes().all(|b| !b.is_ascii_alphabetic() || b | 32 == b'e'))
 }
 
 /// `YYYY-MM-DDThh:mm:ss`, with a fraction and a zone.
@@ -147,19 +148,33 @@ mod tests {
     fn values_are_told_apart() {
         for (of, yes, no) in [
             (Type::Line, &["a b", ""][..], &["a\nb", "\t"][..]),
-            (Type::Double, &["1", "-1.5e-3", " 1 ", "INF", "-INF", "NaN", ".5", "5.", "+1E+2"], &[
-                "", "inf", "nan", "Infinity", "1,5", "0x10", "1 2", "1f", "e", "1e",
-            ]),
+            (
+                Type::Double,
+                &["1", "-1.5e-3", " 1 ", "INF", "-INF", "NaN", ".5", "5.", "+1E+2"],
+                &["", "inf", "nan", "Infinity", "1,5", "0x10", "1 2", "1f", "e", "1e"],
+            ),
             (Type::Boolean, &["true", "false", "1", "0"], &["True", "yes", ""]),
             (Type::BYTE, &["-128", "127", "+5", "007"], &["128", "-129", "1.0", ""]),
             (Type::UNSIGNED_LONG, &["18446744073709551615"], &["18446744073709551616", "-1"]),
-            (Type::DateTime, &[
-                "2009-12-08T14:33:22Z", "2024-02-29T00:00:00.125+01:00", "2024-02-29T00:00:00",
-            ], &["2009-12-08", "2009-12-08 14:33:22", "2009-13-08T14:33:22Z", "2009-12-08T14:33Z", "2009-12-08T14:33:22.Z"]),
+            (
+                Type::DateTime,
+                &["2009-12-08T14:33:22Z", "2024-02-29T00:00:00.125+01:00", "2024-02-29T00:00:00"],
+                &[
+                    "2009-12-08",
+                    "2009-12-08 14:33:22",
+                    "2009-13-08T14:33:22Z",
+                    "2009-12-08T14:33Z",
+                    "2009-12-08T14:33:22.Z",
+                ],
+            ),
             (Type::Hex, &["", "0aFF"], &["0", "0g"]),
             (Type::List(&Type::UNSIGNED_INT), &["", "1 2  3"], &["1,2", "-1"]),
             (Type::Word(&["a", "b"]), &["a", "b"], &["c", "A", ""]),
-            (Type::Version3, &["3.0", "3.1", "3.0.2", "3.0-beta.1"], &["3", "2.0", "3.01", "3.0-", "3.0.0.0", "3."]),
+            (
+                Type::Version3,
+                &["3.0", "3.1", "3.0.2", "3.0-beta.1"],
+                &["3", "2.0", "3.01", "3.0-", "3.0.0.0", "3."],
+            ),
         ] {
             for text in yes {
                 assert!(of.allows(text), "{text:?} is {of}");
