@@ -360,14 +360,14 @@ fn dependencies(
             return;
         };
         let known = model.variables[index].variable;
+        let is_parameter =
+            matches!(known.causality, Causality::Parameter | Causality::StructuralParameter);
         let is_known = match (entry.list, known.causality) {
             (_, Causality::Input | Causality::Independent) => true,
-            (List::InitialUnknowns, _) => known.initial == Some(Initial::Exact),
+            (List::InitialUnknowns, _) => is_parameter || known.initial == Some(Initial::Exact),
             // FMI 2.0 has parameters among the knowns only while initializing; tools list tunable
             // ones all the same, and importers can use them.
-            (_, Causality::Parameter | Causality::StructuralParameter) => {
-                !model.is_fmi2() || known.variability == Variability::Tunable
-            }
+            _ if is_parameter => !model.is_fmi2() || known.variability == Variability::Tunable,
             _ => states.contains(&known.reference) || !known.clocks.is_empty(),
         };
         if !is_known {

@@ -196,6 +196,9 @@ fn values(model: &Model<'_, '_>, declared: &Declared<'_, '_>, findings: &mut Fin
             model.broken(findings, &VARIABLE_START_FINITE, declared, found, "a finite number");
             return;
         }
+        if variable.min.zip(variable.max).is_some_and(|(min, max)| !(min <= max)) {
+            return;
+        }
         let below = variable.min.filter(|&min| value < min);
         let above = variable.max.filter(|&max| value > max);
         if below.is_some() || above.is_some() {

@@ -188,8 +188,8 @@ fn a_description_of_fmi_3_is_read_in_full() {
     <ClockedState valueReference="10"/>
     <InitialUnknown valueReference="3"/>
     <EventIndicator valueReference="12"/><EventIndicator valueReference="4"/>
-    <Annotations><Annotation type="x"/></Annotations>
   </ModelStructure>
+  <Annotations><Annotation type="x"/></Annotations>
 </fmiModelDescription>"#;
     let found = get(text);
     assert_eq!(found.tolerated, [] as [&str; 0]);
@@ -327,7 +327,7 @@ fn what_vendors_write_is_tolerated_and_listed() {
         ),
         (
             fmi3("", "<Float64 name=\"v\" valueReference=\"1\"/><Float128 name=\"w\"/>", ""),
-            "unknown type",
+            "an unknown element in ModelVariables",
         ),
         (
             fmi3(
