@@ -22,15 +22,19 @@ mod reference;
 #[cfg(test)]
 mod sample;
 mod ssp;
+mod system;
 mod target;
 mod terminals;
 
+use crate::scenario::Scenario;
 use archive::{File, archive};
 use documentation::{Standard, documentation};
 use library::Library;
+use octant_fmu::calibrator::Calibrator;
 use octant_fmu::table::Model;
 use reference::Reference;
 use std::path::PathBuf;
+use system::Configured;
 
 /// Log categories of the library, with what is logged in each.
 const LOG_CATEGORIES: [(&str, &str); 5] = [
@@ -51,6 +55,9 @@ pub struct Options {
     pub libraries: Vec<PathBuf>,
     /// Targets that cargo builds a library for, beside these.
     pub targets: Vec<String>,
+    /// The scenario whose parameters the system has, with its name; `None`: the one that is built
+    /// in.
+    pub scenario: Option<(String, Scenario)>,
 }
 
 /// Why nothing, or not everything, was built.
@@ -110,6 +117,20 @@ pub enum BuildError {
         /// The target.
         target: String,
         /// Why.
+        reason: String,
+    },
+    /// A scenario can't be put into FMUs.
+    #[error("the parameters of {name} can't be put into FMUs: {reason}")]
+    Scenario {
+        /// Its name.
+        name: String,
+        /// Why not.
+        reason: String,
+    },
+    /// A model doesn't run with its start values.
+    #[error("the models don't run with their start values: {reason}")]
+    Model {
+        /// What they said.
         reason: String,
     },
     /// A file can't be written.
@@ -175,26 +196,53 @@ fn libraries(options: &Options) -> Result<Vec<Library>, BuildError> {
     Ok(found.into_iter().map(|(_, library)| library).collect())
 }
 
-/// Our models.
-fn own() -> Result<Vec<Own>, BuildError> {
-    Ok(Vec::new())
+/// Our models, run with their start values.
+fn own() -> Result<[Own; 2], BuildError> {
+    let references = reference::closed_loop::<Plant, Calibrator>();
+    let references = references.map_err(|reason| BuildError::Model { reason })?;
+    Ok(references.map(|reference| {
+        let model = reference.model();
+        Own { model, token: octant_fmu::c::token(model), reference }
+    }))
 }
 
 /// Builds everything; the files that were written.
 ///
 /// # Errors
-/// If a library isn't there, isn't one of ours or can't be built, or a file can't be written.
+/// If a library isn't there, isn't one of ours or can't be built, the scenario can't be put into
+/// FMUs, or a file can't be written.
 pub fn build(options: &Options) -> Result<Vec<PathBuf>, BuildError> {
+    let configured = match &options.scenario {
+        Some((name, scenario)) => Configured::new(scenario, name)?,
+        None => Configured::built_in()?,
+    };
     let libraries = libraries(options)?;
+    let own = own()?;
     let failed = |path: PathBuf| move |source| BuildError::Write { path, source };
     std::fs::create_dir_all(&options.out).map_err(failed(options.out.clone()))?;
     let mut written = Vec::new();
-    for own in own()? {
+    let mut write = |name: &str, bytes: std::io::Result<Vec<u8>>| {
+        let path = options.out.join(name);
+        let bytes = bytes.map_err(failed(path.clone()))?;
+        std::fs::write(&path, &bytes).map_err(failed(path.clone()))?;
+        written.push(path);
+        Ok::<_, BuildError>(bytes)
+    };
+    let mut second = Vec::new();
+    for own in &own {
         for standard in [Standard::Fmi2, Standard::Fmi3] {
-            let path = options.out.join(format!("{}_{}.fmu", own.model.stem, standard.suffix()));
-            let bytes = fmu(&own, standard, &libraries).map_err(failed(path.clone()))?;
-            std::fs::write(&path, bytes).map_err(failed(path.clone()))?;
-            written.push(path);
+            let name = format!("{}_{}.fmu", own.model.stem, standard.suffix());
+            let bytes = write(&name, fmu(own, standard, &libraries))?;
+            if standard == Standard::Fmi2 {
+                second.push(bytes);
+            }
+        }
+    }
+    write("octant.ssp", system::archive_of(&own, &second, &configured))?;
+    if options.scenario.is_some() {
+        let path = options.out.clone();
+        for (name, bytes) in configured.files(&own).map_err(failed(path))? {
+            write(&name, Ok(bytes))?;
         }
     }
     Ok(written)
