@@ -183,6 +183,10 @@ fn value(table: &Reader<'_>, parameter: &'static Parameter) -> Result<Value, Pro
             let set = sets.and_then(|sets| sets.into_iter().reduce(Channels::union));
             Value::Channels(set.ok_or_else(missing)?)
         }
+        Takes::Number(_) => Value::Number(table.number(key)?),
+        Takes::Value | Takes::Difference(_) => {
+            return Err(table.problem(key, "only connections of FMUs have such values"));
+        }
     })
 }
 
