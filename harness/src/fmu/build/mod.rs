@@ -30,20 +30,12 @@ use crate::scenario::Scenario;
 use archive::{File, archive};
 use documentation::{Standard, documentation};
 use library::Library;
+use octant_fmu::c::{CATEGORIES, token};
 use octant_fmu::calibrator::Calibrator;
 use octant_fmu::table::Model;
 use reference::Reference;
 use std::path::PathBuf;
 use system::Configured;
-
-/// Log categories of the library, with what is logged in each.
-const LOG_CATEGORIES: [(&str, &str); 5] = [
-    ("logStatusWarning", "What is worth looking at and stops nothing"),
-    ("logStatusDiscard", "What was refused and changed nothing: values, steps"),
-    ("logStatusError", "Wrong calls"),
-    ("logStatusFatal", "What an instance can't go on after"),
-    ("logEvents", "What happened in the model"),
-];
 
 /// What is built.
 #[derive(Clone, Debug, Default)]
@@ -163,7 +155,6 @@ fn icons(model: &Model) -> Icons {
 /// One of our models, with what goes into its FMUs.
 struct Own {
     model: &'static Model,
-    token: String,
     reference: Reference,
 }
 
@@ -197,13 +188,10 @@ fn libraries(options: &Options) -> Result<Vec<Library>, BuildError> {
 }
 
 /// Our models, run with their start values.
-fn own() -> Result<[Own; 2], BuildError> {
-    let references = reference::closed_loop::<Plant, Calibrator>();
-    let references = references.map_err(|reason| BuildError::Model { reason })?;
-    Ok(references.map(|reference| {
-        let model = reference.model();
-        Own { model, token: octant_fmu::c::token(model), reference }
-    }))
+fn own() -> Result<Vec<Own>, BuildError> {
+    let references = reference::closed_loop::<Calibrator, Calibrator>();
+    let [reference, _] = references.map_err(|reason| BuildError::Model { reason })?;
+    Ok(vec![Own { model: reference.model(), reference }])
 }
 
 /// Builds everything; the files that were written.
@@ -238,7 +226,9 @@ pub fn build(options: &Options) -> Result<Vec<PathBuf>, BuildError> {
             }
         }
     }
-    write("octant.ssp", system::archive_of(&own, &second, &configured))?;
+    if let [plant, calibrator] = own.as_slice() {
+        write("octant.ssp", system::archive_of([plant, calibrator], &second, &configured))?;
+    }
     if options.scenario.is_some() {
         let path = options.out.clone();
         for (name, bytes) in configured.files(&own).map_err(failed(path))? {
@@ -250,12 +240,13 @@ pub fn build(options: &Options) -> Result<Vec<PathBuf>, BuildError> {
 
 /// One FMU.
 fn fmu(own: &Own, standard: Standard, libraries: &[Library]) -> std::io::Result<Vec<u8>> {
-    let (model, token) = (own.model, &own.token);
+    let model = own.model;
+    let token = token(model, standard.of_library());
     let identifier = format!("{}_{}", model.stem, standard.suffix());
     let icons = icons(model);
     let description = match standard {
-        Standard::Fmi2 => describe::fmi2(model, token),
-        Standard::Fmi3 => describe::fmi3(model, token),
+        Standard::Fmi2 => describe::fmi2(model, &token),
+        Standard::Fmi3 => describe::fmi3(model, &token),
     };
     let mut files = vec![File::new("modelDescription.xml", description.document()?)];
     for library in libraries {
@@ -297,7 +288,7 @@ mod tests {
         let platform = library::Platform { fmi2: "linux64", fmi3: "x86_64-linux", extension: "so" };
         let libraries = [Library { bytes: b"library".to_vec(), platform }];
         let [reference, _] = reference::closed_loop::<Sample, Sample>().unwrap();
-        let own = Own { model: &sample::SAMPLE, token: "{token}".to_owned(), reference };
+        let own = Own { model: &sample::SAMPLE, reference };
         let bytes = fmu(&own, standard, &libraries).unwrap();
         assert_eq!(bytes, fmu(&own, standard, &libraries).unwrap());
         let mut archive = zip::ZipArchive::new(Cursor::new(bytes)).unwrap();

@@ -31,14 +31,14 @@ impl Configured {
         if !matches!(scenario.source, Source::Plant) {
             return Err(failed("its samples don't come from the plant".to_owned()));
         }
-        let (plant, core, _) = configurations(scenario, Method::Primary, scenario.seed)
+        let (_, core, _) = configurations(scenario, Method::Primary, scenario.seed)
             .map_err(|error| failed(error.to_string()))?;
         let period_s = scenario.sample_period_ns as f64 * 1e-9;
         // One step more than there are samples: before the first step there is none.
         let steps = scenario.samples().unwrap_or(0).saturating_add(1);
         Ok(Self {
             name: name.to_owned(),
-            plant: super::plant_values(&plant, scenario).map_err(failed)?,
+            plant: Vec::new(),
             calibrator: octant_fmu::calibrator::start_values(&core),
             stop_s: steps as f64 * period_s,
             step_s: period_s,
@@ -47,8 +47,10 @@ impl Configured {
 
     /// Of the scenario that is built in.
     pub(super) fn built_in() -> Result<Self, BuildError> {
-        let scenario = Scenario::parse(BUILT_IN, "lockstep.toml", Path::new(""), &[])
-            .map_err(|error| BuildError::Scenario { name: "lockstep".into(), reason: error.to_string() })?;
+        let scenario =
+            Scenario::parse(BUILT_IN, "lockstep.toml", Path::new(""), &[]).map_err(|error| {
+                BuildError::Scenario { name: "lockstep".into(), reason: error.to_string() }
+            })?;
         Self::new(&scenario, "lockstep")
     }
 
@@ -64,7 +66,8 @@ impl Configured {
             let stem = format!("{}_{}", model.stem, self.name);
             let ssv = ssp::parameter_set(model, &self.name, self.of(model)).document()?;
             files.push((format!("{stem}.ssv"), ssv));
-            files.push((format!("{stem}.csv"), parameters::csv(model, self.of(model)).into_bytes()));
+            files
+                .push((format!("{stem}.csv"), parameters::csv(model, self.of(model)).into_bytes()));
         }
         Ok(files)
     }
@@ -72,11 +75,11 @@ impl Configured {
 
 /// `octant.ssp`: both FMUs, with the bytes that they have as files.
 pub(super) fn archive_of(
-    own: &[Own; 2],
+    own: [&Own; 2],
     fmus: &[Vec<u8>],
     configured: &Configured,
 ) -> std::io::Result<Vec<u8>> {
-    let components = own.each_ref().map(|own| ssp::Component {
+    let components = own.map(|own| ssp::Component {
         model: own.model,
         source: format!("resources/{}_fmi2.fmu", own.model.stem),
         parameters: format!("resources/{}.ssv", own.model.stem),
