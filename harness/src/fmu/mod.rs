@@ -3,13 +3,17 @@
 //! | module | idea |
 //! |---|---|
 //! | [`build`] | our own FMUs, from their tables |
+//! | [`archive`] | files of others opened and unpacked safely |
 //! | [`description`] | what a `modelDescription.xml` says, of both standards in one form |
 //! | [`library`] | the shared library of an unpacked FMU |
 //! | [`instance`] | an FMU that runs, of both standards and both kinds, behind one trait |
 //! | [`master`] | several FMUs together: system structures, order, loops, faults on connections |
 
+pub mod archive;
 pub mod build;
 pub mod description;
 pub mod instance;
 pub mod library;
 pub mod master;
+
+pub use instance::open::{OpenError, open, open_archive};
