@@ -65,6 +65,12 @@ impl Ledger {
         digest(&mut self.faulted, epoch);
     }
 
+    /// A number, before and after.
+    pub(crate) fn number(&mut self, clean: f64, faulted: f64) {
+        self.clean.update(&clean.to_bits().to_le_bytes());
+        self.faulted.update(&faulted.to_bits().to_le_bytes());
+    }
+
     pub(crate) fn commands(&mut self, clean: &GimbalCommand, faulted: &GimbalCommand) {
         for (into, command) in [(&mut self.clean, clean), (&mut self.faulted, faulted)] {
             into.update(&command.target.azimuth.to_le_bytes());

@@ -90,6 +90,12 @@ pub enum Trigger {
     },
     /// By hand: [`crate::Station::fire`].
     Manual,
+    /// So many epochs after a condition has come true that somebody else looks at: on connections,
+    /// where there is no core; see [`crate::connection::Station::begin`].
+    Outside {
+        /// Epochs after that.
+        delay: u64,
+    },
 }
 
 /// How often a fault comes back.
@@ -323,6 +329,17 @@ impl Clock {
         let Some(delay) = self.comes_true(news) else { return };
         if self.state == State::Waiting {
             self.state = State::Pending(news.epoch.saturating_add(delay));
+        }
+    }
+
+    /// Hears whether the condition held that somebody else looks at.
+    pub(crate) fn look_outside(&mut self, epoch: u64, holds: bool) {
+        let held = core::mem::replace(&mut self.held, holds);
+        let crossed = holds && !held;
+        if let (true, State::Waiting, Trigger::Outside { delay }) =
+            (crossed, self.state, &self.schedule.trigger)
+        {
+            self.state = State::Pending(epoch.saturating_add(*delay));
         }
     }
 

@@ -81,18 +81,29 @@ fn parameter(parameter: &'static Parameter) -> Key {
         Takes::Flag => Kind::Boolean,
         Takes::Choice(choices) => Kind::Choice(choices),
         Takes::Channels => Kind::Channels,
+        Takes::Number(limits) => Kind::Number(bounds(limits)),
+        Takes::Value => Kind::Either(&VALUE),
+        // The limits are looked at when the unit of the connection is known.
+        Takes::Difference(_) => Kind::Limit,
     };
     let default = parameter.default.map_or(Default::Required, |text| {
         // A text stays one where it would read as something else: `nan`, `1`.
         let is_text = match parameter.takes {
-            Takes::Quantity(..) | Takes::Choice(_) => true,
+            Takes::Quantity(..) | Takes::Choice(_) | Takes::Value => true,
             Takes::Channels => !text.starts_with('['),
-            Takes::Vector(_) | Takes::Integer(..) | Takes::Flag => false,
+            Takes::Vector(_)
+            | Takes::Integer(..)
+            | Takes::Flag
+            | Takes::Number(_)
+            | Takes::Difference(_) => false,
         };
         Default::Value(if is_text { format!("{text:?}").leak() } else { text })
     });
     key(parameter.name, kind, default, parameter.doc)
 }
+
+/// A value that an input can have.
+static VALUE: [Kind; 3] = [Kind::Text, Kind::Number(Bounds::Any), Kind::Boolean];
 
 fn bounds(bounds: catalogue::Bounds) -> Bounds {
     match bounds {

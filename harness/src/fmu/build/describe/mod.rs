@@ -6,7 +6,7 @@ mod types;
 
 pub(super) use fmi2::fmi2;
 pub(super) use fmi3::fmi3;
-pub(super) use types::{base_unit, enumerations, units};
+pub(super) use types::{base_unit, units};
 
 use super::element::Element;
 use octant_fmu::table::{Causality, Model, Variability, Variable};
