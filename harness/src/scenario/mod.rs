@@ -20,8 +20,8 @@ pub mod suite;
 mod tour;
 mod write;
 
-pub(crate) use error::suggestion;
 pub use error::{Place, Problem, ScenarioError};
+pub(crate) use error::{nearest, suggestion};
 pub use keys::SCHEMA;
 pub use quantity::{Dimension, Quantity};
 pub use read::faults::Fault;
