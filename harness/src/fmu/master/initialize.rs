@@ -131,9 +131,13 @@ impl Initializer<'_> {
                 let mut rest = values.as_mut_slice();
                 for group in &side.plan.groups {
                     let (these, others) = rest.split_at_mut(group.elements);
-                    if let Err(error) = self.instances[number].get(group, these) {
-                        return Err(self.instance_error(number, error));
-                    }
+                    self.instances[number].get(group, these).map_err(|error| {
+                        MasterError::Instance {
+                            node: node.name.clone(),
+                            time_s: self.start_s,
+                            error,
+                        }
+                    })?;
                     rest = others;
                 }
             }
@@ -275,7 +279,8 @@ fn side(system: &System, vertex: Vertex) -> &Side {
 fn vertices(system: &System) -> Vec<Vertex> {
     let mut all = Vec::new();
     for (number, node) in system.nodes.iter().enumerate() {
-        for (of, side) in [(Of::Input, &node.inputs), (Of::Fixed, &node.fixed), (Of::Output, &node.outputs)]
+        for (of, side) in
+            [(Of::Input, &node.inputs), (Of::Fixed, &node.fixed), (Of::Output, &node.outputs)]
         {
             all.extend((0..side.variables.len()).map(|at| Vertex { node: number, of, at }));
         }
@@ -284,11 +289,11 @@ fn vertices(system: &System) -> Vec<Vertex> {
 }
 
 /// All wires with their ends in the graph.
-fn links(system: &System) -> Vec<Link<'_>> {
+fn links<'a>(system: &'a System) -> Vec<Link<'a>> {
     let holds = |side: &Side, place: usize| {
         side.plan.places.iter().position(|range| range.contains(&place)).unwrap_or(0)
     };
-    let link = |wire, of| {
+    let link = |wire: &'a Wire, of| {
         let Wire { from, to, .. } = wire;
         let at = holds(&system.nodes[from.node].outputs, from.place);
         let from = Vertex { node: from.node, of: Of::Output, at };

@@ -17,6 +17,7 @@ pub mod flat;
 pub mod graph;
 pub mod initialize;
 pub mod order;
+pub mod simulation;
 pub mod solve;
 pub mod ssp;
 pub mod system;
