@@ -21,8 +21,8 @@ pub mod suite;
 mod tour;
 mod write;
 
-pub(crate) use error::suggestion;
 pub use error::{Place, Problem, ScenarioError};
+pub(crate) use error::{nearest, suggestion};
 pub use keys::SCHEMA;
 pub use ports::{Code, Made, Port, Set, Setting, Written};
 pub use quantity::{Dimension, Quantity};
