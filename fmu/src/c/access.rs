@@ -371,16 +371,17 @@ impl Instance {
     /// them is asked for.
     #[cold]
     fn compute_outputs<V>(&mut self, arrays: &Arrays<V>) -> Result<(), Refusal> {
-        let wanted = (0..arrays.count).any(|i| {
-            self.slots().get(arrays.reference(i)).is_some_and(|slot| slot.computed)
-        });
+        let wanted = (0..arrays.count)
+            .any(|i| self.slots().get(arrays.reference(i)).is_some_and(|slot| slot.computed));
         if wanted { self.initialize() } else { Ok(()) }
     }
 
     #[cold]
     fn unknown<T: Type>(&self, reference: usize) -> Refusal {
         let (kind, of) = (T::NAME, self.model().name);
-        Refusal::error(format!("{of} has no variable of type {kind} with value reference {reference}"))
+        Refusal::error(format!(
+            "{of} has no variable of type {kind} with value reference {reference}"
+        ))
     }
 
     #[cold]

@@ -7,6 +7,7 @@ use super::models::{AnyComponent, Maker};
 use super::state::Snapshots;
 use crate::table::Model;
 use crate::values::Values;
+use octant_fmi::fmi3::IntermediateUpdate;
 
 /// Slot of the time.
 const TIME: usize = 0;
@@ -65,6 +66,8 @@ impl Clone for Run {
 pub(super) struct Options {
     pub event_mode_used: bool,
     pub early_return_allowed: bool,
+    /// Called between the periods of a step that has several.
+    pub intermediate_update: Option<IntermediateUpdate>,
 }
 
 /// One instance.
@@ -150,6 +153,23 @@ impl Instance {
     #[inline]
     pub(super) fn outputs_are_stale(&self) -> bool {
         self.run.mode == Mode::Initialization && self.run.stale
+    }
+
+    /// Value references of the inputs that the variable with this one depends on.
+    pub(super) fn dependencies(&self, reference: u32) -> Result<Vec<u32>, Refusal> {
+        let model = self.maker.model;
+        if reference as usize == TIME {
+            return Ok(Vec::new());
+        }
+        let found = model.with_slots().find(|(slot, _)| *slot == reference as usize);
+        let (_, variable) = found.ok_or_else(|| {
+            Refusal::error(format!(
+                "{} has no variable with value reference {reference}",
+                model.name
+            ))
+        })?;
+        let first = |name: &&str| model.find(name).map(|(slot, _)| slot as u32);
+        Ok(variable.depends_on.iter().filter_map(first).collect())
     }
 
     pub(super) fn setup_experiment(

@@ -7,7 +7,7 @@
 
 use super::mode::Standard;
 use core::ffi::{CStr, c_void};
-use octant_fmi::fmi2::{self, DISCARD, ERROR, FATAL, OK, Status, WARNING};
+use octant_fmi::fmi2::{self, DISCARD, ERROR, OK, Status, WARNING};
 use octant_fmi::fmi3;
 use std::ffi::CString;
 
@@ -171,6 +171,7 @@ pub(super) unsafe fn string(pointer: *const core::ffi::c_char) -> Option<String>
 #[cfg(test)]
 mod tests {
     use super::*;
+    use octant_fmi::fmi2::FATAL;
 
     #[test]
     fn categories_are_switched_by_name() {

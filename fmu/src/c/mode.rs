@@ -95,15 +95,8 @@ pub(super) const EVENT: Modes = Modes::of(&[Event]);
 pub(super) const NEVER: Modes = Modes::of(&[]);
 
 /// All but the end by a panic, and a step that is under way.
-pub(super) const ALIVE: Modes = Modes::of(&[
-    Instantiated,
-    Initialization,
-    Step,
-    Event,
-    StepFailed,
-    Terminated,
-    Error,
-]);
+pub(super) const ALIVE: Modes =
+    Modes::of(&[Instantiated, Initialization, Step, Event, StepFailed, Terminated, Error]);
 
 /// The same, with a step under way.
 pub(super) const LOGGING: Modes = Modes::of(&[

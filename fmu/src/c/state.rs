@@ -8,6 +8,11 @@ use super::mode::{self, Mode, Refusal};
 use crate::values::Values;
 use core::ffi::c_void;
 use core::sync::atomic::{AtomicUsize, Ordering};
+use octant_state::{Format, StateError, check_count};
+
+/// What the bytes of an FMU state look like: token, mode, experiment, time, the cells of all
+/// variables, and the bytes of the component where there is one.
+const FORMAT: Format = Format { magic: "OCTFMUST", version: 1, what: "the state of an FMU" };
 
 /// Names of kept states. No name is given twice, so that one of another instance, or one that has
 /// been freed, is none of these.
@@ -110,14 +115,16 @@ impl Instance {
     ) -> Result<(), Refusal> {
         self.require(mode::ALIVE)?;
         if from.is_null() || name.is_null() {
-            return Err(Refusal::error("the bytes, or the place for the FMU state, is a null pointer"));
+            return Err(Refusal::error(
+                "the bytes, or the place for the FMU state, is a null pointer",
+            ));
         }
         if size > isize::MAX as usize {
             return Err(Refusal::error(format!("{size} bytes are more than there can be")));
         }
         // SAFETY: the importer vouches for `size` bytes.
         let bytes = unsafe { core::slice::from_raw_parts(from, size) };
-        let run = self.from_bytes(bytes).map_err(|reason| {
+        let run = self.run_from_bytes(bytes).map_err(|reason| {
             Refusal::error(format!("the bytes are no state of this FMU: {reason}"))
         })?;
         put(name, self.snapshots.keep(run), "the FMU state")
@@ -130,4 +137,71 @@ fn read(name: *mut *mut c_void) -> Result<*mut c_void, Refusal> {
     }
     // SAFETY: it isn't null, and the importer vouches for the rest.
     Ok(unsafe { name.read_unaligned() })
+}
+
+impl Instance {
+    fn to_bytes(&self, run: &Run) -> Vec<u8> {
+        let Experiment { announced, start_s, stop_s } = run.experiment;
+        let component = run.component.as_ref().map(|component| {
+            let mut bytes = Vec::new();
+            component.save(&mut bytes);
+            bytes
+        });
+        let mut bytes = Vec::new();
+        FORMAT.write(&mut bytes, |to| {
+            to.value("token", self.maker().token(self.standard()));
+            to.value("mode", &(run.mode as u8));
+            to.value("experiment", &(announced, start_s, stop_s));
+            to.value("stale", &run.stale);
+            to.value("tick", &run.tick);
+            to.value("cells", run.values.cells());
+            to.value("component", &component);
+        });
+        bytes
+    }
+
+    fn run_from_bytes(&self, bytes: &[u8]) -> Result<Run, String> {
+        let mut from = FORMAT.read(bytes).map_err(said)?;
+        let token: &str = from.value("token").map_err(said)?;
+        if token != self.maker().token(self.standard()) {
+            return Err(format!("they are of another model or standard, with the token {token}"));
+        }
+        let mode: u8 = from.value("mode").map_err(said)?;
+        let mode = Mode::ALL.into_iter().find(|known| *known as u8 == mode);
+        let mode = match mode {
+            // An instance that steps within its steps isn't kept, and a dead one neither.
+            None | Some(Mode::IntermediateUpdate | Mode::Fatal) => {
+                return Err("they are of no mode that can be kept".to_owned());
+            }
+            Some(Mode::Event) if !self.options.event_mode_used => Mode::Step,
+            Some(mode) => mode,
+        };
+        let (announced, start_s, stop_s) = from.value("experiment").map_err(said)?;
+        let experiment = Experiment { announced, start_s, stop_s };
+        let stale = from.value("stale").map_err(said)?;
+        let tick: u64 = from.value("tick").map_err(said)?;
+        check_count("tick", tick).map_err(said)?;
+        let cells: Vec<u64> = from.value("cells").map_err(said)?;
+        let component: Option<Vec<u8>> = from.value("component").map_err(said)?;
+        from.end().map_err(said)?;
+
+        let mut values = Values::new(self.model());
+        if cells.len() != values.cells().len() {
+            let (found, expected) = (cells.len(), values.cells().len());
+            return Err(format!("they have {found} values, the model has {expected}"));
+        }
+        values.cells_mut().copy_from_slice(&cells);
+        let component = component
+            .map(|bytes| (self.maker().load)(&bytes, &values))
+            .transpose()
+            .map_err(|reason| format!("its component: {reason}"))?;
+        if component.is_none() && matches!(mode, Mode::Step | Mode::Event) {
+            return Err("there is no component in them".to_owned());
+        }
+        Ok(Run { mode, experiment, values, component, stale, tick })
+    }
+}
+
+fn said(error: StateError) -> String {
+    error.to_string()
 }

@@ -51,7 +51,8 @@ impl Instance {
             )));
         }
         let periods = periods as u64;
-        if !((found - periods as f64).abs() <= STEP_TOLERANCE && (least..=most).contains(&periods)) {
+        if !((found - periods as f64).abs() <= STEP_TOLERANCE && (least..=most).contains(&periods))
+        {
             return Err(self.wrong_step(step_s));
         }
         let own_s = self.tick_s(self.run.tick);

@@ -12,6 +12,7 @@ use crate::values::Values;
 use octant_calibration::Core;
 use octant_sample::counts::{Accumulator, DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS};
 use octant_sample::{Aiding, DeviceTime, GimbalAngles, Mode, Output, Reference, Sample, Status};
+use octant_state::{Format, StateError, check_count};
 use table::slot;
 
 /// The core, and what turns the variables into its samples.
@@ -180,10 +181,48 @@ impl Component for Calibrator {
     }
 
     fn save(&self, bytes: &mut Vec<u8>) {
-        let _ = bytes;
+        let mut core = Vec::new();
+        self.core.save(&mut core);
+        FORMAT.write(bytes, |to| {
+            to.value("remainders of delta_theta", &self.delta_theta.map(|axis| axis.remainder));
+            let remainders = self.delta_velocity.map(|axis| axis.remainder);
+            to.value("remainders of delta_velocity", &remainders);
+            to.value("counted", &self.counted);
+            to.value("core", &core);
+        });
     }
 
-    fn load(_: &[u8], _: &Values) -> Result<Self, String> {
-        Err("states of the core can't be read from bytes".to_owned())
+    fn load(bytes: &[u8], values: &Values) -> Result<Self, String> {
+        Self::read(bytes, values).map_err(|error| error.to_string())
+    }
+}
+
+/// What the bytes of a Calibrator look like.
+const FORMAT: Format = Format { magic: "OCTCALIB", version: 1, what: "the state of a Calibrator" };
+
+impl Calibrator {
+    fn read(bytes: &[u8], values: &Values) -> Result<Self, StateError> {
+        let mut from = FORMAT.read(bytes)?;
+        let carried = |remainders: [f64; 3]| remainders.map(|remainder| Accumulator { remainder });
+        let delta_theta = carried(from.value("remainders of delta_theta")?);
+        let delta_velocity = carried(from.value("remainders of delta_velocity")?);
+        let counted = from.value("counted")?;
+        check_count("counted", counted)?;
+        let core: Vec<u8> = from.value("core")?;
+        from.end()?;
+        let core = Core::load(&core)?;
+        let output = core.latest();
+        Ok(Self {
+            period_ns: values.count(slot::PERIOD),
+            external_stamps: values.boolean(slot::EXTERNAL_STAMPS),
+            delta_theta,
+            delta_velocity,
+            counted,
+            mode: output.mode,
+            mode_changed: false,
+            revision: output.parameters_revision,
+            output,
+            core,
+        })
     }
 }
