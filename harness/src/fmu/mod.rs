@@ -6,6 +6,7 @@
 //! | [`archive`] | files of others opened and unpacked safely |
 //! | [`description`] | what a `modelDescription.xml` says, of both standards in one form |
 //! | [`library`] | the shared library of an unpacked FMU |
+//! | [`mapping`] | which of its variables is what |
 //! | [`instance`] | an FMU that runs, of both standards and both kinds, behind one trait |
 //! | [`master`] | several FMUs together: system structures, order, loops, faults on connections |
 
@@ -14,4 +15,7 @@ pub mod build;
 pub mod description;
 pub mod instance;
 pub mod library;
+pub mod mapping;
 pub mod master;
+
+pub use instance::open::{OpenError, open, open_archive};

@@ -177,6 +177,13 @@ pub fn run_method(
     recording: Recording<'_>,
     control: &Control,
 ) -> Result<MethodRun, MethodError> {
+    if scenario.endpoint != crate::scenario::Endpoint::InProcess {
+        return Err(SetupError::Source(SourceError::Read {
+            path: "endpoint.uri".to_owned(),
+            reason: "FMUs as an endpoint are not part of this version".to_owned(),
+        })
+        .into());
+    }
     let (plant, mut core, draws) = configurations(scenario, method, seed)?;
     let opened = crate::source::open(scenario).map_err(SetupError::Source)?;
     let simulated = opened.is_none();

@@ -27,5 +27,9 @@ pub fn open(scenario: &Scenario) -> Result<Option<Box<dyn Source>>, SourceError>
             let mapping = TextMapping { files, ..mapping.clone() };
             Ok(Some(Box::new(TextSource::open(&mapping)?)))
         }
+        scenario::Source::Fmu(fmu) => Err(SourceError::Read {
+            path: fmu.file.0.clone(),
+            reason: "FMUs as a source are not part of this version".to_owned(),
+        }),
     }
 }

@@ -155,7 +155,8 @@ impl Cursor {
     fn plan_dwell(&mut self) {
         let stop = self.target();
         self.departure_s = self.arrival_s + stop.weight * self.dwell_s;
-        let tick = |time_s: f64| (time_s / self.sample_s + 0.5) as u64;
+        // Past any run, and still something can be added to it.
+        let tick = |time_s: f64| ((time_s / self.sample_s + 0.5) as u64).min(u64::MAX / 4);
         (self.arrival_tick, self.departure_tick) = (tick(self.arrival_s), tick(self.departure_s));
         self.command.target = GimbalAngles::from_rad(stop.azimuth_rad, stop.roll_rad);
     }

@@ -81,6 +81,28 @@ impl<T: State, const N: usize> State for [T; N] {
     }
 }
 
+/// As many of them as the configuration says.
+impl<T: State> State for alloc::vec::Vec<T> {
+    fn save(&self, to: &mut Writer) {
+        self.iter().for_each(|part| part.save(to));
+    }
+
+    fn load(&mut self, from: &mut Reader<'_>) -> Result<(), StateError> {
+        self.iter_mut().try_for_each(|part| part.load(from))
+    }
+}
+
+/// What is kept elsewhere.
+impl<T: State + ?Sized> State for alloc::boxed::Box<T> {
+    fn save(&self, to: &mut Writer) {
+        T::save(self, to);
+    }
+
+    fn load(&mut self, from: &mut Reader<'_>) -> Result<(), StateError> {
+        T::load(self, from)
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -24,6 +24,14 @@ impl Standard {
         }
     }
 
+    /// As the library has it.
+    pub(super) fn of_library(self) -> octant_fmu::c::Standard {
+        match self {
+            Self::Fmi2 => octant_fmu::c::Standard::Fmi2,
+            Self::Fmi3 => octant_fmu::c::Standard::Fmi3,
+        }
+    }
+
     fn name(self) -> &'static str {
         match self {
             Self::Fmi2 => "FMI 2.0",
@@ -62,7 +70,7 @@ pub(super) fn documentation(model: &Model, standard: Standard, icon: &str) -> St
                     h2 id="log" { "Log categories" }
                     table {
                         tbody {
-                            @for (name, description) in super::LOG_CATEGORIES {
+                            @for (name, description) in super::CATEGORIES {
                                 tr { td { code { (name) } } td { (description) } }
                             }
                         }

@@ -120,12 +120,8 @@ fn fault(table: &Reader<'_>, scenario: &Scenario, timing: &Timing) -> Result<Fau
     let name = table.text("kind")?;
     let kind = kinds::named(name)
         .ok_or_else(|| table.problem("kind", format!("found {name:?}, which is no kind")))?;
-    if scenario.source != Source::Plant
-        && let Some(needs) = needs_plant(kind)
-    {
-        let message =
-            format!("{name} {needs}, and the source is a recording: what it holds has happened");
-        return Err(table.problem("kind", message));
+    if let Some(why) = impossible(kind, &scenario.source) {
+        return Err(table.problem("kind", format!("{name} {why}")));
     }
     let mut values = Values::default();
     for parameter in kind.parameters {
@@ -139,11 +135,22 @@ fn fault(table: &Reader<'_>, scenario: &Scenario, timing: &Timing) -> Result<Fau
     })
 }
 
-/// Why a kind needs the simulated instrument.
-fn needs_plant(kind: &Kind) -> Option<&'static str> {
-    match kind.acts {
-        Acts::Plant => Some("acts inside the simulated instrument"),
-        Acts::Command => Some("acts on the set points of the simulated turntable"),
+/// Why a kind can't act on a source.
+fn impossible(kind: &Kind, source: &Source) -> Option<&'static str> {
+    match (kind.acts, source) {
+        (Acts::Plant, _) if source.has_plant() => None,
+        (Acts::Plant, Source::Fmu(_)) => Some(
+            "acts inside the simulated instrument, and the source is an FMU, into which it doesn't \
+             reach",
+        ),
+        (Acts::Plant, _) => Some(
+            "acts inside the simulated instrument, and the source is a recording: what it holds has \
+             happened",
+        ),
+        (Acts::Command, _) if source.is_recorded() => Some(
+            "acts on the set points of the simulated turntable, and the source is a recording: what \
+             it holds has happened",
+        ),
         _ => None,
     }
 }

@@ -53,3 +53,6 @@ impl fmt::Display for SspError {
 }
 
 impl std::error::Error for SspError {}
+
+#[cfg(test)]
+mod tests;

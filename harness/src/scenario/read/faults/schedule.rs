@@ -122,10 +122,11 @@ impl<'a> Timing<'a> {
         } else if table.node("when").is_some() {
             let (signal, comparison, value) =
                 condition::parse(table.text("when")?).map_err(|m| table.problem("when", m))?;
-            if signal.needs_truth() && self.scenario.source != Source::Plant {
+            if signal.needs_truth()
+                && let Some(without) = without_truth(&self.scenario.source)
+            {
                 let found = table.text("when")?;
-                let message =
-                    format!("found {found:?}, which needs truth, and the source is a recording");
+                let message = format!("found {found:?}, which needs truth, and {without}");
                 return Err(table.problem("when", message));
             }
             Trigger::Condition { signal, comparison, value, delay }
@@ -462,4 +463,15 @@ pub(super) fn check_chains(tables: &[Reader<'_>], all: &[Fault]) -> Result<(), P
         }
     }
     Ok(())
+}
+
+/// What a source without truth is, in words. An FMU without a map may be our plant, which has it.
+fn without_truth(source: &Source) -> Option<&'static str> {
+    match source {
+        Source::Plant => None,
+        Source::Fmu(fmu) if fmu.is_motion() || fmu.map.is_empty() => None,
+        Source::Fmu(fmu) if fmu.map.iter().any(|m| m.channel.name.starts_with("truth.")) => None,
+        Source::Fmu(_) => Some("source.fmu.map has no truth"),
+        Source::Replay { .. } | Source::Text(_) => Some("the source is a recording"),
+    }
 }

@@ -1,0 +1,94 @@
+//! One CAN frame.
+
+/// Which CAN.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Format {
+    /// Classic CAN, up to 8 bytes.
+    Classic,
+    /// CAN FD, up to 64 bytes.
+    Fd,
+}
+
+impl Format {
+    /// Bytes that a frame holds at most.
+    #[must_use]
+    pub const fn room(self) -> usize {
+        match self {
+            Self::Classic => 8,
+            Self::Fd => 64,
+        }
+    }
+
+    /// The length that a frame has to have to hold so many bytes: FD knows only some beyond 8.
+    /// More than fit: all there is room for.
+    #[must_use]
+    pub const fn length_for(self, bytes: usize) -> usize {
+        const STEPS: [usize; 7] = [12, 16, 20, 24, 32, 48, 64];
+        if bytes <= 8 {
+            return bytes;
+        }
+        let mut i = 0;
+        while i < STEPS.len() {
+            if bytes <= STEPS[i] && STEPS[i] <= self.room() {
+                return STEPS[i];
+            }
+            i += 1;
+        }
+        self.room()
+    }
+}
+
+/// A data frame with an identifier of 11 bits.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub struct Frame {
+    id: u16,
+    format: Format,
+    length: u8,
+    data: [u8; 64],
+}
+
+impl Frame {
+    /// A frame as it came from a bus. `None` where no data frame with 11 bits of identifier is like
+    /// that: an identifier beyond 0x7FF, or a length that the format doesn't know.
+    #[must_use]
+    pub fn new(id: u16, format: Format, data: &[u8]) -> Option<Self> {
+        let length = data.len();
+        if id > 0x7FF || length > format.room() || format.length_for(length) != length {
+            return None;
+        }
+        let mut frame = Self { id, format, length: length as u8, data: [0; 64] };
+        frame.data[..length].copy_from_slice(data);
+        Some(frame)
+    }
+
+    /// Identifier.
+    #[must_use]
+    pub fn id(&self) -> u16 {
+        self.id
+    }
+
+    /// Format.
+    #[must_use]
+    pub fn format(&self) -> Format {
+        self.format
+    }
+
+    /// Data.
+    #[must_use]
+    pub fn data(&self) -> &[u8] {
+        &self.data[..usize::from(self.length)]
+    }
+}
+
+impl core::fmt::Debug for Frame {
+    /// As `cansend` writes it.
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        let mark = match self.format {
+            Format::Classic => "#",
+            // Bit rate switch.
+            Format::Fd => "##1",
+        };
+        write!(f, "{:03X}{mark}", self.id)?;
+        self.data().iter().try_for_each(|byte| write!(f, "{byte:02X}"))
+    }
+}

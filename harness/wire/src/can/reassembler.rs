@@ -1,0 +1,294 @@
+//! CAN frames to messages, whatever comes.
+//!
+//! Each slot is put together on its own, since a frame of higher priority may come between two segments.
+//! Segments of a slot have to come in order: one that doesn't follow ends the message begun. The CRC
+//! tells where segments of two messages met.
+
+use super::segments::checksum;
+use super::{Format, Frame, Slot};
+use crate::message::{Kind, MAX_PAYLOAD_BYTES, Message, Role};
+use crate::{Unreadable, VERSION};
+
+/// Why a message was dropped.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum Cause {
+    /// So many segments never came.
+    #[error("{0} segments are missing")]
+    Missing(u8),
+    /// A segment came after a later one.
+    #[error("a segment came after a later one")]
+    Disordered,
+    /// The next message began before the end of this one.
+    #[error("the next message began before the end of this one")]
+    Incomplete,
+    /// Segments of different messages met, or one is damaged.
+    #[error("the segments are not of one message: CRC-32 {found:#010x}, computed {computed:#010x}")]
+    Mixed {
+        /// CRC in the first segment.
+        found: u32,
+        /// CRC of the payload.
+        computed: u32,
+    },
+    /// A frame of another length than its segment, or with something behind the end of the message.
+    #[error("the frame has {found} bytes, expected are {expected} with zeros behind the message")]
+    Malformed {
+        /// Bytes of the frame.
+        found: u8,
+        /// Bytes of the segment.
+        expected: u8,
+    },
+    /// Intact, but not understood.
+    #[error(transparent)]
+    Unreadable(Unreadable),
+}
+
+/// A message that was dropped.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Lost {
+    /// Whose message of which kind.
+    pub slot: Slot,
+    /// Why.
+    pub cause: Cause,
+}
+
+/// What became of a message.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[expect(clippy::large_enum_variant, reason = "the large variant is the one that comes")]
+pub enum Event {
+    /// It is there.
+    Received {
+        /// Who sent it.
+        sender: Role,
+        /// The message.
+        message: Message,
+    },
+    /// It was dropped.
+    Lost(Lost),
+}
+
+/// What came so far.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counters {
+    /// Frames, all of them.
+    pub frames: u64,
+    /// Frames that are nobody's business here: other identifiers, the other format, other senders.
+    pub foreign: u64,
+    /// Messages received.
+    pub messages: u64,
+    /// Segments that came twice in a row: dropped once, no harm done.
+    pub duplicated: u64,
+    /// Segments that never came, as far as a later one tells.
+    pub missing: u64,
+    /// Segments that came after a later one.
+    pub disordered: u64,
+    /// Segments of a message that was dropped already.
+    pub orphaned: u64,
+    /// Messages dropped because the next one began.
+    pub incomplete: u64,
+    /// Messages whose CRC is wrong.
+    pub mixed: u64,
+    /// Frames of a wrong length, or not zero behind their message.
+    pub malformed: u64,
+    /// Intact messages that are none of this version.
+    pub unreadable: u64,
+}
+
+impl Counters {
+    /// Nothing is lost, damaged or doubled. Foreign frames may come.
+    #[must_use]
+    pub fn is_clean(&self) -> bool {
+        let Self { frames, foreign, messages, .. } = *self;
+        *self == Self { frames, foreign, messages, ..Self::default() }
+    }
+
+    /// Messages that did not come together as they were sent.
+    #[must_use]
+    pub fn damaged(&self) -> u64 {
+        self.incomplete + self.mixed + self.malformed
+    }
+}
+
+/// How far the message of a slot is.
+#[derive(Clone, Copy, Debug, Default)]
+struct Progress {
+    /// Segments that are there, from the first on.
+    held: usize,
+    /// The message is given up: wait for the next first segment.
+    dropped: bool,
+}
+
+impl Progress {
+    const DROPPED: Self = Self { held: 0, dropped: true };
+}
+
+/// Puts messages together from frames as they come.
+#[derive(Clone, Debug)]
+pub struct Reassembler {
+    /// Whose messages; a bit for each role.
+    senders: u8,
+    format: Format,
+    progress: [Progress; Slot::ALL.len()],
+    images: [u8; Slot::ALL_IMAGES_BYTES],
+    counters: Counters,
+}
+
+impl Reassembler {
+    /// Takes frames of one format from these senders; all others are foreign.
+    #[must_use]
+    pub fn new(senders: &[Role], format: Format) -> Self {
+        Self {
+            senders: senders.iter().fold(0, |bits, role| bits | 1 << (*role as u8)),
+            format,
+            progress: [Progress::default(); Slot::ALL.len()],
+            images: [0; Slot::ALL_IMAGES_BYTES],
+            counters: Counters::default(),
+        }
+    }
+
+    /// What came so far.
+    #[must_use]
+    pub fn counters(&self) -> &Counters {
+        &self.counters
+    }
+
+    /// Messages that are begun and not yet whole: on a bus that has gone still, messages that lost
+    /// their end, or frames with another identifier than they were sent with.
+    #[must_use]
+    pub fn unfinished(&self) -> usize {
+        let begun = |slot: &&Slot| {
+            let held = self.progress[usize::from(slot.number) - 1].held;
+            (1..slot.segments(self.format)).contains(&held)
+        };
+        Slot::ALL.iter().filter(begun).count()
+    }
+
+    /// Takes a frame. Says what became of a message when that is decided.
+    pub fn receive(&mut self, frame: &Frame) -> Option<Event> {
+        self.counters.frames += 1;
+        let known = Slot::of_id(frame.id()).filter(|(slot, _, format)| {
+            *format == self.format && self.senders & 1 << (slot.sender as u8) != 0
+        });
+        let Some((slot, segment, format)) = known else {
+            self.counters.foreign += 1;
+            return None;
+        };
+        match self.take(slot, segment, format, frame) {
+            Ok(None) => None,
+            Ok(Some(message)) => {
+                self.counters.messages += 1;
+                Some(Event::Received { sender: slot.sender, message })
+            }
+            Err(cause) => {
+                let counters = &mut self.counters;
+                match cause {
+                    Cause::Missing(count) => counters.missing += u64::from(count),
+                    Cause::Disordered => counters.disordered += 1,
+                    Cause::Incomplete => counters.incomplete += 1,
+                    Cause::Mixed { .. } => counters.mixed += 1,
+                    Cause::Malformed { .. } => counters.malformed += 1,
+                    Cause::Unreadable(_) => counters.unreadable += 1,
+                }
+                Some(Event::Lost(Lost { slot, cause }))
+            }
+        }
+    }
+
+    fn take(
+        &mut self,
+        slot: Slot,
+        segment: usize,
+        format: Format,
+        frame: &Frame,
+    ) -> Result<Option<Message>, Cause> {
+        let count = slot.segments(format);
+        let at = segment * format.room();
+        let end = slot.image_bytes().min(at + format.room());
+        let progress = &mut self.progress[usize::from(slot.number) - 1];
+        let image = &mut self.images[slot.offset()..][..slot.image_bytes()];
+        let data = frame.data();
+
+        if let (Kind::Hello, 0, Some(version)) = (slot.kind, segment, data.first_chunk::<2>()) {
+            let found = u16::from_le_bytes(*version);
+            // Of a newer hello only this much is known.
+            if found > VERSION {
+                *progress = Progress::DROPPED;
+                return Err(Cause::Unreadable(Unreadable::NewerVersion { found }));
+            }
+        }
+        let expected = slot.frame_bytes(segment, format);
+        let (here, behind) = data.split_at(data.len().min(end - at));
+        if data.len() != expected || behind.iter().any(|byte| *byte != 0) {
+            *progress = Progress::DROPPED;
+            let [found, expected] = [data.len(), expected].map(|bytes| bytes as u8);
+            return Err(Cause::Malformed { found, expected });
+        }
+        // A message of one segment may well say the same again.
+        let again = progress.held == segment + 1 && count > 1;
+        if again && !(segment == 0 && progress.held == count) && image[at..end] == *here {
+            self.counters.duplicated += 1;
+            return Ok(None);
+        }
+        if segment == 0 {
+            let incomplete = (1..count).contains(&progress.held);
+            *progress = Progress { held: 1, dropped: false };
+            image[at..end].copy_from_slice(here);
+            if incomplete {
+                return Err(Cause::Incomplete);
+            }
+        } else {
+            if progress.dropped {
+                self.counters.orphaned += 1;
+                return Ok(None);
+            }
+            // After the last segment none is held of the next message.
+            let held = if progress.held == count { 0 } else { progress.held };
+            if segment > held {
+                *progress = Progress::DROPPED;
+                return Err(Cause::Missing((segment - held) as u8));
+            }
+            if segment < held {
+                *progress = Progress::DROPPED;
+                return Err(Cause::Disordered);
+            }
+            progress.held += 1;
+            image[at..end].copy_from_slice(here);
+        }
+        if progress.held < count {
+            return Ok(None);
+        }
+        read(slot, image).map(Some)
+    }
+}
+
+/// The message of a whole image.
+fn read(slot: Slot, image: &[u8]) -> Result<Message, Cause> {
+    let mut payload = [0; MAX_PAYLOAD_BYTES];
+    let payload = &mut payload[..slot.kind.payload_bytes()];
+    payload[..4].copy_from_slice(&image[..4]);
+    payload[4..].copy_from_slice(&image[8..]);
+    let crc = image[4..].first_chunk().copied().unwrap_or_default();
+    let (found, computed) = (u32::from_le_bytes(crc), checksum(slot, payload));
+    if found != computed {
+        return Err(Cause::Mixed { found, computed });
+    }
+    let message = Message::read(slot.kind, payload).map_err(Cause::Unreadable)?;
+    // What an identifier says, and what the message says of itself.
+    let contradiction = match message {
+        Message::Hello(hello) if hello.role != slot.sender => {
+            Some(("role", hello.role as u8, "that of its identifier"))
+        }
+        Message::Parameters(segment) if segment.segment != slot.parameters => {
+            Some(("segment", segment.segment, "that of its identifier"))
+        }
+        _ => None,
+    };
+    match contradiction {
+        Some((field, found, expected)) => Err(Cause::Unreadable(Unreadable::Value {
+            kind: slot.kind,
+            field,
+            found: found.into(),
+            expected,
+        })),
+        None => Ok(message),
+    }
+}

@@ -1,0 +1,184 @@
+//! Identifiers: which message from whom.
+//!
+//! An identifier is `format (1 bit, FD 1), slot (5 bits), segment (5 bits)`. A slot is a message of
+//! one sender; a lower one wins the bus. Slots 0 and 31 stay free: 0 for what has to win over all, and 31
+//! because identifiers that begin with seven ones are not allowed on every bus.
+
+use super::{Format, MAX_IMAGE_BYTES};
+use crate::message::{Kind, PARAMETERS_SEGMENTS, Role};
+
+/// A message of one sender; of parameters, each segment is one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Slot {
+    /// Its number, 1 to 28.
+    pub number: u8,
+    /// Who sends.
+    pub sender: Role,
+    /// What.
+    pub kind: Kind,
+    /// Which segment of the parameters; 0 for other kinds.
+    pub parameters: u8,
+}
+
+const fn slot(number: u8, sender: Role, kind: Kind) -> Slot {
+    Slot { number, sender, kind, parameters: 0 }
+}
+
+const fn sixth(parameters: u8) -> Slot {
+    Slot { number: 23 + parameters, sender: Role::Device, kind: Kind::Parameters, parameters }
+}
+
+const SLOTS: usize = 22 + PARAMETERS_SEGMENTS;
+
+use Role::{Device, Harness, Instrument};
+
+impl Slot {
+    /// All slots, by priority.
+    pub const ALL: [Self; SLOTS] = [
+        slot(1, Harness, Kind::Bye),
+        slot(2, Device, Kind::Bye),
+        slot(3, Instrument, Kind::Bye),
+        slot(4, Harness, Kind::TimeRequest),
+        slot(5, Device, Kind::TimeReply),
+        slot(6, Instrument, Kind::TimeReply),
+        slot(7, Instrument, Kind::Aiding),
+        slot(8, Instrument, Kind::Sample),
+        slot(9, Harness, Kind::Aiding),
+        slot(10, Harness, Kind::Sample),
+        slot(11, Harness, Kind::Restart),
+        slot(12, Harness, Kind::End),
+        slot(13, Device, Kind::Output),
+        slot(14, Device, Kind::Ready),
+        slot(15, Harness, Kind::Hello),
+        slot(16, Device, Kind::Hello),
+        slot(17, Instrument, Kind::Hello),
+        slot(18, Harness, Kind::Heartbeat),
+        slot(19, Device, Kind::Heartbeat),
+        slot(20, Instrument, Kind::Heartbeat),
+        slot(21, Device, Kind::Status),
+        slot(22, Instrument, Kind::Status),
+        sixth(0),
+        sixth(1),
+        sixth(2),
+        sixth(3),
+        sixth(4),
+        sixth(5),
+    ];
+
+    /// Slot of a message, if its sender sends such messages.
+    #[must_use]
+    pub fn of(sender: Role, kind: Kind, parameters: u8) -> Option<Self> {
+        let parameters = if kind == Kind::Parameters { parameters } else { 0 };
+        Self::ALL
+            .iter()
+            .find(|slot| (slot.sender, slot.kind, slot.parameters) == (sender, kind, parameters))
+            .copied()
+    }
+
+    /// Slot, segment and format that an identifier stands for.
+    #[must_use]
+    pub fn of_id(id: u16) -> Option<(Self, usize, Format)> {
+        let format = if id & 0x400 == 0 { Format::Classic } else { Format::Fd };
+        let slot = Self::ALL.get(usize::from(id >> 5 & 0x1F).checked_sub(1)?)?;
+        let segment = usize::from(id & 0x1F);
+        (id <= 0x7FF && segment < slot.segments(format)).then_some((*slot, segment, format))
+    }
+
+    /// Identifier of a segment.
+    #[must_use]
+    pub const fn id(self, segment: usize, format: Format) -> u16 {
+        let format = match format {
+            Format::Classic => 0,
+            Format::Fd => 0x400,
+        };
+        format | (self.number as u16) << 5 | (segment as u16 & 0x1F)
+    }
+
+    /// Bytes of the image.
+    #[must_use]
+    pub const fn image_bytes(self) -> usize {
+        self.kind.payload_bytes() + 4
+    }
+
+    /// Segments that the image is cut into.
+    #[must_use]
+    pub const fn segments(self, format: Format) -> usize {
+        self.image_bytes().div_ceil(format.room())
+    }
+
+    /// Length of the frame of a segment; behind the image it is filled up with zeros.
+    #[must_use]
+    pub const fn frame_bytes(self, segment: usize, format: Format) -> usize {
+        let left = self.image_bytes().saturating_sub(segment * format.room());
+        format.length_for(left)
+    }
+
+    /// Where the slot's image begins in a buffer that holds one of each slot.
+    pub(super) const fn offset(self) -> usize {
+        OFFSETS[self.number as usize - 1]
+    }
+
+    /// Bytes of a buffer that holds an image of each slot.
+    pub(super) const ALL_IMAGES_BYTES: usize = OFFSETS[SLOTS];
+}
+
+/// Sums of the images before each slot, and of all.
+const OFFSETS: [usize; SLOTS + 1] = {
+    let mut offsets = [0; SLOTS + 1];
+    let mut i = 0;
+    while i < SLOTS {
+        offsets[i + 1] = offsets[i] + Slot::ALL[i].image_bytes();
+        i += 1;
+    }
+    offsets
+};
+
+const _: () = {
+    let mut i = 0;
+    while i < SLOTS {
+        assert!(Slot::ALL[i].number as usize == i + 1, "slots are numbered in order, from 1");
+        assert!(Slot::ALL[i].image_bytes() <= MAX_IMAGE_BYTES, "the longest image is the longest");
+        assert!(Slot::ALL[i].segments(Format::Classic) <= 32, "five bits number the segments");
+        i += 1;
+    }
+};
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_sender_has_a_slot_for_what_it_sends_and_for_nothing_else() {
+        for kind in Kind::ALL {
+            for role in Role::ALL {
+                let slot = Slot::of(role, kind, 0);
+                assert_eq!(slot.is_some(), kind.senders().contains(&role), "{role:?} {kind:?}");
+            }
+        }
+        assert_eq!(Slot::of(Role::Device, Kind::Parameters, 6), None);
+    }
+
+    #[test]
+    fn an_identifier_and_its_slot_are_the_same_thing() {
+        let mut found = 0;
+        for id in 0..=0xFFFF {
+            if let Some((slot, segment, format)) = Slot::of_id(id) {
+                assert_eq!(slot.id(segment, format), id);
+                found += 1;
+            }
+        }
+        let frames = |format| Slot::ALL.iter().map(|slot| slot.segments(format)).sum::<usize>();
+        assert_eq!(found, frames(Format::Classic) + frames(Format::Fd));
+    }
+
+    #[test]
+    fn a_sample_is_seven_classic_frames_or_one() {
+        let sample = Slot::of(Role::Harness, Kind::Sample, 0).unwrap();
+        assert_eq!(sample.segments(Format::Classic), 7);
+        assert_eq!(sample.segments(Format::Fd), 1);
+        assert_eq!(sample.frame_bytes(0, Format::Fd), 64);
+        let output = Slot::of(Role::Device, Kind::Output, 0).unwrap();
+        assert_eq!(output.segments(Format::Classic), 17);
+        assert_eq!([0, 1, 2].map(|i| output.frame_bytes(i, Format::Fd)), [64, 64, 8]);
+    }
+}

@@ -1,0 +1,142 @@
+//! Kinds of messages and who sends them.
+
+/// Who sends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[repr(u8)]
+pub enum Role {
+    /// The program that tests: it sends samples and gets outputs.
+    Harness = 0,
+    /// What is tested: it gets samples and answers with outputs.
+    Device = 1,
+    /// An inertial unit: it sends samples on its own.
+    Instrument = 2,
+}
+
+impl Role {
+    /// All roles, in the order of their codes.
+    pub const ALL: [Self; 3] = [Self::Harness, Self::Device, Self::Instrument];
+
+    /// The name used in texts.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Harness => "harness",
+            Self::Device => "device",
+            Self::Instrument => "instrument",
+        }
+    }
+}
+
+/// Kind of a message.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[repr(u8)]
+pub enum Kind {
+    /// [`super::Hello`].
+    Hello = 1,
+    /// [`super::SampleMessage`].
+    Sample = 2,
+    /// [`super::AidingMessage`].
+    Aiding = 3,
+    /// [`super::OutputMessage`].
+    Output = 4,
+    /// [`super::ParametersSegment`].
+    Parameters = 5,
+    /// [`super::Restart`].
+    Restart = 6,
+    /// [`super::End`].
+    End = 7,
+    /// [`super::Ready`].
+    Ready = 8,
+    /// [`super::Heartbeat`].
+    Heartbeat = 9,
+    /// [`super::Status`].
+    Status = 10,
+    /// [`super::TimeRequest`].
+    TimeRequest = 11,
+    /// [`super::TimeReply`].
+    TimeReply = 12,
+    /// [`super::Bye`].
+    Bye = 13,
+}
+
+impl Kind {
+    /// All kinds, in the order of their codes, which begin with 1.
+    pub const ALL: [Self; 13] = [
+        Self::Hello,
+        Self::Sample,
+        Self::Aiding,
+        Self::Output,
+        Self::Parameters,
+        Self::Restart,
+        Self::End,
+        Self::Ready,
+        Self::Heartbeat,
+        Self::Status,
+        Self::TimeRequest,
+        Self::TimeReply,
+        Self::Bye,
+    ];
+
+    /// The code on the wire.
+    #[must_use]
+    pub const fn code(self) -> u8 {
+        self as u8
+    }
+
+    /// The kind with a code.
+    #[must_use]
+    pub fn of(code: u8) -> Option<Self> {
+        Self::ALL.get(usize::from(code).checked_sub(1)?).copied()
+    }
+
+    /// The name used in texts and vectors.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Hello => "hello",
+            Self::Sample => "sample",
+            Self::Aiding => "aiding",
+            Self::Output => "output",
+            Self::Parameters => "parameters",
+            Self::Restart => "restart",
+            Self::End => "end",
+            Self::Ready => "ready",
+            Self::Heartbeat => "heartbeat",
+            Self::Status => "status",
+            Self::TimeRequest => "time_request",
+            Self::TimeReply => "time_reply",
+            Self::Bye => "bye",
+        }
+    }
+
+    /// Bytes of its payload.
+    #[must_use]
+    pub const fn payload_bytes(self) -> usize {
+        match self {
+            Self::Hello => 108,
+            Self::Sample | Self::Status => 52,
+            Self::Aiding => 36,
+            Self::Output => 132,
+            Self::Parameters => 92,
+            Self::Restart => super::MAX_PAYLOAD_BYTES,
+            Self::End | Self::Ready => 4,
+            Self::Heartbeat | Self::TimeRequest => 12,
+            Self::TimeReply => 28,
+            Self::Bye => 44,
+        }
+    }
+
+    /// Who sends it.
+    #[must_use]
+    pub const fn senders(self) -> &'static [Role] {
+        match self {
+            Self::Hello | Self::Heartbeat | Self::Bye => {
+                &[Role::Harness, Role::Device, Role::Instrument]
+            }
+            Self::Sample | Self::Aiding => &[Role::Harness, Role::Instrument],
+            Self::Output | Self::Parameters | Self::Ready => &[Role::Device],
+            Self::Restart | Self::End | Self::TimeRequest => &[Role::Harness],
+            Self::Status | Self::TimeReply => &[Role::Device, Role::Instrument],
+        }
+    }
+}

@@ -1,0 +1,171 @@
+//! The messages: who says what to whom.
+//!
+//! Every message is a payload of a length that its kind fixes: four bytes of head, then fields, little
+//! endian, without gaps ([`crate::layout`] lists them). Increments and angles are the counts of
+//! [`octant_sample::counts`], outputs and aiding the 64 bits of their f64: a message arrives bit for bit
+//! as it was sent, NaN and minus zero too.
+
+mod hello;
+mod kind;
+mod link;
+mod parameters;
+mod step;
+mod steps;
+
+pub use hello::{Agreement, Capabilities, Hello, Limits, Pacing, Refusal, agree};
+pub use kind::{Kind, Role};
+pub use link::{Bye, ClockTime, Condition, Heartbeat, Reason, Status, TimeReply, TimeRequest};
+pub use parameters::{Gathered, Gathering, PARAMETERS_SEGMENTS, ParametersSegment, SEGMENT_VALUES};
+pub use step::Step;
+pub use steps::{AidingMessage, End, OutputMessage, Ready, Restart, SampleMessage};
+
+use crate::Unreadable;
+use crate::bytes::{Reader, Writer};
+
+/// Bytes of the longest payload, a restart.
+pub const MAX_PAYLOAD_BYTES: usize = 244;
+
+/// What is said across a wire.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Message {
+    /// Who the sender is, and what it can do.
+    Hello(Hello),
+    /// A sample, on which the device steps.
+    Sample(SampleMessage),
+    /// The reference that goes with the sample after it.
+    Aiding(AidingMessage),
+    /// What the core answers to a sample, or to the end.
+    Output(OutputMessage),
+    /// A sixth of the parameters with their σ.
+    Parameters(ParametersSegment),
+    /// The core is to start anew.
+    Restart(Restart),
+    /// The stream of samples has ended.
+    End(End),
+    /// The core has started anew.
+    Ready(Ready),
+    /// The sender is there.
+    Heartbeat(Heartbeat),
+    /// What a device has done, received and lost.
+    Status(Status),
+    /// What time is it there?
+    TimeRequest(TimeRequest),
+    /// So late.
+    TimeReply(TimeReply),
+    /// The sender goes, and why.
+    Bye(Bye),
+}
+
+/// A payload: the fields of a message as bytes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Payload {
+    kind: Kind,
+    bytes: [u8; MAX_PAYLOAD_BYTES],
+}
+
+impl Payload {
+    /// Kind of the message.
+    #[must_use]
+    pub fn kind(&self) -> Kind {
+        self.kind
+    }
+
+    /// Its bytes, as many as its kind has.
+    #[must_use]
+    pub fn bytes(&self) -> &[u8] {
+        &self.bytes[..self.kind.payload_bytes()]
+    }
+}
+
+impl Message {
+    /// Which kind of message.
+    #[must_use]
+    pub fn kind(&self) -> Kind {
+        match self {
+            Self::Hello(_) => Kind::Hello,
+            Self::Sample(_) => Kind::Sample,
+            Self::Aiding(_) => Kind::Aiding,
+            Self::Output(_) => Kind::Output,
+            Self::Parameters(_) => Kind::Parameters,
+            Self::Restart(_) => Kind::Restart,
+            Self::End(_) => Kind::End,
+            Self::Ready(_) => Kind::Ready,
+            Self::Heartbeat(_) => Kind::Heartbeat,
+            Self::Status(_) => Kind::Status,
+            Self::TimeRequest(_) => Kind::TimeRequest,
+            Self::TimeReply(_) => Kind::TimeReply,
+            Self::Bye(_) => Kind::Bye,
+        }
+    }
+
+    /// The payload of the message.
+    #[must_use]
+    pub fn payload(&self) -> Payload {
+        let mut payload = Payload { kind: self.kind(), bytes: [0; MAX_PAYLOAD_BYTES] };
+        self.write(&mut payload.bytes);
+        payload
+    }
+
+    /// Writes the payload to the beginning of a buffer.
+    #[inline]
+    pub(crate) fn write(&self, bytes: &mut [u8; MAX_PAYLOAD_BYTES]) {
+        let w = &mut Writer::new(bytes);
+        match self {
+            Self::Hello(hello) => hello.write(w),
+            Self::Sample(sample) => sample.write(w),
+            Self::Aiding(aiding) => aiding.write(w),
+            Self::Output(output) => output.write(w),
+            Self::Parameters(segment) => segment.write(w),
+            Self::Restart(restart) => restart.write(w),
+            Self::End(End { step }) | Self::Ready(Ready { step }) => {
+                w.u16(step.number());
+                w.u16(0);
+            }
+            Self::Heartbeat(heartbeat) => heartbeat.write(w),
+            Self::Status(status) => status.write(w),
+            Self::TimeRequest(request) => request.write(w),
+            Self::TimeReply(reply) => reply.write(w),
+            Self::Bye(bye) => bye.write(w),
+        }
+    }
+
+    /// The message of a kind from its payload.
+    ///
+    /// # Errors
+    /// If the payload is none of this version. Bytes that nothing is said of are not looked at.
+    #[inline]
+    pub fn read(kind: Kind, payload: &[u8]) -> Result<Self, Unreadable> {
+        if let (Kind::Hello, Some(version)) = (kind, payload.first_chunk::<2>()) {
+            let found = u16::from_le_bytes(*version);
+            // Whatever else a newer hello says, and however long it is.
+            if found > crate::VERSION {
+                return Err(Unreadable::NewerVersion { found });
+            }
+        }
+        if payload.len() != kind.payload_bytes() {
+            return Err(Unreadable::Length { kind, found: payload.len() });
+        }
+        let r = &mut Reader::new(payload);
+        Ok(match kind {
+            Kind::Hello => Self::Hello(Hello::read(r)?),
+            Kind::Sample => Self::Sample(SampleMessage::read(r)),
+            Kind::Aiding => Self::Aiding(AidingMessage::read(r)?),
+            Kind::Output => Self::Output(OutputMessage::read(r)?),
+            Kind::Parameters => Self::Parameters(ParametersSegment::read(r)?),
+            Kind::Restart => Self::Restart(Restart::read(r)),
+            Kind::End => Self::End(End { step: Step::new(r.u16()) }),
+            Kind::Ready => Self::Ready(Ready { step: Step::new(r.u16()) }),
+            Kind::Heartbeat => Self::Heartbeat(Heartbeat::read(r)?),
+            Kind::Status => Self::Status(Status::read(r)),
+            Kind::TimeRequest => Self::TimeRequest(TimeRequest::read(r)),
+            Kind::TimeReply => Self::TimeReply(TimeReply::read(r)),
+            Kind::Bye => Self::Bye(Bye::read(r)?),
+        })
+    }
+
+    /// Bit for bit the same: NaN is equal to itself and zero differs from minus zero.
+    #[must_use]
+    pub fn same_bits(&self, other: &Self) -> bool {
+        self.payload() == other.payload()
+    }
+}

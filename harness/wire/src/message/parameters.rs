@@ -1,0 +1,186 @@
+//! Parameters and their σ, a sixth at a time: so that they never hold up an output for long.
+
+use super::{Kind, Step};
+use crate::Unreadable;
+use crate::bytes::{Reader, Writer};
+use octant_sample::Parameters;
+use octant_sample::parameters::PARAMETER_COUNT;
+
+/// Parameters in a segment.
+pub const SEGMENT_VALUES: usize = 5;
+/// Segments that make up all parameters.
+pub const PARAMETERS_SEGMENTS: usize = PARAMETER_COUNT / SEGMENT_VALUES;
+
+/// Five parameters with their σ, in the order of [`octant_sample::parameters::NAMES`].
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ParametersSegment {
+    /// Number of the step whose output announced them.
+    pub step: Step,
+    /// Which sixth, from 0.
+    pub segment: u8,
+    /// Revision of the parameters.
+    pub revision: u32,
+    /// Estimates, SI.
+    pub values: [f64; SEGMENT_VALUES],
+    /// 1σ, SI.
+    pub sigma: [f64; SEGMENT_VALUES],
+}
+
+impl ParametersSegment {
+    /// All segments of the parameters.
+    #[must_use]
+    pub fn all(
+        step: Step,
+        revision: u32,
+        parameters: &Parameters,
+        sigma: &[f64; PARAMETER_COUNT],
+    ) -> [Self; PARAMETERS_SEGMENTS] {
+        let values = parameters.to_array();
+        core::array::from_fn(|segment| {
+            let at = segment * SEGMENT_VALUES;
+            Self {
+                step,
+                segment: segment as u8,
+                revision,
+                values: core::array::from_fn(|i| values[at + i]),
+                sigma: core::array::from_fn(|i| sigma[at + i]),
+            }
+        })
+    }
+
+    pub(super) fn write(&self, w: &mut Writer<'_>) {
+        w.u16(self.step.number());
+        w.u8(self.segment);
+        w.u8(0);
+        w.u32(self.revision);
+        w.u32(0);
+        for value in self.values.iter().chain(&self.sigma) {
+            w.f64(*value);
+        }
+    }
+
+    pub(super) fn read(r: &mut Reader<'_>) -> Result<Self, Unreadable> {
+        let step = Step::new(r.u16());
+        let [segment, _] = r.take();
+        if usize::from(segment) >= PARAMETERS_SEGMENTS {
+            return Err(Unreadable::Value {
+                kind: Kind::Parameters,
+                field: "segment",
+                found: segment.into(),
+                expected: "0 to 5",
+            });
+        }
+        let revision = r.u32();
+        r.u32();
+        let (values, sigma) = (r.array(Reader::f64), r.array(Reader::f64));
+        Ok(Self { step, segment, revision, values, sigma })
+    }
+}
+
+/// All parameters with their σ.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Gathered {
+    /// Number of the step whose output announced them.
+    pub step: Step,
+    /// Their revision.
+    pub revision: u32,
+    /// Estimates, SI.
+    pub parameters: Parameters,
+    /// 1σ, SI.
+    pub sigma: [f64; PARAMETER_COUNT],
+}
+
+/// Gathers segments, in any order, until all of one step and revision are there.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Gathering {
+    step: Step,
+    revision: u32,
+    values: [f64; PARAMETER_COUNT],
+    sigma: [f64; PARAMETER_COUNT],
+    /// A bit for each segment that is there.
+    there: u8,
+    abandoned: u64,
+}
+
+impl Gathering {
+    /// Nothing gathered yet.
+    #[must_use]
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Adds a segment; all parameters when it was the last one missing. A segment of another step
+    /// or revision begins anew: what was there of the former is abandoned.
+    pub fn add(&mut self, segment: &ParametersSegment) -> Option<Gathered> {
+        let index = usize::from(segment.segment);
+        if index >= PARAMETERS_SEGMENTS {
+            return None;
+        }
+        if (segment.step, segment.revision) != (self.step, self.revision) {
+            self.abandoned += u64::from(self.there != 0);
+            self.there = 0;
+            self.step = segment.step;
+            self.revision = segment.revision;
+        }
+        let range = index * SEGMENT_VALUES..(index + 1) * SEGMENT_VALUES;
+        self.values[range.clone()].copy_from_slice(&segment.values);
+        self.sigma[range].copy_from_slice(&segment.sigma);
+        self.there |= 1 << index;
+        if self.there != (1 << PARAMETERS_SEGMENTS) - 1 {
+            return None;
+        }
+        self.there = 0;
+        Some(Gathered {
+            step: self.step,
+            revision: self.revision,
+            parameters: Parameters::from_array(&self.values),
+            sigma: self.sigma,
+        })
+    }
+
+    /// How often segments of newer parameters came before all of the former were there.
+    #[must_use]
+    pub fn abandoned(&self) -> u64 {
+        self.abandoned
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn segments(step: u16, revision: u32) -> [ParametersSegment; PARAMETERS_SEGMENTS] {
+        let values = core::array::from_fn(|i| i as f64 + f64::from(revision));
+        let sigma = core::array::from_fn(|i| -(i as f64));
+        let parameters = Parameters::from_array(&values);
+        ParametersSegment::all(Step::new(step), revision, &parameters, &sigma)
+    }
+
+    #[test]
+    fn segments_in_any_order_are_the_parameters_again() {
+        let mut gathering = Gathering::new();
+        let all = segments(7, 3);
+        for index in [4, 0, 5, 1, 1, 3] {
+            assert_eq!(gathering.add(&all[index]), None);
+        }
+        let gathered = gathering.add(&all[2]).unwrap();
+        assert_eq!((gathered.step, gathered.revision), (Step::new(7), 3));
+        assert_eq!(gathered.parameters.to_array()[29], 32.0);
+        assert_eq!(gathered.sigma[29], -29.0);
+    }
+
+    #[test]
+    fn segments_of_two_revisions_are_not_mixed() {
+        let mut gathering = Gathering::new();
+        let (old, new) = (segments(7, 3), segments(8, 4));
+        for segment in &old[..5] {
+            assert_eq!(gathering.add(segment), None);
+        }
+        for segment in &new[..5] {
+            assert_eq!(gathering.add(segment), None);
+        }
+        assert_eq!(gathering.abandoned(), 1);
+        assert_eq!(gathering.add(&new[5]).map(|all| all.revision), Some(4));
+        assert_eq!(gathering.add(&old[5]), None, "the former five are gone");
+    }
+}

@@ -1,0 +1,77 @@
+//! Numbers of steps.
+
+/// Number of a step: of what the harness asks for and the device answers, modulo 2¹⁵.
+///
+/// It isn't the sequence number of the sample: a fault may repeat, skip or change that one, and each
+/// sample that is delivered is a step of its own. The first step of a session has number 1.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub struct Step(u16);
+
+impl Step {
+    /// Bits that the number has.
+    pub const BITS: u32 = 15;
+
+    /// A step by its number, of which the lower 15 bits count.
+    #[must_use]
+    pub const fn new(number: u16) -> Self {
+        Self(number & 0x7FFF)
+    }
+
+    /// Its number, below 2¹⁵.
+    #[must_use]
+    pub const fn number(self) -> u16 {
+        self.0
+    }
+
+    /// The step after this one.
+    #[must_use]
+    pub const fn next(self) -> Self {
+        Self::new(self.0 + 1)
+    }
+
+    /// How many steps this one is after another: negative where it is an earlier one, and between
+    /// −2¹⁴ and 2¹⁴ − 1.
+    #[must_use]
+    pub const fn since(self, earlier: Self) -> i16 {
+        let difference = self.0.wrapping_sub(earlier.0) & 0x7FFF;
+        // The sign is bit 14: moved to where i16 has it, and back.
+        ((difference << 1) as i16) >> 1
+    }
+
+    /// With a flag in bit 15, as it travels.
+    #[inline]
+    pub(crate) const fn with_flag(self, flag: bool) -> u16 {
+        self.0 | (flag as u16) << 15
+    }
+
+    /// The step and the flag in bit 15.
+    #[inline]
+    pub(crate) const fn and_flag(bits: u16) -> (Self, bool) {
+        (Self::new(bits), bits >> 15 != 0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn steps_go_round() {
+        assert_eq!(Step::new(0x7FFF).next(), Step::new(0));
+        assert_eq!(Step::new(2).since(Step::new(0x7FFE)), 4);
+        assert_eq!(Step::new(0x7FFE).since(Step::new(2)), -4);
+        assert_eq!(Step::new(5).since(Step::new(5)), 0);
+        assert_eq!(Step::new(0x4000).since(Step::new(0)), -0x4000);
+        assert_eq!(Step::new(0x3FFF).since(Step::new(0)), 0x3FFF);
+    }
+
+    #[test]
+    fn the_flag_leaves_the_number_alone() {
+        for number in [0, 1, 0x1234, 0x7FFF] {
+            for flag in [false, true] {
+                let step = Step::new(number);
+                assert_eq!(Step::and_flag(step.with_flag(flag)), (step, flag));
+            }
+        }
+    }
+}

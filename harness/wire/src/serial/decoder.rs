@@ -1,0 +1,250 @@
+//! Bytes to messages, whatever comes.
+
+use super::{CRC_BYTES, HEADER_BYTES, MAX_STUFFED_BYTES};
+use crate::checksum::crc32;
+use crate::message::ClockTime;
+use crate::{Kind, Message, Unreadable};
+
+/// Where a frame stands among those before it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Order {
+    /// The first one, or a hello, with which a sender begins to count.
+    First,
+    /// The one after the last.
+    Next,
+    /// So many are missing before it.
+    Missing(u16),
+    /// So many frames behind the last one: it came again, or too late.
+    Behind(u16),
+}
+
+/// A message as it came.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Received {
+    /// Sequence number of its frame.
+    pub sequence: u16,
+    /// Where that stands.
+    pub order: Order,
+    /// The sender's clock when it made the frame.
+    pub clock: ClockTime,
+    /// The message.
+    pub message: Message,
+}
+
+/// Why bytes are no message.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum Cause {
+    /// More bytes without a zero than any frame has.
+    #[error("there is no frame so long")]
+    Long,
+    /// Stuffing that contradicts itself, or fewer bytes than any frame has.
+    #[error("this is no frame, or a piece of one")]
+    Malformed,
+    /// The CRC is another one.
+    #[error("the frame is damaged: CRC-32 {found:#010x}, computed {computed:#010x}")]
+    Checksum {
+        /// CRC in the frame.
+        found: u32,
+        /// CRC of the frame.
+        computed: u32,
+    },
+    /// Intact, but not understood.
+    #[error(transparent)]
+    Unreadable(Unreadable),
+}
+
+/// Bytes that were no message.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Lost {
+    /// Why.
+    pub cause: Cause,
+    /// How many, without the zeros around them.
+    pub bytes: u64,
+}
+
+/// What a stretch between two zeros was.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[expect(clippy::large_enum_variant, reason = "the large variant is the one that comes")]
+pub enum Event {
+    /// A message.
+    Received(Received),
+    /// Something else.
+    Lost(Lost),
+}
+
+/// What came so far.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counters {
+    /// Bytes, all of them.
+    pub bytes: u64,
+    /// Intact frames.
+    pub frames: u64,
+    /// Bytes that were part of no intact frame, without the zeros.
+    pub bytes_lost: u64,
+    /// Stretches longer than any frame.
+    pub long: u64,
+    /// Stretches that are no frame, or a piece of one.
+    pub malformed: u64,
+    /// Frames whose CRC is wrong.
+    pub checksum: u64,
+    /// Intact frames that are no message of this version.
+    pub unreadable: u64,
+    /// Frames that never came, by gaps in the sequence numbers.
+    pub missing: u64,
+    /// Frames that came again or too late.
+    pub behind: u64,
+}
+
+impl Counters {
+    /// Stretches that were no intact frame.
+    #[must_use]
+    pub fn damaged(&self) -> u64 {
+        self.long + self.malformed + self.checksum
+    }
+
+    /// Nothing is lost, damaged, missing, doubled or not understood.
+    #[must_use]
+    pub fn is_clean(&self) -> bool {
+        *self == Self { bytes: self.bytes, frames: self.frames, ..Self::default() }
+    }
+}
+
+/// Finds messages in bytes as they come, in pieces of any length.
+#[derive(Clone, Debug)]
+pub struct Decoder {
+    /// What came since the last zero, as far as a frame can be.
+    held: [u8; MAX_STUFFED_BYTES],
+    /// Bytes since the last zero.
+    length: u64,
+    /// Sequence number that the next frame should have.
+    expected: Option<u16>,
+    counters: Counters,
+}
+
+impl Default for Decoder {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl Decoder {
+    /// Nothing received yet.
+    #[must_use]
+    pub fn new() -> Self {
+        Self {
+            held: [0; MAX_STUFFED_BYTES],
+            length: 0,
+            expected: None,
+            counters: Counters::default(),
+        }
+    }
+
+    /// Takes bytes up to the end of the next stretch that says something, and says what it was.
+    /// `None` when all bytes are taken: call it until then.
+    #[inline]
+    pub fn next(&mut self, bytes: &mut &[u8]) -> Option<Event> {
+        while let Some(zero) = bytes.iter().position(|byte| *byte == 0) {
+            let (stretch, rest) = bytes.split_at(zero);
+            *bytes = &rest[1..];
+            self.counters.bytes += 1;
+            self.hold(stretch);
+            if self.length > 0 {
+                return Some(self.conclude());
+            }
+        }
+        self.hold(bytes);
+        *bytes = &[];
+        None
+    }
+
+    /// The bytes end here: at the end of a datagram, or where a line was cut. What came since the
+    /// last zero is concluded as if there were one.
+    pub fn end(&mut self) -> Option<Event> {
+        (self.length > 0).then(|| self.conclude())
+    }
+
+    /// What came so far.
+    #[must_use]
+    pub fn counters(&self) -> &Counters {
+        &self.counters
+    }
+
+    fn hold(&mut self, bytes: &[u8]) {
+        let all = bytes.len() as u64;
+        self.counters.bytes += all;
+        let before = self.length;
+        self.length += all;
+        let room = MAX_STUFFED_BYTES as u64;
+        if self.length <= room {
+            let at = before as usize;
+            self.held[at..at + bytes.len()].copy_from_slice(bytes);
+        } else {
+            // Counted as they come: a line that babbles without a zero is not a line that is still.
+            self.counters.bytes_lost += if before <= room { self.length } else { all };
+        }
+    }
+
+    fn conclude(&mut self) -> Event {
+        let bytes = core::mem::take(&mut self.length);
+        match self.read(bytes) {
+            Ok(received) => Event::Received(received),
+            Err(cause) => {
+                let counters = &mut self.counters;
+                match cause {
+                    // Its bytes are counted already.
+                    Cause::Long => counters.long += 1,
+                    Cause::Malformed => counters.malformed += 1,
+                    Cause::Checksum { .. } => counters.checksum += 1,
+                    Cause::Unreadable(_) => counters.unreadable += 1,
+                }
+                if matches!(cause, Cause::Malformed | Cause::Checksum { .. }) {
+                    counters.bytes_lost += bytes;
+                }
+                Event::Lost(Lost { cause, bytes })
+            }
+        }
+    }
+
+    fn read(&mut self, bytes: u64) -> Result<Received, Cause> {
+        let Some(stretch) = usize::try_from(bytes).ok().and_then(|n| self.held.get_mut(..n)) else {
+            return Err(Cause::Long);
+        };
+        let length = cobs::decode_in_place(stretch).map_err(|_| Cause::Malformed)?;
+        let (bare, crc) =
+            stretch[..length].split_last_chunk::<CRC_BYTES>().ok_or(Cause::Malformed)?;
+        let (header, payload) = bare.split_first_chunk::<HEADER_BYTES>().ok_or(Cause::Malformed)?;
+        let (found, computed) = (u32::from_le_bytes(*crc), crc32(bare));
+        if found != computed {
+            return Err(Cause::Checksum { found, computed });
+        }
+        let [code, s0, s1, clock @ ..] = *header;
+        let sequence = u16::from_le_bytes([s0, s1]);
+        let kind = Kind::of(code);
+        let message = kind
+            .ok_or(Unreadable::Code { code })
+            .and_then(|kind| Message::read(kind, payload))
+            .map_err(Cause::Unreadable);
+        self.counters.frames += 1;
+        let order = self.order(sequence, kind == Some(Kind::Hello));
+        let clock = ClockTime { ns: u64::from_le_bytes(clock) };
+        Ok(Received { sequence, order, clock, message: message? })
+    }
+
+    fn order(&mut self, sequence: u16, anew: bool) -> Order {
+        let next = Some(sequence.wrapping_add(1));
+        let Some(expected) = self.expected.filter(|_| !anew) else {
+            self.expected = next;
+            return Order::First;
+        };
+        let gap = sequence.wrapping_sub(expected);
+        if gap < 1 << 15 {
+            self.expected = next;
+            self.counters.missing += u64::from(gap);
+            if gap == 0 { Order::Next } else { Order::Missing(gap) }
+        } else {
+            self.counters.behind += 1;
+            // The last one itself is one behind.
+            Order::Behind(gap.wrapping_neg())
+        }
+    }
+}

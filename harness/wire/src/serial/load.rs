@@ -1,0 +1,54 @@
+//! Whether a serial line is fast enough.
+
+use super::{CRC_BYTES, HEADER_BYTES};
+use crate::Kind;
+use crate::message::{PARAMETERS_SEGMENTS, Role};
+use crate::traffic::Traffic;
+
+/// Speed of a serial line.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Baud {
+    /// Bits a second.
+    pub rate: u32,
+    /// Bits of a byte, with start, parity and stop: 10 for 8N1.
+    pub bits_per_byte: u32,
+}
+
+/// Share of a line that traffic takes, each way, 1: all of it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LineLoad {
+    /// What the harness sends.
+    pub from_harness: f64,
+    /// What the other end sends.
+    pub to_harness: f64,
+}
+
+impl Baud {
+    /// A rate with one start bit, eight data bits, one stop bit.
+    #[must_use]
+    pub const fn new(rate: u32) -> Self {
+        Self { rate, bits_per_byte: 10 }
+    }
+
+    /// The load that traffic makes, each frame as long as its kind can be.
+    #[must_use]
+    pub fn load(self, traffic: &Traffic) -> LineLoad {
+        let way = |harness: bool| {
+            let mut bits_per_s = 0.0;
+            for (role, kind, rate_hz) in traffic.messages() {
+                if (role == Role::Harness) == harness {
+                    let frames = if kind == Kind::Parameters { PARAMETERS_SEGMENTS } else { 1 };
+                    let bits = frame_bytes(kind) * frames * self.bits_per_byte as usize;
+                    bits_per_s += rate_hz * bits as f64;
+                }
+            }
+            bits_per_s / f64::from(self.rate)
+        };
+        LineLoad { from_harness: way(true), to_harness: way(false) }
+    }
+}
+
+/// Bytes of a frame on the line, at most.
+const fn frame_bytes(kind: Kind) -> usize {
+    2 + cobs::max_encoding_length(HEADER_BYTES + kind.payload_bytes() + CRC_BYTES)
+}

@@ -1,0 +1,26 @@
+//! Frames on a line of bytes: serial ports and UDP.
+//!
+//! A frame is `kind u8, sequence u16, clock u64, payload, CRC-32`, stuffed (COBS) so that no byte of
+//! it is zero, with a zero before and after. A receiver finds the next frame at the next zero, whatever
+//! came before: what is damaged costs itself and nothing else.
+
+mod decoder;
+mod encoder;
+mod load;
+
+pub use decoder::{Cause, Counters, Decoder, Event, Lost, Order, Received};
+pub use encoder::Encoder;
+pub use load::{Baud, LineLoad};
+
+use crate::message::MAX_PAYLOAD_BYTES;
+
+/// Bytes before the payload: kind, sequence, clock.
+pub const HEADER_BYTES: usize = 1 + 2 + 8;
+/// Bytes after the payload.
+pub const CRC_BYTES: usize = 4;
+/// Bytes of a frame before stuffing, at most.
+pub const MAX_BARE_BYTES: usize = HEADER_BYTES + MAX_PAYLOAD_BYTES + CRC_BYTES;
+/// Bytes of a stuffed frame without the zeros around it, at most.
+pub const MAX_STUFFED_BYTES: usize = cobs::max_encoding_length(MAX_BARE_BYTES);
+/// Bytes of a frame as it is sent, at most.
+pub const MAX_FRAME_BYTES: usize = MAX_STUFFED_BYTES + 2;

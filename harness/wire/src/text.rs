@@ -1,0 +1,140 @@
+//! Short texts of fixed room.
+
+use core::fmt;
+
+/// A text of at most `N` bytes of UTF-8 without a NUL; on the wire it is filled up with zeros.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub struct Text<const N: usize> {
+    bytes: [u8; N],
+    length: usize,
+}
+
+/// Why bytes or characters are no [`Text`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum TextError {
+    /// It doesn't fit.
+    #[error("the text has {found} bytes, {room} fit")]
+    Long {
+        /// Bytes of the text.
+        found: usize,
+        /// Bytes that there is room for.
+        room: usize,
+    },
+    /// A zero byte inside.
+    #[error("the text has a NUL at byte {at} and goes on after it")]
+    Nul {
+        /// Index of the first zero.
+        at: usize,
+    },
+    /// Not UTF-8.
+    #[error("the text isn't UTF-8 from byte {at} on")]
+    Encoding {
+        /// Length of the part that is.
+        at: usize,
+    },
+}
+
+impl<const N: usize> Text<N> {
+    /// The text.
+    ///
+    /// # Errors
+    /// If it is longer than `N` bytes or contains a NUL.
+    pub fn new(text: &str) -> Result<Self, TextError> {
+        if text.len() > N {
+            return Err(TextError::Long { found: text.len(), room: N });
+        }
+        if let Some(at) = text.bytes().position(|byte| byte == 0) {
+            return Err(TextError::Nul { at });
+        }
+        Ok(Self::fitting(text))
+    }
+
+    /// As much of the text as fits, up to a whole character and before any NUL.
+    #[must_use]
+    pub fn fitting(text: &str) -> Self {
+        let mut bytes = [0; N];
+        let mut length = 0;
+        for character in text.chars() {
+            let end = length + character.len_utf8();
+            if end > N || character == '\0' {
+                break;
+            }
+            character.encode_utf8(&mut bytes[length..end]);
+            length = end;
+        }
+        Self { bytes, length }
+    }
+
+    /// The text.
+    #[must_use]
+    pub fn as_str(&self) -> &str {
+        // Both constructors put whole characters there.
+        core::str::from_utf8(&self.bytes[..self.length]).unwrap_or("")
+    }
+
+    /// All `N` bytes, as they travel.
+    #[must_use]
+    pub fn bytes(&self) -> &[u8; N] {
+        &self.bytes
+    }
+
+    /// The text from its `N` bytes.
+    ///
+    /// # Errors
+    /// If they aren't UTF-8 filled up with zeros.
+    pub fn from_bytes(bytes: [u8; N]) -> Result<Self, TextError> {
+        let length = bytes.iter().position(|byte| *byte == 0).unwrap_or(N);
+        if bytes[length..].iter().any(|byte| *byte != 0) {
+            return Err(TextError::Nul { at: length });
+        }
+        match core::str::from_utf8(&bytes[..length]) {
+            Ok(_) => Ok(Self { bytes, length }),
+            Err(error) => Err(TextError::Encoding { at: error.valid_up_to() }),
+        }
+    }
+}
+
+impl<const N: usize> Default for Text<N> {
+    fn default() -> Self {
+        Self { bytes: [0; N], length: 0 }
+    }
+}
+
+impl<const N: usize> fmt::Display for Text<N> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.as_str())
+    }
+}
+
+impl<const N: usize> fmt::Debug for Text<N> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{:?}", self.as_str())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_text_fits_or_says_by_how_much_not() {
+        assert_eq!(Text::<4>::new("über").unwrap_err(), TextError::Long { found: 5, room: 4 });
+        assert_eq!(Text::<5>::new("über").unwrap().as_str(), "über");
+        assert_eq!(Text::<4>::new("a\0b").unwrap_err(), TextError::Nul { at: 1 });
+    }
+
+    #[test]
+    fn what_fits_is_whole_characters() {
+        assert_eq!(Text::<4>::fitting("über").as_str(), "übe");
+        assert_eq!(Text::<1>::fitting("über").as_str(), "");
+        assert_eq!(Text::<8>::fitting("ab\0cd").as_str(), "ab");
+    }
+
+    #[test]
+    fn bytes_are_a_text_when_they_are_utf8_and_then_zeros() {
+        assert_eq!(Text::from_bytes(*b"abc\0").unwrap().as_str(), "abc");
+        assert_eq!(Text::from_bytes(*b"abcd").unwrap().as_str(), "abcd");
+        assert_eq!(Text::from_bytes(*b"a\0c\0").unwrap_err(), TextError::Nul { at: 1 });
+        assert_eq!(Text::from_bytes(*b"a\xffc\0").unwrap_err(), TextError::Encoding { at: 1 });
+    }
+}

@@ -1,0 +1,61 @@
+//! How often which message is sent: what the load of a line or bus is computed from.
+
+use crate::message::{Kind, Role};
+
+/// Messages a second.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Traffic {
+    /// Samples from the harness, Hz.
+    pub samples_hz: f64,
+    /// Outputs from the device, Hz.
+    pub outputs_hz: f64,
+    /// Aiding from the harness, Hz.
+    pub aiding_hz: f64,
+    /// Changes of the parameters, each all of its segments, Hz.
+    pub parameters_hz: f64,
+    /// Heartbeats from either end, Hz.
+    pub heartbeat_hz: f64,
+    /// Status from the device, Hz.
+    pub status_hz: f64,
+    /// Exchanges of the time, Hz.
+    pub time_hz: f64,
+}
+
+impl Traffic {
+    /// Samples alone, one way.
+    #[must_use]
+    pub fn samples(rate_hz: f64) -> Self {
+        Self { samples_hz: rate_hz, ..Self::default() }
+    }
+
+    /// A session at a sample rate: samples there, outputs back; aiding, parameters and status once a
+    /// second, heartbeats ten times and the time four times a second.
+    #[must_use]
+    pub fn session(rate_hz: f64) -> Self {
+        Self {
+            samples_hz: rate_hz,
+            outputs_hz: rate_hz,
+            aiding_hz: 1.0,
+            parameters_hz: 1.0,
+            heartbeat_hz: 10.0,
+            status_hz: 1.0,
+            time_hz: 4.0,
+        }
+    }
+
+    /// Who sends what how often. Parameters: all segments together.
+    pub fn messages(&self) -> impl Iterator<Item = (Role, Kind, f64)> {
+        [
+            (Role::Harness, Kind::Sample, self.samples_hz),
+            (Role::Harness, Kind::Aiding, self.aiding_hz),
+            (Role::Harness, Kind::Heartbeat, self.heartbeat_hz),
+            (Role::Harness, Kind::TimeRequest, self.time_hz),
+            (Role::Device, Kind::Output, self.outputs_hz),
+            (Role::Device, Kind::Parameters, self.parameters_hz),
+            (Role::Device, Kind::Heartbeat, self.heartbeat_hz),
+            (Role::Device, Kind::Status, self.status_hz),
+            (Role::Device, Kind::TimeReply, self.time_hz),
+        ]
+        .into_iter()
+    }
+}

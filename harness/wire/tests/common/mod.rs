@@ -1,0 +1,70 @@
+//! Messages of every kind with every value, and what becomes of them on a line or bus.
+#![allow(dead_code, reason = "each test uses its part")]
+
+pub(crate) mod arbitrary;
+
+use octant_wire::can::{self, Format, Frame, Reassembler};
+use octant_wire::message::{ClockTime, Message, Role};
+use octant_wire::serial::{Decoder, Encoder, Event, Received};
+
+/// Everything that a decoder says of bytes that come in pieces.
+pub(crate) fn decode(decoder: &mut Decoder, pieces: &[&[u8]]) -> Vec<Event> {
+    let mut events = Vec::new();
+    for piece in pieces {
+        let mut rest = *piece;
+        while let Some(event) = decoder.next(&mut rest) {
+            events.push(event);
+        }
+        assert!(rest.is_empty(), "bytes are left");
+    }
+    events
+}
+
+/// The messages among events.
+pub(crate) fn received(events: &[Event]) -> Vec<Received> {
+    let received = |event: &Event| match event {
+        Event::Received(received) => Some(*received),
+        Event::Lost(_) => None,
+    };
+    events.iter().filter_map(received).collect()
+}
+
+/// Messages as one stretch of bytes.
+pub(crate) fn encode(messages: &[Message]) -> Vec<u8> {
+    let mut encoder = Encoder::new();
+    let frames =
+        messages.iter().map(|message| encoder.encode(message, ClockTime::from_ns(5)).to_vec());
+    frames.collect::<Vec<_>>().concat()
+}
+
+/// The role that sends a message.
+pub(crate) fn sender(message: &Message) -> Role {
+    match message {
+        Message::Hello(hello) => hello.role,
+        message => message.kind().senders()[0],
+    }
+}
+
+/// The frames of a message from the first of those who send such.
+pub(crate) fn frames(message: &Message, format: Format) -> Vec<Frame> {
+    can::segments(message, sender(message), format).expect("it has a slot").collect()
+}
+
+/// What comes together from frames.
+pub(crate) fn reassemble(reassembler: &mut Reassembler, frames: &[Frame]) -> Vec<can::Event> {
+    frames.iter().filter_map(|frame| reassembler.receive(frame)).collect()
+}
+
+/// The messages among events.
+pub(crate) fn messages(events: &[can::Event]) -> Vec<Message> {
+    let message = |event: &can::Event| match event {
+        can::Event::Received { message, .. } => Some(*message),
+        can::Event::Lost(_) => None,
+    };
+    events.iter().filter_map(message).collect()
+}
+
+/// Bit for bit the same messages.
+pub(crate) fn same(a: &[Message], b: &[Message]) -> bool {
+    a.len() == b.len() && a.iter().zip(b).all(|(a, b)| a.same_bits(b))
+}
