@@ -17,3 +17,5 @@ pub mod instance;
 pub mod library;
 pub mod mapping;
 pub mod master;
+
+pub use instance::open::{OpenError, open, open_archive};

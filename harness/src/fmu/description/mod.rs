@@ -53,10 +53,8 @@ impl std::fmt::Display for Line {
 /// 64-bit number in the file, and the memory for it is ours.
 pub const ELEMENTS_MAX: u64 = 1 << 24;
 
-use serde::{Deserialize, Serialize};
-
 /// The standard that an FMU follows.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Standard {
     /// FMI 2.0.
     Fmi2,
@@ -65,7 +63,7 @@ pub enum Standard {
 }
 
 /// A model description.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Description {
     /// Name of the file, for messages.
     pub file: String,
@@ -111,7 +109,7 @@ pub struct Description {
 }
 
 /// Capabilities of an interface type.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Interface {
     /// `modelIdentifier`: stem of the library.
     pub model_identifier: String,
@@ -153,7 +151,7 @@ pub struct Interface {
 }
 
 /// The default experiment.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Experiment {
     /// Start, s.
     pub start_s: Option<f64>,
@@ -166,7 +164,7 @@ pub struct Experiment {
 }
 
 /// A unit: value in SI base units = factor · value + offset.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Unit {
     /// Its name.
     pub name: String,
@@ -191,7 +189,7 @@ pub struct DisplayUnit {
 }
 
 /// What a unit is in SI.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BaseUnit {
     /// Exponents of kg, m, s, A, K, mol, cd, rad.
     pub exponents: [i8; 8],
@@ -202,7 +200,7 @@ pub struct BaseUnit {
 }
 
 /// Type of a variable.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
 #[allow(missing_docs, reason = "named as in FMI 3.0")]
 pub enum Kind {
     Float64,
@@ -223,7 +221,7 @@ pub enum Kind {
 }
 
 /// What a variable is for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[allow(missing_docs, reason = "named as in the standards")]
 pub enum Causality {
     StructuralParameter,
@@ -236,7 +234,7 @@ pub enum Causality {
 }
 
 /// When a variable changes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[allow(missing_docs, reason = "named as in the standards")]
 pub enum Variability {
     Constant,
@@ -247,7 +245,7 @@ pub enum Variability {
 }
 
 /// Where a variable's first value comes from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[allow(missing_docs, reason = "named as in the standards")]
 pub enum Initial {
     Exact,
@@ -256,7 +254,7 @@ pub enum Initial {
 }
 
 /// One dimension of an array.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Dimension {
     /// So many.
     Fixed(u64),
@@ -265,7 +263,7 @@ pub enum Dimension {
 }
 
 /// A variable.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Variable {
     /// Its name.
     pub name: String,
@@ -364,7 +362,7 @@ pub enum IntervalVariability {
 }
 
 /// The structure of a model, as value references.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Structure {
     /// Outputs with their dependencies.
     pub outputs: Vec<Unknown>,
@@ -379,7 +377,7 @@ pub struct Structure {
 }
 
 /// An unknown and what it depends on.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Unknown {
     /// Value reference.
     pub reference: u32,

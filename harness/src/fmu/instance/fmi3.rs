@@ -6,7 +6,7 @@ use super::super::library::{Functions, Library};
 use super::call::{Answer, Base, Condition, LOADING, NOWHERE, call, function_number};
 use super::message::{Log, log_message, text};
 use super::number::Truth;
-use super::options::{Setup, c_text};
+use super::setup::{Setup, c_text};
 use super::unit::{RawState, Steps, Unit};
 use super::{Group, InstanceError, Outcome, Stepped, Update, group};
 use octant_fmi::fmi3;

@@ -3,7 +3,9 @@
 //! | module | idea |
 //! |---|---|
 //! | [`group`] | variables that are set or got together, and where their numbers lie |
-//! | [`options`] | how an FMU is opened, and opening it |
+//! | [`options`] | how an FMU is opened |
+//! | [`open`] | opening it: its archive, its description, its library, an instance |
+//! | `setup` | what an instance is told when it is made |
 //! | [`error`] | why an FMU could not go on |
 //! | `message` | what an FMU logs |
 //! | `call` | one call of a function: its name, its status, what it means |
@@ -21,13 +23,16 @@ mod fmi3;
 pub mod group;
 mod message;
 mod number;
+pub mod open;
 pub mod options;
+mod setup;
 mod states;
 pub(super) mod unit;
 
 pub use error::InstanceError;
 pub use group::{Access, Group, Plan};
 pub use message::Message;
+pub use open::OpenError;
 pub use options::{InterfaceKind, Options, Place};
 
 use super::description::Description;
