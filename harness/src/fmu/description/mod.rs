@@ -22,7 +22,7 @@ pub use read::{read, read_bytes};
 pub use text::decode;
 
 /// Why a model description can't be used.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{file}:{}{place}: {found}, expected {expected}", Line(*.line))]
 pub struct DescriptionError {
     /// The file.
@@ -176,7 +176,7 @@ pub struct Unit {
 
 /// A unit in which values of another are shown: shown = factor · value + offset, or factor / value
 /// where it is inverse.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct DisplayUnit {
     /// Its name.
     pub name: String,
@@ -316,7 +316,7 @@ pub struct Variable {
 }
 
 /// Another name of a variable (FMI 3.0).
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Alias {
     /// The name.
     pub name: String,
@@ -327,7 +327,7 @@ pub struct Alias {
 }
 
 /// What a clock is (FMI 3.0).
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Clock {
     /// `intervalVariability`.
     pub interval_variability: IntervalVariability,
@@ -350,7 +350,7 @@ pub struct Clock {
 }
 
 /// When the interval of a clock changes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[allow(missing_docs, reason = "named as in FMI 3.0")]
 pub enum IntervalVariability {
     Constant,
