@@ -2,13 +2,15 @@
 //! called. The FMUs are strict: they fail where the order is wrong.
 #![allow(clippy::unwrap_used, clippy::float_cmp)]
 
+use std::path::{Path, PathBuf};
+
 #[path = "common/foreign.rs"]
 mod foreign;
 
+use octant::fmu::OpenError;
 use octant::fmu::description::Variable;
-use octant::fmu::instance::options::{Folder, open_unpacked};
 use octant::fmu::instance::{
-    Group, Instance, InstanceError, Options, Outcome, Place, Plan, Stepped,
+    Group, Instance, InstanceError, InterfaceKind, Options, Outcome, Place, Plan, Stepped,
 };
 
 /// Options for code that runs here.
@@ -16,10 +18,8 @@ fn here() -> Options {
     Options { place: Place::ThisProcess, ..Options::default() }
 }
 
-fn open_with(name: &str, options: &Options) -> Result<Box<dyn Instance>, InstanceError> {
-    let folder = foreign::unpacked(name);
-    let description = foreign::description(name);
-    open_unpacked(name, Folder::Kept(folder), description, options)
+fn open_with(name: &str, options: &Options) -> Result<Box<dyn Instance>, OpenError> {
+    octant::fmu::open(&foreign::fmu(name), options)
 }
 
 fn open(name: &str) -> Box<dyn Instance> {
@@ -119,7 +119,7 @@ fn values_that_do_not_fit_are_refused() {
     let error = set(gain, "ratio", &[1.5]).unwrap_err();
     assert_eq!(
         error.to_string(),
-        "fmi2SetReal of gain_fmi2 answered discard: 1.5 is no value of ratio, 50% is"
+        "fmi2SetReal of gain_fmi2.fmu answered discard: 1.5 is no value of ratio, 50% is"
     );
     gain.step(0.0, 1.0).unwrap();
 }
@@ -202,7 +202,7 @@ fn what_an_fmu_has_not_is_named() {
     let error = trouble.state_to_bytes(state).unwrap_err();
     assert_eq!(
         error.to_string(),
-        "trouble_fmi2 can't call fmi2SerializedFMUstateSize: its library doesn't have this function"
+        "trouble_fmi2.fmu can't call fmi2SerializedFMUstateSize: its library doesn't have this function"
     );
     let error = trouble.enter_event_mode().unwrap_err();
     assert!(matches!(error, InstanceError::Order { .. }), "{error}");
@@ -212,7 +212,10 @@ fn what_an_fmu_has_not_is_named() {
 fn calls_out_of_order_do_not_reach_the_fmu() {
     let mut signals = open("signals_fmi3");
     let error = signals.step(0.0, 0.1).unwrap_err();
-    assert_eq!(error.to_string(), "signals_fmi3: a step isn't possible before the initialization");
+    assert_eq!(
+        error.to_string(),
+        "signals_fmi3.fmu: a step isn't possible before the initialization"
+    );
     assert!(signals.exit_initialization().is_err());
     assert!(signals.terminate().is_err());
     assert!(signals.update_discrete_states().is_err());
@@ -411,7 +414,7 @@ fn errors_carry_what_the_fmu_said() {
     let error = trouble.enter_initialization(0.0, None, None).unwrap_err();
     assert_eq!(
         error.to_string(),
-        "fmi2EnterInitializationMode of trouble_fmi2 answered error: it failed on demand"
+        "fmi2EnterInitializationMode of trouble_fmi2.fmu answered error: it failed on demand"
     );
     trouble.reset().unwrap();
     start(trouble);
@@ -434,7 +437,7 @@ fn what_answered_fatal_is_not_touched_again() {
         let kept = trouble.keep_state().unwrap();
         demand(trouble, STEP, what);
         let error = trouble.step(0.0, 1.0).unwrap_err();
-        let expected = format!("fmi2DoStep of trouble_fmi2 answered {status}");
+        let expected = format!("fmi2DoStep of trouble_fmi2.fmu answered {status}");
         assert!(error.to_string().starts_with(&expected), "{error}");
         for error in [trouble.reset(), trouble.restore_state(kept), trouble.terminate()] {
             let error = error.unwrap_err();
@@ -452,12 +455,10 @@ fn an_instance_that_is_none_is_said() {
     let error = open_with("trouble_fmi2", &options).map(|_| ()).unwrap_err();
     assert_eq!(
         error.to_string(),
-        "fmi2Instantiate of trouble_fmi2 answered no instance: it failed on demand"
+        "fmi2Instantiate of trouble_fmi2.fmu answered no instance: it failed on demand"
     );
-    let mut description = foreign::description("gain_fmi2");
-    description.token = "{another}".into();
-    let folder = Folder::Kept(foreign::unpacked("gain_fmi2"));
-    let error = open_unpacked("gain", folder, description, &here()).map(|_| ()).unwrap_err();
+    let folder = copy("gain_fmi2", |text| text.replace("{8a6f3c1e-gain}", "{another}"));
+    let error = octant::fmu::open(folder.path(), &here()).map(|_| ()).unwrap_err();
     assert!(error.to_string().contains("guid {another} is not {8a6f3c1e-gain}"), "{error}");
 }
 
@@ -508,55 +509,77 @@ fn an_exchange_stops_where_a_get_fails() {
     let outputs = plan(&*trouble, &["y"]);
     demand(&mut *trouble, GET, FAIL);
     let error = trouble.exchange(&[], &[], 0.0, 1.0, &outputs.groups, &mut [0.0]).unwrap_err();
-    assert!(error.to_string().starts_with("fmi2GetReal of trouble_fmi2 answered error"), "{error}");
+    assert!(
+        error.to_string().starts_with("fmi2GetReal of trouble_fmi2.fmu answered error"),
+        "{error}"
+    );
+}
+
+/// A folder as one of the foreign FMUs, with another description.
+fn copy(name: &str, change: impl Fn(&str) -> String) -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    let from = foreign::unpacked(name);
+    let text = std::fs::read_to_string(from.join("modelDescription.xml")).unwrap();
+    std::fs::write(folder.path().join("modelDescription.xml"), change(&text)).unwrap();
+    let platform = std::fs::read_dir(from.join("binaries")).unwrap().next().unwrap().unwrap();
+    let binaries = folder.path().join("binaries").join(platform.file_name());
+    std::fs::create_dir_all(&binaries).unwrap();
+    for file in std::fs::read_dir(platform.path()).unwrap() {
+        let file = file.unwrap();
+        std::fs::copy(file.path(), binaries.join(file.file_name())).unwrap();
+    }
+    folder
+}
+
+/// The only file of its library.
+fn library(folder: &Path) -> PathBuf {
+    let platform = std::fs::read_dir(folder.join("binaries")).unwrap().next().unwrap().unwrap();
+    std::fs::read_dir(platform.path()).unwrap().next().unwrap().unwrap().path()
+}
+
+fn refusal(folder: &Path) -> String {
+    octant::fmu::open(folder, &here()).map(|_| ()).unwrap_err().to_string()
 }
 
 #[test]
 fn what_cannot_be_loaded_is_said() {
-    let empty = tempfile::tempdir().unwrap();
-    let description = foreign::description("gain_fmi2");
-    let open = |folder: &std::path::Path, description: &octant::fmu::description::Description| {
-        open_unpacked("x.fmu", Folder::Kept(folder.into()), description.clone(), &here())
-            .map(|_| ())
-            .unwrap_err()
-            .to_string()
-    };
-    let error = open(empty.path(), &description);
-    assert!(
-        error.starts_with("load x.fmu: it has no library for this platform: expected binaries/"),
-        "{error}"
-    );
-    assert!(error.ends_with("found no binaries"), "{error}");
+    let folder = copy("gain_fmi2", str::to_owned);
+    let file = library(folder.path());
+    let name = folder.path().file_name().unwrap().to_str().unwrap();
 
-    let platform = octant::fmu::library::platforms(description.standard)[0];
-    let file = format!("gain_fmi2{}", std::env::consts::DLL_SUFFIX);
-    let place = empty.path().join("binaries").join(platform);
-    std::fs::create_dir_all(&place).unwrap();
-    std::fs::write(place.join(&file), "no library").unwrap();
-    let error = open(empty.path(), &description);
-    assert!(error.contains(&file) && error.starts_with("load x.fmu: "), "{error}");
+    std::fs::write(&file, "no library").unwrap();
+    let error = refusal(folder.path());
+    assert!(error.starts_with(&format!("load {name}: ")), "{error}");
+    assert!(error.contains("gain_fmi2"), "{error}");
 
     // A library of the other standard.
-    let other = foreign::unpacked("signals_fmi3")
-        .join("binaries")
-        .join(octant::fmu::library::platforms(octant::fmu::description::Standard::Fmi3)[0]);
-    let other = other.join(format!("signals_fmi3{}", std::env::consts::DLL_SUFFIX));
-    std::fs::copy(other, place.join(&file)).unwrap();
-    let error = open(empty.path(), &description);
+    std::fs::copy(library(&foreign::unpacked("signals_fmi3")), &file).unwrap();
+    let error = refusal(folder.path());
     assert!(error.contains("lacks fmi2Instantiate, fmi2FreeInstance"), "{error}");
 
-    for identifier in ["", "../gain_fmi2", "a/b", ".hidden"] {
-        let mut description = description.clone();
-        description.co_simulation.as_mut().unwrap().model_identifier = identifier.into();
-        let error = open(empty.path(), &description);
+    std::fs::rename(file.parent().unwrap(), folder.path().join("binaries/vax64")).unwrap();
+    let error = refusal(folder.path());
+    assert!(
+        error.starts_with(&format!(
+            "load {name}: it has no library for this platform: expected binaries/"
+        )),
+        "{error}"
+    );
+    assert!(error.ends_with("found vax64"), "{error}");
+    std::fs::remove_dir_all(folder.path().join("binaries")).unwrap();
+    assert!(refusal(folder.path()).ends_with("found no binaries"));
+
+    for identifier in ["../gain_fmi2", "a/b", ".hidden"] {
+        let folder = copy("gain_fmi2", |text| {
+            text.replace("modelIdentifier=\"gain_fmi2", &format!("modelIdentifier=\"{identifier}"))
+        });
+        let error = refusal(folder.path());
         assert!(error.contains("is no name of a file"), "{error}");
     }
-    let mut description = description.clone();
-    description.co_simulation = None;
-    description.scheduled_execution = true;
-    let error = open(empty.path(), &description);
+    let exchange = Options { interface: InterfaceKind::ModelExchange, ..here() };
+    let error = octant::fmu::open(&foreign::fmu("gain_fmi2"), &exchange).map(|_| ()).unwrap_err();
     assert_eq!(
-        error,
-        "x.fmu can't run by co-simulation or model exchange: it has scheduled execution"
+        error.to_string(),
+        "gain_fmi2.fmu can't run by model exchange: it has co-simulation"
     );
 }

@@ -1,9 +1,9 @@
 //! The shared library of an unpacked FMU.
 #![allow(unsafe_code, reason = "a library is loaded and its functions are looked up")]
 
+use super::archive::Unpacked;
 use super::description::Standard;
 use super::instance::InstanceError;
-use super::instance::options::Folder;
 use octant_fmi::{fmi2, fmi3};
 use std::ffi::CStr;
 use std::path::{Path, PathBuf};
@@ -21,7 +21,7 @@ pub(super) struct Library {
     pub(super) functions: Functions,
     /// Before the folder that its file is in.
     _library: libloading::Library,
-    _folder: Folder,
+    _folder: Unpacked,
 }
 
 /// Names that folders of binaries for this platform have, the standard's first. Some tools use the
@@ -110,7 +110,7 @@ impl Library {
         fmu: &str,
         path: &Path,
         standard: Standard,
-        folder: Folder,
+        folder: Unpacked,
     ) -> Result<Self, InstanceError> {
         // SAFETY: loading runs code of the FMU, which is what an importer is for; who doesn't trust
         // it has a process of its own for it.

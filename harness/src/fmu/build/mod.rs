@@ -22,24 +22,20 @@ mod reference;
 #[cfg(test)]
 mod sample;
 mod ssp;
+mod system;
 mod target;
 mod terminals;
 
+use crate::scenario::Scenario;
 use archive::{File, archive};
 use documentation::{Standard, documentation};
 use library::Library;
+use octant_fmu::c::{CATEGORIES, token};
+use octant_fmu::calibrator::Calibrator;
 use octant_fmu::table::Model;
 use reference::Reference;
 use std::path::PathBuf;
-
-/// Log categories of the library, with what is logged in each.
-const LOG_CATEGORIES: [(&str, &str); 5] = [
-    ("logStatusWarning", "What is worth looking at and stops nothing"),
-    ("logStatusDiscard", "What was refused and changed nothing: values, steps"),
-    ("logStatusError", "Wrong calls"),
-    ("logStatusFatal", "What an instance can't go on after"),
-    ("logEvents", "What happened in the model"),
-];
+use system::Configured;
 
 /// What is built.
 #[derive(Clone, Debug, Default)]
@@ -51,6 +47,9 @@ pub struct Options {
     pub libraries: Vec<PathBuf>,
     /// Targets that cargo builds a library for, beside these.
     pub targets: Vec<String>,
+    /// The scenario whose parameters the system has, with its name; `None`: the one that is built
+    /// in.
+    pub scenario: Option<(String, Scenario)>,
 }
 
 /// Why nothing, or not everything, was built.
@@ -112,6 +111,20 @@ pub enum BuildError {
         /// Why.
         reason: String,
     },
+    /// A scenario can't be put into FMUs.
+    #[error("the parameters of {name} can't be put into FMUs: {reason}")]
+    Scenario {
+        /// Its name.
+        name: String,
+        /// Why not.
+        reason: String,
+    },
+    /// A model doesn't run with its start values.
+    #[error("the models don't run with their start values: {reason}")]
+    Model {
+        /// What they said.
+        reason: String,
+    },
     /// A file can't be written.
     #[error("failed to write {}: {source}", path.display())]
     Write {
@@ -142,7 +155,6 @@ fn icons(model: &Model) -> Icons {
 /// One of our models, with what goes into its FMUs.
 struct Own {
     model: &'static Model,
-    token: String,
     reference: Reference,
 }
 
@@ -175,26 +187,52 @@ fn libraries(options: &Options) -> Result<Vec<Library>, BuildError> {
     Ok(found.into_iter().map(|(_, library)| library).collect())
 }
 
-/// Our models.
+/// Our models, run with their start values.
 fn own() -> Result<Vec<Own>, BuildError> {
-    Ok(Vec::new())
+    let references = reference::closed_loop::<Calibrator, Calibrator>();
+    let [reference, _] = references.map_err(|reason| BuildError::Model { reason })?;
+    Ok(vec![Own { model: reference.model(), reference }])
 }
 
 /// Builds everything; the files that were written.
 ///
 /// # Errors
-/// If a library isn't there, isn't one of ours or can't be built, or a file can't be written.
+/// If a library isn't there, isn't one of ours or can't be built, the scenario can't be put into
+/// FMUs, or a file can't be written.
 pub fn build(options: &Options) -> Result<Vec<PathBuf>, BuildError> {
+    let configured = match &options.scenario {
+        Some((name, scenario)) => Configured::new(scenario, name)?,
+        None => Configured::built_in()?,
+    };
     let libraries = libraries(options)?;
+    let own = own()?;
     let failed = |path: PathBuf| move |source| BuildError::Write { path, source };
     std::fs::create_dir_all(&options.out).map_err(failed(options.out.clone()))?;
     let mut written = Vec::new();
-    for own in own()? {
+    let mut write = |name: &str, bytes: std::io::Result<Vec<u8>>| {
+        let path = options.out.join(name);
+        let bytes = bytes.map_err(failed(path.clone()))?;
+        std::fs::write(&path, &bytes).map_err(failed(path.clone()))?;
+        written.push(path);
+        Ok::<_, BuildError>(bytes)
+    };
+    let mut second = Vec::new();
+    for own in &own {
         for standard in [Standard::Fmi2, Standard::Fmi3] {
-            let path = options.out.join(format!("{}_{}.fmu", own.model.stem, standard.suffix()));
-            let bytes = fmu(&own, standard, &libraries).map_err(failed(path.clone()))?;
-            std::fs::write(&path, bytes).map_err(failed(path.clone()))?;
-            written.push(path);
+            let name = format!("{}_{}.fmu", own.model.stem, standard.suffix());
+            let bytes = write(&name, fmu(own, standard, &libraries))?;
+            if standard == Standard::Fmi2 {
+                second.push(bytes);
+            }
+        }
+    }
+    if let [plant, calibrator] = own.as_slice() {
+        write("octant.ssp", system::archive_of([plant, calibrator], &second, &configured))?;
+    }
+    if options.scenario.is_some() {
+        let path = options.out.clone();
+        for (name, bytes) in configured.files(&own).map_err(failed(path))? {
+            write(&name, Ok(bytes))?;
         }
     }
     Ok(written)
@@ -202,12 +240,13 @@ pub fn build(options: &Options) -> Result<Vec<PathBuf>, BuildError> {
 
 /// One FMU.
 fn fmu(own: &Own, standard: Standard, libraries: &[Library]) -> std::io::Result<Vec<u8>> {
-    let (model, token) = (own.model, &own.token);
+    let model = own.model;
+    let token = token(model, standard.of_library());
     let identifier = format!("{}_{}", model.stem, standard.suffix());
     let icons = icons(model);
     let description = match standard {
-        Standard::Fmi2 => describe::fmi2(model, token),
-        Standard::Fmi3 => describe::fmi3(model, token),
+        Standard::Fmi2 => describe::fmi2(model, &token),
+        Standard::Fmi3 => describe::fmi3(model, &token),
     };
     let mut files = vec![File::new("modelDescription.xml", description.document()?)];
     for library in libraries {
@@ -249,7 +288,7 @@ mod tests {
         let platform = library::Platform { fmi2: "linux64", fmi3: "x86_64-linux", extension: "so" };
         let libraries = [Library { bytes: b"library".to_vec(), platform }];
         let [reference, _] = reference::closed_loop::<Sample, Sample>().unwrap();
-        let own = Own { model: &sample::SAMPLE, token: "{token}".to_owned(), reference };
+        let own = Own { model: &sample::SAMPLE, reference };
         let bytes = fmu(&own, standard, &libraries).unwrap();
         assert_eq!(bytes, fmu(&own, standard, &libraries).unwrap());
         let mut archive = zip::ZipArchive::new(Cursor::new(bytes)).unwrap();

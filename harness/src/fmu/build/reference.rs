@@ -30,6 +30,11 @@ pub(super) struct Reference {
 }
 
 impl Reference {
+    /// Whose it is.
+    pub(super) fn model(&self) -> &'static Model {
+        self.model
+    }
+
     fn new(model: &'static Model) -> Self {
         Self { model, inputs: Vec::new(), outputs: Vec::new() }
     }

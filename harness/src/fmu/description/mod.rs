@@ -23,8 +23,10 @@ pub(crate) mod xml;
 pub use read::{read, read_bytes};
 pub use text::decode;
 
+use serde::{Deserialize, Serialize};
+
 /// Why a model description can't be used.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{file}:{}{place}: {found}, expected {expected}", Line(*.line))]
 pub struct DescriptionError {
     /// The file.
@@ -55,10 +57,8 @@ impl std::fmt::Display for Line {
 /// 64-bit number in the file, and the memory for it is ours.
 pub const ELEMENTS_MAX: u64 = 1 << 24;
 
-use serde::{Deserialize, Serialize};
-
 /// The standard that an FMU follows.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Standard {
     /// FMI 2.0.
     Fmi2,
@@ -67,7 +67,7 @@ pub enum Standard {
 }
 
 /// A model description.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Description {
     /// Name of the file, for messages.
     pub file: String,
@@ -113,7 +113,7 @@ pub struct Description {
 }
 
 /// Capabilities of an interface type.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Interface {
     /// `modelIdentifier`: stem of the library.
     pub model_identifier: String,
@@ -155,7 +155,7 @@ pub struct Interface {
 }
 
 /// The default experiment.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Experiment {
     /// Start, s.
     pub start_s: Option<f64>,
@@ -168,7 +168,7 @@ pub struct Experiment {
 }
 
 /// A unit: value in SI base units = factor · value + offset.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Unit {
     /// Its name.
     pub name: String,
@@ -180,7 +180,7 @@ pub struct Unit {
 
 /// A unit in which values of another are shown: shown = factor · value + offset, or factor / value
 /// where it is inverse.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct DisplayUnit {
     /// Its name.
     pub name: String,
@@ -193,7 +193,7 @@ pub struct DisplayUnit {
 }
 
 /// What a unit is in SI.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BaseUnit {
     /// Exponents of kg, m, s, A, K, mol, cd, rad.
     pub exponents: [i8; 8],
@@ -204,7 +204,7 @@ pub struct BaseUnit {
 }
 
 /// Type of a variable.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
 #[allow(missing_docs, reason = "named as in FMI 3.0")]
 pub enum Kind {
     Float64,
@@ -225,7 +225,7 @@ pub enum Kind {
 }
 
 /// What a variable is for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[allow(missing_docs, reason = "named as in the standards")]
 pub enum Causality {
     StructuralParameter,
@@ -238,7 +238,7 @@ pub enum Causality {
 }
 
 /// When a variable changes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[allow(missing_docs, reason = "named as in the standards")]
 pub enum Variability {
     Constant,
@@ -249,7 +249,7 @@ pub enum Variability {
 }
 
 /// Where a variable's first value comes from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[allow(missing_docs, reason = "named as in the standards")]
 pub enum Initial {
     Exact,
@@ -258,7 +258,7 @@ pub enum Initial {
 }
 
 /// One dimension of an array.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Dimension {
     /// So many.
     Fixed(u64),
@@ -267,7 +267,7 @@ pub enum Dimension {
 }
 
 /// A variable.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Variable {
     /// Its name.
     pub name: String,
@@ -320,7 +320,7 @@ pub struct Variable {
 }
 
 /// Another name of a variable (FMI 3.0).
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Alias {
     /// The name.
     pub name: String,
@@ -331,7 +331,7 @@ pub struct Alias {
 }
 
 /// What a clock is (FMI 3.0).
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Clock {
     /// `intervalVariability`.
     pub interval_variability: IntervalVariability,
@@ -354,7 +354,7 @@ pub struct Clock {
 }
 
 /// When the interval of a clock changes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[allow(missing_docs, reason = "named as in FMI 3.0")]
 pub enum IntervalVariability {
     Constant,
@@ -366,7 +366,7 @@ pub enum IntervalVariability {
 }
 
 /// The structure of a model, as value references.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Structure {
     /// Outputs with their dependencies.
     pub outputs: Vec<Unknown>,
@@ -381,7 +381,7 @@ pub struct Structure {
 }
 
 /// An unknown and what it depends on.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Unknown {
     /// Value reference.
     pub reference: u32,

@@ -6,7 +6,7 @@ use super::super::library::{Functions, Library};
 use super::call::{Answer, Base, Condition, NOWHERE, call, function_number};
 use super::message::{Log, callbacks, text};
 use super::number::Truth;
-use super::options::{Setup, c_text};
+use super::setup::{Setup, c_text};
 use super::unit::{RawState, Steps, Unit};
 use super::{Group, InstanceError, Outcome, Stepped, Update, group};
 use octant_fmi::fmi2;
@@ -29,7 +29,7 @@ pub(crate) struct Component {
     /// A step that is pending may take so long.
     time_limit: Duration,
     /// Whether states may be restored: then the FMU is told to keep what it needs for it.
-    restorable: bool,
+    pub(crate) restorable: bool,
     integers: Vec<i32>,
     truths: Vec<Truth<i32>>,
 }

@@ -6,7 +6,7 @@ use super::super::library::{Functions, Library};
 use super::call::{Answer, Base, Condition, LOADING, NOWHERE, call, function_number};
 use super::message::{Log, log_message, text};
 use super::number::Truth;
-use super::options::{Setup, c_text};
+use super::setup::{Setup, c_text};
 use super::unit::{RawState, Steps, Unit};
 use super::{Group, InstanceError, Outcome, Stepped, Update, group};
 use octant_fmi::fmi3;
@@ -42,7 +42,7 @@ pub(crate) struct Component {
     /// Event mode is the importer's.
     event_mode: bool,
     /// Whether states may be restored: then the FMU is told to keep what it needs for it.
-    restorable: bool,
+    pub(crate) restorable: bool,
     scratch: Scratch,
 }
 

@@ -1,8 +1,6 @@
 //! Variables that are set or got together, and where their numbers lie.
 
-use super::super::description::{
-    Causality, Description, Dimension, Kind, Standard, Variability, Variable,
-};
+use super::super::description::{Causality, Description, Kind, Standard, Variability, Variable};
 use super::InstanceError;
 use super::call::Base;
 use super::number::Number;
@@ -54,7 +52,7 @@ impl Group {
 
 /// Groups for a list of variables, as few as it takes, and the place of each variable in the
 /// numbers that belong to all groups one after another.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Plan {
     /// The groups, for [`super::Instance::exchange`].
     pub groups: Vec<Group>,
@@ -123,48 +121,15 @@ fn access(description: &Description, variable: &Variable) -> Access {
     }
 }
 
-/// Elements that an array may have.
-const ELEMENTS_MAX: u64 = 1 << 27;
-
-/// Number of elements of a variable, with the start values of the structural parameters.
-///
-/// # Errors
-/// If a dimension belongs to no variable, or the elements are too many.
-pub fn elements(description: &Description, variable: &Variable) -> Result<usize, InstanceError> {
-    let cannot = |reason: String| {
+/// Number of elements of a variable, with structural parameters at their start values.
+fn elements(description: &Description, variable: &Variable) -> Result<usize, InstanceError> {
+    description.elements(variable).map_err(|error| {
         InstanceError::unsupported(
             &description.model_name,
             format!("tell how many elements {} has", variable.name),
-            reason,
+            error.to_string(),
         )
-    };
-    let mut count = 1u64;
-    for dimension in &variable.dimensions {
-        let size = match *dimension {
-            Dimension::Fixed(size) => size,
-            Dimension::Of(reference) => {
-                let size = description
-                    .variables
-                    .iter()
-                    .find(|other| other.reference == reference)
-                    .ok_or_else(|| {
-                        cannot(format!("a dimension is value reference {reference}, which is none"))
-                    })?;
-                let start = size.start.first().map(|text| text.trim());
-                start.and_then(|text| text.parse().ok()).ok_or_else(|| {
-                    cannot(format!(
-                        "its dimension {} starts at {start:?}, expected a whole number",
-                        size.name
-                    ))
-                })?
-            }
-        };
-        count = count
-            .checked_mul(size)
-            .filter(|count| *count <= ELEMENTS_MAX)
-            .ok_or_else(|| cannot(format!("they are more than {ELEMENTS_MAX}")))?;
-    }
-    usize::try_from(count).map_err(|_| cannot("they are too many".into()))
+    })
 }
 
 /// Name of the variable that an element of a group belongs to, with the element's number where the

@@ -3,7 +3,9 @@
 //! | module | idea |
 //! |---|---|
 //! | [`group`] | variables that are set or got together, and where their numbers lie |
-//! | [`options`] | how an FMU is opened, and opening it |
+//! | [`options`] | how an FMU is opened |
+//! | [`open`] | opening it: its archive, its description, its library, an instance |
+//! | `setup` | what an instance is told when it is made |
 //! | [`error`] | why an FMU could not go on |
 //! | `message` | what an FMU logs |
 //! | `call` | one call of a function: its name, its status, what it means |
@@ -13,21 +15,24 @@
 //! | `states` | kept states, and states as bytes |
 //! | `co_simulation` | co-simulation in the order that the standards ask for |
 
-mod call;
-mod co_simulation;
+pub(super) mod call;
+pub(super) mod co_simulation;
 pub mod error;
-mod fmi2;
-mod fmi3;
+pub(super) mod fmi2;
+pub(super) mod fmi3;
 pub mod group;
 mod message;
 mod number;
+pub mod open;
 pub mod options;
-mod states;
+pub(super) mod setup;
+pub(super) mod states;
 pub(super) mod unit;
 
 pub use error::InstanceError;
 pub use group::{Access, Group, Plan};
 pub use message::Message;
+pub use open::OpenError;
 pub use options::{InterfaceKind, Options, Place};
 
 use super::description::Description;

@@ -39,7 +39,7 @@ fn log_categories() -> Element {
     let category = |(name, description)| {
         Element::new("Category").with("name", name).with("description", description)
     };
-    Element::new("LogCategories").children(super::LOG_CATEGORIES.map(category))
+    Element::new("LogCategories").children(super::CATEGORIES.map(category))
 }
 
 /// What a tool runs when it isn't told anything.
