@@ -5,6 +5,7 @@
 //! | [`build`] | our own FMUs, from their tables |
 //! | [`archive`] | files of others opened and unpacked safely |
 //! | [`description`] | what a `modelDescription.xml` says, of both standards in one form |
+//! | `exchange` | model exchange as co-simulation, with our solver |
 //! | [`library`] | the shared library of an unpacked FMU |
 //! | [`mapping`] | which of its variables is what |
 //! | [`instance`] | an FMU that runs, of both standards and both kinds, behind one trait |
@@ -13,6 +14,7 @@
 pub mod archive;
 pub mod build;
 pub mod description;
+mod exchange;
 pub mod instance;
 pub mod library;
 pub mod mapping;

@@ -5,6 +5,8 @@
 //! with the epoch that the source has made: faults of samples and delivery act on it, in the order
 //! of the scenario. What an active fault altered is found by comparing before and after it.
 
+mod state;
+
 use crate::catalogue::{Acts, Kind, Lasts};
 use crate::disturbance::Disturbed;
 use crate::receipt::{Ledger, Receipt};
@@ -16,6 +18,8 @@ use alloc::string::String;
 use alloc::vec::Vec;
 use octant_random::stream::Phase;
 use octant_sample::{Epoch, GimbalCommand, Output, Truth};
+
+pub use state::FORMAT as STATE_FORMAT;
 
 /// One fault of a scenario.
 #[derive(Clone, Debug)]
@@ -48,7 +52,7 @@ pub enum Delivered<'a> {
 }
 
 /// Something to tell about a fault.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct Occurrence {
     /// Epoch of the source.
     pub epoch: u64,
@@ -58,7 +62,7 @@ pub struct Occurrence {
     pub begins: bool,
 }
 
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 struct Stage {
     id: String,
     kind: &'static Kind,
@@ -168,6 +172,29 @@ pub struct Station {
     occurrences: Vec<Occurrence>,
     events: Vec<UnitEvent>,
     without_power: bool,
+}
+
+/// A clone has room for as much as the original: it doesn't allocate either.
+impl Clone for Station {
+    fn clone(&self) -> Self {
+        let room = |of: &Vec<Epoch>| {
+            let mut epochs = Vec::with_capacity(of.capacity());
+            epochs.extend_from_slice(of);
+            epochs
+        };
+        let mut occurrences = Vec::with_capacity(self.occurrences.capacity());
+        occurrences.extend_from_slice(&self.occurrences);
+        let mut events = Vec::with_capacity(self.events.capacity());
+        events.extend_from_slice(&self.events);
+        Self {
+            stages: self.stages.clone(),
+            flight: room(&self.flight),
+            landed: room(&self.landed),
+            occurrences,
+            events,
+            ..*self
+        }
+    }
 }
 
 impl Station {

@@ -24,7 +24,7 @@ pub use text::decode;
 use serde::{Deserialize, Serialize};
 
 /// Why a model description can't be used.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{file}:{}{place}: {found}, expected {expected}", Line(*.line))]
 pub struct DescriptionError {
     /// The file.
@@ -178,7 +178,7 @@ pub struct Unit {
 
 /// A unit in which values of another are shown: shown = factor · value + offset, or factor / value
 /// where it is inverse.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct DisplayUnit {
     /// Its name.
     pub name: String,
@@ -318,7 +318,7 @@ pub struct Variable {
 }
 
 /// Another name of a variable (FMI 3.0).
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Alias {
     /// The name.
     pub name: String,
@@ -329,7 +329,7 @@ pub struct Alias {
 }
 
 /// What a clock is (FMI 3.0).
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Clock {
     /// `intervalVariability`.
     pub interval_variability: IntervalVariability,
@@ -352,7 +352,7 @@ pub struct Clock {
 }
 
 /// When the interval of a clock changes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[allow(missing_docs, reason = "named as in FMI 3.0")]
 pub enum IntervalVariability {
     Constant,

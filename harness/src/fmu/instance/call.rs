@@ -43,7 +43,7 @@ pub(crate) fn function_name(function: u32) -> Option<&'static str> {
 }
 
 /// The number of a function, found when the program is compiled.
-pub(super) const fn function_number(name: &str) -> u32 {
+pub(in crate::fmu) const fn function_number(name: &str) -> u32 {
     const fn find(names: &[&str], name: &str) -> Option<u32> {
         let mut i = 0;
         while i < names.len() {
@@ -73,7 +73,7 @@ const STATE_MAX: usize = 1 << 30;
 
 /// Whether the FMU may still be called.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Condition {
+pub(in crate::fmu) enum Condition {
     /// It may.
     Sound,
     /// It answered error: it can be reset, restored or freed.
@@ -84,7 +84,7 @@ pub(super) enum Condition {
 
 /// A status that is no failure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Answer {
+pub(in crate::fmu) enum Answer {
     Fine,
     Discard,
     Pending,
@@ -92,17 +92,17 @@ pub(super) enum Answer {
 
 /// What every instance has, whatever its standard.
 pub(crate) struct Base {
-    pub(super) name: String,
-    pub(super) description: Arc<Description>,
+    pub(in crate::fmu) name: String,
+    pub(in crate::fmu) description: Arc<Description>,
     pub(super) log: Arc<Log>,
-    pub(super) mark: Mark,
-    pub(super) condition: Condition,
+    pub(in crate::fmu) mark: Mark,
+    pub(in crate::fmu) condition: Condition,
 }
 
 impl Base {
     /// The library has no function of this name.
     #[cold]
-    pub(super) fn missing(&self, function: &str) -> InstanceError {
+    pub(in crate::fmu) fn missing(&self, function: &str) -> InstanceError {
         InstanceError::unsupported(
             &self.name,
             format!("call {function}"),
@@ -111,7 +111,7 @@ impl Base {
     }
 
     /// Refuses a call of an FMU that isn't sound (or, with `mend`, that can't be mended).
-    pub(super) fn ready(&self, function: &str, mend: bool) -> Result<(), InstanceError> {
+    pub(in crate::fmu) fn ready(&self, function: &str, mend: bool) -> Result<(), InstanceError> {
         match self.condition {
             Condition::Sound => Ok(()),
             Condition::Failed if mend => Ok(()),
@@ -122,12 +122,16 @@ impl Base {
 
     /// It is asked for at a time at which the standard forbids it.
     #[cold]
-    pub(super) fn order(&self, what: &str, when: &str) -> InstanceError {
+    pub(in crate::fmu) fn order(&self, what: &str, when: &str) -> InstanceError {
         InstanceError::Order { fmu: self.name.clone(), what: what.into(), when: when.into() }
     }
 
     /// What a status means.
-    pub(super) fn answer(&mut self, function: &str, status: i32) -> Result<Answer, InstanceError> {
+    pub(in crate::fmu) fn answer(
+        &mut self,
+        function: &str,
+        status: i32,
+    ) -> Result<Answer, InstanceError> {
         match status {
             fmi2::OK | fmi2::WARNING => Ok(Answer::Fine),
             fmi2::DISCARD => Ok(Answer::Discard),
@@ -145,7 +149,11 @@ impl Base {
     }
 
     /// What a status means where only success will do. A discarded call leaves the FMU sound.
-    pub(super) fn check(&mut self, function: &str, status: i32) -> Result<(), InstanceError> {
+    pub(in crate::fmu) fn check(
+        &mut self,
+        function: &str,
+        status: i32,
+    ) -> Result<(), InstanceError> {
         match self.answer(function, status)? {
             Answer::Fine => Ok(()),
             Answer::Discard | Answer::Pending => Err(self.failed(function, status_name(status))),
@@ -154,7 +162,7 @@ impl Base {
 
     /// A function failed.
     #[cold]
-    pub(super) fn failed(&self, function: &str, status: &str) -> InstanceError {
+    pub(in crate::fmu) fn failed(&self, function: &str, status: &str) -> InstanceError {
         InstanceError::Failed {
             fmu: self.name.clone(),
             function: function.into(),
@@ -164,7 +172,7 @@ impl Base {
     }
 
     /// Memory for a state of the size that the FMU says.
-    pub(super) fn state_buffer(&self, size: usize) -> Result<Vec<u8>, InstanceError> {
+    pub(in crate::fmu) fn state_buffer(&self, size: usize) -> Result<Vec<u8>, InstanceError> {
         let mut bytes = Vec::new();
         if size > STATE_MAX || bytes.try_reserve_exact(size).is_err() {
             return Err(InstanceError::State {
@@ -177,7 +185,7 @@ impl Base {
     }
 
     /// What it logged.
-    pub(super) fn messages(&self) -> Vec<Message> {
+    pub(in crate::fmu) fn messages(&self) -> Vec<Message> {
         self.log.drain(&self.description)
     }
 }
@@ -204,7 +212,7 @@ macro_rules! call {
         status
     }};
 }
-pub(super) use call;
+pub(in crate::fmu) use call;
 
 #[cfg(test)]
 mod tests {

@@ -29,7 +29,7 @@ pub(crate) struct Component {
     /// A step that is pending may take so long.
     time_limit: Duration,
     /// Whether states may be restored: then the FMU is told to keep what it needs for it.
-    restorable: bool,
+    pub(crate) restorable: bool,
     integers: Vec<i32>,
     truths: Vec<Truth<i32>>,
 }

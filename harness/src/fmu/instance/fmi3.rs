@@ -42,7 +42,7 @@ pub(crate) struct Component {
     /// Event mode is the importer's.
     event_mode: bool,
     /// Whether states may be restored: then the FMU is told to keep what it needs for it.
-    restorable: bool,
+    pub(crate) restorable: bool,
     scratch: Scratch,
 }
 

@@ -15,18 +15,18 @@
 //! | `states` | kept states, and states as bytes |
 //! | `co_simulation` | co-simulation in the order that the standards ask for |
 
-mod call;
-mod co_simulation;
+pub(super) mod call;
+pub(super) mod co_simulation;
 pub mod error;
-mod fmi2;
-mod fmi3;
+pub(super) mod fmi2;
+pub(super) mod fmi3;
 pub mod group;
 mod message;
 mod number;
 pub mod open;
 pub mod options;
-mod setup;
-mod states;
+pub(super) mod setup;
+pub(super) mod states;
 pub(super) mod unit;
 
 pub use error::InstanceError;

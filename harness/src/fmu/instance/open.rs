@@ -2,6 +2,7 @@
 
 use super::super::archive::{Archive, ArchiveError, Unpacked};
 use super::super::description::{self, Description, DescriptionError, Interface, Standard};
+use super::super::exchange::Exchange;
 use super::super::library::{self, Library};
 use super::call::{LOADING, Mark, NOWHERE};
 use super::co_simulation::CoSimulation;
@@ -134,24 +135,26 @@ pub(crate) fn open_here(
         time_limit: options.time_limit,
         mark,
     };
-    if exchange {
-        return Err(InstanceError::unsupported(
-            name,
-            "run by model exchange",
-            "this is not part of this version",
-        ));
-    }
-    Ok(match setup.description.standard {
-        Standard::Fmi2 => Box::new(CoSimulation::new(fmi2::Component::new(
+    let tells_steps = setup.interface.completed_step_needed;
+    Ok(match (setup.description.standard, exchange) {
+        (Standard::Fmi2, false) => Box::new(CoSimulation::new(fmi2::Component::new(
             library,
             &setup,
             octant_fmi::fmi2::CO_SIMULATION,
         )?)),
-        Standard::Fmi3 => Box::new(CoSimulation::new(fmi3::Component::new(
+        (Standard::Fmi2, true) => Box::new(Exchange::new(
+            fmi2::Component::new(library, &setup, octant_fmi::fmi2::MODEL_EXCHANGE)?,
+            tells_steps,
+        )),
+        (Standard::Fmi3, false) => Box::new(CoSimulation::new(fmi3::Component::new(
             library,
             &setup,
             fmi3::Use::CoSimulation,
         )?)),
+        (Standard::Fmi3, true) => Box::new(Exchange::new(
+            fmi3::Component::new(library, &setup, fmi3::Use::ModelExchange)?,
+            tells_steps,
+        )),
     })
 }
 

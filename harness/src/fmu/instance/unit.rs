@@ -49,3 +49,19 @@ pub(crate) trait Steps: Unit {
     fn enter_step_mode(&mut self) -> Result<(), InstanceError>;
     fn do_step(&mut self, time_s: f64, step_s: f64) -> Result<Stepped, InstanceError>;
 }
+
+/// Model exchange. Where a value can't be computed (the FMU discards the call), that is no failure
+/// but the answer `false`: the solver tries elsewhere.
+pub(crate) trait Continuous: Unit {
+    /// Numbers of continuous states and of event indicators.
+    fn counts(&mut self) -> Result<(usize, usize), InstanceError>;
+    fn enter_continuous_time_mode(&mut self) -> Result<(), InstanceError>;
+    fn set_time(&mut self, time_s: f64) -> Result<(), InstanceError>;
+    fn set_states(&mut self, states: &[f64]) -> Result<bool, InstanceError>;
+    fn states(&mut self, states: &mut [f64]) -> Result<(), InstanceError>;
+    fn derivatives(&mut self, derivatives: &mut [f64]) -> Result<bool, InstanceError>;
+    fn indicators(&mut self, indicators: &mut [f64]) -> Result<bool, InstanceError>;
+    fn nominals(&mut self, nominals: &mut [f64]) -> Result<(), InstanceError>;
+    /// A step of the solver is done: whether there is an event, and whether the FMU wants to end.
+    fn completed_step(&mut self) -> Result<(bool, bool), InstanceError>;
+}
