@@ -4,6 +4,7 @@
 //! Where there is no `python3` or no `cc` their part is skipped, unless `OCTANT_REQUIRE_PEERS` is set.
 #![cfg(unix)]
 #![allow(clippy::unwrap_used)]
+#![allow(clippy::print_stdout, reason = "what is skipped is said")]
 
 mod common;
 
