@@ -1,5 +1,6 @@
 //! Bakes in what a manifest says about the build: the state of the repository and the compiler.
-//! Both may be missing (a source archive, no git): then the manifest says so.
+//! Both may be missing (a source archive, no git): then the manifest says so. And compiles the one
+//! function that Rust can't define: a callback with variable arguments.
 
 use std::process::Command;
 
@@ -29,4 +30,8 @@ fn main() {
     println!("cargo:rustc-env=OCTANT_GIT_COMMIT={commit}");
     println!("cargo:rustc-env=OCTANT_GIT_DIRTY={dirty}");
     println!("cargo:rustc-env=OCTANT_RUSTC={rustc}");
+    cc::Build::new()
+        .file("src/fmu/instance/logger.c")
+        .extra_warnings(true)
+        .compile("octant_fmi2_logger");
 }

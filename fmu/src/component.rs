@@ -27,6 +27,17 @@ pub trait Component: Clone + Send + Sized + 'static {
     /// If an input can't be used; the component and its outputs are as before.
     fn step(&mut self, values: &mut Values) -> Result<(), String>;
 
+    /// The simulation has ended: brings the outputs up to date that only the end can.
+    fn terminate(&mut self, values: &mut Values) {
+        let _ = values;
+    }
+
+    /// What happened in the last step that a person wants to read, once: for the log. Asked after
+    /// every step, so that nothing is all that it may cost in nearly all of them.
+    fn remark(&mut self) -> Option<String> {
+        None
+    }
+
     /// Everything that it needs to go on, but its values, as bytes; see [`Self::load`].
     fn save(&self, bytes: &mut Vec<u8>);
 

@@ -3,6 +3,7 @@
 //! | module | idea |
 //! |---|---|
 //! | [`table`] | what a variable is; one table makes descriptions, value references and documentation |
+//! | [`quantities`] | units, and the display units of the field |
 //! | [`values`] | the values of all variables of an instance, flat |
 //! | [`component`] | what a model has to do: be made from its parameters, and step |
 //! | [`calibrator`] | the calibration core as a component |
@@ -15,6 +16,8 @@
 pub mod c;
 pub mod calibrator;
 pub mod component;
+mod groups;
 pub mod plant;
+pub mod quantities;
 pub mod table;
 pub mod values;

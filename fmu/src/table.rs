@@ -61,8 +61,9 @@ pub enum Variability {
 pub struct Unit {
     /// The name, as written in descriptions: `rad/s`.
     pub name: &'static str,
-    /// Exponents of kg, m, s, A, K, mol, cd, rad.
-    pub exponents: [i8; 8],
+    /// Exponents of kg, m, s, A, K, mol, cd, rad; `None` where they are no whole numbers, as of a
+    /// random walk.
+    pub exponents: Option<[i8; 8]>,
     /// SI value of one of it.
     pub factor: f64,
     /// Units in which people like to see it: name, and how many of them one of this unit is.
@@ -81,7 +82,7 @@ pub struct Quantity {
 }
 
 /// One variable of a model.
-#[derive(Debug)]
+#[derive(Clone, Copy, Debug)]
 pub struct Variable {
     /// Structured name: `gyro.delta_theta`.
     pub name: &'static str,
@@ -106,16 +107,131 @@ pub struct Variable {
     /// Start value of each element (one: of all of them), where the variable has one; numbers,
     /// and 0 or 1 for Booleans.
     pub start: &'static [f64],
+    /// An input whose values needn't be finite: the model answers for NaN and infinities itself.
+    pub non_finite: bool,
     /// Names of the inputs on which an output depends directly (in FMI's sense: within one instant);
     /// outputs that change at the end of a step only have none.
     pub depends_on: &'static [&'static str],
 }
 
 impl Variable {
+    const fn new(name: &'static str, kind: Kind, causality: Causality) -> Self {
+        Self {
+            name,
+            description: "",
+            kind,
+            elements: 0,
+            causality,
+            variability: match causality {
+                Causality::Parameter | Causality::CalculatedParameter => Variability::Fixed,
+                Causality::Input | Causality::Output | Causality::Local => Variability::Discrete,
+            },
+            quantity: None,
+            min: None,
+            max: None,
+            nominal: None,
+            start: match causality {
+                // What comes from outside has to start with something.
+                Causality::Parameter | Causality::Input => &[0.0],
+                _ => &[],
+            },
+            non_finite: false,
+            depends_on: &[],
+        }
+    }
+
+    /// A discrete scalar input that starts at zero.
+    #[must_use]
+    pub const fn input(name: &'static str, kind: Kind) -> Self {
+        Self::new(name, kind, Causality::Input)
+    }
+
+    /// A discrete scalar output.
+    #[must_use]
+    pub const fn output(name: &'static str, kind: Kind) -> Self {
+        Self::new(name, kind, Causality::Output)
+    }
+
+    /// A fixed scalar parameter that starts at zero.
+    #[must_use]
+    pub const fn parameter(name: &'static str, kind: Kind) -> Self {
+        Self::new(name, kind, Causality::Parameter)
+    }
+
+    /// With this description.
+    #[must_use]
+    pub const fn described(mut self, description: &'static str) -> Self {
+        self.description = description;
+        self
+    }
+
+    /// As an array of so many elements.
+    #[must_use]
+    pub const fn elements(mut self, elements: usize) -> Self {
+        self.elements = elements;
+        self
+    }
+
+    /// Of this quantity.
+    #[must_use]
+    pub const fn of(mut self, quantity: &'static Quantity) -> Self {
+        self.quantity = Some(quantity);
+        self
+    }
+
+    /// Not below `min`.
+    #[must_use]
+    pub const fn min(mut self, min: f64) -> Self {
+        self.min = Some(min);
+        self
+    }
+
+    /// From `min` to `max`.
+    #[must_use]
+    pub const fn within(mut self, min: f64, max: f64) -> Self {
+        self.min = Some(min);
+        self.max = Some(max);
+        self
+    }
+
+    /// Usually of this size.
+    #[must_use]
+    pub const fn nominal(mut self, nominal: f64) -> Self {
+        self.nominal = Some(nominal);
+        self
+    }
+
+    /// With these start values: one for each element, or one for all of them.
+    #[must_use]
+    pub const fn start(mut self, start: &'static [f64]) -> Self {
+        self.start = start;
+        self
+    }
+
+    /// NaN and infinities are handed to the model.
+    #[must_use]
+    pub const fn non_finite(mut self) -> Self {
+        self.non_finite = true;
+        self
+    }
+
+    /// As one that the importer may change between steps.
+    #[must_use]
+    pub const fn tunable(mut self) -> Self {
+        self.variability = Variability::Tunable;
+        self
+    }
+
     /// Slots that it occupies.
     #[must_use]
     pub const fn slots(&self) -> usize {
         if self.elements == 0 { 1 } else { self.elements }
+    }
+
+    /// Start value of an element, if the variable has one.
+    #[must_use]
+    pub fn start_of(&self, element: usize) -> Option<f64> {
+        self.start.get(element).or(self.start.first()).copied()
     }
 }
 
@@ -132,4 +248,93 @@ pub struct Model {
     pub variables: &'static [Variable],
     /// The smallest and the largest number of sample periods in a communication step.
     pub periods_per_step: (u64, u64),
+}
+
+impl Model {
+    /// Number of slots, time included.
+    #[must_use]
+    pub const fn slots(&self) -> usize {
+        let (mut slots, mut i) = (1, 0);
+        while i < self.variables.len() {
+            slots += self.variables[i].slots();
+            i += 1;
+        }
+        slots
+    }
+
+    /// The first slot of a variable. For constants: a name that isn't there doesn't compile.
+    ///
+    /// # Panics
+    /// If there is no variable of this name.
+    #[must_use]
+    pub const fn slot(&self, name: &str) -> usize {
+        let (mut slot, mut i) = (1, 0);
+        while i < self.variables.len() {
+            if same(self.variables[i].name.as_bytes(), name.as_bytes()) {
+                return slot;
+            }
+            slot += self.variables[i].slots();
+            i += 1;
+        }
+        panic!("no variable of this name")
+    }
+
+    /// The variables with their first slots.
+    pub fn with_slots(&self) -> impl Iterator<Item = (usize, &'static Variable)> + use<> {
+        self.variables.iter().scan(1, |next, variable| {
+            let slot = *next;
+            *next += variable.slots();
+            Some((slot, variable))
+        })
+    }
+
+    /// Name of the variable that a slot belongs to, for messages.
+    #[must_use]
+    pub fn label(&self, slot: usize) -> &'static str {
+        self.with_slots()
+            .take_while(|(first, _)| *first <= slot)
+            .last()
+            .map_or("time", |(_, variable)| variable.name)
+    }
+
+    /// A variable with its first slot, by name.
+    #[must_use]
+    pub fn find(&self, name: &str) -> Option<(usize, &'static Variable)> {
+        self.with_slots().find(|(_, variable)| variable.name == name)
+    }
+}
+
+/// Parts of a table, one after another.
+///
+/// # Panics
+/// If `N` isn't their number of variables.
+#[must_use]
+pub const fn concatenated<const N: usize>(parts: &[&[Variable]]) -> [Variable; N] {
+    let mut all = [Variable::parameter("", Kind::Real); N];
+    let (mut n, mut part) = (0, 0);
+    while part < parts.len() {
+        let mut i = 0;
+        while i < parts[part].len() {
+            all[n] = parts[part][i];
+            n += 1;
+            i += 1;
+        }
+        part += 1;
+    }
+    assert!(n == N, "N is the number of variables");
+    all
+}
+
+const fn same(a: &[u8], b: &[u8]) -> bool {
+    if a.len() != b.len() {
+        return false;
+    }
+    let mut i = 0;
+    while i < a.len() {
+        if a[i] != b[i] {
+            return false;
+        }
+        i += 1;
+    }
+    true
 }

@@ -134,7 +134,46 @@ fn the_sigma_has_the_unit_of_its_reference() {
 #[test]
 fn what_this_version_has_not_is_said() {
     let (.., message) = problem(&format!("{HEAD}[endpoint]\nuri = \"serial:/dev/ttyS0\"\n"));
-    assert_says(&message, &["in-process", "no other endpoint"]);
+    assert_says(&message, &["found \"serial:/dev/ttyS0\"", "possible: in-process, fmu"]);
+}
+
+#[test]
+fn what_is_said_about_an_fmu_is_checked_before_the_fmu_is_read() {
+    let fmu = |text: &str| problem(&format!("{HEAD}[source]\nuri = \"fmu:a.fmu\"\n{text}"));
+    let (place, path, message) = fmu("[source.fmu.map]\ngyro.rat = \"w\"\n");
+    assert_eq!((place, path.as_str()), (at(6, 6), "source.fmu.map.gyro.rat"));
+    assert_says(&message, &["unknown key", "did you mean \"rate\"?"]);
+    let (_, path, message) = fmu("[source.fmu.map]\ngyro.rate = [\"x\", \"y\"]\n");
+    assert_eq!(path, "source.fmu.map.gyro.rate");
+    assert_says(&message, &["found 2 entries", "array variable, or 3 entries"]);
+    let (_, path, message) =
+        fmu("[source.fmu.map]\ngyro.rate = { variable = \"w\", unit = \"m\" }\n");
+    assert_eq!(path, "source.fmu.map.gyro.rate.unit");
+    assert_says(&message, &["found \"m\"", "an angular rate such as"]);
+    let (_, path, message) = fmu("[source.fmu.map]\ncase.roll = \"r\"\ngyro.rate = \"w\"\n");
+    assert_eq!(path, "source.fmu.map.gyro.rate");
+    assert_says(&message, &["beside case.roll", "and not both"]);
+    let (_, path, message) = fmu("[source.fmu.map]\ncase.roll = \"r\"\n");
+    assert_eq!(path, "source.uri");
+    assert_says(&message, &["moves the case", "motion.kind is \"static\""]);
+    let (_, path, message) = fmu("[source.fmu]\nstep = \"3 ms\"\n");
+    assert_eq!(path, "source.fmu.step");
+    assert_says(&message, &["found \"3 ms\"", "5000000 ns, divided by a whole number"]);
+    let (_, path, message) = fmu("[source.fmu]\nprocess = \"shared\"\ntime_limit = \"3 s\"\n");
+    assert_eq!(path, "source.fmu.time_limit");
+    assert_says(&message, &["without effect", "nothing can end a call"]);
+    let (_, path, message) = fmu("[source.fmu]\nparameters = { a = [[1]] }\n");
+    assert_eq!(path, "source.fmu.parameters.a");
+    assert_says(&message, &["found an array of 1"]);
+    let (_, path, message) = problem(&format!("{HEAD}[source.fmu]\nprocess = \"own\"\n"));
+    assert_eq!(path, "source.fmu");
+    assert_says(&message, &["without effect", "source.uri is not fmu:FILE"]);
+    let (_, path, message) = fmu(
+        "[[faults]]\nid = \"a\"\nkind = \"gimbal-slip\"\ngimbal = \"azimuth\"\nangle = \"1 deg\"\n\
+         trigger = { at = \"5 s\" }\n",
+    );
+    assert_eq!(path, "faults[0].kind");
+    assert_says(&message, &["inside the simulated instrument", "the source is an FMU"]);
 }
 
 #[test]

@@ -23,12 +23,13 @@ fn both_configurations(scenario: &Scenario) -> String {
     let core = |method| scenario.core(method, &draws, &scenario.mean_attitude(), &Vector3::zeros());
     // Debug prints every field, and floats so that they read back to the same bits.
     format!(
-        "{plant:?} {:?} {:?} {:?} {:?} {:?}",
+        "{plant:?} {:?} {:?} {:?} {:?} {:?} {:?}",
         core(Method::Primary),
         core(Method::Baseline),
         scenario.requirements,
         scenario.record,
-        scenario.source
+        scenario.source,
+        scenario.endpoint
     )
 }
 
@@ -74,6 +75,15 @@ fn what_no_shipped_scenario_has_resolves_to_the_same_run_too() {
         "[source]\nuri = \"text:data/gyro.csv\"\n[source.text]\ndelimiter = \"comma\"\nheader = true\n\
          [source.text.gyro]\nx = \"gx\"\ny = 3\nz = 4\nunit = \"deg/s\"\naxes = [\"y\", \"x\", \"-z\"]\n\
          [source.text.accelerometer]\nfile = \"/data/a.csv\"\nx = 2\ny = 3\nz = 4\nunit = \"g\"\n"
+            .to_owned(),
+        "[source]\nuri = \"fmu:/data/imu.fmu\"\n[source.fmu]\ninterface = \"model-exchange\"\n\
+         time_limit = \"3 s\"\nstep = \"1 ms\"\ntolerance = 1e-7\n\
+         parameters = { \"ship.mass\" = 3.2e6, \"x[1]\" = true, on = \"a \\\"b\\\"\", v = [1, 2] }\n\
+         [source.fmu.map]\ngyro.rate = [\"-wy\", { variable = \"wx\", unit = \"deg/s\", scale = -2.0 }, \
+         { constant = \"1 deg/h\" }]\naccelerometer.specific_force = \"f\"\n\
+         [endpoint]\nuri = \"fmu:/data/core.fmu\"\n[endpoint.fmu]\nprocess = \"shared\"\n\
+         modes = { calibrating = [1, \"turning\"], done = 4 }\n\
+         [endpoint.fmu.map]\nmode = \"phase\"\n"
             .to_owned(),
     ];
     for text in texts {

@@ -7,6 +7,7 @@ use super::condition;
 use super::document::{Node, Table, Value, parse_default};
 use super::error::{Place, Problem, nearest, suggestion};
 use super::keys::{Bounds, Default, Key, Kind, Section, Variants};
+use super::ports;
 use super::quantity::{self, Dimension, NotAQuantity};
 use octant_faults::Channels;
 
@@ -79,9 +80,7 @@ pub(crate) fn check(
         (Kind::Text, Value::Text(_)) | (Kind::Boolean, Value::Boolean(_)) => {}
         (Kind::Uri(schemes), Value::Text(text)) => {
             let scheme = text.split(':').next().unwrap_or_default();
-            if scheme == "fmu" {
-                report(format!("found {found}: FMUs are not part of this version"));
-            } else if !schemes.iter().any(|(known, _)| *known == scheme) {
+            if !schemes.iter().any(|(known, _)| *known == scheme) {
                 let known = suggestion(scheme, schemes.iter().map(|(name, _)| *name), "possible");
                 report(format!("found {found}, {known}"));
             }
@@ -200,6 +199,11 @@ pub(crate) fn check(
             }
         }
         (Kind::Column, Value::Integer(1..=10_000) | Value::Text(_)) => {}
+        (Kind::Port(channel), _) => problems.extend(ports::ports(node, channel, path).err()),
+        (Kind::Settings, Value::Table(table)) => {
+            problems.extend(ports::settings(table, path).err())
+        }
+        (Kind::Codes, value) if ports::codes(value).is_some_and(|codes| !codes.is_empty()) => {}
         (Kind::Table(section), Value::Table(table)) => {
             complete(table, section, path, &place, problems);
         }
@@ -391,6 +395,11 @@ pub(crate) fn expected(kind: &Kind) -> String {
         }
         Kind::Limit => "a quantity or a number".to_owned(),
         Kind::Column => "a column number from 1, or a column's name".to_owned(),
+        Kind::Port(channel) => ports::expected_port(channel),
+        Kind::Settings => "a table of names and values".to_owned(),
+        Kind::Codes => {
+            "a whole number or the name of an enumeration's item, or an array of them".to_owned()
+        }
         Kind::Table(section) if section.one_of => {
             format!("a table with one of {}", section.names().collect::<Vec<_>>().join(", "))
         }

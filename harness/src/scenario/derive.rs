@@ -2,6 +2,7 @@
 
 use super::document::{Node, Table, Value, parse_default};
 use super::error::Problem;
+use super::keys::{Default, ENDPOINT_FMU, SOURCE_FMU, Section};
 use super::quantity::{self, Dimension};
 
 /// Writes the defaults that depend on other keys into a document that hasn't been checked yet:
@@ -22,6 +23,11 @@ pub(crate) fn derive(document: &mut Table) {
     let (still, moving) =
         (octant_calibration::drift::LIMIT_SIGMAS, octant_calibration::drift::LIMIT_MOVING_SIGMAS);
     set(document, "screening.drift", &format!("{:?}", if dockside { moving } else { still }));
+    for (name, keys) in [("source", &SOURCE_FMU), ("endpoint", &ENDPOINT_FMU)] {
+        if text(document, &format!("{name}.uri")).is_some_and(|uri| uri.starts_with("fmu:")) {
+            fmu(document, &format!("{name}.fmu"), keys);
+        }
+    }
     for table in ["source.text", "source.mcap"] {
         if document.at(table).is_some() {
             let rate = text(document, "imu.rate").unwrap_or("200 Hz").to_owned();
@@ -35,6 +41,18 @@ pub(crate) fn derive(document: &mut Table) {
             };
             set(document, &format!("{table}.rate"), &rate);
         }
+    }
+}
+
+/// The table of an FMU with its defaults, also where the scenario leaves it out.
+fn fmu(document: &mut Table, path: &str, keys: &Section) {
+    for key in keys.keys {
+        if let Default::Value(value) = key.default {
+            set(document, &format!("{path}.{}", key.name), value);
+        }
+    }
+    if text(document, &format!("{path}.process")) == Some("own") {
+        set(document, &format!("{path}.time_limit"), "10 s");
     }
 }
 
@@ -133,6 +151,21 @@ pub(crate) fn without_effect(document: &Table) -> Vec<(String, &'static str)> {
     }
     if !uri.starts_with("replay:") {
         add("source", &["mcap"], "without effect: source.uri is not replay:FILE");
+    }
+    if !uri.starts_with("fmu:") {
+        add("source", &["fmu"], "without effect: source.uri is not fmu:FILE");
+    }
+    if !text(document, "endpoint.uri").is_some_and(|uri| uri.starts_with("fmu:")) {
+        add("endpoint", &["fmu"], "without effect: endpoint.uri is not fmu:FILE");
+    }
+    for table in ["source.fmu", "endpoint.fmu"] {
+        if is(&format!("{table}.process"), "shared") {
+            add(
+                table,
+                &["time_limit"],
+                "without effect with process = \"shared\": nothing can end a call there",
+            );
+        }
     }
     all
 }

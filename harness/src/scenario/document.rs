@@ -237,11 +237,7 @@ impl<'a> Lines<'a> {
 /// Writes a value on one line.
 pub(crate) fn write_value(value: &Value, out: &mut String) {
     match value {
-        // JSON escapes what a basic string of TOML must, except DEL.
-        Value::Text(text) => {
-            let quoted = serde_json::Value::from(text.as_str()).to_string();
-            out.push_str(&quoted.replace('\u{7f}', "\\u007f"));
-        }
+        Value::Text(text) => write_quoted(text, out),
         Value::Integer(number) => _ = write!(out, "{number}"),
         Value::Number(number) => _ = write!(out, "{number:?}"),
         Value::Boolean(value) => _ = write!(out, "{value}"),
@@ -262,11 +258,28 @@ pub(crate) fn write_value(value: &Value, out: &mut String) {
                 if index > 0 {
                     out.push_str(", ");
                 }
-                _ = write!(out, "{} = ", entry.key);
+                write_key(&entry.key, out);
+                out.push_str(" = ");
                 write_value(&entry.node.value, out);
             }
             out.push_str(" }");
         }
+    }
+}
+
+/// JSON escapes what a basic string of TOML must, except DEL.
+fn write_quoted(text: &str, out: &mut String) {
+    let quoted = serde_json::Value::from(text).to_string();
+    out.push_str(&quoted.replace('\u{7f}', "\\u007f"));
+}
+
+/// Writes a key, in quotes where it has to have them.
+fn write_key(key: &str, out: &mut String) {
+    let bare = |c: char| c.is_ascii_alphanumeric() || c == '-' || c == '_';
+    if !key.is_empty() && key.chars().all(bare) {
+        out.push_str(key)
+    } else {
+        write_quoted(key, out)
     }
 }
 

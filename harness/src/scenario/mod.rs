@@ -12,7 +12,8 @@ mod document;
 mod error;
 mod examples;
 mod keys;
-mod quantity;
+mod ports;
+pub(crate) mod quantity;
 mod read;
 pub mod resolve;
 mod schema;
@@ -20,11 +21,15 @@ pub mod suite;
 mod tour;
 mod write;
 
-pub(crate) use error::suggestion;
 pub use error::{Place, Problem, ScenarioError};
+pub(crate) use error::{nearest, suggestion};
 pub use keys::SCHEMA;
+pub use ports::{Code, Made, Port, Set, Setting, Written};
+pub(crate) use quantity::parse as quantity_of;
 pub use quantity::{Dimension, Quantity};
 pub use read::faults::Fault;
+pub use read::faults::connection::{ConnectionFault, Given, connection_faults, text_of};
+pub use read::fmu::{Endpoint, Fmu, InterfaceChoice, Mapped, Process};
 pub use read::source::{FileName, Source};
 pub use schema::schema;
 pub use tour::{fault_example, fault_parameters, tour};
@@ -76,6 +81,10 @@ pub struct Scenario {
     pub record: Record,
     /// Where samples come from.
     pub source: Source,
+    /// Where the core runs.
+    pub endpoint: Endpoint,
+    /// Name of the scenario's file, for messages.
+    pub file: String,
     /// The scenario's own folder, from which relative file names start.
     pub folder: PathBuf,
     /// The document with every default written out.
@@ -295,7 +304,9 @@ impl Scenario {
         if !problems.is_empty() {
             return Err(with_file(problems));
         }
-        read::scenario(document, folder).map_err(|problem| with_file(vec![problem]))
+        let scenario =
+            read::scenario(document, folder).map_err(|problem| with_file(vec![problem]))?;
+        Ok(Self { file: file.to_owned(), ..scenario })
     }
 
     /// The same scenario without its faults.
@@ -369,6 +380,10 @@ pub(crate) fn override_set(document: &mut document::Table, argument: &str) -> Re
             return Err(problem(path, format!("unknown key {name:?}, {known}")));
         };
         if names.peek().is_some() {
+            if matches!(key.kind, keys::Kind::Settings) {
+                // What follows is the name of a variable.
+                break;
+            }
             section = key.kind.section().ok_or_else(|| {
                 problem(path, format!("{name} has no keys of its own; set it as a whole"))
             })?;

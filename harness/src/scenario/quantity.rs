@@ -168,6 +168,24 @@ impl Dimension {
         Self::ACCELERATION_PSD,
     ];
 
+    /// Exponents of kg, m, s, A, K, mol, cd, rad in the unit of FMUs; `None` where they are not
+    /// whole, or count samples.
+    #[must_use]
+    pub(crate) fn exponents(self) -> Option<[i8; 8]> {
+        exponents(self.powers)
+    }
+
+    /// The SI unit, in which every value can be written exactly.
+    #[must_use]
+    pub(crate) const fn si_unit(self) -> &'static str {
+        self.si_unit
+    }
+
+    /// The dimension with these exponents that scenarios use, where there is one.
+    pub(crate) fn with_exponents(exponents: &[i8; 8]) -> Option<Self> {
+        Self::ALL.into_iter().find(|dimension| dimension.exponents().as_ref() == Some(exponents))
+    }
+
     /// The dimension of a parsed quantity, where it is one that scenarios use.
     pub(crate) fn of(quantity: Quantity) -> Option<Self> {
         Self::ALL.into_iter().find(|d| d.powers == quantity.powers)
@@ -190,6 +208,14 @@ impl Dimension {
         }
         format!("{value:e} {}", self.si_unit)
     }
+}
+
+fn exponents([m, s, rad, k, samples]: Powers) -> Option<[i8; 8]> {
+    if samples != 0 || [m, s, rad, k].iter().any(|power| power % 2 != 0) {
+        return None;
+    }
+    let half = |power: i16| i8::try_from(power / 2).ok();
+    Some([0, half(m)?, half(s)?, 0, half(k)?, 0, 0, half(rad)?])
 }
 
 /// A number without exponent where that reads well.
@@ -215,6 +241,11 @@ impl Quantity {
     #[must_use]
     pub fn same_dimension(self, other: Self) -> bool {
         self.powers == other.powers
+    }
+
+    /// Exponents of kg, m, s, A, K, mol, cd, rad; `None`: it has roots, or counts samples.
+    pub(crate) fn exponents(self) -> Option<[i8; 8]> {
+        exponents(self.powers)
     }
 
     /// Whether this is a quantity of the dimension.

@@ -4,6 +4,7 @@ use super::complete::expected;
 use super::document::parse_default;
 use super::keys::{Bounds, Default, Key, Kind, SCENARIO, SCHEMA, Section, Variants};
 use super::quantity::Dimension;
+use crate::fmu::mapping::channel::Channel;
 use serde_json::{Map, Value, json};
 
 /// A number followed by a unit.
@@ -108,6 +109,12 @@ fn kind(kind: &Kind) -> Value {
         Kind::Column => {
             json!({ "anyOf": [{ "type": "integer", "minimum": 1 }, { "type": "string" }] })
         }
+        Kind::Port(channel) => port(channel),
+        Kind::Settings => json!({ "type": "object" }),
+        Kind::Codes => {
+            let one = json!({ "anyOf": [{ "type": "integer" }, { "type": "string" }] });
+            json!({ "anyOf": [one, { "type": "array", "items": one, "minItems": 1 }] })
+        }
         Kind::Table(section) => object(section),
         Kind::Tables(section, at_least, at_most) => {
             json!({ "type": "array", "items": object(section), "minItems": at_least, "maxItems": at_most })
@@ -125,6 +132,25 @@ fn kind(kind: &Kind) -> Value {
 /// One object for each form.
 fn one_of(variants: &Variants) -> Value {
     json!({ "oneOf": (variants.forms)().iter().map(|(_, form)| object(form)).collect::<Vec<_>>() })
+}
+
+/// What a channel is made of: a name or a table, or one of them for each element.
+fn port(channel: &Channel) -> Value {
+    let text = json!({ "type": "string" });
+    let one = json!({ "anyOf": [text, {
+        "type": "object",
+        "additionalProperties": false,
+        "minProperties": 1,
+        "properties": {
+            "variable": text,
+            "unit": text,
+            "scale": { "type": "number" },
+            "constant": { "type": ["string", "number", "boolean"] },
+        },
+    }] });
+    let count = channel.elements;
+    let each = json!({ "type": "array", "items": one, "minItems": count, "maxItems": count });
+    json!({ "anyOf": [one, each] })
 }
 
 fn quantity(dimensions: &[Dimension]) -> Value {

@@ -6,6 +6,7 @@ use super::complete::{expected, join};
 use super::document::{parse_default, write_value};
 use super::examples;
 use super::keys::{Bounds, Default, Key, Kind, SCENARIO, Section};
+use super::ports;
 use super::quantity::{self, Dimension};
 
 /// What the tour sets beside the defaults: path and TOML value.
@@ -70,6 +71,20 @@ const EXAMPLES: &[(&str, &str)] = &[
     ("source.mcap.accelerometer.x", r#""linear_acceleration.x""#),
     ("source.mcap.accelerometer.y", r#""linear_acceleration.y""#),
     ("source.mcap.accelerometer.z", r#""linear_acceleration.z""#),
+    ("source.fmu.time_limit", r#""10 s""#),
+    ("source.fmu.step", r#""5 ms""#),
+    ("source.fmu.tolerance", "1e-6"),
+    ("source.fmu.map.gyro.rate", r#"["imu.wx", "imu.wy", "-imu.wz"]"#),
+    ("source.fmu.map.gyro.delta_theta", r#""imu.delta_theta""#),
+    (
+        "source.fmu.map.accelerometer.specific_force",
+        r#"[{ variable = "imu.fx", unit = "g" }, { variable = "imu.fy", unit = "g" }, { variable = "imu.fz", unit = "g" }]"#,
+    ),
+    ("source.fmu.map.gimbal.roll", r#"{ constant = "0 deg" }"#),
+    ("endpoint.fmu.time_limit", r#""10 s""#),
+    ("endpoint.fmu.tolerance", "1e-6"),
+    ("endpoint.fmu.parameters", r#"{ "filter.gain" = 0.5 }"#),
+    ("endpoint.fmu.modes.calibrating", r#"[1, "turning"]"#),
 ];
 
 /// The kind of fault that the tour shows.
@@ -238,6 +253,9 @@ fn example(kind: &Kind) -> String {
         Kind::Channels => format!("{:?}", octant_faults::Channels::NAMES[0].0),
         Kind::Limit => "\"20 arcmin\"".to_owned(),
         Kind::Column => "2".to_owned(),
+        Kind::Port(channel) => ports::example_port(channel),
+        Kind::Settings => r#"{ "ship.mass" = 3.2e6 }"#.to_owned(),
+        Kind::Codes => "1".to_owned(),
         Kind::Table(section) | Kind::Tables(section, ..) => {
             let keys = section.keys.iter().take(if section.one_of { 1 } else { usize::MAX });
             let each = keys.map(|key| match key.default {

@@ -70,13 +70,20 @@ impl Scenario {
                 folder.join(file).display().to_string()
             }
         };
-        for path in ["source.uri", "source.text.gyro.file", "source.text.accelerometer.file"] {
+        for path in [
+            "source.uri",
+            "endpoint.uri",
+            "source.text.gyro.file",
+            "source.text.accelerometer.file",
+        ] {
             let Some(Node { value: Value::Text(written), .. }) = document.at(path) else {
                 continue;
             };
             let resolved = match (path, written.split_once(':')) {
-                ("source.uri", None) => continue,
-                ("source.uri", Some((scheme, file))) => format!("{scheme}:{}", absolute(file)),
+                ("source.uri" | "endpoint.uri", None) => continue,
+                ("source.uri" | "endpoint.uri", Some((scheme, file))) => {
+                    format!("{scheme}:{}", absolute(file))
+                }
                 _ => absolute(written),
             };
             document.set_at(path, node(Value::Text(resolved)));

@@ -30,6 +30,57 @@ pub(super) struct Measured {
 /// Most samples that a row may be split into.
 pub const SPLIT_MAX: u32 = 1000;
 
+/// Turns increments of both triads into counts and carries the remainder of each axis.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Triads {
+    gyro: [Accumulator; 3],
+    accel: [Accumulator; 3],
+    saturated: u64,
+}
+
+impl Triads {
+    /// Samples in which at least one count saturated.
+    pub(super) fn saturated(&self) -> u64 {
+        self.saturated
+    }
+
+    /// Counts increments, rad and m/s. What is a whole number of counts already is taken as it is.
+    #[inline]
+    pub(super) fn count(
+        &mut self,
+        theta: &[f64; 3],
+        velocity: &[f64; 3],
+        delta_theta: &mut [i32; 3],
+        delta_velocity: &mut [i32; 3],
+    ) -> Status {
+        let mut status = Status::empty();
+        let mut triad = |accumulators: &mut [Accumulator; 3],
+                         increments: &[f64; 3],
+                         lsb: f64,
+                         flag: Status,
+                         counts: &mut [i32; 3]| {
+            for axis in 0..3 {
+                let exact = increments[axis] / lsb;
+                let whole = exact as i32;
+                if accumulators[axis].remainder == 0.0 && f64::from(whole) == exact {
+                    counts[axis] = whole;
+                    continue;
+                }
+                let count = accumulators[axis].count(exact);
+                if count.saturated {
+                    status |= flag;
+                }
+                counts[axis] = count.value;
+            }
+        };
+        let (rad, mps) = (DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS);
+        triad(&mut self.gyro, theta, rad, Status::GYRO_SATURATED, delta_theta);
+        triad(&mut self.accel, velocity, mps, Status::ACCELEROMETER_SATURATED, delta_velocity);
+        self.saturated += u64::from(!status.is_empty());
+        status
+    }
+}
+
 /// Counts what comes and carries the remainder of each axis.
 ///
 /// A row may be split into equal parts of its interval, so that counts hold faster rates.
@@ -43,9 +94,7 @@ pub(super) struct Counting {
     previous_ns: Option<u64>,
     pending: Option<Pending>,
     sequence: u64,
-    gyro: [Accumulator; 3],
-    accel: [Accumulator; 3],
-    saturated: u64,
+    triads: Triads,
 }
 
 /// A row of which not all parts have been delivered.
@@ -70,15 +119,13 @@ impl Counting {
             previous_ns: None,
             pending: None,
             sequence: 0,
-            gyro: Default::default(),
-            accel: Default::default(),
-            saturated: 0,
+            triads: Triads::default(),
         })
     }
 
     /// Samples in which at least one count saturated.
     pub(super) fn saturated(&self) -> u64 {
-        self.saturated
+        self.triads.saturated()
     }
 
     /// Takes a row, of which [`Self::next`] gives the samples.
@@ -129,36 +176,17 @@ impl Counting {
             Quantity::Rates => part_ns as f64 * 1e-9,
             Quantity::Increments => part_ns as f64 / interval_ns as f64,
         };
-        let mut status = Status::empty();
-        let mut count = |accumulator: &mut Accumulator, value: f64, lsb: f64, flag: Status| {
-            let count = accumulator.count(value * factor / lsb);
-            if count.saturated {
-                status |= flag;
-            }
-            count.value
-        };
         let mut sample = Sample {
             sequence: self.sequence,
             device_time: DeviceTime::from_ns(time_ns),
             ..Sample::default()
         };
-        for axis in 0..3 {
-            sample.delta_theta[axis] = count(
-                &mut self.gyro[axis],
-                row.gyro[axis],
-                DELTA_THETA_LSB_RAD,
-                Status::GYRO_SATURATED,
-            );
-            sample.delta_velocity[axis] = count(
-                &mut self.accel[axis],
-                row.accel[axis],
-                DELTA_VELOCITY_LSB_MPS,
-                Status::ACCELEROMETER_SATURATED,
-            );
-        }
-        if !status.is_empty() {
-            self.saturated += 1;
-        }
+        let mut status = self.triads.count(
+            &row.gyro.map(|value| value * factor),
+            &row.accel.map(|value| value * factor),
+            &mut sample.delta_theta,
+            &mut sample.delta_velocity,
+        );
         match row.gimbal_rad {
             Some([azimuth, roll]) => sample.gimbal = GimbalAngles::from_rad(azimuth, roll),
             None => status |= Status::GIMBAL_INVALID,

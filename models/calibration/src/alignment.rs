@@ -38,6 +38,15 @@ pub struct CoarseAlignment {
     duration_s: f64,
 }
 
+#[cfg(feature = "state")]
+octant_state::state! {
+    CoarseAlignment {
+        values: delta_theta, delta_velocity, duration_s;
+        parts: ;
+        kept: horizontal_rate_radps
+    }
+}
+
 impl CoarseAlignment {
     /// An alignment at a site.
     #[must_use]

@@ -10,6 +10,7 @@ use octant_sample::Parameters;
 
 /// The inverse error model for one sample period, ready to be applied to every sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "state", derive(serde::Serialize, serde::Deserialize))]
 pub struct Compensation {
     gyro_inverse: Matrix3<f64>,
     accel_inverse: Matrix3<f64>,

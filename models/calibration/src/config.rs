@@ -7,6 +7,7 @@ use octant_sample::parameters::Group;
 
 /// Everything that the core is configured with.
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "state", derive(serde::Serialize, serde::Deserialize))]
 pub struct Config {
     /// Sample period, ns.
     pub sample_period_ns: u64,
@@ -30,6 +31,7 @@ pub struct Config {
 
 /// Geodetic position of the instrument.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "state", derive(serde::Serialize, serde::Deserialize))]
 pub struct Site {
     /// Geodetic latitude, rad.
     pub latitude_rad: f64,
@@ -41,6 +43,7 @@ pub struct Site {
 
 /// How the initial attitude is found.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "state", derive(serde::Serialize, serde::Deserialize))]
 pub enum Alignment {
     /// Attitude and velocity are handed over (with errors of the size of the filter's prior).
     Given {
@@ -58,6 +61,7 @@ pub enum Alignment {
 
 /// A calibration through a position sequence.
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "state", derive(serde::Serialize, serde::Deserialize))]
 pub struct Calibration {
     /// The stops, their relative dwell times and the passes.
     pub sequence: Sequence,
@@ -69,6 +73,7 @@ pub struct Calibration {
 
 /// How the parameters are estimated.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "state", derive(serde::Serialize, serde::Deserialize))]
 pub enum Estimator {
     /// 39-state error-state Kalman filter, closed loop.
     Kalman(Kalman),
@@ -80,6 +85,7 @@ pub enum Estimator {
 
 /// The form of the system error model.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "state", derive(serde::Serialize, serde::Deserialize))]
 pub enum ErrorModel {
     /// Attitude error against the true navigation frame (paper, eq. 1 to 3).
     #[default]
@@ -90,6 +96,7 @@ pub enum ErrorModel {
 
 /// Tuning of the Kalman filter.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "state", derive(serde::Serialize, serde::Deserialize))]
 pub struct Kalman {
     /// Form of the error model.
     pub error_model: ErrorModel,
@@ -108,6 +115,7 @@ pub struct Kalman {
 
 /// Prior standard deviations, SI.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "state", derive(serde::Serialize, serde::Deserialize))]
 pub struct Prior {
     /// Attitude error north, east, down, rad.
     pub attitude_rad: [f64; 3],
@@ -129,6 +137,7 @@ impl Prior {
 
 /// The reference that the filter measures against.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "state", derive(serde::Serialize, serde::Deserialize))]
 pub enum AidingMode {
     /// Velocity over ground: zero when static, of the dock's reference on a ship.
     Velocity {
@@ -144,6 +153,7 @@ pub enum AidingMode {
 
 /// Settings of the least-squares estimator.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "state", derive(serde::Serialize, serde::Deserialize))]
 pub struct LeastSquares {
     /// Local gravity, m/s²; `None`: normal gravity at the site.
     pub gravity_mps2: Option<f64>,
@@ -155,6 +165,7 @@ pub struct LeastSquares {
 
 /// What the least-squares estimator measures gyros against.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "state", derive(serde::Serialize, serde::Deserialize))]
 pub enum GyroReference {
     /// Norm of Earth rate over the static intervals: gyros that see it.
     EarthRate,
@@ -165,6 +176,7 @@ pub enum GyroReference {
 
 /// How static intervals are found in the samples.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "state", derive(serde::Serialize, serde::Deserialize))]
 pub enum StaticIntervals {
     /// From the procedure: the core commands the gimbals and knows when they stand.
     Commanded,
@@ -184,6 +196,7 @@ pub enum StaticIntervals {
 
 /// Settings of the external-turntable estimator.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "state", derive(serde::Serialize, serde::Deserialize))]
 pub struct ExternalTurntable {
     /// Attitude of the table's base, `q_nc`, known from its survey.
     pub q_nc: UnitQuaternion<f64>,
@@ -193,6 +206,7 @@ pub struct ExternalTurntable {
 
 /// Navigation after the calibration: free inertial, height held.
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "state", derive(serde::Serialize, serde::Deserialize))]
 pub struct NavigationPlan {
     /// Duration, s; `None`: until the source ends.
     pub duration_s: Option<f64>,
@@ -204,6 +218,7 @@ pub struct NavigationPlan {
 
 /// Rates of the turntable.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "state", derive(serde::Serialize, serde::Deserialize))]
 pub struct TurntableRates {
     /// Largest rate of a move, rad/s.
     pub rate_radps: f64,
@@ -213,6 +228,7 @@ pub struct TurntableRates {
 
 /// Noise of the sensors.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "state", derive(serde::Serialize, serde::Deserialize))]
 pub struct Noise {
     /// Gyro angle random walk, rad/√s.
     pub angle_random_walk: f64,
@@ -222,6 +238,7 @@ pub struct Noise {
 
 /// Screens and gates. Each can be switched off, to see the bare core.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "state", derive(serde::Serialize, serde::Deserialize))]
 pub struct Screening {
     /// Innovation gate; `None`: every measurement is used.
     pub gate: Option<Gate>,
@@ -312,6 +329,7 @@ impl Screening {
 
 /// How what the instrument's case stands on may move.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "state", derive(serde::Serialize, serde::Deserialize))]
 pub enum Base {
     /// Fixed to the ground.
     #[default]
@@ -322,6 +340,7 @@ pub enum Base {
 
 /// Bounds of the motion of a base, each for the norm of the vector.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "state", derive(serde::Serialize, serde::Deserialize))]
 pub struct BaseMotion {
     /// Angle from the mean attitude, rad.
     pub angle_rad: f64,
@@ -337,6 +356,7 @@ pub struct BaseMotion {
 
 /// Innovation gate and its recovery.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "state", derive(serde::Serialize, serde::Deserialize))]
 pub struct Gate {
     /// NIS (three axes) above which a measurement is rejected.
     pub nis: f64,
@@ -348,6 +368,7 @@ pub struct Gate {
 
 /// What the core does when the gate has rejected too often.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "state", derive(serde::Serialize, serde::Deserialize))]
 pub enum Recovery {
     /// Zero the covariance of φ, δv, δr with its cross terms, set the σ given, apply the update.
     Reset {

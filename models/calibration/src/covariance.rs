@@ -30,6 +30,44 @@ pub struct Transition {
     pub rows: [Row; MOVING],
 }
 
+#[cfg(feature = "state")]
+impl octant_state::State for Transition {
+    fn save(&self, to: &mut octant_state::Writer) {
+        save_rows(&self.rows, to);
+    }
+
+    fn load(
+        &mut self,
+        from: &mut octant_state::Reader<'_>,
+    ) -> Result<(), octant_state::StateError> {
+        load_rows(&mut self.rows, from)
+    }
+}
+
+/// Serde has no arrays of forty: a row goes as five of eight.
+#[cfg(feature = "state")]
+type Eights = [[f64; 8]; ROW / 8];
+
+#[cfg(feature = "state")]
+fn save_rows(rows: &[Row], to: &mut octant_state::Writer) {
+    for row in rows {
+        let eights: Eights = core::array::from_fn(|i| core::array::from_fn(|j| row[8 * i + j]));
+        to.value("row", &eights);
+    }
+}
+
+#[cfg(feature = "state")]
+fn load_rows(
+    rows: &mut [Row],
+    from: &mut octant_state::Reader<'_>,
+) -> Result<(), octant_state::StateError> {
+    for row in rows {
+        let eights: Eights = from.value("row")?;
+        row.copy_from_slice(eights.as_flattened());
+    }
+    Ok(())
+}
+
 impl Transition {
     /// The identity.
     #[must_use]
@@ -46,6 +84,20 @@ impl Transition {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Covariance {
     p: [Row; STATE_COUNT],
+}
+
+#[cfg(feature = "state")]
+impl octant_state::State for Covariance {
+    fn save(&self, to: &mut octant_state::Writer) {
+        save_rows(&self.p, to);
+    }
+
+    fn load(
+        &mut self,
+        from: &mut octant_state::Reader<'_>,
+    ) -> Result<(), octant_state::StateError> {
+        load_rows(&mut self.p, from)
+    }
 }
 
 impl Covariance {

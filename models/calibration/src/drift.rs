@@ -36,6 +36,7 @@ const GAIN_MIN: f64 = 0.01;
 const KNOWN: f64 = 0.25;
 
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "state", derive(serde::Serialize, serde::Deserialize))]
 struct Mark {
     time_s: f64,
     parameters: [f64; PARAMETER_COUNT],
@@ -44,6 +45,7 @@ struct Mark {
 
 /// The largest correction found.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "state", derive(serde::Serialize, serde::Deserialize))]
 pub struct Largest {
     /// In the standard deviations that it should have.
     pub sigmas: f64,
@@ -63,6 +65,37 @@ pub struct Drift {
     spacing_s: f64,
     next_s: f64,
     largest: Largest,
+}
+
+#[cfg(feature = "state")]
+impl octant_state::State for Drift {
+    fn save(&self, to: &mut octant_state::Writer) {
+        let Self { limit_sigmas: _, prior: _, marks, len, spacing_s, next_s, largest } = self;
+        to.value("spacing_s", spacing_s);
+        to.value("next_s", next_s);
+        to.value("largest", largest);
+        to.value("len", len);
+        for mark in &marks[..*len] {
+            to.value("mark", mark);
+        }
+    }
+
+    fn load(
+        &mut self,
+        from: &mut octant_state::Reader<'_>,
+    ) -> Result<(), octant_state::StateError> {
+        self.spacing_s = from.value("spacing_s")?;
+        self.next_s = from.value("next_s")?;
+        self.largest = from.value("largest")?;
+        let last = PARAMETER_COUNT as u64 - 1;
+        octant_state::check_below("largest.parameter", self.largest.parameter as u64, last)?;
+        self.len = from.value("len")?;
+        octant_state::check_below("len", self.len as u64, MARKS as u64)?;
+        for mark in &mut self.marks[..self.len] {
+            *mark = from.value("mark")?;
+        }
+        Ok(())
+    }
 }
 
 fn variances(covariance: &Covariance) -> [f64; PARAMETER_COUNT] {

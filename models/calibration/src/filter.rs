@@ -56,6 +56,7 @@ pub struct Measured {
 
 /// Counts over the whole calibration.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "state", derive(serde::Serialize, serde::Deserialize))]
 pub struct Tally {
     /// Measurements used.
     pub used: u64,
@@ -70,6 +71,7 @@ pub struct Tally {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "state", derive(serde::Serialize, serde::Deserialize))]
 enum Stage {
     Normal,
     /// Until these seconds of filter time.
@@ -83,6 +85,11 @@ struct Checkpoint {
     time_s: f64,
     parameters: Parameters,
     covariance: Covariance,
+}
+
+#[cfg(feature = "state")]
+octant_state::state! {
+    Checkpoint { values: time_s, parameters; parts: covariance; kept: }
 }
 
 /// The filter.
@@ -110,6 +117,27 @@ pub struct CalibrationFilter {
     checkpoints: Option<[Checkpoint; 2]>,
 }
 
+#[cfg(feature = "state")]
+octant_state::state! {
+    CalibrationFilter {
+        values: elapsed_s, force_sum, time_s, rejected_in_a_row, stage, tally;
+        parts: covariance, transition, sub_step, drift, checkpoints;
+        kept: model, aiding, site, gate, gyro_variance_per_s, accel_variance_per_s;
+        check: Self::check_counts
+    }
+}
+
+#[cfg(feature = "state")]
+impl CalibrationFilter {
+    fn check_counts(&self) -> Result<(), octant_state::StateError> {
+        let Tally { used, rejected, nis_sum: _, recoveries, held } = self.tally;
+        octant_state::check_count("tally.used", used)?;
+        octant_state::check_count("tally.rejected", rejected)?;
+        octant_state::check_below("tally.recoveries", recoveries.into(), used)?;
+        octant_state::check_below("tally.held", held, used)
+    }
+}
+
 /// Sums over the samples of one sub-step.
 #[derive(Clone, Debug)]
 struct SubStep {
@@ -122,6 +150,24 @@ struct SubStep {
     delta_velocity_n: Vector3<f64>,
     /// Channels that were bridged somewhere in it, as bits.
     bridged: u8,
+}
+
+#[cfg(feature = "state")]
+octant_state::state! {
+    SubStep {
+        values: samples, elapsed_s, c_middle, delta_theta, delta_velocity, delta_velocity_n,
+            bridged;
+        parts: ;
+        kept: samples_max;
+        check: Self::check_samples
+    }
+}
+
+#[cfg(feature = "state")]
+impl SubStep {
+    fn check_samples(&self) -> Result<(), octant_state::StateError> {
+        octant_state::check_below("samples", self.samples.into(), self.samples_max.into())
+    }
 }
 
 impl SubStep {
@@ -366,7 +412,7 @@ impl CalibrationFilter {
                 // What started it still lasts, or one opening was not wide enough.
                 self.open_wide(&gate, &error, strapdown);
             } else {
-                self.rejected_in_a_row += 1;
+                self.rejected_in_a_row = self.rejected_in_a_row.saturating_add(1);
                 if self.rejected_in_a_row < gate.rejections {
                     self.tally.rejected += 1;
                     return Some(Measured { nis, rejected: true, recovery_started });

@@ -19,6 +19,7 @@ pub enum Order {
 
 /// Counts since the start.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "state", derive(serde::Serialize, serde::Deserialize))]
 pub struct MonitorTally {
     /// Gaps, and the samples missing in them.
     pub gaps: u64,
@@ -34,6 +35,7 @@ pub struct MonitorTally {
 
 /// Number and stamp of a sample.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "state", derive(serde::Serialize, serde::Deserialize))]
 struct Last {
     sequence: u64,
     time_ns: u64,
@@ -57,6 +59,27 @@ pub struct Monitor {
     /// There are no counts yet to compare with.
     fresh: bool,
     tally: MonitorTally,
+}
+
+#[cfg(feature = "state")]
+octant_state::state! {
+    Monitor {
+        values: last, counts, identical, repeats, fresh, tally;
+        parts: ;
+        kept: period_ns, stuck_samples, testable;
+        check: Self::check_tally
+    }
+}
+
+#[cfg(feature = "state")]
+impl Monitor {
+    fn check_tally(&self) -> Result<(), octant_state::StateError> {
+        let MonitorTally { gaps, missing, out_of_order, stuck, invalid } = self.tally;
+        for count in [gaps, missing, out_of_order, stuck, invalid] {
+            octant_state::check_count("tally", count)?;
+        }
+        Ok(())
+    }
 }
 
 /// A stamp or number that jumps ahead by more than a day is damaged: no source pauses for so long,

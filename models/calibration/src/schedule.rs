@@ -107,6 +107,16 @@ pub struct Cursor {
     command: GimbalCommand,
 }
 
+#[cfg(feature = "state")]
+octant_state::state! {
+    Cursor {
+        values: stop, arrival_s, departure_s, arrival_tick, departure_tick, command;
+        parts: ;
+        kept: sequence, rates, dwell_s, sample_s, endless;
+        check: |cursor: &Self| octant_state::check_count("arrival_tick", cursor.arrival_tick)
+    }
+}
+
 impl Cursor {
     /// Starts towards the first stop from gimbals at `from`.
     #[must_use]
@@ -145,7 +155,8 @@ impl Cursor {
     fn plan_dwell(&mut self) {
         let stop = self.target();
         self.departure_s = self.arrival_s + stop.weight * self.dwell_s;
-        let tick = |time_s: f64| (time_s / self.sample_s + 0.5) as u64;
+        // Past any run, and still something can be added to it.
+        let tick = |time_s: f64| ((time_s / self.sample_s + 0.5) as u64).min(u64::MAX / 4);
         (self.arrival_tick, self.departure_tick) = (tick(self.arrival_s), tick(self.departure_s));
         self.command.target = GimbalAngles::from_rad(stop.azimuth_rad, stop.roll_rad);
     }
@@ -189,6 +200,12 @@ impl Cursor {
     fn target(&self) -> Stop {
         let stops = self.sequence.stops();
         stops[self.stop as usize % stops.len()]
+    }
+
+    /// It walks for ever, as in navigation.
+    #[must_use]
+    pub fn is_endless(&self) -> bool {
+        self.endless
     }
 
     /// Stop that the gimbals are at or move to, from 0, over all passes.

@@ -83,6 +83,30 @@ pub struct Screen {
     stretch_until: u64,
 }
 
+#[cfg(feature = "state")]
+octant_state::state! {
+    Screen {
+        values: last, limits, calm, started, seen, runs, held, jumps, stretch_until;
+        parts: ;
+        kept: floor, stuck_limit, hold, stretch;
+        check: Self::check_counts
+    }
+}
+
+#[cfg(feature = "state")]
+impl Screen {
+    fn check_counts(&self) -> Result<(), octant_state::StateError> {
+        let longest = self.hold[0].max(self.hold[1]);
+        for held in self.held {
+            octant_state::check_below("held", held.into(), longest.into())?;
+        }
+        for jumps in self.jumps {
+            octant_state::check_below("jumps", jumps.into(), JUMPS_MAX.into())?;
+        }
+        Ok(())
+    }
+}
+
 impl Screen {
     /// A screen for samples of this period (s).
     #[must_use]

@@ -5,6 +5,7 @@ pub const STOPS_MAX: usize = 64;
 
 /// One stop: cumulative gimbal angles in rad, and how long it is held relative to the others.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "state", derive(serde::Serialize, serde::Deserialize))]
 pub struct Stop {
     /// Inner gimbal, rad.
     pub azimuth_rad: f64,
@@ -96,5 +97,28 @@ impl Sequence {
     #[must_use]
     pub fn passes(&self) -> u32 {
         self.passes
+    }
+}
+
+/// As its stops and passes, checked when they are read.
+#[cfg(feature = "state")]
+mod value {
+    extern crate alloc;
+
+    use super::{Sequence, Stop};
+    use alloc::vec::Vec;
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+    impl Serialize for Sequence {
+        fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+            (self.stops(), self.passes).serialize(serializer)
+        }
+    }
+
+    impl<'de> Deserialize<'de> for Sequence {
+        fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+            let (stops, passes) = <(Vec<Stop>, u32)>::deserialize(deserializer)?;
+            Self::new(&stops, passes).map_err(serde::de::Error::custom)
+        }
     }
 }

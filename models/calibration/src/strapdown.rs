@@ -17,6 +17,7 @@ const EARTH_UPDATE_SAMPLES: u32 = 10;
 
 /// What the vertical channel does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "state", derive(serde::Serialize, serde::Deserialize))]
 pub enum Vertical {
     /// Integrated like the others: needs aiding, a free one diverges.
     Free,
@@ -26,6 +27,7 @@ pub enum Vertical {
 
 /// Navigation state and what its integration remembers.
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "state", derive(serde::Serialize, serde::Deserialize))]
 pub struct Strapdown {
     q_nb: Quaternion<f64>,
     velocity_mps: Vector3<f64>,

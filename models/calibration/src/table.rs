@@ -22,6 +22,7 @@ const CRC: crc::Crc<u32> = crc::Crc::<u32>::new(&crc::CRC_32_ISO_HDLC);
 
 /// A finished calibration.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "state", derive(serde::Serialize, serde::Deserialize))]
 pub struct CalibrationTable {
     /// Estimated parameters, SI.
     pub parameters: Parameters,
@@ -36,6 +37,7 @@ pub struct CalibrationTable {
 
 /// How good a calibration is.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "state", derive(serde::Serialize, serde::Deserialize))]
 pub struct Quality {
     /// Mean normalized innovation squared (three axes); NaN where the method has none.
     pub nis_mean: f64,
@@ -56,6 +58,7 @@ pub struct Quality {
 
 /// How a calibration was made.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "state", derive(serde::Serialize, serde::Deserialize))]
 pub struct Provenance {
     /// Device time at which it ended, ns.
     pub ended_ns: u64,

@@ -21,6 +21,7 @@ const GRAVITY_RATIO: f64 = 0.003_449_786_506_84;
 ///
 /// The sine and cosine are taken once; the rest are a few multiplications.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Ellipsoid {
     /// sin L.
     pub sin_latitude: f64,

@@ -141,6 +141,13 @@ pub enum Takes {
     Choice(&'static [(&'static str, &'static str)]),
     /// Channels of the sensors.
     Channels,
+    /// A plain number.
+    Number(Bounds),
+    /// Of a connection: a value that its input can have, with a unit or in that of the input, or
+    /// `last`.
+    Value,
+    /// Of a connection: a difference of values, with a unit or in that of the input.
+    Difference(Bounds),
 }
 
 /// Limits of a quantity, SI.

@@ -13,7 +13,7 @@ pub struct Motor {
 }
 
 /// A gimbal.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
 pub enum Gimbal {
     /// Inner, about body z.
     Azimuth,
@@ -125,6 +125,7 @@ pub struct Line {
 /// What happens to a gimbal. The encoder sits on the drive; the sensors feel the body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
+#[derive(serde::Serialize, serde::Deserialize)]
 pub enum GimbalAction {
     /// The body turns against its drive by an angle, along 10 u³ − 15 u⁴ + 6 u⁵ within a time, and
     /// stays: the gyros feel it. The end of the fault changes nothing.

@@ -9,6 +9,8 @@
 //!   which faults are active, lets them act in the order of the scenario, and *measures* what they
 //!   altered: a receipt is what was found to differ, not what a fault says of itself.
 //! - [`kinds`]: the kinds themselves, one family a folder.
+//! - [`connection`]: faults on values on their way from one model to another, with the same
+//!   triggers and receipts.
 //!
 //! Faults of the physical world act inside the plant, before its sensors integrate
 //! ([`disturbance`]), so that gyros and accelerometers feel the same motion. Faults of bytes, buses
@@ -23,6 +25,7 @@ extern crate alloc;
 extern crate std;
 
 pub mod catalogue;
+pub mod connection;
 pub mod disturbance;
 pub mod kinds;
 pub mod receipt;

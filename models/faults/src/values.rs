@@ -13,6 +13,8 @@ pub enum Value {
     Vector([f64; 3], Dimension),
     /// A whole number.
     Integer(i64),
+    /// A number; of faults on connections, in the unit of the input.
+    Number(f64),
     /// Yes or no.
     Flag(bool),
     /// The chosen name.
@@ -87,6 +89,17 @@ impl Values {
     pub fn integer(&self, name: &'static str) -> Result<i64, BuildError> {
         match self.get(name) {
             Some(Value::Integer(value)) => Ok(value),
+            _ => Err(BuildError::missing(name)),
+        }
+    }
+
+    /// A number.
+    ///
+    /// # Errors
+    /// If there is none under the name.
+    pub fn number(&self, name: &'static str) -> Result<f64, BuildError> {
+        match self.get(name) {
+            Some(Value::Number(value)) => Ok(value),
             _ => Err(BuildError::missing(name)),
         }
     }

@@ -24,6 +24,38 @@ pub(crate) struct CaseMotion {
     pub(crate) force: Vector3<f64>,
 }
 
+impl octant_state::State for Case {
+    fn save(&self, to: &mut octant_state::Writer) {
+        let Self { kind, accelerations: _ } = self;
+        match kind {
+            Kind::Static { motion: _, site: _, attitude: _, adrift } => {
+                to.value("is adrift", &adrift.is_some());
+                if let Some(ship) = adrift {
+                    to.part("adrift", ship);
+                }
+            }
+            Kind::Ship(ship) => to.part("ship", ship),
+        }
+    }
+
+    fn load(
+        &mut self,
+        from: &mut octant_state::Reader<'_>,
+    ) -> Result<(), octant_state::StateError> {
+        match &mut self.kind {
+            Kind::Static { site, attitude, adrift, .. } => {
+                *adrift = None;
+                if from.value("is adrift")? {
+                    let ship = adrift.insert(Box::new(Ship::at_rest(*site, *attitude)));
+                    from.part("adrift", ship)?;
+                }
+                Ok(())
+            }
+            Kind::Ship(ship) => from.part("ship", ship),
+        }
+    }
+}
+
 /// Where the case is.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Whereabouts {
@@ -61,6 +93,14 @@ struct Ship {
     pitch: Near,
     roll: Near,
     sway: Sway,
+}
+
+octant_state::state! {
+    Ship {
+        values: accelerations, latitude, heading, pitch, roll;
+        parts: sway;
+        kept: site, mean, heading_sincos, mooring_offset_m, per_north_m, per_east_m
+    }
 }
 
 #[derive(Clone, Debug)]

@@ -3,7 +3,7 @@
 use octant_sample::Parameters;
 
 /// The whole truth of one run.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Config {
     /// Sample period, ns.
     pub sample_period_ns: u64,
@@ -25,7 +25,7 @@ pub struct Config {
 }
 
 /// Geodetic position.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Site {
     /// Geodetic latitude, rad.
     pub latitude_rad: f64,
@@ -36,7 +36,7 @@ pub struct Site {
 }
 
 /// Mean attitude of the case, `c_nc = Rz(heading) Ry(pitch) Rx(roll)`.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct CaseAttitude {
     /// Heading, rad.
     pub heading_rad: f64,
@@ -47,7 +47,7 @@ pub struct CaseAttitude {
 }
 
 /// How the case moves.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub enum Motion {
     /// Fixed to the ground.
     Static(CaseAttitude),
@@ -56,7 +56,7 @@ pub enum Motion {
 }
 
 /// A moored ship: sums of sinusoids about a mean attitude and position.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Dockside {
     /// Mean attitude.
     pub mean: CaseAttitude,
@@ -78,7 +78,7 @@ pub struct Dockside {
 }
 
 /// One component `amplitude · sin(2π t / period + phase)`, amplitude in rad or m.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Sinusoid {
     /// Amplitude, rad or m.
     pub amplitude: f64,
@@ -89,7 +89,7 @@ pub struct Sinusoid {
 }
 
 /// The two gimbals and their imperfections.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Turntable {
     /// Largest rate of a move, rad/s.
     pub rate_radps: f64,
@@ -107,7 +107,7 @@ pub struct Turntable {
 }
 
 /// The sensors.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Imu {
     /// True coefficients of the error model.
     pub parameters: Parameters,
@@ -120,7 +120,7 @@ pub struct Imu {
 }
 
 /// What the sensors have and the filter doesn't model. The default is none of it.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Extensions {
     /// First-order Gauss-Markov gyro bias: σ (rad/s) and correlation time (s). Like the random
     /// walk it goes on from calibration into navigation; what drives it is counted by phase.
@@ -150,7 +150,7 @@ pub struct Extensions {
 }
 
 /// First-order Gauss-Markov process.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct GaussMarkov {
     /// Stationary standard deviation.
     pub sigma: f64,
@@ -159,7 +159,7 @@ pub struct GaussMarkov {
 }
 
 /// Linear temperature ramp that ends at a plateau, and first-order sensitivities.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Temperature {
     /// Ramp, K/s.
     pub ramp_kps: f64,
@@ -177,7 +177,7 @@ pub struct Temperature {
 
 /// Sinusoidal vibration of the sensor block: linear and angular, so that gyros and accelerometers
 /// feel the same motion.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Vibration {
     /// Frequency, Hz.
     pub frequency_hz: f64,
@@ -190,7 +190,7 @@ pub struct Vibration {
 }
 
 /// The reference handed to the core during calibration.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct AidingSource {
     /// What is measured.
     pub kind: AidingKind,
@@ -199,7 +199,7 @@ pub struct AidingSource {
 }
 
 /// What the reference measures. The white noise is the reference's own, from its own stream.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub enum AidingKind {
     /// Velocity of the ground or dock: zero, with noise of this σ, m/s. It doesn't know of sway.
     ZeroVelocity {

@@ -16,6 +16,10 @@ pub(crate) struct ErrorCurve {
     none: bool,
 }
 
+octant_state::state! {
+    ErrorCurve { values: near; parts: ; kept: coefficients, none }
+}
+
 impl ErrorCurve {
     pub(crate) fn new(seed: u64, name: &str, rms_rad: f64) -> Self {
         let key = key(seed, name, Phase::Draw);

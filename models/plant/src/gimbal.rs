@@ -2,7 +2,7 @@
 //! with play.
 
 /// A piece of a profile with constant acceleration.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, serde::Serialize, serde::Deserialize)]
 struct Segment {
     /// Start, s since the profile's origin.
     start_s: f64,
@@ -68,6 +68,37 @@ pub(crate) struct Profile {
     len: usize,
     end_s: f64,
     end_angle: f64,
+}
+
+impl octant_state::State for Profile {
+    /// Of the pieces, only those that there are.
+    fn save(&self, to: &mut octant_state::Writer) {
+        let Self { origin_ns, segments, len, end_s, end_angle } = self;
+        to.value("origin_ns", origin_ns);
+        to.value("end", &(end_s, end_angle));
+        to.value("len", len);
+        for segment in &segments[..*len] {
+            to.value("segment", segment);
+        }
+    }
+
+    fn load(
+        &mut self,
+        from: &mut octant_state::Reader<'_>,
+    ) -> Result<(), octant_state::StateError> {
+        self.origin_ns = from.value("origin_ns")?;
+        (self.end_s, self.end_angle) = from.value("end")?;
+        self.len = from.value("len")?;
+        octant_state::check_below("len", self.len as u64, SEGMENTS_MAX as u64)?;
+        if self.len == 0 && !(self.end_s <= 0.0) {
+            let problem = "a profile without pieces has ended when it begins";
+            return Err(octant_state::StateError::value("end", problem));
+        }
+        for segment in &mut self.segments[..self.len] {
+            *segment = from.value("segment")?;
+        }
+        Ok(())
+    }
 }
 
 impl Profile {
@@ -265,7 +296,7 @@ impl Profile {
             if to_edge > 0.0 {
                 let (v, a) = (sign * segment.rate, sign * segment.acceleration);
                 let root = libm::sqrt((v * v + 2.0 * a * to_edge).max(0.0));
-                picked_up = (2.0 * to_edge / (v + root)).clamp(0.0, duration);
+                picked_up = between(2.0 * to_edge / (v + root), 0.0, duration);
                 profile.push(picked_up, still);
             }
             let mut follow = segment.at(segment.start_s + picked_up);
@@ -278,8 +309,19 @@ impl Profile {
     }
 }
 
+/// The nearest value from `low` to `high`; what is no number stays so.
+fn between(value: f64, low: f64, high: f64) -> f64 {
+    if value < low {
+        low
+    } else if value > high {
+        high
+    } else {
+        value
+    }
+}
+
 /// What faults have done to a gimbal.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, serde::Serialize, serde::Deserialize)]
 pub(crate) struct Harm {
     /// It doesn't follow set points.
     pub(crate) held: bool,
@@ -309,6 +351,10 @@ pub(crate) struct Gimbal {
     pub(crate) body: Profile,
 }
 
+octant_state::state! {
+    Gimbal { values: target, harm; parts: drive, body; kept: rate, acceleration, half_play }
+}
+
 impl Gimbal {
     /// A gimbal at rest at angle 0, in the middle of its play.
     pub(crate) fn new(rate_radps: f64, acceleration_radps2: f64, backlash_rad: f64) -> Self {
@@ -321,6 +367,14 @@ impl Gimbal {
             drive: Profile::rest(0, 0.0),
             body: Profile::rest(0, 0.0),
         }
+    }
+
+    /// Everything that it does began no later than now.
+    pub(crate) fn check(&self, now_ns: u64) -> Result<(), octant_state::StateError> {
+        for profile in [&self.drive, &self.body] {
+            octant_state::check_below("origin_ns", profile.origin_ns, now_ns)?;
+        }
+        Ok(())
     }
 
     /// The set point in counts, from `now_ns` on. True if it is a new one.
@@ -374,7 +428,7 @@ impl Gimbal {
         self.harm.half_play = half;
         let drive = self.drive.at(self.drive.seconds(now_ns)).angle;
         let body = self.body.at(self.body.seconds(now_ns)).angle - self.harm.slipped;
-        let inside = body.clamp(drive - self.play(), drive + self.play());
+        let inside = between(body, drive - self.play(), drive + self.play());
         let out = body - inside;
         self.harm.slipped += out;
         let left = self.drive.after(now_ns);

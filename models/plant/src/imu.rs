@@ -20,7 +20,7 @@ fn rows(m: [[f64; 3]; 3]) -> Matrix3<f64> {
 }
 
 /// What a triad measures without noise, in counts.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, serde::Serialize, serde::Deserialize)]
 pub(crate) struct Reading {
     gyro: Vector3<f64>,
     accelerometer: Vector3<f64>,
@@ -39,6 +39,15 @@ struct Triple {
     quantum_counts: f64,
     quantizers: [Accumulator; 3],
     accumulators: [Accumulator; 3],
+}
+
+// Noise is made from the sample's number: what is made ahead needn't be kept.
+octant_state::state! {
+    Triple {
+        values: quantizers, accumulators;
+        parts: wanders;
+        kept: lsb, sigma_counts, noise, limit_counts, quantum_counts
+    }
 }
 
 impl Triple {
@@ -104,6 +113,14 @@ pub(crate) struct Sensors {
     accelerometer: Triple,
 }
 
+octant_state::state! {
+    Sensors {
+        values: temperatures;
+        parts: gyro, accelerometer;
+        kept: dt, gyro_matrix, g_matrix, gyro_bias, accel_matrix, accel_bias
+    }
+}
+
 impl Sensors {
     pub(crate) fn new(imu: &Imu, dt: f64, seed: u64) -> Self {
         let (p, e) = (&imu.parameters, &imu.extensions);
@@ -158,6 +175,17 @@ impl Sensors {
                 e.accel_quantization_mps,
             ),
         }
+    }
+
+    /// Every temperature began to change, and to return, no later than now.
+    pub(crate) fn check(&self, now_ns: u64) -> Result<(), octant_state::StateError> {
+        for warmth in &self.temperatures {
+            octant_state::check_below("from_ns", warmth.from_ns, now_ns)?;
+            if let Some((ended_ns, _)) = warmth.returns {
+                octant_state::check_below("ended_ns", ended_ns, now_ns)?;
+            }
+        }
+        Ok(())
     }
 
     /// From here on the random numbers are those of navigation.
@@ -236,7 +264,7 @@ impl Sensors {
 }
 
 /// A change of temperature: the configured one, or that of a fault.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, serde::Serialize, serde::Deserialize)]
 struct Warmth {
     handle: Option<u32>,
     from_ns: u64,

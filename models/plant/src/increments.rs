@@ -27,7 +27,7 @@ pub(crate) const PIECE_MIN_S: f64 = 1e-12;
 const CUTS_MAX: usize = 24;
 
 /// Integrals over an interval, in b.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, serde::Serialize, serde::Deserialize)]
 pub(crate) struct Increments {
     /// ∫ω_ib dt, rad.
     pub(crate) delta_theta: Vector3<f64>,
@@ -51,6 +51,27 @@ struct Lag {
     /// The part after the cut, of the interval before.
     late: Increments,
     queue: VecDeque<Increments>,
+}
+
+impl octant_state::State for Lag {
+    fn save(&self, to: &mut octant_state::Writer) {
+        let Self { cut_s: _, late, queue } = self;
+        to.value("late", late);
+        for increments in queue {
+            to.value("queued", increments);
+        }
+    }
+
+    fn load(
+        &mut self,
+        from: &mut octant_state::Reader<'_>,
+    ) -> Result<(), octant_state::StateError> {
+        self.late = from.value("late")?;
+        for increments in &mut self.queue {
+            *increments = from.value("queued")?;
+        }
+        Ok(())
+    }
 }
 
 /// What the gimbals do on a stretch without a knot.
@@ -87,6 +108,60 @@ pub(crate) struct Body {
     pub(crate) registry: Registry,
     /// What faults move at present.
     pub(crate) active: Option<Box<Active>>,
+}
+
+impl octant_state::State for Body {
+    fn save(&self, to: &mut octant_state::Writer) {
+        let Self {
+            period_ns: _,
+            period_s: _,
+            piece_s: _,
+            nodes: _,
+            case,
+            azimuth,
+            roll,
+            azimuth_near,
+            roll_near,
+            tilt_sincos: _,
+            vibration: _,
+            lever_arm,
+            own_lever_arm: _,
+            rate_at_end,
+            lag,
+            constant: _,
+            registry,
+            active,
+        } = self;
+        to.part("case", case);
+        to.part("azimuth", azimuth);
+        to.part("roll", roll);
+        to.value("near", &(azimuth_near, roll_near));
+        to.value("lever_arm", lever_arm);
+        to.value("rate_at_end", rate_at_end);
+        to.part("lag", lag);
+        to.value("registry", registry);
+        to.value("active", active);
+    }
+
+    fn load(
+        &mut self,
+        from: &mut octant_state::Reader<'_>,
+    ) -> Result<(), octant_state::StateError> {
+        from.part("case", &mut self.case)?;
+        from.part("azimuth", &mut self.azimuth)?;
+        from.part("roll", &mut self.roll)?;
+        (self.azimuth_near, self.roll_near) = from.value("near")?;
+        self.lever_arm = from.value("lever_arm")?;
+        self.rate_at_end = from.value("rate_at_end")?;
+        from.part("lag", &mut self.lag)?;
+        self.registry = from.value("registry")?;
+        self.active = from.value("active")?;
+        if self.active.is_some() {
+            // How finely to integrate follows from what is active.
+            self.plan();
+        }
+        Ok(())
+    }
 }
 
 impl Body {

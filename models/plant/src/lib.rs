@@ -32,5 +32,5 @@ mod validate;
 mod vibration;
 
 pub use octant_sample::Truth;
-pub use plant::{Plant, Step};
+pub use plant::{Plant, STATE_FORMAT, Step};
 pub use validate::ConfigError;

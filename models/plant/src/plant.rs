@@ -1,5 +1,7 @@
 //! The plant, stepped one sample at a time.
 
+mod state;
+
 use crate::config::{Config, Temperature};
 use crate::disturbed::Motion;
 use crate::encoder::ErrorCurve;
@@ -12,6 +14,8 @@ use octant_earth::ellipsoid::Ellipsoid;
 use octant_faults::disturbance::{Disturbance, Disturbed, Motor};
 use octant_sample::time::SimulatedTime;
 use octant_sample::{Aiding, DeviceTime, GimbalAngles, GimbalCommand, Sample, Status, Truth};
+
+pub use state::FORMAT as STATE_FORMAT;
 
 /// What one step gives.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -27,6 +31,7 @@ pub struct Step {
 /// A clone goes on exactly as the original would.
 #[derive(Clone, Debug)]
 pub struct Plant {
+    config: Box<Config>,
     sequence: u64,
     time_ns: u64,
     calibration_samples: u64,
@@ -63,6 +68,7 @@ impl Plant {
         let sigma_rad = config.turntable.encoder_sigma_rad;
         let aider = Aider::new(config);
         Ok(Self {
+            config: Box::new(config.clone()),
             sequence: 0,
             time_ns: 0,
             calibration_samples: config.calibration_samples,
@@ -84,10 +90,19 @@ impl Plant {
         })
     }
 
+    /// What it was made from.
+    #[must_use]
+    pub fn config(&self) -> &Config {
+        &self.config
+    }
+
     /// The next sample.
     ///
     /// `command` is what the core answered to the sample before; it acts from the end of the
     /// interval that this call delivers, and is first felt in the one after.
+    ///
+    /// This is [`Self::sample_into`], then [`Self::command`]. Who gets a command between two samples
+    /// calls these in the other order.
     #[inline]
     pub fn step(&mut self, command: &GimbalCommand) -> Step {
         let mut step = Step { sample: Sample::default(), aiding: None };
@@ -104,6 +119,22 @@ impl Plant {
         sample: &mut Sample,
         aiding: &mut Option<Aiding>,
     ) {
+        self.sample_into(sample, aiding);
+        self.command(command);
+    }
+
+    /// New set points of the gimbals; they act from now on, the end of the last interval.
+    #[inline]
+    pub fn command(&mut self, command: &GimbalCommand) {
+        if self.body.command(command, self.time_ns) {
+            self.is_still = false;
+            self.resting = [false; 2];
+        }
+    }
+
+    /// The sample of the next interval, and the reference, when due, with its stamp.
+    #[inline]
+    pub fn sample_into(&mut self, sample: &mut Sample, aiding: &mut Option<Aiding>) {
         let start_ns = self.time_ns;
         if self.sequence == self.calibration_samples {
             self.in_phase = 0;
@@ -135,11 +166,6 @@ impl Plant {
         sample.status = status | self.flags;
         self.until_aiding -= 1;
         *aiding = if self.until_aiding == 0 { self.aid(sample.device_time, number) } else { None };
-
-        if self.body.command(command, self.time_ns) {
-            self.is_still = false;
-            self.resting = [false; 2];
-        }
     }
 
     #[inline(never)]

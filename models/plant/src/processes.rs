@@ -16,6 +16,10 @@ pub(crate) struct Wander {
     pub(crate) stream: Triad,
 }
 
+octant_state::state! {
+    Wander { values: state; parts: ; kept: decay, driving, weight_s, stream }
+}
+
 impl Wander {
     /// Gauss-Markov: a = exp(−dt/τ), q = σ √(1 − a²), begun in its stationary distribution.
     pub(crate) fn gauss_markov(process: &GaussMarkov, dt: f64, stream: Triad) -> Self {

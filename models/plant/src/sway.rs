@@ -30,6 +30,14 @@ struct Component {
     step: (f64, f64),
 }
 
+octant_state::state! {
+    Component {
+        values: sin, cos;
+        parts: ;
+        kept: amplitude, frequency_hz, omega, phase_rad, step
+    }
+}
+
 impl Component {
     fn phase_at(&self, time_s: f64) -> (f64, f64) {
         let cycles = time_s * self.frequency_hz;
@@ -61,6 +69,10 @@ pub(crate) struct Sway {
     to_node: Vec<(f64, f64)>,
     period_s: f64,
     until_reset: u32,
+}
+
+octant_state::state! {
+    Sway { values: until_reset; parts: components; kept: ends, to_node, period_s }
 }
 
 impl Sway {

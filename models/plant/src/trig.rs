@@ -17,7 +17,7 @@ pub(crate) fn small_sincos(angle: f64) -> (f64, f64) {
 }
 
 /// An angle near which sines and cosines are wanted.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, serde::Serialize, serde::Deserialize)]
 pub(crate) struct Near {
     angle: f64,
     sin: f64,

@@ -1,5 +1,5 @@
 //! Whatever disturbances come and go, in whatever order: nothing panics, work stays bounded, and a
-//! clone goes on as the original.
+//! clone, and what was saved and loaded, goes on as the original.
 #![allow(clippy::unwrap_used)]
 
 mod common;
@@ -126,11 +126,23 @@ proptest! {
             }
             plant.motor();
             let mut clone = plant.clone();
+            let mut bytes = Vec::new();
+            plant.save(&mut bytes);
+            let mut loaded = Plant::load(&bytes).unwrap();
             for _ in 0..*samples {
-                prop_assert_eq!(plant.step(&target), clone.step(&target));
+                let step = plant.step(&target);
+                prop_assert_eq!(step, clone.step(&target));
+                prop_assert_eq!(step, loaded.step(&target));
             }
             let bits = |plant: &Plant| plant.truth().q_nb.map(f64::to_bits);
             prop_assert_eq!(bits(&plant), bits(&clone));
+            prop_assert_eq!(bits(&plant), bits(&loaded));
+            let saved = |plant: &Plant| {
+                let mut bytes = Vec::new();
+                plant.save(&mut bytes);
+                bytes
+            };
+            prop_assert_eq!(saved(&plant), saved(&loaded));
         }
     }
 

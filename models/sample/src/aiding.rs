@@ -4,6 +4,7 @@ use crate::DeviceTime;
 
 /// What the reference measured.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Reference {
     /// Velocity over ground in n (north, east, down), m/s.
     Velocity([f64; 3]),
@@ -20,6 +21,7 @@ pub enum Reference {
 
 /// One aiding message. It carries the stamp of the sample that it goes with.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Aiding {
     /// Stamp of the sample at whose end the reference holds.
     pub device_time: DeviceTime,

@@ -17,6 +17,7 @@ const ROUND: f64 = 6_755_399_441_055_744.0;
 
 /// One axis of an integrating sensor: turns increments into counts and keeps what was left over.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Accumulator {
     /// What the counts so far have not yet delivered, in counts, within ±½ unless saturated.
     pub remainder: f64,

@@ -4,6 +4,7 @@ use crate::{Aiding, Sample};
 
 /// What the source delivers in one step, and what the core steps on.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Epoch {
     /// The inertial sample.
     pub sample: Sample,

@@ -6,6 +6,7 @@ use crate::counts::GIMBAL_LSB_RAD;
 
 /// Gimbal angles in counts of [`GIMBAL_LSB_RAD`], cumulative (not wrapped), ±16 rad.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct GimbalAngles {
     /// Inner gimbal, about body z.
     pub azimuth: i32,
@@ -44,6 +45,7 @@ impl GimbalAngles {
 /// A command computed from sample k acts from the end of interval k + 1, and is first felt in
 /// sample k + 2.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct GimbalCommand {
     /// Set point of both gimbals.
     pub target: GimbalAngles,

@@ -5,6 +5,7 @@ use crate::{DeviceTime, GimbalAngles};
 bitflags::bitflags! {
     /// What the instrument says about a sample.
     #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+    #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
     pub struct Status: u16 {
         /// At least one gyro count saturated.
         const GYRO_SATURATED = 1 << 0;
@@ -21,6 +22,7 @@ bitflags::bitflags! {
 ///
 /// The counts are of body (b) axes, x y z, over the interval that ends at `device_time`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Sample {
     /// Number of the sample, from 1 for the first interval; a jump means loss.
     pub sequence: u64,

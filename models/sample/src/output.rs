@@ -5,6 +5,7 @@ use crate::{DeviceTime, GimbalCommand};
 /// Mode of the calibration core.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[repr(u8)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Mode {
     /// Finding the initial attitude from gravity and Earth rate.
     #[default]
@@ -41,6 +42,7 @@ bitflags::bitflags! {
     /// Health of the core. A bit is set in the output of every epoch in which its cause holds, and
     /// its cause is counted in the core's diagnostics.
     #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+    #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
     pub struct Health: u32 {
         /// A measurement was rejected by the innovation gate.
         const INNOVATION_REJECTED = 1 << 0;
@@ -78,6 +80,7 @@ bitflags::bitflags! {
 
 /// Navigation solution at the stamp of the sample.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Navigation {
     /// Geodetic latitude, rad.
     pub latitude_rad: f64,
@@ -93,6 +96,7 @@ pub struct Navigation {
 
 /// Output of one step of the core.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Output {
     /// Sequence number of the sample that this answers.
     pub sequence: u64,

@@ -14,6 +14,7 @@ const RAD_PER_DEG: f64 = core::f64::consts::PI / 180.0;
 
 /// The parameters in SI, in the order of the filter's states. Errors: compensation subtracts them.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Parameters {
     /// Gyro bias b_g, rad/s.
     pub gyro_bias: [f64; 3],
@@ -33,6 +34,7 @@ pub struct Parameters {
 
 /// A group of parameters that share a unit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Group {
     /// b_g, shown in deg/h.
     GyroBias,

@@ -3,6 +3,7 @@
 
 /// Time of the instrument's clock, integer nanoseconds since its first interval began.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct DeviceTime {
     /// Nanoseconds since the start of the first interval.
     pub ns: u64,
@@ -12,6 +13,7 @@ pub struct DeviceTime {
 ///
 /// Equal to [`DeviceTime`] only while the device's clock has no error.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct SimulatedTime {
     /// Nanoseconds since the start of the run.
     pub ns: u64,

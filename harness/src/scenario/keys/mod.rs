@@ -3,15 +3,20 @@
 //! Checking, defaults, error messages, the JSON Schema and the test of the tour all read it.
 
 mod calibration;
+mod connection;
 mod faults;
+mod fmu;
 mod instrument;
 mod run;
 mod source;
 mod suite;
 
 use super::quantity::Dimension;
+use crate::fmu::mapping::channel::Channel;
 
+pub(crate) use connection::CONNECTIONS;
 pub(crate) use faults::{dimension, kind_section};
+pub(crate) use fmu::{ENDPOINT_FMU, ENDPOINT_MAP, SOURCE_FMU, SOURCE_MAP};
 pub(crate) use run::{POSITIONS, SCENARIO};
 pub(crate) use suite::SUITE;
 
@@ -80,6 +85,12 @@ pub(crate) enum Kind {
     Channels,
     /// A column of a text file: its number from 1, or its name in the header.
     Column,
+    /// The variables of an FMU, or constants, that a channel is made of.
+    Port(&'static Channel),
+    /// A table of names of an FMU's variables with their values. Tables in it are parts of names.
+    Settings,
+    /// Values of an FMU's variable: whole numbers or names of an enumeration, one or an array.
+    Codes,
     Table(&'static Section),
     /// An array of tables: at least so many, at most so many.
     Tables(&'static Section, usize, usize),

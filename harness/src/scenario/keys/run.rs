@@ -1,5 +1,6 @@
 //! The root, the site, the motion, and what is done with the results.
 
+use super::fmu::ENDPOINT_FMU;
 use super::{
     Bounds, Default, Key, Kind, SCHEMA, Section, calibration, faults, instrument, key, section,
     source,
@@ -318,9 +319,20 @@ static RECORD: Section = section(&[
     ),
 ]);
 
-static ENDPOINT: Section = section(&[key(
-    "uri",
-    Kind::Text,
-    Default::Value("in-process"),
-    "Where the core runs; in this version in-process alone.",
-)]);
+static ENDPOINT: Section = section(&[
+    key(
+        "uri",
+        Kind::Uri(&[
+            ("in-process", "in Octant itself"),
+            ("fmu", "an FMU: Octant's calibrator, or another core: fmu:FILE"),
+        ]),
+        Default::Value("in-process"),
+        "Where the core runs. A file name is relative to the scenario, and may start with ${OCTANT_RECORDINGS}.",
+    ),
+    key(
+        "fmu",
+        Kind::Table(&ENDPOINT_FMU),
+        Default::Derived("fmu: the defaults of its keys"),
+        "How the FMU of endpoint.uri is run, and what its variables are.",
+    ),
+]);

@@ -1,5 +1,6 @@
 //! Keys of the source: the plant, a recording, text files of a real instrument.
 
+use super::fmu::SOURCE_FMU;
 use super::{Bounds, Default, Key, Kind, Section, key, section};
 use crate::scenario::quantity::Dimension;
 
@@ -10,6 +11,10 @@ pub(crate) static SOURCE: Section = section(&[
             ("plant", "simulated"),
             ("replay", "a recording of this program or another MCAP file: replay:FILE"),
             ("text", "columns of numbers: text:FILE"),
+            (
+                "fmu",
+                "an FMU: Octant's plant, another instrument, or the ship under the plant: fmu:FILE",
+            ),
         ]),
         Default::Value("plant"),
         "Where samples come from. A file name is relative to the scenario, and may start with ${OCTANT_RECORDINGS}.",
@@ -25,6 +30,12 @@ pub(crate) static SOURCE: Section = section(&[
         Kind::Table(&MCAP),
         Default::Derived("replay: the channels that this program writes"),
         "Which channels and fields of another program's MCAP file are read.",
+    ),
+    key(
+        "fmu",
+        Kind::Table(&SOURCE_FMU),
+        Default::Derived("fmu: the defaults of its keys"),
+        "How the FMU of source.uri is run, and what its variables are.",
     ),
 ]);
 

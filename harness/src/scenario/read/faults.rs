@@ -1,6 +1,8 @@
 //! Faults: from checked keys to what the station is built with, and what can be known before the
 //! run about whether they can act at all.
 
+pub(crate) mod connection;
+mod grid;
 mod schedule;
 
 use super::Reader;
@@ -8,6 +10,7 @@ use super::source::Source;
 use crate::scenario::document::{Node, Value as Written};
 use crate::scenario::error::{Place, Problem};
 use crate::scenario::{Method, Scenario, keys, quantity};
+use grid::{Waiting, check_chains};
 use octant_faults::catalogue::{Acts, Kind, Parameter, Takes};
 use octant_faults::station::Spec;
 use octant_faults::{BuildError, Channels, Setup, Station, Value, Values, kinds};
@@ -82,7 +85,15 @@ pub(super) fn read(root: &Reader<'_>, scenario: &Scenario) -> Result<Vec<Fault>,
         }
         all.push(fault);
     }
-    schedule::check_chains(&tables, &all)?;
+    let waiting: Vec<Waiting<'_>> = all
+        .iter()
+        .map(|fault| Waiting {
+            id: &fault.spec.id,
+            schedule: &fault.spec.schedule,
+            lasts: fault.spec.kind.lasts,
+        })
+        .collect();
+    check_chains(&tables, &waiting)?;
     for (index, table) in tables.iter().enumerate() {
         timing.check(table, &all, index)?;
     }
@@ -120,12 +131,8 @@ fn fault(table: &Reader<'_>, scenario: &Scenario, timing: &Timing) -> Result<Fau
     let name = table.text("kind")?;
     let kind = kinds::named(name)
         .ok_or_else(|| table.problem("kind", format!("found {name:?}, which is no kind")))?;
-    if scenario.source != Source::Plant
-        && let Some(needs) = needs_plant(kind)
-    {
-        let message =
-            format!("{name} {needs}, and the source is a recording: what it holds has happened");
-        return Err(table.problem("kind", message));
+    if let Some(why) = impossible(kind, &scenario.source) {
+        return Err(table.problem("kind", format!("{name} {why}")));
     }
     let mut values = Values::default();
     for parameter in kind.parameters {
@@ -139,11 +146,22 @@ fn fault(table: &Reader<'_>, scenario: &Scenario, timing: &Timing) -> Result<Fau
     })
 }
 
-/// Why a kind needs the simulated instrument.
-fn needs_plant(kind: &Kind) -> Option<&'static str> {
-    match kind.acts {
-        Acts::Plant => Some("acts inside the simulated instrument"),
-        Acts::Command => Some("acts on the set points of the simulated turntable"),
+/// Why a kind can't act on a source.
+fn impossible(kind: &Kind, source: &Source) -> Option<&'static str> {
+    match (kind.acts, source) {
+        (Acts::Plant, _) if source.has_plant() => None,
+        (Acts::Plant, Source::Fmu(_)) => Some(
+            "acts inside the simulated instrument, and the source is an FMU, into which it doesn't \
+             reach",
+        ),
+        (Acts::Plant, _) => Some(
+            "acts inside the simulated instrument, and the source is a recording: what it holds has \
+             happened",
+        ),
+        (Acts::Command, _) if source.is_recorded() => Some(
+            "acts on the set points of the simulated turntable, and the source is a recording: what \
+             it holds has happened",
+        ),
         _ => None,
     }
 }
@@ -182,6 +200,10 @@ fn value(table: &Reader<'_>, parameter: &'static Parameter) -> Result<Value, Pro
             let sets: Option<Vec<_>> = names.into_iter().map(Channels::named).collect();
             let set = sets.and_then(|sets| sets.into_iter().reduce(Channels::union));
             Value::Channels(set.ok_or_else(missing)?)
+        }
+        Takes::Number(_) => Value::Number(table.number(key)?),
+        Takes::Value | Takes::Difference(_) => {
+            return Err(table.problem(key, "only connections of FMUs have such values"));
         }
     })
 }

@@ -2,6 +2,7 @@
 //! keys is decided here, and contradictions are told.
 
 pub(crate) mod faults;
+pub(crate) mod fmu;
 mod instrument;
 mod procedure;
 mod requirement;
@@ -46,6 +47,11 @@ impl<'a> Reader<'a> {
 
     pub(super) fn node(&self, key: &str) -> Option<&'a Node> {
         self.table.get(key)
+    }
+
+    /// Dotted path of a key.
+    pub(super) fn join(&self, key: &str) -> String {
+        join(&self.path, key)
     }
 
     /// Whether the scenario itself gives the key, not its default.
@@ -184,13 +190,14 @@ pub(super) fn scenario(document: Table, folder: &Path) -> Result<Scenario, Probl
         sample_period_ns,
         motion: &motion,
         turntable: &turntable,
-        simulated: matches!(source, source::Source::Plant),
+        simulated: matches!(source, source::Source::Plant | source::Source::Fmu(_)),
         folder,
     };
     let procedure_table = root.table("procedure")?;
     let procedure = procedure::procedure(&procedure_table, &setting)?;
     let baseline = procedure::baseline(&root, &setting)?;
-    check_endpoint(&root.table("endpoint")?)?;
+    let endpoint = fmu::endpoint(&root.table("endpoint")?, sample_period_ns)?;
+    check_motion(&source, &motion)?;
     let scenario = Scenario {
         title: root.text("title")?.to_owned(),
         seed: root.integer("seed")?,
@@ -210,7 +217,9 @@ pub(super) fn scenario(document: Table, folder: &Path) -> Result<Scenario, Probl
         requirements: requirement::read(&root)?,
         record: record(&root.table("record")?, sample_period_ns)?,
         source,
+        endpoint,
         motion,
+        file: String::new(),
         folder: folder.to_owned(),
         document: Table::default(),
     };
@@ -218,13 +227,17 @@ pub(super) fn scenario(document: Table, folder: &Path) -> Result<Scenario, Probl
     Ok(Scenario { document, faults, ..scenario })
 }
 
-fn check_endpoint(endpoint: &Reader<'_>) -> Result<(), Problem> {
-    match endpoint.text("uri")? {
-        "in-process" => Ok(()),
-        other => Err(endpoint.problem(
-            "uri",
-            format!("found {other:?}, expected \"in-process\": this version has no other endpoint"),
-        )),
+/// A case that an FMU moves is a case that moves.
+fn check_motion(source: &source::Source, motion: &super::Motion) -> Result<(), Problem> {
+    match source {
+        source::Source::Fmu(fmu) if fmu.is_motion() => match motion {
+            super::Motion::Dockside(_) => Ok(()),
+            super::Motion::Static(_) => Err(fmu.at.problem(
+                "the FMU moves the case, and motion.kind is \"static\": expected \"dockside\", whose \
+                 sway tells the core what to expect",
+            )),
+        },
+        _ => Ok(()),
     }
 }
 

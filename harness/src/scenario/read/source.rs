@@ -1,6 +1,7 @@
 //! Where samples come from, as read from `[source]`.
 
 use super::Reader;
+use super::fmu::Fmu;
 use crate::scenario::error::Problem;
 use crate::source::{
     Axis, Column, Delimiter, GimbalColumns, MappedField, MappedStamp, McapMapping, Quantity,
@@ -26,6 +27,26 @@ pub enum Source {
     },
     /// Text files of a real instrument. The names in it are as they were written: see [`FileName`].
     Text(TextMapping),
+    /// An FMU: our plant, another's instrument, or the ship under our plant.
+    Fmu(Box<Fmu>),
+}
+
+impl Source {
+    /// What the samples are made by, and that they answer to gimbal commands: not a recording.
+    #[must_use]
+    pub fn is_recorded(&self) -> bool {
+        matches!(self, Self::Replay { .. } | Self::Text(_))
+    }
+
+    /// The plant of this program makes the samples; an FMU may move its case.
+    #[must_use]
+    pub fn has_plant(&self) -> bool {
+        match self {
+            Self::Plant => true,
+            Self::Fmu(fmu) => fmu.is_motion(),
+            Self::Replay { .. } | Self::Text(_) => false,
+        }
+    }
 }
 
 /// A file name as it was written.
@@ -79,8 +100,13 @@ pub(super) fn read(table: &Reader<'_>, sample_period_ns: u64) -> Result<Source, 
             };
             Ok(Source::Text(read_text(&text, file, sample_period_ns)?))
         }
-        _ => Err(table
-            .problem("uri", format!("found {uri:?}, expected plant, replay:FILE or text:FILE"))),
+        Some(("fmu", file)) if !file.is_empty() => {
+            Ok(Source::Fmu(Box::new(super::fmu::source(table, file, sample_period_ns)?)))
+        }
+        _ => Err(table.problem(
+            "uri",
+            format!("found {uri:?}, expected plant, replay:FILE, text:FILE or fmu:FILE"),
+        )),
     }
 }
 

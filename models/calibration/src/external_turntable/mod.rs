@@ -52,10 +52,29 @@ pub struct ExternalTurntableEstimator {
     without_encoder: Option<usize>,
 }
 
+#[cfg(feature = "state")]
+octant_state::state! {
+    ExternalTurntableEstimator {
+        values: norms, intervals, moves, without_encoder;
+        parts: segmenter, chain;
+        kept: q_nc, encoder_sigma_rad, gravity_mps2, initial, compensation;
+        check: Self::check_counts
+    }
+}
+
+#[cfg(feature = "state")]
+impl ExternalTurntableEstimator {
+    fn check_counts(&self) -> Result<(), octant_state::StateError> {
+        octant_state::check_count("intervals", self.intervals as u64)?;
+        octant_state::check_count("moves", self.moves as u64)
+    }
+}
+
 /// Second moments of the residual of the norm of gravity and of its gradient with respect to the
 /// nine accelerometer parameters: enough to tell the residual after the adjustment without keeping
 /// the intervals.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "state", derive(serde::Serialize, serde::Deserialize))]
 struct NormMoments(SMatrix<f64, 10, 10>);
 
 impl NormMoments {

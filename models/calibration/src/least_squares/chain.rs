@@ -85,6 +85,16 @@ pub(crate) struct Chain {
     estimated: [bool; 30],
 }
 
+#[cfg(feature = "state")]
+octant_state::state! {
+    Chain {
+        values: information, right, squares, freedom, previous;
+        parts: ;
+        kept: parameters, gravity, earth_rate, noise, estimated;
+        check: |chain: &Self| octant_state::check_count("freedom", chain.freedom as u64)
+    }
+}
+
 /// Solution of the adjustment.
 #[derive(Clone, Debug)]
 pub(crate) struct Solution {

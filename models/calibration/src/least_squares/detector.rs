@@ -28,6 +28,51 @@ pub(crate) struct Detector {
     standing: bool,
 }
 
+#[cfg(feature = "state")]
+impl octant_state::State for Detector {
+    fn save(&self, to: &mut octant_state::Writer) {
+        let Self {
+            initial_s: _,
+            threshold: _,
+            window,
+            ring,
+            count,
+            delivered,
+            time_s,
+            delivered_time_s,
+            initial_samples,
+            initial_mean,
+            initial_squares,
+            standing,
+        } = self;
+        to.value("times", &(time_s, delivered_time_s));
+        to.value("initial", &(initial_samples, initial_mean, initial_squares));
+        to.value("standing", standing);
+        to.value("counts", &(count, delivered));
+        for held in &ring[..*count.min(window)] {
+            to.value("held", held);
+        }
+    }
+
+    fn load(
+        &mut self,
+        from: &mut octant_state::Reader<'_>,
+    ) -> Result<(), octant_state::StateError> {
+        (self.time_s, self.delivered_time_s) = from.value("times")?;
+        (self.initial_samples, self.initial_mean, self.initial_squares) = from.value("initial")?;
+        self.standing = from.value("standing")?;
+        (self.count, self.delivered) = from.value("counts")?;
+        octant_state::check_count("count", self.count as u64)?;
+        octant_state::check_below("delivered", self.delivered as u64, self.count as u64)?;
+        let waiting = (self.count - self.delivered) as u64;
+        octant_state::check_below("samples held back", waiting, self.window as u64)?;
+        for held in &mut self.ring[..self.count.min(self.window)] {
+            *held = from.value("held")?;
+        }
+        Ok(())
+    }
+}
+
 impl Detector {
     pub(crate) fn new(
         initial_s: f64,

@@ -7,6 +7,7 @@ use octant_sample::{Sample, Status};
 
 /// What is kept of a static interval.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "state", derive(serde::Serialize, serde::Deserialize))]
 pub struct Interval {
     /// Mean specific force as measured, m/s².
     pub force_mps2: Vector3<f64>,
@@ -26,6 +27,7 @@ pub struct Interval {
 
 /// Running sums of a static interval. Counts are summed as integers: the mean has no rounding.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "state", derive(serde::Serialize, serde::Deserialize))]
 struct Sums {
     delta_theta: [i64; 3],
     delta_velocity: [i64; 3],
@@ -107,6 +109,34 @@ pub(crate) struct Segmenter {
     last_sequence: Option<u64>,
 }
 
+#[cfg(feature = "state")]
+octant_state::state! {
+    Segmenter {
+        values: standing, sums, arrival, running, last_sequence;
+        parts: ;
+        kept: shortest_s;
+        check: Self::check_sums
+    }
+}
+
+#[cfg(feature = "state")]
+impl Segmenter {
+    /// A sum is no larger than so many samples can make it, nor are there more of them than leave
+    /// room for as many again.
+    fn check_sums(&self) -> Result<(), octant_state::StateError> {
+        use octant_state::check_below;
+        let Sums { delta_theta, delta_velocity, gimbal, samples, .. } = &self.sums;
+        check_below("sums.samples", (*samples).into(), 1 << 31)?;
+        check_below("sums.differences", self.sums.differences.into(), (*samples).into())?;
+        check_below("sums.gimbal_samples", self.sums.gimbal_samples.into(), (*samples).into())?;
+        let largest = u64::from(*samples) << 31;
+        for sum in delta_theta.iter().chain(delta_velocity).chain([&gimbal.0, &gimbal.1]) {
+            check_below("a sum of counts", sum.unsigned_abs(), largest)?;
+        }
+        Ok(())
+    }
+}
+
 impl Segmenter {
     pub(crate) fn new(shortest_s: f64) -> Self {
         Self {
@@ -128,7 +158,8 @@ impl Segmenter {
         compensation: &Compensation,
     ) -> Option<(Move, Interval)> {
         let ended = if self.standing && !standing { self.flush() } else { None };
-        let unbroken = self.last_sequence.is_none_or(|last| sample.sequence == last + 1);
+        let unbroken =
+            self.last_sequence.is_none_or(|last| sample.sequence == last.wrapping_add(1));
         self.last_sequence = Some(sample.sequence);
         let usable = !sample.status.intersects(
             Status::INERTIAL_INVALID | Status::GYRO_SATURATED | Status::ACCELEROMETER_SATURATED,

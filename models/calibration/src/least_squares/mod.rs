@@ -62,8 +62,12 @@ const SHORTEST_COMMANDED_S: f64 = 1.0;
 /// navigation-grade instrument and gains several digits a step.
 const ITERATIONS: usize = 8;
 
+/// Name of a setting. (By this name serde's derive doesn't take it for text that can be borrowed.)
+type Setting = &'static str;
+
 /// Why there is no estimate.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[cfg_attr(feature = "state", derive(serde::Serialize, serde::Deserialize))]
 pub enum Refusal {
     /// Not enough static intervals.
     #[error("{found} static intervals were found, at least {needed} are needed")]
@@ -135,7 +139,8 @@ pub enum Refusal {
     #[error("{field} is {found}, expected a positive number")]
     NotPositive {
         /// Name of the setting.
-        field: &'static str,
+        #[cfg_attr(feature = "state", serde(with = "setting"))]
+        field: Setting,
         /// Value found.
         found: f64,
     },
@@ -184,6 +189,52 @@ pub struct LeastSquaresEstimator {
     moves: [Move; INTERVALS_MAX],
     len: usize,
     overflow: bool,
+}
+
+#[cfg(feature = "state")]
+impl octant_state::State for LeastSquaresEstimator {
+    /// Of the store, only what is filled.
+    fn save(&self, to: &mut octant_state::Writer) {
+        let Self {
+            gyro: _,
+            gravity_mps2: _,
+            earth: _,
+            initial: _,
+            compensation,
+            segmenter,
+            detector,
+            intervals,
+            moves,
+            len,
+            overflow,
+        } = self;
+        to.value("compensation", compensation);
+        to.part("segmenter", segmenter);
+        to.part("detector", detector);
+        to.value("overflow", overflow);
+        to.value("len", len);
+        for (interval, arrival) in intervals[..*len].iter().zip(moves) {
+            to.value("interval", interval);
+            to.value("arrival", arrival);
+        }
+    }
+
+    fn load(
+        &mut self,
+        from: &mut octant_state::Reader<'_>,
+    ) -> Result<(), octant_state::StateError> {
+        self.compensation = from.value("compensation")?;
+        from.part("segmenter", &mut self.segmenter)?;
+        from.part("detector", &mut self.detector)?;
+        self.overflow = from.value("overflow")?;
+        self.len = from.value("len")?;
+        octant_state::check_below("len", self.len as u64, INTERVALS_MAX as u64)?;
+        for (interval, arrival) in self.intervals[..self.len].iter_mut().zip(&mut self.moves) {
+            *interval = from.value("interval")?;
+            *arrival = from.value("arrival")?;
+        }
+        Ok(())
+    }
 }
 
 impl LeastSquaresEstimator {
@@ -402,5 +453,37 @@ pub(crate) fn positive(field: &'static str, found: f64) -> Result<(), Refusal> {
         Ok(())
     } else {
         Err(Refusal::NotPositive { field, found })
+    }
+}
+
+/// The names of settings that have to be positive, as values: their places in a list.
+#[cfg(feature = "state")]
+mod setting {
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+    const NAMES: [&str; 5] = [
+        "gravity_mps2",
+        "shortest_s",
+        "encoder_sigma_rad",
+        "angle_random_walk",
+        "velocity_random_walk",
+    ];
+
+    #[allow(clippy::trivially_copy_pass_by_ref, reason = "the signature is serde's")]
+    pub(super) fn serialize<S: Serializer>(
+        name: &&'static str,
+        serializer: S,
+    ) -> Result<S::Ok, S::Error> {
+        match NAMES.iter().position(|known| known == name) {
+            Some(place) => (place as u8).serialize(serializer),
+            None => Err(serde::ser::Error::custom("a setting without a place in the list")),
+        }
+    }
+
+    pub(super) fn deserialize<'de, D: Deserializer<'de>>(
+        deserializer: D,
+    ) -> Result<&'static str, D::Error> {
+        let place = usize::from(u8::deserialize(deserializer)?);
+        NAMES.get(place).copied().ok_or_else(|| serde::de::Error::custom("no such setting"))
     }
 }

@@ -6,6 +6,7 @@ use octant_sample::Parameters;
 
 /// Compensation with fixed parameters: `ω = A_g (ω̃ − b_g − G f)`, `f = A_a (f̃ − b_a)`.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "state", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Compensation {
     /// (I + M_g)⁻¹.
     pub(crate) gyro: Matrix3<f64>,
@@ -57,6 +58,7 @@ impl Compensation {
 /// `δω = −A (δb + δM ω)` and `ψ̇ = R δω` the sensitivity is
 /// `J = −∫ R A [I, ω_x I, ω_y I, ω_z I] dt` for (δb, and the columns of δM).
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "state", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Move {
     rotation: Quaternion<f64>,
     /// −J before the multiplication with the constant A: ∫ R dt, ∫ R ω_j dt.

@@ -33,6 +33,7 @@ const TURNS_RAD: f64 = 5e-6;
 
 /// What is remembered of the stretch that is being bridged.
 #[derive(Clone, Debug, Default)]
+#[cfg_attr(feature = "state", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Bridge {
     /// Encoder angles of the last sample.
     pub(super) gimbal: GimbalAngles,
@@ -204,7 +205,7 @@ impl Core {
             }
             self.bridge.open |= channels;
             self.bridge.elapsed_s += interval_s;
-            self.bridge.samples += 1;
+            self.bridge.samples = self.bridge.samples.saturating_add(1);
             if let Some(filter) = self.filter_mut() {
                 filter.bridge(channels);
             }
@@ -258,7 +259,7 @@ impl Core {
             if self.screen.run(channel) == 0 {
                 *used = 0;
             } else if bridged & (1 << channel) == 0 {
-                *used += 1;
+                *used = used.saturating_add(1);
             }
         }
     }

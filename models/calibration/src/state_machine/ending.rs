@@ -54,7 +54,7 @@ impl Core {
         let estimate = adjusted?;
         self.parameters = estimate.parameters;
         self.sigma = estimate.sigma;
-        self.revision += 1;
+        self.revision = self.revision.saturating_add(1);
         self.compensation = Compensation::new(&self.parameters);
         if self.config.navigation.is_some() {
             let still = self.standstill;

@@ -68,6 +68,7 @@ impl Estimation {
 /// Sums of raw increments over the present standstill: from these, and parameters that are known
 /// only at its end, the attitude can still be found.
 #[derive(Clone, Copy, Debug, Default)]
+#[cfg_attr(feature = "state", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Standstill {
     pub(super) delta_theta: Vector3<f64>,
     pub(super) delta_velocity: Vector3<f64>,

@@ -24,6 +24,7 @@ const SLIP_SIGMAS: f64 = 6.0;
 
 /// Attitude of the case by the last comparison, with the encoders' angles of it.
 #[derive(Clone, Copy, Debug, Default)]
+#[cfg_attr(feature = "state", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Slips {
     last: Option<(UnitQuaternion<f64>, GimbalAngles)>,
     /// Slips so far.
@@ -64,7 +65,7 @@ impl Core {
         };
         if off(sample.gimbal.azimuth, target.azimuth) || off(sample.gimbal.roll, target.roll) {
             *health |= Health::GIMBAL_DISAGREES;
-            self.gimbal_disagreements += 1;
+            self.gimbal_disagreements = self.gimbal_disagreements.saturating_add(1);
         }
     }
 
@@ -104,7 +105,7 @@ impl Core {
             let difference = log(&(before.inverse() * q_nc)).norm();
             if difference > SLIP_SIGMAS * libm::sqrt(variance) {
                 *health |= Health::GIMBAL_SLIPPED;
-                self.slips.count += 1;
+                self.slips.count = self.slips.count.saturating_add(1);
             }
         }
         self.slips.last = Some((q_nc, sample.gimbal));

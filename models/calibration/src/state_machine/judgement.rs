@@ -23,6 +23,7 @@ const BRIDGED_SHARE_MAX: f64 = 0.02;
 
 /// Why a calibration was refused.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[cfg_attr(feature = "state", derive(serde::Serialize, serde::Deserialize))]
 pub enum Refusal {
     /// The innovations are not of the size that the tuning says.
     #[error("the mean NIS of {mean:.1} is above {limit}: the innovations contradict the tuning")]

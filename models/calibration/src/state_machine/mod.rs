@@ -7,9 +7,13 @@ mod estimation;
 mod gap;
 mod gimbals;
 mod judgement;
+#[cfg(feature = "state")]
+mod state;
 
 pub use check::ConfigError;
 pub use judgement::Refusal;
+#[cfg(feature = "state")]
+pub use state::FORMAT as STATE_FORMAT;
 
 use crate::alignment::CoarseAlignment;
 use crate::compensation::Compensation;
@@ -50,6 +54,7 @@ pub struct Diagnostics {
 
 /// What an output says of the gimbals.
 #[derive(Clone, Copy, Debug, Default)]
+#[cfg_attr(feature = "state", derive(serde::Serialize, serde::Deserialize))]
 struct Gimbals {
     stop: u16,
     moving: bool,
@@ -469,7 +474,7 @@ impl Core {
             } else {
                 self.compensation = Compensation::new(&self.parameters);
                 self.sigma = filter.parameter_sigmas();
-                self.revision += 1;
+                self.revision = self.revision.saturating_add(1);
             }
             self.nis_running += (measured.nis - self.nis_running) / NIS_MEMORY;
         } else if aiding.is_some() {
@@ -519,6 +524,18 @@ impl Core {
             nis,
             parameters_revision: self.revision,
         }
+    }
+
+    /// What it was configured with.
+    #[must_use]
+    pub fn config(&self) -> &Config {
+        &self.config
+    }
+
+    /// How things stand: before the first sample, or as it was last answered, without flags.
+    #[must_use]
+    pub fn latest(&self) -> Output {
+        self.output(Health::empty(), f64::NAN)
     }
 
     /// Estimated parameters.

@@ -98,7 +98,7 @@ impl Body {
     }
 
     /// What has been added is integrated finely enough.
-    fn plan(&mut self) {
+    pub(crate) fn plan(&mut self) {
         let (finest_s, period_s) = (self.piece_s, self.period_s);
         if let Some(active) = &mut self.active {
             if active.len() == 0 {

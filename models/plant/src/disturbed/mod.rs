@@ -23,7 +23,7 @@ use shake::Shake;
 use turning::{Ring, Slip};
 
 /// From when to when a disturbance lasts.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, serde::Serialize, serde::Deserialize)]
 struct Span {
     handle: u32,
     from_ns: u64,
@@ -64,7 +64,7 @@ fn seconds_between(from_ns: u64, to_ns: u64) -> f64 {
 
 /// All motions that are under way. There is none of it while nothing but the configured motion
 /// takes place.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, serde::Serialize, serde::Deserialize)]
 pub(crate) struct Active {
     vibrations: Vec<Shake>,
     shocks: Vec<Shock>,
@@ -73,8 +73,10 @@ pub(crate) struct Active {
     slips: Vec<Slip>,
     rings: Vec<Ring>,
     /// Where the integration is cut; kept for its memory.
+    #[serde(skip)]
     cuts: Vec<f64>,
-    /// Longest piece of the integration, s.
+    /// Longest piece of the integration, s: follows from the others.
+    #[serde(skip)]
     piece_s: f64,
 }
 

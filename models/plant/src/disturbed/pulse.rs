@@ -9,7 +9,7 @@ use nalgebra::Vector3;
 ///
 /// At its end the block moves with `2 A T / π` at a distance of `A T² / π`; the polynomial of fifth
 /// degree that leads from there to rest at the origin has no acceleration at either end.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, serde::Serialize, serde::Deserialize)]
 pub(super) struct Shock {
     pub(super) span: Span,
     pub(super) peak: Vector3<f64>,
@@ -63,7 +63,7 @@ impl Shock {
 }
 
 /// One excursion of the case and back.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, serde::Serialize, serde::Deserialize)]
 pub(super) struct Excursion {
     pub(super) span: Span,
     pub(super) displacement: Vector3<f64>,

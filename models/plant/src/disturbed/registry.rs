@@ -3,14 +3,14 @@
 use octant_faults::disturbance::{Gimbal, GimbalAction};
 
 /// One that has not ended.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, serde::Serialize, serde::Deserialize)]
 pub(super) enum Lasting {
     Gimbal(usize, GimbalAction),
     LeverArm([[f64; 3]; 3]),
 }
 
 /// Those that have not ended, in the order of their onsets.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, serde::Serialize, serde::Deserialize)]
 pub(crate) struct Registry {
     all: Vec<(u32, Lasting)>,
 }

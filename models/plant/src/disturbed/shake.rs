@@ -10,7 +10,7 @@ use octant_faults::disturbance::Line;
 const PIECES_IN_PERIOD: f64 = 24.0;
 
 /// One line, advanced from piece to piece by a rotation instead of a sine and cosine.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, serde::Serialize, serde::Deserialize)]
 struct Tone {
     frequency_hz: f64,
     omega: f64,
@@ -79,7 +79,7 @@ impl Tone {
 }
 
 /// Lines under their window.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, serde::Serialize, serde::Deserialize)]
 pub(super) struct Shake {
     pub(super) span: Span,
     edge_s: f64,

@@ -9,7 +9,7 @@ fn axis([angle, rate, acceleration]: [f64; 3]) -> AxisState {
 }
 
 /// The body turns against its drive and stays.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, serde::Serialize, serde::Deserialize)]
 pub(super) struct Slip {
     pub(super) gimbal: usize,
     pub(super) from_ns: u64,
@@ -42,7 +42,7 @@ impl Slip {
 const DECAYS: f64 = 30.0;
 
 /// The body rings about the target after a move.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, serde::Serialize, serde::Deserialize)]
 pub(super) struct Ring {
     pub(super) gimbal: usize,
     /// When the move was begun, and how long after that it ends.

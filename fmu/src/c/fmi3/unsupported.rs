@@ -1,0 +1,191 @@
+//! Functions that there are, and that no model has anything for.
+
+use super::enter;
+use crate::c::mode::{self, Modes, Refusal, Standard};
+use octant_fmi::fmi3::{
+    Binary, Boolean, Instance as Handle, OK, Status, String, ValueReference, signature,
+};
+
+/// Always an error.
+fn refuse(i: Handle, function: &'static str, modes: Modes, why: &str) -> Status {
+    enter(i, function, |instance| {
+        instance.require(modes)?;
+        Err(Refusal::error(why))
+    })
+}
+
+/// Variables of a type that no model has: none of them can be got or set.
+fn no_variables(
+    i: Handle,
+    function: &'static str,
+    modes: Modes,
+    count: usize,
+    value_count: usize,
+    of: &str,
+) -> Status {
+    enter(i, function, |instance| {
+        instance.require(modes)?;
+        if count == 0 && value_count == 0 {
+            return Ok(OK);
+        }
+        Err(Refusal::error(format!("there are no variables of type {of}")))
+    })
+}
+
+const GET: Modes = mode::get(Standard::Fmi3);
+/// Where clocks may be asked for.
+const CLOCKS: Modes = Modes::of(&[mode::Mode::Initialization, mode::Mode::Event]);
+
+const NO_DERIVATIVES: &str = "the model is sampled: its variables have no derivatives";
+const NO_STRUCTURE: &str = "there are no structural parameters";
+const NO_MODEL_EXCHANGE: &str = "there is no model exchange, only co-simulation";
+
+macro_rules! refused {
+    ($($modes:expr, $why:expr; $alias:ident: fn $name:ident($($argument:ident: $kind:ty),* $(,)?);)*) => {
+        export! {$(
+            /// Not available: answered with an error.
+            $alias: fn $name(i: Handle $(, $argument: $kind)*) -> Status {
+                $(let _ = $argument;)*
+                refuse(i, stringify!($name), $modes, $why)
+            }
+        )*}
+    };
+}
+
+refused! {
+    mode::ALIVE, NO_DERIVATIVES; GetDirectionalDerivative: fn fmi3GetDirectionalDerivative(
+        unknowns: *const ValueReference,
+        unknown_count: usize,
+        knowns: *const ValueReference,
+        known_count: usize,
+        seed: *const f64,
+        seed_count: usize,
+        sensitivity: *mut f64,
+        sensitivity_count: usize,
+    );
+    mode::ALIVE, NO_DERIVATIVES; GetAdjointDerivative: fn fmi3GetAdjointDerivative(
+        unknowns: *const ValueReference,
+        unknown_count: usize,
+        knowns: *const ValueReference,
+        known_count: usize,
+        seed: *const f64,
+        seed_count: usize,
+        sensitivity: *mut f64,
+        sensitivity_count: usize,
+    );
+    mode::ALIVE, NO_DERIVATIVES; GetOutputDerivatives: fn fmi3GetOutputDerivatives(
+        references: *const ValueReference,
+        count: usize,
+        orders: *const i32,
+        values: *mut f64,
+        value_count: usize,
+    );
+    mode::ALIVE, NO_STRUCTURE; EnterConfigurationMode: fn fmi3EnterConfigurationMode();
+    mode::NEVER, NO_STRUCTURE; ExitConfigurationMode: fn fmi3ExitConfigurationMode();
+    mode::ALIVE, NO_MODEL_EXCHANGE; EnterContinuousTimeMode: fn fmi3EnterContinuousTimeMode();
+    mode::ALIVE, NO_MODEL_EXCHANGE; CompletedIntegratorStep: fn fmi3CompletedIntegratorStep(
+        no_set_prior: Boolean,
+        enter_event_mode: *mut Boolean,
+        terminate: *mut Boolean,
+    );
+    mode::ALIVE, NO_MODEL_EXCHANGE; SetTime: fn fmi3SetTime(time: f64);
+    mode::ALIVE, NO_MODEL_EXCHANGE; SetContinuousStates: fn fmi3SetContinuousStates(
+        states: *const f64, count: usize,
+    );
+    mode::ALIVE, NO_MODEL_EXCHANGE; GetContinuousStateDerivatives:
+        fn fmi3GetContinuousStateDerivatives(derivatives: *mut f64, count: usize);
+    mode::ALIVE, NO_MODEL_EXCHANGE; GetEventIndicators: fn fmi3GetEventIndicators(
+        indicators: *mut f64, count: usize,
+    );
+    mode::ALIVE, NO_MODEL_EXCHANGE; GetContinuousStates: fn fmi3GetContinuousStates(
+        states: *mut f64, count: usize,
+    );
+    mode::ALIVE, NO_MODEL_EXCHANGE; GetNominalsOfContinuousStates:
+        fn fmi3GetNominalsOfContinuousStates(nominals: *mut f64, count: usize);
+    mode::ALIVE, NO_MODEL_EXCHANGE; GetNumberOfEventIndicators: fn fmi3GetNumberOfEventIndicators(
+        count: *mut usize,
+    );
+    mode::ALIVE, NO_MODEL_EXCHANGE; GetNumberOfContinuousStates:
+        fn fmi3GetNumberOfContinuousStates(count: *mut usize);
+    mode::ALIVE, "there is no scheduled execution, only co-simulation"; ActivateModelPartition:
+        fn fmi3ActivateModelPartition(clock: ValueReference, activation_time: f64);
+}
+
+macro_rules! absent {
+    ($($modes:expr, $of:literal, $count:ident $(, $value_count:ident)?; $alias:ident: fn $name:ident($($argument:ident: $kind:ty),* $(,)?);)*) => {
+        export! {$(
+            /// No model has variables of the type: with none given there is nothing to do.
+            $alias: fn $name(i: Handle $(, $argument: $kind)*) -> Status {
+                $(let _ = $argument;)*
+                let value_count: usize = 0 $(+ $value_count)?;
+                no_variables(i, stringify!($name), $modes, $count, value_count, $of)
+            }
+        )*}
+    };
+}
+
+absent! {
+    GET, "String", count, value_count; GetString: fn fmi3GetString(
+        references: *const ValueReference, count: usize, values: *mut String, value_count: usize,
+    );
+    mode::SET, "String", count, value_count; SetString: fn fmi3SetString(
+        references: *const ValueReference, count: usize, values: *const String, value_count: usize,
+    );
+    GET, "Binary", count, value_count; GetBinary: fn fmi3GetBinary(
+        references: *const ValueReference,
+        count: usize,
+        sizes: *mut usize,
+        values: *mut Binary,
+        value_count: usize,
+    );
+    mode::SET, "Binary", count, value_count; SetBinary: fn fmi3SetBinary(
+        references: *const ValueReference,
+        count: usize,
+        sizes: *const usize,
+        values: *const Binary,
+        value_count: usize,
+    );
+    CLOCKS, "Clock", count; GetClock: fn fmi3GetClock(
+        references: *const ValueReference, count: usize, values: *mut Boolean,
+    );
+    CLOCKS, "Clock", count; SetClock: fn fmi3SetClock(
+        references: *const ValueReference, count: usize, values: *const Boolean,
+    );
+    CLOCKS, "Clock", count; GetIntervalDecimal: fn fmi3GetIntervalDecimal(
+        references: *const ValueReference, count: usize, intervals: *mut f64, qualifiers: *mut i32,
+    );
+    CLOCKS, "Clock", count; GetIntervalFraction: fn fmi3GetIntervalFraction(
+        references: *const ValueReference,
+        count: usize,
+        counters: *mut u64,
+        resolutions: *mut u64,
+        qualifiers: *mut i32,
+    );
+    CLOCKS, "Clock", count; GetShiftDecimal: fn fmi3GetShiftDecimal(
+        references: *const ValueReference, count: usize, shifts: *mut f64,
+    );
+    CLOCKS, "Clock", count; GetShiftFraction: fn fmi3GetShiftFraction(
+        references: *const ValueReference,
+        count: usize,
+        counters: *mut u64,
+        resolutions: *mut u64,
+    );
+    CLOCKS, "Clock", count; SetIntervalDecimal: fn fmi3SetIntervalDecimal(
+        references: *const ValueReference, count: usize, intervals: *const f64,
+    );
+    CLOCKS, "Clock", count; SetIntervalFraction: fn fmi3SetIntervalFraction(
+        references: *const ValueReference,
+        count: usize,
+        counters: *const u64,
+        resolutions: *const u64,
+    );
+    CLOCKS, "Clock", count; SetShiftDecimal: fn fmi3SetShiftDecimal(
+        references: *const ValueReference, count: usize, shifts: *const f64,
+    );
+    CLOCKS, "Clock", count; SetShiftFraction: fn fmi3SetShiftFraction(
+        references: *const ValueReference,
+        count: usize,
+        counters: *const u64,
+        resolutions: *const u64,
+    );
+}

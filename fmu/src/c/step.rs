@@ -1,0 +1,124 @@
+//! Steps: time is an integer number of sample periods, and the importer's time is checked against it.
+
+use super::instance::Instance;
+use super::mode::{self, Mode, Refusal};
+
+/// How far a communication step may be from a whole number of sample periods, in sample periods: far
+/// more than rounding, far less than anybody means.
+const STEP_TOLERANCE: f64 = 1e-6;
+
+/// A step that was agreed to.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Agreed {
+    /// Sample periods that it has.
+    pub periods: u64,
+}
+
+impl Instance {
+    /// Time of a tick, s.
+    #[inline]
+    fn tick_s(&self, tick: u64) -> f64 {
+        self.run.experiment.start_s + tick as f64 * self.period_s()
+    }
+
+    #[inline]
+    pub(super) fn period_s(&self) -> f64 {
+        self.period_ns() as f64 * 1e-9
+    }
+
+    #[inline]
+    fn period_ns(&self) -> u64 {
+        self.run.component.as_ref().map_or(1, |component| component.period_ns())
+    }
+
+    /// Time of the next event: the next sample.
+    pub(super) fn next_event_s(&self) -> f64 {
+        self.tick_s(self.run.tick + 1)
+    }
+
+    /// Whether a step from `time_s` by `step_s` can be done; nothing is changed.
+    #[inline]
+    pub(super) fn agree(&self, time_s: f64, step_s: f64) -> Result<Agreed, Refusal> {
+        self.require(mode::STEP)?;
+        let period_s = self.period_s();
+        let (least, most) = self.model().periods_per_step;
+        let found = step_s / period_s;
+        let periods = found + 0.5;
+        // NaN, infinity and what is beyond any number of periods end up here, too.
+        if !(step_s > 0.0 && step_s.is_finite()) {
+            return Err(Refusal::error(format!(
+                "the communication step is {step_s} s, a positive number is expected"
+            )));
+        }
+        let periods = periods as u64;
+        if !((found - periods as f64).abs() <= STEP_TOLERANCE && (least..=most).contains(&periods))
+        {
+            return Err(self.wrong_step(step_s));
+        }
+        let own_s = self.tick_s(self.run.tick);
+        if !((time_s - own_s).abs() <= 0.5 * period_s) {
+            return Err(Refusal::discard(format!(
+                "the communication point is {time_s} s, the model is at {own_s} s"
+            )));
+        }
+        if let Some(stop_s) = self.run.experiment.stop_s {
+            let end_s = self.tick_s(self.run.tick + periods);
+            if end_s > stop_s + 0.5 * period_s {
+                return Err(Refusal::error(format!(
+                    "the step ends at {end_s} s, after the stop time of {stop_s} s"
+                )));
+            }
+        }
+        Ok(Agreed { periods })
+    }
+
+    #[cold]
+    fn wrong_step(&self, step_s: f64) -> Refusal {
+        let period_s = self.period_s();
+        let expected = match self.model().periods_per_step {
+            (1, 1) => format!("the sample period of {period_s} s is expected"),
+            (least, most) => format!(
+                "a whole number of sample periods of {period_s} s, {least} to {most} of them, is \
+                 expected"
+            ),
+        };
+        Refusal::discard(format!("the communication step is {step_s} s, {expected}"))
+    }
+
+    /// One sample period. True: outputs have changed and the importer handles events.
+    #[inline]
+    pub(super) fn step_period(&mut self) -> Result<bool, Refusal> {
+        if self.options.event_mode_used {
+            return self.step_watched();
+        }
+        self.advance()?;
+        Ok(false)
+    }
+
+    /// A period after which it is known whether outputs have changed.
+    fn step_watched(&mut self) -> Result<bool, Refusal> {
+        let outputs = &self.layout().outputs;
+        let before: Vec<u64> =
+            outputs.iter().map(|slot| self.run.values.cells()[*slot as usize]).collect();
+        self.advance()?;
+        let cells = self.run.values.cells();
+        Ok(outputs.iter().zip(before).any(|(slot, before)| cells[*slot as usize] != before))
+    }
+
+    #[inline]
+    fn advance(&mut self) -> Result<(), Refusal> {
+        let Some(component) = &mut self.run.component else {
+            return Err(Refusal::error("the instance has not been initialized"));
+        };
+        component.step(&mut self.run.values).map_err(Refusal::discard)?;
+        self.run.tick += 1;
+        self.set_time(self.tick_s(self.run.tick));
+        self.remark();
+        Ok(())
+    }
+
+    /// FMI 2.0: after a step that was discarded, only a kept state leads on.
+    pub(super) fn step_failed(&mut self) {
+        self.run.mode = Mode::StepFailed;
+    }
+}

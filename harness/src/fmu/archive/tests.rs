@@ -1,0 +1,242 @@
+use super::*;
+use std::io::Write;
+use zip::write::{SimpleFileOptions, ZipWriter};
+
+/// A zip with these files.
+fn zip(files: &[(&str, &[u8])]) -> Vec<u8> {
+    let mut writer = ZipWriter::new(io::Cursor::new(Vec::new()));
+    for (name, contents) in files {
+        writer.start_file(*name, SimpleFileOptions::default()).expect("starts");
+        writer.write_all(contents).expect("writes");
+    }
+    writer.finish().expect("finishes").into_inner()
+}
+
+/// The zip with all places of `from` replaced, headers and directory alike.
+fn patched(mut bytes: Vec<u8>, from: &[u8], to: &[u8]) -> Vec<u8> {
+    assert_eq!(from.len(), to.len());
+    let mut at = 0;
+    while let Some(found) = bytes[at..].windows(from.len()).position(|window| window == from) {
+        bytes[at + found..at + found + from.len()].copy_from_slice(to);
+        at += found + from.len();
+    }
+    assert!(at > 0, "nothing is replaced");
+    bytes
+}
+
+fn refused(bytes: Vec<u8>) -> String {
+    Archive::from_bytes("h.fmu", bytes).expect_err("is refused").to_string()
+}
+
+#[test]
+fn files_are_read_and_unpacked() {
+    let files: [(&str, &[u8]); 3] =
+        [("modelDescription.xml", b"<a/>"), ("binaries/x/y.so", b"\x7fELF"), ("resources/z", b"")];
+    let mut archive = Archive::from_bytes("a.fmu", zip(&files)).expect("opens");
+    assert!(archive.contains("resources/z") && !archive.contains("resources"));
+    assert!(archive.contains_below("binaries/") && !archive.contains_below("sources/"));
+    for (name, contents) in files {
+        assert_eq!(archive.read(name).expect("reads"), contents);
+    }
+    let missing = archive.read("../etc/passwd").expect_err("isn't there").to_string();
+    assert_eq!(missing, "a.fmu has no ../etc/passwd");
+    let unpacked = archive.unpack().expect("unpacks");
+    for (name, contents) in files {
+        assert_eq!(fs::read(unpacked.path().join(name)).expect("is there"), contents);
+    }
+    // The folder is an archive as well, and stays when that is dropped.
+    let mut folder = Archive::open(unpacked.path()).expect("opens");
+    assert!(folder.is_folder());
+    assert_eq!(folder.read("modelDescription.xml").expect("reads"), b"<a/>");
+    drop(folder.unpack().expect("is a folder"));
+    let path = unpacked.path().to_owned();
+    assert!(path.join("modelDescription.xml").exists());
+    drop(unpacked);
+    assert!(!path.exists());
+}
+
+#[test]
+fn what_is_no_zip_says_what_it_is() {
+    assert_eq!(
+        refused(Vec::new()),
+        "h.fmu is no zip archive: it is empty, expected an FMU or SSP file, or an unpacked folder"
+    );
+    assert!(refused(b"<?xml version".to_vec()).contains("begins with \"<?xm\""));
+    assert!(refused(b"PK".to_vec()).contains("begins with \"PK\""));
+    let error = Archive::open(Path::new("/nowhere/x.fmu")).expect_err("isn't there").to_string();
+    assert!(error.starts_with("failed to open /nowhere/x.fmu: "), "{error}");
+}
+
+#[test]
+fn every_truncation_is_an_error() {
+    let whole = zip(&[("modelDescription.xml", &[b'x'; 300]), ("b", b"c")]);
+    for length in 0..whole.len() {
+        let error = refused(whole[..length].to_vec());
+        assert!(error.starts_with("h.fmu is "), "{length}: {error}");
+    }
+    // Bytes before the archive make it something else that is a zip as well.
+    let mut polyglot = b"PK\x03\x04 not this".to_vec();
+    polyglot.extend(&whole);
+    assert!(refused(polyglot).starts_with("h.fmu is damaged: "));
+}
+
+#[test]
+fn every_changed_byte_is_an_error_or_harmless() {
+    let files: [(&str, &[u8]); 2] =
+        [("modelDescription.xml", b"<abc>abc abc abc</abc>"), ("b", b"c")];
+    let whole = zip(&files);
+    for at in 0..whole.len() {
+        for change in [0x01, 0x80, 0xff] {
+            let mut bytes = whole.clone();
+            bytes[at] ^= change;
+            let Ok(mut archive) = Archive::from_bytes("h.fmu", bytes) else { continue };
+            // Names and dates may change; contents have a checksum, but for its own bytes.
+            for entry in archive.entries().to_vec() {
+                if let Ok(contents) = archive.read(&entry.name) {
+                    assert!(files.iter().any(|(_, known)| *known == contents), "byte {at}");
+                }
+            }
+            let _ = archive.unpack();
+        }
+    }
+}
+
+#[test]
+fn hostile_names_are_refused() {
+    for (name, found) in [
+        ("../../etc/x", "leaves the folder"),
+        ("/etc/passwd", "is an absolute path"),
+        ("a\\..\\b.txt", "has a backslash"),
+        ("C:/windows", "has a drive letter"),
+        ("a/../../b", "leaves the folder"),
+    ] {
+        let plain = "#".repeat(name.len());
+        let bytes = patched(zip(&[(&plain, b"x")]), plain.as_bytes(), name.as_bytes());
+        let error = refused(bytes.clone());
+        assert!(
+            error.starts_with(&format!("h.fmu: entry {:?} {found}, expected ", name)),
+            "{error}"
+        );
+        // The survey lists it, reads nothing of it and unpacks nothing.
+        let mut archive =
+            Archive::survey_bytes("h.fmu", bytes, Limits::DEFAULT).expect("is surveyed");
+        assert_eq!(archive.problems().len(), 1);
+        assert!(archive.entries().is_empty());
+        assert!(archive.read(name).is_err() && archive.unpack().is_err());
+    }
+    let error = refused(patched(zip(&[("#latin", b"x")]), b"#latin", b"\xe4latin"));
+    assert_eq!(error, "h.fmu: entry \"\\\\xe4latin\" isn't UTF-8, expected a name in UTF-8");
+}
+
+#[test]
+fn names_that_collide_are_refused() {
+    let twice = patched(zip(&[("aaa", b"1"), ("bbb", b"2")]), b"bbb", b"aaa");
+    assert_eq!(refused(twice), "h.fmu: entry \"aaa\" is there twice, expected one entry of a name");
+    let case = zip(&[("a/Model.so", b"1"), ("a/model.so", b"2")]);
+    assert!(refused(case).contains("upper and lower case alone"));
+    let both = zip(&[("a", b"1"), ("a/b", b"2")]);
+    assert!(refused(both).contains("a file and a folder"));
+}
+
+#[test]
+fn links_devices_and_ciphers_are_refused() {
+    let mut writer = ZipWriter::new(io::Cursor::new(Vec::new()));
+    writer.add_symlink("link", "/etc/passwd", SimpleFileOptions::default()).expect("adds");
+    let link = writer.finish().expect("finishes").into_inner();
+    assert_eq!(
+        refused(link),
+        "h.fmu: entry \"link\" is a symbolic link, expected a file or a folder"
+    );
+    // Bit 0 of the flags in the directory, eight bytes after the signature.
+    let mut bytes = zip(&[("a", b"1")]);
+    let at = bytes.windows(4).position(|window| window == b"PK\x01\x02").expect("a directory");
+    bytes[at + 8] |= 1;
+    let error = refused(bytes);
+    assert!(error.contains("encrypted"), "{error}");
+    // The compression, ten bytes after it: 12 is bzip2.
+    let mut bytes = zip(&[("a", b"1")]);
+    bytes[at + 10] = 12;
+    let error = refused(bytes);
+    assert!(error.contains("packed with"), "{error}");
+    // The type in the mode, 38 + 2 bytes after it: a character device.
+    let mut bytes = zip(&[("a", b"1")]);
+    bytes[at + 41] = 0o020;
+    let error = refused(bytes);
+    assert!(error.contains("is a device"), "{error}");
+}
+
+#[test]
+fn bombs_are_stopped_while_unpacking() {
+    let zeros = vec![0u8; 1 << 20];
+    let bytes = zip(&[("a", &zeros), ("b", &zeros)]);
+    let limits = |limits: Limits| Archive::survey_bytes("h.fmu", bytes.clone(), limits);
+    let small = Limits { ratio_free_bytes: 1 << 16, ..Limits::DEFAULT };
+    let error = limits(small).expect("opens").unpack().expect_err("a bomb").to_string();
+    assert_eq!(
+        error,
+        "h.fmu: entry \"a\" unpacks to more than 100 times its size, \
+         expected at most 65536 bytes for such an entry"
+    );
+    let small = Limits { unpacked_bytes: 3 << 19, ..Limits::DEFAULT };
+    let error = limits(small).expect("opens").unpack().expect_err("a bomb").to_string();
+    assert_eq!(
+        error,
+        "h.fmu: with entry \"b\" more is unpacked than from any FMU, expected at most 1572864 bytes"
+    );
+    let small = Limits { read_bytes: 1000, ..Limits::DEFAULT };
+    let error = limits(small).expect("opens").read("a").expect_err("too large").to_string();
+    assert_eq!(
+        error,
+        "h.fmu: with entry \"a\" more is unpacked than from any FMU, expected at most 1000 bytes"
+    );
+    // What the headers say of the size is no protection: here they say one byte.
+    let mut lying = bytes.clone();
+    let size = (1u32 << 20).to_le_bytes();
+    lying = patched(lying, &size, &1u32.to_le_bytes());
+    let small = Limits { unpacked_bytes: 1 << 19, ..Limits::DEFAULT };
+    let mut archive = Archive::survey_bytes("h.fmu", lying, small).expect("opens");
+    archive.unpack().expect_err("a bomb or damaged");
+}
+
+#[test]
+fn entries_that_share_bytes_are_refused() {
+    // Both entries of the directory point at the first: how flat bombs are made.
+    let mut bytes = zip(&[("aaa", b"111"), ("aab", b"111")]);
+    let directory: Vec<usize> =
+        (0..bytes.len() - 4).filter(|&at| &bytes[at..at + 4] == b"PK\x01\x02").collect();
+    bytes[directory[1] + 42..directory[1] + 46].copy_from_slice(&0u32.to_le_bytes());
+    assert_eq!(refused(bytes), "h.fmu is damaged: entries overlap");
+}
+
+#[test]
+fn too_many_entries_are_refused() {
+    let names: Vec<String> = (0..20).map(|i| format!("file{i}")).collect();
+    let files: Vec<(&str, &[u8])> = names.iter().map(|name| (&name[..], &b""[..])).collect();
+    let bytes = zip(&files);
+    let few = Limits { entries: 19, ..Limits::DEFAULT };
+    let error = Archive::survey_bytes("h.fmu", bytes.clone(), few).expect_err("too many");
+    assert_eq!(error.to_string(), "h.fmu: it has 20 entries, expected at most 19");
+    let few = Limits { directory_bytes: 500, ..Limits::DEFAULT };
+    let error = Archive::survey_bytes("h.fmu", bytes, few).expect_err("too many");
+    assert_eq!(error.to_string(), "h.fmu: its directory is too large, expected at most 500 bytes");
+}
+
+#[cfg(unix)]
+#[test]
+fn programs_stay_programs_and_links_in_folders_are_not_followed() {
+    use std::os::unix::fs::PermissionsExt;
+    let mut writer = ZipWriter::new(io::Cursor::new(Vec::new()));
+    let program = SimpleFileOptions::default().unix_permissions(0o755);
+    writer.start_file("resources/tool", program).expect("starts");
+    writer.start_file("resources/data", SimpleFileOptions::default()).expect("starts");
+    let bytes = writer.finish().expect("finishes").into_inner();
+    let unpacked = Archive::from_bytes("a.fmu", bytes).expect("opens").unpack().expect("unpacks");
+    let mode = |name| {
+        fs::metadata(unpacked.path().join(name)).expect("is there").permissions().mode() & 0o111
+    };
+    assert_eq!((mode("resources/tool"), mode("resources/data")), (0o111, 0));
+    std::os::unix::fs::symlink("/etc/passwd", unpacked.path().join("resources/link"))
+        .expect("links");
+    let error = Archive::open(unpacked.path()).expect_err("has a link").to_string();
+    assert!(error.contains("\"resources/link\" is a link or a device"), "{error}");
+}

@@ -1,0 +1,133 @@
+//! What the page of an FMU says in words.
+
+use super::documentation::Standard;
+use octant_fmu::table::Model;
+
+/// Anchors and titles of the sections, in their order.
+pub(super) const SECTIONS: [(&str, &str); 5] = [
+    ("what", "What it is"),
+    ("time", "Time"),
+    ("wiring", "Wiring"),
+    ("values", "Values and faults"),
+    ("states", "States"),
+];
+
+/// What is different between the models.
+pub(super) struct Prose {
+    what: &'static [&'static str],
+    time: &'static [&'static str],
+    wiring: &'static [&'static str],
+    values: &'static [&'static str],
+}
+
+/// The words for a model.
+pub(super) fn of(model: &Model) -> Prose {
+    if model.stem == "plant" { PLANT } else { CALIBRATOR }
+}
+
+impl Prose {
+    /// Paragraphs of each of [`SECTIONS`].
+    pub(super) fn sections(&self, standard: Standard) -> [Vec<&'static str>; 5] {
+        let with = |own: &'static [&'static str], more: &[&'static str]| [own, more].concat();
+        [
+            self.what.to_vec(),
+            with(
+                self.time,
+                &[
+                    TIME,
+                    match standard {
+                        Standard::Fmi2 => TIME_2,
+                        Standard::Fmi3 => TIME_3,
+                    },
+                ],
+            ),
+            with(
+                self.wiring,
+                &[match standard {
+                    Standard::Fmi2 => WIRING_2,
+                    Standard::Fmi3 => WIRING_3,
+                }],
+            ),
+            with(self.values, &[VALUES]),
+            STATES.to_vec(),
+        ]
+    }
+}
+
+const CALIBRATOR: Prose = Prose {
+    what: &[
+        "The calibration core of a dual-axis rotational inertial navigation system: it commands the \
+         two gimbals through a sequence of positions, estimates the errors of gyros and \
+         accelerometers from the samples, and navigates with what it found. It is the same code \
+         as in the octant program, and gives the same bits.",
+        "Its inputs are what an instrument has: increments of a sample, gimbal angles, a reference \
+         velocity or position. It never sees the truth.",
+    ],
+    time: &[
+        "One communication step is one sample period. Before the step from t(k) to t(k+1) the inputs \
+         are those of the sample that ends at t(k); with imu.valid true the core steps once, and \
+         its outputs hold from t(k+1) on. With imu.valid false nothing is stepped: so it is \
+         before the first sample.",
+    ],
+    wiring: &[
+        "gyro.delta_theta and accelerometer.delta_velocity are integrals over the sample's interval \
+         in body axes, not rates. The core turns them into whole counts (2^-36 rad, 2^-30 m/s) and \
+         carries the remainders: values that are counts already go through unchanged, and a \
+         model with real-valued outputs loses nothing.",
+        "gimbal_command acts on the next interval of the turntable. In a master that steps all FMUs \
+         in parallel the loop closes as in the octant program; a master that steps one after the \
+         other has to hand the values on by one step as well.",
+    ],
+    values: &["A reference that isn't finite reaches the core, which answers for it in health."],
+};
+
+const PLANT: Prose = Prose {
+    what: &[
+        "Motion of the case, two gimbals, gyros and accelerometers with their errors, the reference, \
+         and faults: what the core is calibrated against. It knows the truth and says it in outputs \
+         of its own.",
+    ],
+    time: &[
+        "One communication step is one sample period. The step from t(k) to t(k+1) first takes the \
+         gimbal command, then makes the sample of this interval: its outputs hold from t(k+1) on, \
+         with imu.valid true. After the initialization, before the first step, imu.valid is false.",
+    ],
+    wiring: &[
+        "Its outputs have the names of the calibrator's inputs, and the gimbal command the other way: \
+         the terminals imu, reference and gimbal_command belong together. A ship, a turntable or a \
+         core of your own takes their place name by name.",
+    ],
+    values: &[
+        "Noise comes from the seed alone: the same seed is the same noise, whatever else changes.",
+    ],
+};
+
+const TIME: &str = "Time is a whole number of sample periods inside. The communication point has to be \
+     the own one within half a period, and the step one period within 1e-6; else the step is \
+     discarded with a reason, nothing is done and time stays where it is. 0.005 s has no exact \
+     binary form: a master may add up steps or multiply, both are understood.";
+
+const TIME_2: &str = "fmi2DoStep never returns fmi2Pending, and takes noSetFMUStatePriorToCurrentPoint as \
+     it comes. The tolerance of the experiment means nothing here.";
+
+const TIME_3: &str = "Inputs are discrete. Without event mode they are set in step mode before each step; \
+     with event mode (eventModeUsed) they are set in event mode between two steps. Steps end where \
+     they are asked to: there is no early return and no intermediate update.";
+
+const WIRING_2: &str = "Elements of an array are scalars name[1], name[2] and so on. Enumerations are \
+     Integers with the values given below: there are masters that can't connect an enumeration. \
+     Whole numbers beyond 32 bits are Reals, exact up to 2^53.";
+
+const WIRING_3: &str = "Vectors are arrays of fixed size.";
+
+const VALUES: &str = "Everything is in SI units and radians; display units are for reading. Discrete inputs \
+     must not be interpolated. A value that isn't finite, or not legal, is refused with a reason, \
+     and the variable keeps the value that it had.";
+
+const STATES: [&str; 2] = [
+    "The state can be kept, restored, freed, and turned into bytes and back at any communication \
+     point; the bytes carry a version and a checksum, are the same on every platform, and go on \
+     in another process bit for bit. Reset goes back to after the instantiation.",
+    "Any number of instances live in one process, in any threads, one thread at a time for each. Wrong \
+     calls get the status that the standard asks for and a line in the log, never a crash.",
+];

@@ -1,0 +1,163 @@
+//! Reference inputs and results: what a user checks their tool with.
+//!
+//! The two models run in a closed loop with their start values, as a master does that steps FMUs in
+//! parallel: outputs are handed on when both have stepped. What each of them got and gave is the
+//! reference of each. Files are as in the FMI cross-check, `_in.csv`, `_ref.csv`, `_ref.opt`; they
+//! travel in the FMU's `documentation`, the one folder that both standards let have files of one's
+//! own and whose contents other tools leave alone.
+
+use super::archive::File;
+use super::describe::{STEP_S, STOP_S};
+use super::documentation::Standard;
+use super::element::{list, number};
+use super::names::scalar_names;
+use octant_fmu::component::Component;
+use octant_fmu::table::{Causality, Kind, Model, Variable};
+use octant_fmu::values::Values;
+use std::fmt::Write;
+
+/// Steps between two rows of a result: ten rows a second.
+const STEPS_PER_ROW: usize = 20;
+
+/// What went into a model, and what came out.
+#[derive(Clone, Debug)]
+pub(super) struct Reference {
+    model: &'static Model,
+    /// Cells of the values before each step.
+    inputs: Vec<Values>,
+    /// Cells after the initialization, and then after every [`STEPS_PER_ROW`] steps.
+    outputs: Vec<Values>,
+}
+
+impl Reference {
+    /// Whose it is.
+    pub(super) fn model(&self) -> &'static Model {
+        self.model
+    }
+
+    fn new(model: &'static Model) -> Self {
+        Self { model, inputs: Vec::new(), outputs: Vec::new() }
+    }
+}
+
+/// Runs the two models from their start values.
+///
+/// # Errors
+/// If the start values contradict themselves, or a step is refused: a mistake in the tables.
+pub(super) fn closed_loop<A: Component, B: Component>() -> Result<[Reference; 2], String> {
+    let (mut a_values, mut b_values) = (Values::new(A::MODEL), Values::new(B::MODEL));
+    let mut a = A::initialize(&mut a_values)?;
+    let mut b = B::initialize(&mut b_values)?;
+    let to_b = wires(A::MODEL, B::MODEL);
+    let to_a = wires(B::MODEL, A::MODEL);
+    let mut references = [Reference::new(A::MODEL), Reference::new(B::MODEL)];
+    let steps = (STOP_S / STEP_S).round() as usize;
+    for step in 0..=steps {
+        if step.is_multiple_of(STEPS_PER_ROW) {
+            references[0].outputs.push(a_values.clone());
+            references[1].outputs.push(b_values.clone());
+        }
+        copy(&to_b, &a_values, &mut b_values);
+        copy(&to_a, &b_values, &mut a_values);
+        references[0].inputs.push(a_values.clone());
+        references[1].inputs.push(b_values.clone());
+        if step == steps {
+            break;
+        }
+        a.step(&mut a_values)?;
+        b.step(&mut b_values)?;
+    }
+    Ok(references)
+}
+
+/// Slots of outputs and of the inputs with the same names.
+fn wires(from: &Model, to: &Model) -> Vec<(usize, usize)> {
+    let outputs = from.with_slots().filter(|(_, v)| v.causality == Causality::Output);
+    outputs
+        .filter_map(|(slot, output)| {
+            let (other, input) = to.find(output.name)?;
+            let same = input.causality == Causality::Input && input.slots() == output.slots();
+            same.then(|| (0..output.slots()).map(move |i| (slot + i, other + i)))
+        })
+        .flatten()
+        .collect()
+}
+
+fn copy(wires: &[(usize, usize)], from: &Values, to: &mut Values) {
+    for (from_slot, to_slot) in wires {
+        to.cells_mut()[*to_slot] = from.cells()[*from_slot];
+    }
+}
+
+/// The three files for the FMU of a standard.
+pub(super) fn files(reference: &Reference, standard: Standard) -> [File; 3] {
+    let identifier = format!("{}_{}", reference.model.stem, standard.suffix());
+    let file = |suffix: &str, text: String| {
+        File::new(format!("documentation/{identifier}_{suffix}"), text)
+    };
+    let model = reference.model;
+    let inputs = table(model, Causality::Input, standard, 1, &reference.inputs);
+    let outputs = table(model, Causality::Output, standard, STEPS_PER_ROW, &reference.outputs);
+    let options = format!(
+        "StartTime, 0\nStopTime, {}\nStepSize, {}\nRelTol, 1e-12\n",
+        number(STOP_S),
+        number(STEP_S)
+    );
+    [file("in.csv", inputs), file("ref.csv", outputs), file("ref.opt", options)]
+}
+
+/// Rows of values. In FMI 2.0 an element is a column; in FMI 3.0 a variable is one, with its
+/// elements between spaces.
+fn table(
+    model: &Model,
+    causality: Causality,
+    standard: Standard,
+    steps_per_row: usize,
+    rows: &[Values],
+) -> String {
+    let these: Vec<(usize, &Variable)> =
+        model.with_slots().filter(|(_, v)| v.causality == causality).collect();
+    let mut text = "\"time\"".to_owned();
+    for (_, variable) in &these {
+        match standard {
+            Standard::Fmi2 => {
+                scalar_names(variable).iter().for_each(|name| column(&mut text, name))
+            }
+            Standard::Fmi3 => column(&mut text, variable.name),
+        }
+    }
+    text.push('\n');
+    for (row, values) in rows.iter().enumerate() {
+        // Multiplied, not added up: the nearest number to the time that is meant.
+        text += &number((row * steps_per_row) as f64 * STEP_S);
+        for (slot, variable) in &these {
+            let elements = (*slot..slot + variable.slots()).map(|s| cell(values, s, variable.kind));
+            match standard {
+                Standard::Fmi2 => elements.for_each(|value| {
+                    text.push(',');
+                    text += &value;
+                }),
+                Standard::Fmi3 => {
+                    text.push(',');
+                    text += &list(elements);
+                }
+            }
+        }
+        text.push('\n');
+    }
+    text
+}
+
+fn column(text: &mut String, name: &str) {
+    // Writing to a String can't fail.
+    let _ = write!(text, ",\"{name}\"");
+}
+
+fn cell(values: &Values, slot: usize, kind: Kind) -> String {
+    match kind {
+        Kind::Real => number(values.real(slot)),
+        Kind::Integer | Kind::Enumeration(_) => values.integer(slot).to_string(),
+        Kind::Count => values.count(slot).to_string(),
+        Kind::Boolean => u8::from(values.boolean(slot)).to_string(),
+    }
+}

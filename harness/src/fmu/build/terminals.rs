@@ -1,0 +1,99 @@
+//! Terminals (FMI 3.0): which variables belong together, under the same names in both models, so
+//! that a tool connects the two by dragging one line.
+
+use super::element::{Element, number};
+use octant_fmu::table::{Causality, Model, Variable};
+
+/// A terminal: its name, what it is, and how the names of its variables begin.
+struct Terminal {
+    name: &'static str,
+    description: &'static str,
+    prefixes: &'static [&'static str],
+}
+
+const TERMINALS: [Terminal; 4] = [
+    Terminal {
+        name: "imu",
+        description: "Inertial samples with the gimbal angles at their ends",
+        prefixes: &["gyro.", "accelerometer.", "gimbal.", "imu."],
+    },
+    Terminal {
+        name: "reference",
+        description: "Reference velocity or position with the stamp of its sample",
+        prefixes: &["reference."],
+    },
+    Terminal {
+        name: "gimbal_command",
+        description: "Set points of the gimbals",
+        prefixes: &["gimbal_command."],
+    },
+    Terminal {
+        name: "navigation",
+        description: "Position, velocity and attitude",
+        prefixes: &["navigation."],
+    },
+];
+
+/// `terminalsAndIcons.xml`.
+pub(super) fn terminals(model: &Model) -> Element {
+    let mut left = Vec::new();
+    let mut right = Vec::new();
+    for terminal in &TERMINALS {
+        let members: Vec<&Variable> = members(model, terminal).collect();
+        match members.first().map(|variable| variable.causality) {
+            Some(Causality::Input) => left.push((terminal, members)),
+            Some(_) => right.push((terminal, members)),
+            None => {}
+        }
+    }
+    let side = |terminals: Vec<(&'static Terminal, Vec<&'static Variable>)>, x: f64| {
+        let count = terminals.len() as f64;
+        terminals.into_iter().enumerate().map(move |(index, (terminal, members))| {
+            let y = (100.0 - 200.0 * (index as f64 + 1.0) / (count + 1.0)).round();
+            element(terminal, &members, [x - 10.0, y - 10.0, x + 10.0, y + 10.0])
+        })
+    };
+    let extent = |element| corners(element, [-100.0, -100.0, 100.0, 100.0]);
+    let picture = Element::new("GraphicalRepresentation")
+        .child(extent(Element::new("CoordinateSystem")).with("suggestedScalingFactorTo_mm", "0.1"))
+        .child(extent(Element::new("Icon")));
+    Element::new("fmiTerminalsAndIcons")
+        .with("fmiVersion", "3.0")
+        .child(picture)
+        .child(Element::new("Terminals").children(side(left, -110.0)).children(side(right, 110.0)))
+}
+
+/// Inputs and outputs that belong to a terminal.
+fn members(model: &Model, terminal: &Terminal) -> impl Iterator<Item = &'static Variable> {
+    model.variables.iter().filter(|variable| {
+        matches!(variable.causality, Causality::Input | Causality::Output)
+            && terminal.prefixes.iter().any(|prefix| variable.name.starts_with(prefix))
+    })
+}
+
+fn element(terminal: &Terminal, members: &[&Variable], place: [f64; 4]) -> Element {
+    let members = members.iter().map(|variable| {
+        Element::new("TerminalMemberVariable")
+            .with("variableName", variable.name)
+            .with("memberName", variable.name)
+            .with("variableKind", "signal")
+    });
+    let picture = corners(Element::new("TerminalGraphicalRepresentation"), place)
+        .with("defaultConnectionColor", "0 101 163")
+        .with("defaultConnectionStrokeSize", "1")
+        .with("iconBaseName", "terminal");
+    Element::new("Terminal")
+        .with("name", terminal.name)
+        // Members are matched by name; a model of somebody else needn't have all of them.
+        .with("matchingRule", "bus")
+        .with("description", terminal.description)
+        .children(members)
+        .child(picture)
+}
+
+fn corners(element: Element, place: [f64; 4]) -> Element {
+    ["x1", "y1", "x2", "y2"]
+        .into_iter()
+        .zip(place)
+        .fold(element, |element, (name, value)| element.with(name, number(value)))
+}

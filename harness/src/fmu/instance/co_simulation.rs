@@ -1,0 +1,258 @@
+//! Co-simulation in the order that the standards ask for.
+
+use super::super::description::Description;
+use super::call::Condition;
+use super::states::States;
+use super::unit::Steps;
+use super::{Access, Group, Instance, InstanceError, Message, REPEATS_MAX, Stepped, Update};
+use serde::{Deserialize, Serialize};
+
+/// Where in its life an instance is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub(crate) enum Phase {
+    /// After instantiation or reset.
+    New,
+    /// In initialization mode.
+    Initialization,
+    /// Ready for a step.
+    Step,
+    /// In event mode.
+    Event,
+    /// Terminated.
+    End,
+}
+
+impl Phase {
+    /// When that is, for an error.
+    pub(crate) fn words(self) -> &'static str {
+        match self {
+            Self::New => "before the initialization",
+            Self::Initialization => "during the initialization",
+            Self::Step => "between steps",
+            Self::Event => "in event mode",
+            Self::End => "after the end",
+        }
+    }
+}
+
+/// A co-simulation FMU.
+pub(super) struct CoSimulation<U: Steps> {
+    unit: U,
+    phase: Phase,
+    states: States<Phase>,
+}
+
+impl<U: Steps> CoSimulation<U> {
+    pub(super) fn new(unit: U) -> Self {
+        Self { unit, phase: Phase::New, states: States::new() }
+    }
+
+    fn expect(&self, what: &str, phases: &[Phase]) -> Result<(), InstanceError> {
+        if phases.contains(&self.phase) {
+            Ok(())
+        } else {
+            Err(self.unit.base().order(what, self.phase.words()))
+        }
+    }
+
+    /// Updates until the FMU needs none, and back to step mode.
+    fn settle(&mut self) -> Result<bool, InstanceError> {
+        let mut terminate = false;
+        for _ in 0..REPEATS_MAX {
+            let update = self.unit.update_discrete_states()?;
+            terminate |= update.terminate;
+            if terminate || !update.again {
+                self.unit.enter_step_mode()?;
+                self.phase = Phase::Step;
+                return Ok(terminate);
+            }
+        }
+        Err(InstanceError::Endless {
+            fmu: self.name().into(),
+            what: format!("{REPEATS_MAX} updates of the discrete states at one event"),
+        })
+    }
+
+    /// Brings the FMU where a group can be set, sets it, and leaves configuration mode again.
+    fn with_access(
+        &mut self,
+        group: &Group,
+        set: impl FnOnce(&mut U) -> Result<(), InstanceError>,
+    ) -> Result<(), InstanceError> {
+        match group.access {
+            Access::Event if self.phase == Phase::Step && self.unit.has_event_mode() => {
+                self.unit.enter_event_mode()?;
+                self.phase = Phase::Event;
+            }
+            Access::Configuration => {
+                self.unit.enter_configuration_mode()?;
+                let done = set(&mut self.unit);
+                return done.and(self.unit.exit_configuration_mode());
+            }
+            Access::Event | Access::Step => {}
+        }
+        set(&mut self.unit)
+    }
+}
+
+impl<U: Steps> Instance for CoSimulation<U> {
+    fn name(&self) -> &str {
+        &self.unit.base().name
+    }
+
+    fn description(&self) -> &Description {
+        &self.unit.base().description
+    }
+
+    fn enter_initialization(
+        &mut self,
+        start_s: f64,
+        stop_s: Option<f64>,
+        tolerance: Option<f64>,
+    ) -> Result<(), InstanceError> {
+        self.expect("the initialization", &[Phase::New])?;
+        self.unit.enter_initialization(start_s, stop_s, tolerance)?;
+        self.phase = Phase::Initialization;
+        Ok(())
+    }
+
+    fn exit_initialization(&mut self) -> Result<bool, InstanceError> {
+        self.expect("the end of the initialization", &[Phase::Initialization])?;
+        self.unit.exit_initialization()?;
+        if self.unit.has_event_mode() {
+            self.phase = Phase::Event;
+            return self.settle();
+        }
+        self.phase = Phase::Step;
+        Ok(false)
+    }
+
+    fn set(&mut self, group: &Group, values: &[f64]) -> Result<(), InstanceError> {
+        self.with_access(group, |unit| unit.set(group, values))
+    }
+
+    fn get(&mut self, group: &Group, values: &mut [f64]) -> Result<(), InstanceError> {
+        self.unit.get(group, values)
+    }
+
+    fn set_strings(&mut self, group: &Group, values: &[String]) -> Result<(), InstanceError> {
+        self.with_access(group, |unit| unit.set_strings(group, values))
+    }
+
+    fn get_strings(&mut self, group: &Group) -> Result<Vec<String>, InstanceError> {
+        self.unit.get_strings(group)
+    }
+
+    fn set_binaries(&mut self, group: &Group, values: &[Vec<u8>]) -> Result<(), InstanceError> {
+        self.with_access(group, |unit| unit.set_binaries(group, values))
+    }
+
+    fn get_binaries(&mut self, group: &Group) -> Result<Vec<Vec<u8>>, InstanceError> {
+        self.unit.get_binaries(group)
+    }
+
+    fn step(&mut self, time_s: f64, step_s: f64) -> Result<Stepped, InstanceError> {
+        // A step of no length would be an event, of a negative one a way back: neither is a step.
+        if !(time_s.is_finite() && step_s.is_finite() && step_s > 0.0) {
+            return Err(InstanceError::unsupported(
+                self.name(),
+                format!("step from {time_s} s by {step_s} s"),
+                "a step has a positive length",
+            ));
+        }
+        let mut ended = false;
+        if self.phase == Phase::Event {
+            ended = self.settle()?;
+        }
+        self.expect("a step", &[Phase::Step])?;
+        if ended {
+            let outcome = super::Outcome::Early;
+            return Ok(Stepped { time_s, outcome, event: false, terminate: true });
+        }
+        self.unit.do_step(time_s, step_s)
+    }
+
+    fn handle_events(&mut self) -> Result<bool, InstanceError> {
+        match self.phase {
+            Phase::Step if !self.unit.has_event_mode() => return Ok(false),
+            Phase::Step => self.enter_event_mode()?,
+            _ => self.expect("the handling of events", &[Phase::Event])?,
+        }
+        self.settle()
+    }
+
+    fn enter_event_mode(&mut self) -> Result<(), InstanceError> {
+        self.expect("event mode", &[Phase::Step])?;
+        if !self.unit.has_event_mode() {
+            return Err(InstanceError::unsupported(
+                self.name(),
+                "enter event mode",
+                "it has none, or it isn't used",
+            ));
+        }
+        self.unit.enter_event_mode()?;
+        self.phase = Phase::Event;
+        Ok(())
+    }
+
+    fn update_discrete_states(&mut self) -> Result<Update, InstanceError> {
+        self.expect("an update of the discrete states", &[Phase::Event])?;
+        self.unit.update_discrete_states()
+    }
+
+    fn leave_event_mode(&mut self) -> Result<(), InstanceError> {
+        self.expect("the end of event mode", &[Phase::Event])?;
+        self.unit.enter_step_mode()?;
+        self.phase = Phase::Step;
+        Ok(())
+    }
+
+    fn keep_state(&mut self) -> Result<u64, InstanceError> {
+        self.states.keep(&mut self.unit, self.phase)
+    }
+
+    fn restore_state(&mut self, state: u64) -> Result<(), InstanceError> {
+        self.phase = self.states.restore(&mut self.unit, state)?;
+        Ok(())
+    }
+
+    fn forget_state(&mut self, state: u64) -> Result<(), InstanceError> {
+        self.states.forget(&mut self.unit, state)
+    }
+
+    fn state_to_bytes(&mut self, state: u64) -> Result<Vec<u8>, InstanceError> {
+        self.states.save(&mut self.unit, state)
+    }
+
+    fn state_from_bytes(&mut self, bytes: &[u8]) -> Result<u64, InstanceError> {
+        self.states.load(&mut self.unit, bytes)
+    }
+
+    fn reset(&mut self) -> Result<(), InstanceError> {
+        self.unit.reset()?;
+        self.phase = Phase::New;
+        Ok(())
+    }
+
+    fn terminate(&mut self) -> Result<(), InstanceError> {
+        self.expect("the end", &[Phase::Step, Phase::Event])?;
+        self.unit.terminate()?;
+        self.phase = Phase::End;
+        Ok(())
+    }
+
+    fn messages(&mut self) -> Vec<Message> {
+        self.unit.base().messages()
+    }
+}
+
+impl<U: Steps> Drop for CoSimulation<U> {
+    fn drop(&mut self) {
+        let runs = matches!(self.phase, Phase::Step | Phase::Event);
+        if runs && self.unit.base().condition == Condition::Sound {
+            // It goes in any case; what it answers changes nothing.
+            let _ = self.unit.terminate();
+        }
+        self.states.clear(&mut self.unit);
+    }
+}

@@ -1,0 +1,225 @@
+//! Variables that are set or got together, and where their numbers lie.
+
+use super::super::description::{Causality, Description, Kind, Standard, Variability, Variable};
+use super::InstanceError;
+use super::call::Base;
+use super::number::Number;
+use serde::{Deserialize, Serialize};
+use std::ops::Range;
+
+/// When variables can be set.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Access {
+    /// Between steps.
+    Step,
+    /// At events, where the FMU has them (FMI 3.0 with event mode): discrete inputs, tunable
+    /// parameters, clocks and what belongs to clocks.
+    Event,
+    /// In configuration mode: structural parameters.
+    Configuration,
+}
+
+/// Variables of one type that are set or got together.
+///
+/// Numbers of every type, Booleans, enumerations and clocks travel as f64 (whole numbers exact up
+/// to 2⁵³); text and bytes by functions of their own.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Group {
+    /// Their type.
+    pub kind: Kind,
+    /// When they can be set.
+    pub access: Access,
+    /// Their value references.
+    pub references: Vec<u32>,
+    /// Number of elements of all of them together.
+    pub elements: usize,
+}
+
+impl Group {
+    /// A group of one variable.
+    ///
+    /// # Errors
+    /// If the number of its elements can't be told.
+    pub fn of(description: &Description, variable: &Variable) -> Result<Self, InstanceError> {
+        Ok(Self {
+            kind: variable.kind,
+            access: access(description, variable),
+            references: vec![variable.reference],
+            elements: elements(description, variable)?,
+        })
+    }
+}
+
+/// Groups for a list of variables, as few as it takes, and the place of each variable in the
+/// numbers that belong to all groups one after another.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Plan {
+    /// The groups, for [`super::Instance::exchange`].
+    pub groups: Vec<Group>,
+    /// Where the elements of each variable lie, in the order of the list.
+    pub places: Vec<Range<usize>>,
+    /// Number of elements of all groups together.
+    pub elements: usize,
+}
+
+impl Plan {
+    /// Groups variables that are numbers.
+    ///
+    /// # Errors
+    /// If a variable is a String or a Binary, or the number of its elements can't be told.
+    pub fn new(description: &Description, variables: &[&Variable]) -> Result<Self, InstanceError> {
+        let mut groups: Vec<Group> = Vec::new();
+        let mut within = Vec::with_capacity(variables.len());
+        for variable in variables {
+            if matches!(variable.kind, Kind::String | Kind::Binary) {
+                return Err(InstanceError::unsupported(
+                    &description.model_name,
+                    format!("exchange {} as a number", variable.name),
+                    format!("it is a {:?}", variable.kind),
+                ));
+            }
+            let one = Group::of(description, variable)?;
+            let place = groups
+                .iter()
+                .position(|group| group.kind == one.kind && group.access == one.access)
+                .unwrap_or_else(|| {
+                    groups.push(Group { references: Vec::new(), elements: 0, ..one.clone() });
+                    groups.len() - 1
+                });
+            let group = &mut groups[place];
+            within.push((place, group.elements, one.elements));
+            group.references.extend(one.references);
+            group.elements += one.elements;
+        }
+        let mut starts = Vec::with_capacity(groups.len());
+        let mut elements = 0;
+        for group in &groups {
+            starts.push(elements);
+            elements += group.elements;
+        }
+        let places = within
+            .into_iter()
+            .map(|(group, first, count)| starts[group] + first..starts[group] + first + count)
+            .collect();
+        Ok(Self { groups, places, elements })
+    }
+}
+
+/// When a variable can be set.
+fn access(description: &Description, variable: &Variable) -> Access {
+    let discrete = match variable.causality {
+        Causality::StructuralParameter => return Access::Configuration,
+        Causality::Input => variable.variability == Variability::Discrete,
+        Causality::Parameter => variable.variability == Variability::Tunable,
+        _ => false,
+    };
+    let clocked = !variable.clocks.is_empty() || variable.kind == Kind::Clock;
+    if description.standard == Standard::Fmi3 && (discrete || clocked) {
+        Access::Event
+    } else {
+        Access::Step
+    }
+}
+
+/// Number of elements of a variable, with structural parameters at their start values.
+fn elements(description: &Description, variable: &Variable) -> Result<usize, InstanceError> {
+    description.elements(variable).map_err(|error| {
+        InstanceError::unsupported(
+            &description.model_name,
+            format!("tell how many elements {} has", variable.name),
+            error.to_string(),
+        )
+    })
+}
+
+/// Name of the variable that an element of a group belongs to, with the element's number where the
+/// group has arrays.
+pub(super) fn element_name(description: &Description, group: &Group, element: usize) -> String {
+    let mut first = 0;
+    for reference in &group.references {
+        let Some(variable) = description
+            .variables
+            .iter()
+            .find(|variable| variable.reference == *reference && variable.kind == group.kind)
+        else {
+            return format!("value reference {reference}");
+        };
+        let count = elements(description, variable).unwrap_or(1);
+        if element < first + count {
+            return if variable.dimensions.is_empty() {
+                variable.name.clone()
+            } else {
+                format!("element {} of {}", element - first + 1, variable.name)
+            };
+        }
+        first += count;
+    }
+    format!("element {element}")
+}
+
+/// The values belong to the group.
+pub(super) fn expect_elements(
+    base: &Base,
+    group: &Group,
+    values: usize,
+) -> Result<(), InstanceError> {
+    if values == group.elements {
+        Ok(())
+    } else {
+        Err(InstanceError::numbers(&base.name, std::slice::from_ref(group), values))
+    }
+}
+
+/// The values belong to the group, which has no arrays.
+pub(super) fn expect_scalars(
+    base: &Base,
+    group: &Group,
+    values: usize,
+) -> Result<(), InstanceError> {
+    if group.references.len() == group.elements {
+        expect_elements(base, group, values)
+    } else {
+        Err(InstanceError::unsupported(
+            &base.name,
+            format!("exchange {} elements", group.elements),
+            format!("{} variables without dimensions have as many", group.references.len()),
+        ))
+    }
+}
+
+/// Numbers of the FMU as f64.
+pub(super) fn numbers_to_f64<T: Number>(
+    base: &Base,
+    group: &Group,
+    numbers: &[T],
+    values: &mut [f64],
+) -> Result<(), InstanceError> {
+    for (i, (number, value)) in numbers.iter().zip(values).enumerate() {
+        *value = number.to_f64().ok_or_else(|| misfit(base, group, i, number.words()))?;
+    }
+    Ok(())
+}
+
+/// Numbers for the FMU from f64.
+pub(super) fn numbers_from_f64<T: Number>(
+    base: &Base,
+    group: &Group,
+    values: &[f64],
+    numbers: &mut Vec<T>,
+) -> Result<(), InstanceError> {
+    numbers.clear();
+    for (i, value) in values.iter().enumerate() {
+        numbers.push(T::from_f64(*value).ok_or_else(|| misfit(base, group, i, value.to_string()))?);
+    }
+    Ok(())
+}
+
+#[cold]
+fn misfit(base: &Base, group: &Group, element: usize, value: String) -> InstanceError {
+    InstanceError::Value {
+        fmu: base.name.clone(),
+        variable: element_name(&base.description, group, element),
+        value,
+        kind: format!("{:?}", group.kind),
+    }
+}

@@ -1,0 +1,112 @@
+//! f64 and the number types of FMI, checked: what a type can't hold is no number of it.
+
+/// A number type of FMI.
+pub(super) trait Number: Copy + Default {
+    /// From f64, where the type has this number.
+    fn from_f64(value: f64) -> Option<Self>;
+    /// As f64, where f64 has this number.
+    fn to_f64(self) -> Option<f64>;
+    /// In words, for an error.
+    fn words(self) -> String;
+}
+
+macro_rules! whole {
+    ($($kind:ty),*) => {$(
+        impl Number for $kind {
+            fn from_f64(value: f64) -> Option<Self> {
+                // Both bounds are powers of two or exact, and what is beyond i128 saturates.
+                let whole = value as i128;
+                (whole as f64 == value).then(|| <$kind>::try_from(whole).ok()).flatten()
+            }
+            fn to_f64(self) -> Option<f64> {
+                let value = self as f64;
+                (value as i128 == self as i128).then_some(value)
+            }
+            fn words(self) -> String {
+                self.to_string()
+            }
+        }
+    )*};
+}
+whole!(i8, u8, i16, u16, i32, u32, i64, u64);
+
+impl Number for f32 {
+    /// Rounded to the nearest; what is finite stays so.
+    fn from_f64(value: f64) -> Option<Self> {
+        let narrow = value as f32;
+        (narrow.is_finite() || !value.is_finite()).then_some(narrow)
+    }
+    fn to_f64(self) -> Option<f64> {
+        Some(f64::from(self))
+    }
+    fn words(self) -> String {
+        self.to_string()
+    }
+}
+
+/// A Boolean of either standard: zero is false, and what C gives for true is any other number.
+#[derive(Clone, Copy, Debug, Default)]
+#[repr(transparent)]
+pub(super) struct Truth<T>(pub(super) T);
+
+macro_rules! truth {
+    ($($kind:ty),*) => {$(
+        impl Number for Truth<$kind> {
+            fn from_f64(value: f64) -> Option<Self> {
+                (value == 0.0 || value == 1.0).then_some(Self(value as $kind))
+            }
+            fn to_f64(self) -> Option<f64> {
+                Some(if self.0 == 0 { 0.0 } else { 1.0 })
+            }
+            fn words(self) -> String {
+                self.0.to_string()
+            }
+        }
+    )*};
+}
+truth!(u8, i32);
+
+#[cfg(test)]
+mod tests {
+    use super::{Number, Truth};
+
+    #[test]
+    fn whole_numbers_are_kept_or_refused() {
+        assert_eq!(i8::from_f64(-128.0), Some(-128));
+        assert_eq!(i8::from_f64(-129.0), None);
+        assert_eq!(u8::from_f64(-0.0), Some(0));
+        assert_eq!(u8::from_f64(-1.0), None);
+        assert_eq!(i32::from_f64(0.5), None);
+        assert_eq!(i32::from_f64(2_147_483_648.0), None);
+        assert_eq!(u64::from_f64(f64::NAN), None);
+        assert_eq!(u64::from_f64(f64::INFINITY), None);
+        assert_eq!(u64::from_f64(18_446_744_073_709_551_616.0), None);
+        assert_eq!(i64::from_f64(-9_223_372_036_854_775_808.0), Some(i64::MIN));
+        assert_eq!(i64::from_f64(9_223_372_036_854_775_808.0), None);
+    }
+
+    #[test]
+    fn what_f64_has_not_is_said() {
+        assert_eq!(((1u64 << 53) + 1).to_f64(), None);
+        assert_eq!((1u64 << 53).to_f64(), Some(9_007_199_254_740_992.0));
+        assert_eq!(u64::MAX.to_f64(), None);
+        assert_eq!(i64::MIN.to_f64(), Some(-9_223_372_036_854_775_808.0));
+    }
+
+    #[test]
+    fn floats_stay_finite() {
+        assert_eq!(f32::from_f64(1e39), None);
+        assert_eq!(f32::from_f64(f64::INFINITY), Some(f32::INFINITY));
+        assert!(f32::from_f64(f64::NAN).is_some_and(f32::is_nan));
+        assert_eq!(f32::from_f64(0.1), Some(0.1));
+    }
+
+    #[test]
+    fn booleans_are_two() {
+        assert_eq!(Truth::<u8>::from_f64(2.0).map(|truth| truth.0), None);
+        assert_eq!(Truth::<i32>::from_f64(f64::NAN).map(|truth| truth.0), None);
+        assert_eq!(Truth(255u8).to_f64(), Some(1.0));
+        assert_eq!(Truth(-1i32).to_f64(), Some(1.0));
+        assert_eq!(Truth(0i32).to_f64(), Some(0.0));
+    }
+}

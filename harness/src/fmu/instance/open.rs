@@ -1,0 +1,188 @@
+//! Opening an FMU: its archive, its description, its library, an instance.
+
+use super::super::archive::{Archive, ArchiveError, Unpacked};
+use super::super::description::{self, Description, DescriptionError, Interface, Standard};
+use super::super::exchange::Exchange;
+use super::super::library::{self, Library};
+use super::call::{LOADING, Mark, NOWHERE};
+use super::co_simulation::CoSimulation;
+use super::options::{InterfaceKind, Options, Place};
+use super::setup::Setup;
+use super::{Instance, InstanceError, fmi2, fmi3};
+use std::path::Path;
+use std::sync::Arc;
+
+/// Why an FMU can't be opened.
+#[derive(Debug, thiserror::Error)]
+pub enum OpenError {
+    /// Its archive.
+    #[error(transparent)]
+    Archive(#[from] ArchiveError),
+    /// Its description.
+    #[error(transparent)]
+    Description(#[from] DescriptionError),
+    /// Its code.
+    #[error(transparent)]
+    Instance(#[from] InstanceError),
+}
+
+/// Opens an FMU, or a folder that was one.
+///
+/// # Errors
+/// If its archive or description can't be used, it hasn't the interface, its library can't be
+/// loaded, or it makes no instance.
+pub fn open(path: &Path, options: &Options) -> Result<Box<dyn Instance>, OpenError> {
+    let mut archive = Archive::open(path)?;
+    open_archive(&mut archive, options)
+}
+
+/// Opens an FMU whose archive is open, such as one in an SSP file.
+///
+/// # Errors
+/// As [`open`].
+pub fn open_archive(
+    archive: &mut Archive,
+    options: &Options,
+) -> Result<Box<dyn Instance>, OpenError> {
+    // The description first: nobody wants to unpack gigabytes to learn that it is of FMI 1.0.
+    let description = read_description(archive)?;
+    let name = name_of(archive.file());
+    let folder = archive.unpack()?;
+    Ok(open_unpacked(&name, folder, description, options)?)
+}
+
+/// Opens the FMU in a folder that another process unpacked and keeps.
+pub(crate) fn open_folder(
+    name: &str,
+    path: &Path,
+    options: &Options,
+    mark: Mark,
+) -> Result<Box<dyn Instance>, OpenError> {
+    let mut archive = Archive::open(path)?;
+    let description = read_description(&mut archive)?;
+    let folder = archive.unpack()?;
+    Ok(open_here(name, folder, Arc::new(description), options, mark)?)
+}
+
+fn read_description(archive: &mut Archive) -> Result<Description, OpenError> {
+    const NAME: &str = "modelDescription.xml";
+    let bytes = archive.read(NAME)?;
+    Ok(description::read_bytes(&bytes, &format!("{}/{NAME}", archive.file()))?)
+}
+
+/// The last part of a path: what errors call the FMU.
+fn name_of(file: &str) -> String {
+    let name = Path::new(file).file_name();
+    name.map_or_else(|| file.into(), |name| name.to_string_lossy().into_owned())
+}
+
+/// Opens an unpacked FMU. `name` is what errors call it.
+///
+/// # Errors
+/// If it hasn't the interface, its library can't be loaded, or it makes no instance.
+pub fn open_unpacked(
+    name: &str,
+    folder: Unpacked,
+    description: Description,
+    options: &Options,
+) -> Result<Box<dyn Instance>, InstanceError> {
+    match options.place {
+        Place::OwnProcess => Err(InstanceError::unsupported(
+            name,
+            "run in a process of its own",
+            "this is not part of this version",
+        )),
+        Place::ThisProcess => {
+            open_here(name, folder, Arc::new(description), options, Mark::default())
+        }
+    }
+}
+
+/// Opens an unpacked FMU in this process.
+pub(crate) fn open_here(
+    name: &str,
+    folder: Unpacked,
+    description: Arc<Description>,
+    options: &Options,
+    mark: Mark,
+) -> Result<Box<dyn Instance>, InstanceError> {
+    let (exchange, interface) = interface(name, &description, options.interface)?;
+    if interface.needs_execution_tool {
+        return Err(InstanceError::unsupported(
+            name,
+            "run",
+            format!("it needs the tool that made it, {}", description.generation_tool),
+        ));
+    }
+    let absolute = std::path::absolute(folder.path())
+        .map_err(|e| InstanceError::load(name, format!("{}: {e}", folder.path().display())))?;
+    let path = library::binary(name, &absolute, description.standard, &interface.model_identifier)?;
+    mark.set(LOADING);
+    let library = Arc::new(Library::load(name, &path, description.standard, folder)?);
+    mark.set(NOWHERE);
+    let setup = Setup {
+        name: name.into(),
+        interface,
+        folder: absolute,
+        instance_name: options
+            .instance_name
+            .clone()
+            .unwrap_or_else(|| description.model_name.clone()),
+        description,
+        log: options.log,
+        event_mode: options.event_mode,
+        early_return: options.early_return,
+        time_limit: options.time_limit,
+        mark,
+    };
+    let tells_steps = setup.interface.completed_step_needed;
+    Ok(match (setup.description.standard, exchange) {
+        (Standard::Fmi2, false) => Box::new(CoSimulation::new(fmi2::Component::new(
+            library,
+            &setup,
+            octant_fmi::fmi2::CO_SIMULATION,
+        )?)),
+        (Standard::Fmi2, true) => Box::new(Exchange::new(
+            fmi2::Component::new(library, &setup, octant_fmi::fmi2::MODEL_EXCHANGE)?,
+            tells_steps,
+        )),
+        (Standard::Fmi3, false) => Box::new(CoSimulation::new(fmi3::Component::new(
+            library,
+            &setup,
+            fmi3::Use::CoSimulation,
+        )?)),
+        (Standard::Fmi3, true) => Box::new(Exchange::new(
+            fmi3::Component::new(library, &setup, fmi3::Use::ModelExchange)?,
+            tells_steps,
+        )),
+    })
+}
+
+/// The interface that is used; true: it is model exchange.
+fn interface(
+    name: &str,
+    description: &Description,
+    kind: InterfaceKind,
+) -> Result<(bool, Interface), InstanceError> {
+    let co_simulation = description.co_simulation.clone().map(|interface| (false, interface));
+    let exchange = description.model_exchange.clone().map(|interface| (true, interface));
+    let (found, wanted) = match kind {
+        InterfaceKind::Any => (co_simulation.or(exchange), "co-simulation or model exchange"),
+        InterfaceKind::CoSimulation => (co_simulation, "co-simulation"),
+        InterfaceKind::ModelExchange => (exchange, "model exchange"),
+    };
+    found.ok_or_else(|| {
+        let mut has = Vec::new();
+        for (there, what) in [
+            (description.co_simulation.is_some(), "co-simulation"),
+            (description.model_exchange.is_some(), "model exchange"),
+            (description.scheduled_execution, "scheduled execution"),
+        ] {
+            if there {
+                has.push(what);
+            }
+        }
+        let has = if has.is_empty() { "no interface".into() } else { has.join(" and ") };
+        InstanceError::unsupported(name, format!("run by {wanted}"), format!("it has {has}"))
+    })
+}

@@ -1,0 +1,67 @@
+//! What the functions of both standards do, in one form. Each is one call, or the few that one
+//! standard needs where the other needs one; the order of calls is the business of who uses it.
+
+use super::call::Base;
+use super::{Group, InstanceError, Stepped, Update};
+use std::ffi::c_void;
+
+/// A state of the FMU, as it gives it.
+pub(crate) type RawState = *mut c_void;
+
+/// What co-simulation and model exchange have in common.
+pub(crate) trait Unit: Send {
+    fn base(&self) -> &Base;
+
+    fn enter_initialization(
+        &mut self,
+        start_s: f64,
+        stop_s: Option<f64>,
+        tolerance: Option<f64>,
+    ) -> Result<(), InstanceError>;
+    fn exit_initialization(&mut self) -> Result<(), InstanceError>;
+    fn terminate(&mut self) -> Result<(), InstanceError>;
+    fn reset(&mut self) -> Result<(), InstanceError>;
+
+    fn set(&mut self, group: &Group, values: &[f64]) -> Result<(), InstanceError>;
+    fn get(&mut self, group: &Group, values: &mut [f64]) -> Result<(), InstanceError>;
+    fn set_strings(&mut self, group: &Group, values: &[String]) -> Result<(), InstanceError>;
+    fn get_strings(&mut self, group: &Group) -> Result<Vec<String>, InstanceError>;
+    fn set_binaries(&mut self, group: &Group, values: &[Vec<u8>]) -> Result<(), InstanceError>;
+    fn get_binaries(&mut self, group: &Group) -> Result<Vec<Vec<u8>>, InstanceError>;
+
+    fn enter_configuration_mode(&mut self) -> Result<(), InstanceError>;
+    fn exit_configuration_mode(&mut self) -> Result<(), InstanceError>;
+
+    fn enter_event_mode(&mut self) -> Result<(), InstanceError>;
+    fn update_discrete_states(&mut self) -> Result<Update, InstanceError>;
+
+    fn state(&mut self) -> Result<RawState, InstanceError>;
+    fn set_state(&mut self, state: RawState) -> Result<(), InstanceError>;
+    fn free_state(&mut self, state: RawState) -> Result<(), InstanceError>;
+    fn serialize(&mut self, state: RawState) -> Result<Vec<u8>, InstanceError>;
+    fn deserialize(&mut self, bytes: &[u8]) -> Result<RawState, InstanceError>;
+}
+
+/// Co-simulation.
+pub(crate) trait Steps: Unit {
+    /// Event mode is the importer's.
+    fn has_event_mode(&self) -> bool;
+    fn enter_step_mode(&mut self) -> Result<(), InstanceError>;
+    fn do_step(&mut self, time_s: f64, step_s: f64) -> Result<Stepped, InstanceError>;
+}
+
+/// Model exchange. Where a value can't be computed (the FMU discards the call), that is no failure
+/// but the answer `false`: the solver tries elsewhere.
+pub(crate) trait Continuous: Unit {
+    /// Numbers of continuous states and of event indicators.
+    fn counts(&mut self) -> Result<(usize, usize), InstanceError>;
+    fn enter_continuous_time_mode(&mut self) -> Result<(), InstanceError>;
+    fn set_time(&mut self, time_s: f64) -> Result<(), InstanceError>;
+    fn set_states(&mut self, states: &[f64]) -> Result<bool, InstanceError>;
+    fn states(&mut self, states: &mut [f64]) -> Result<(), InstanceError>;
+    fn derivatives(&mut self, derivatives: &mut [f64]) -> Result<bool, InstanceError>;
+    fn indicators(&mut self, indicators: &mut [f64]) -> Result<bool, InstanceError>;
+    fn nominals(&mut self, nominals: &mut [f64]) -> Result<(), InstanceError>;
+    /// A step of the solver is done: whether there is an event, and whether the FMU wants to end.
+    fn completed_step(&mut self) -> Result<(bool, bool), InstanceError>;
+}

@@ -1,0 +1,99 @@
+//! Values on their way between variables of different types.
+
+use crate::fmu::description::Kind;
+
+/// Name of a type.
+#[must_use]
+pub const fn kind_name(kind: Kind) -> &'static str {
+    match kind {
+        Kind::Float64 => "Float64",
+        Kind::Float32 => "Float32",
+        Kind::Int8 => "Int8",
+        Kind::UInt8 => "UInt8",
+        Kind::Int16 => "Int16",
+        Kind::UInt16 => "UInt16",
+        Kind::Int32 => "Int32",
+        Kind::UInt32 => "UInt32",
+        Kind::Int64 => "Int64",
+        Kind::UInt64 => "UInt64",
+        Kind::Boolean => "Boolean",
+        Kind::String => "String",
+        Kind::Binary => "Binary",
+        Kind::Enumeration => "Enumeration",
+        Kind::Clock => "Clock",
+    }
+}
+
+/// It is a floating-point type.
+#[must_use]
+pub const fn is_float(kind: Kind) -> bool {
+    matches!(kind, Kind::Float64 | Kind::Float32)
+}
+
+/// It travels as a number: all but texts, bytes and clocks.
+#[must_use]
+pub const fn is_numeric(kind: Kind) -> bool {
+    !matches!(kind, Kind::String | Kind::Binary | Kind::Clock)
+}
+
+/// Whole numbers up to this size are exact in f64, as which they travel.
+const EXACT: f64 = (1u64 << 53) as f64;
+
+/// The smallest and the largest value of a type of whole numbers (as far as they are exact);
+/// `None`: it is none.
+#[must_use]
+pub const fn limits(kind: Kind) -> Option<(f64, f64)> {
+    Some(match kind {
+        Kind::Int8 => (i8::MIN as f64, i8::MAX as f64),
+        Kind::UInt8 => (0.0, u8::MAX as f64),
+        Kind::Int16 => (i16::MIN as f64, i16::MAX as f64),
+        Kind::UInt16 => (0.0, u16::MAX as f64),
+        Kind::Int32 => (i32::MIN as f64, i32::MAX as f64),
+        Kind::UInt32 => (0.0, u32::MAX as f64),
+        Kind::Int64 | Kind::Enumeration => (-EXACT, EXACT),
+        Kind::UInt64 => (0.0, EXACT),
+        Kind::Boolean => (0.0, 1.0),
+        _ => return None,
+    })
+}
+
+/// A value is one of the type, without rounding. Every f64 fits Float32: that rounds.
+#[must_use]
+pub fn fits(value: f64, kind: Kind) -> bool {
+    match limits(kind) {
+        Some((from, to)) => value >= from && value <= to && value == value.trunc(),
+        None => is_float(kind),
+    }
+}
+
+/// The value as the type has it: a Float32 is rounded to one.
+#[inline]
+#[must_use]
+pub fn rounded(value: f64, kind: Kind) -> f64 {
+    if matches!(kind, Kind::Float32) { f64::from(value as f32) } else { value }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_value_fits_a_type_or_does_not() {
+        for (value, kind, expected) in [
+            (127.0, Kind::Int8, true),
+            (128.0, Kind::Int8, false),
+            (0.5, Kind::Int32, false),
+            (-1.0, Kind::UInt64, false),
+            (9007199254740992.0, Kind::UInt64, true),
+            (f64::NAN, Kind::Int32, false),
+            (f64::NAN, Kind::Float64, true),
+            (1.0, Kind::Boolean, true),
+            (2.0, Kind::Boolean, false),
+            (1.0, Kind::String, false),
+        ] {
+            assert_eq!(fits(value, kind), expected, "{value} {kind:?}");
+        }
+        assert_eq!(rounded(0.1, Kind::Float32), f64::from(0.1f32));
+        assert_eq!(rounded(0.1, Kind::Float64), 0.1);
+    }
+}

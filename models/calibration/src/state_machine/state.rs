@@ -1,0 +1,205 @@
+//! The core as bytes, and back.
+//!
+//! The bytes hold the configuration and what has changed since the start. A core is made from the
+//! configuration, as by [`Core::new`], and gets the rest: see [`octant_state`] for what is refused.
+
+use super::Core;
+use super::estimation::Estimation;
+use crate::config::Config;
+use crate::schedule::Cursor;
+use alloc::string::ToString;
+use alloc::vec::Vec;
+use octant_sample::GimbalAngles;
+use octant_state::{Format, Reader, State, StateError, Writer, check_below, check_count};
+
+extern crate alloc;
+
+/// What the state of a core looks like. The version has to be raised when the layout changes; a test
+/// compares it with the stored one.
+pub const FORMAT: Format =
+    Format { magic: "OCTANTCC", version: 1, what: "the state of a calibration core" };
+
+impl Core {
+    /// Appends everything that the core needs to go on, bit for bit, as after this step: the same
+    /// core gives the same bytes.
+    pub fn save(&self, bytes: &mut Vec<u8>) {
+        FORMAT.write(bytes, |to| {
+            to.value("config", &self.config);
+            to.part("core", self);
+        });
+    }
+
+    /// A core that goes on where another was when [`Self::save`] wrote these bytes.
+    ///
+    /// # Errors
+    /// If they are not those of a core of this version, whole and unaltered. Whatever they are, this
+    /// doesn't panic, nor does the core that comes of them.
+    pub fn load(bytes: &[u8]) -> Result<Self, StateError> {
+        let mut from = FORMAT.read(bytes)?;
+        let config: Config = from.value("config")?;
+        let mut core =
+            Self::new(&config).map_err(|error| StateError::value("config", error.to_string()))?;
+        from.part("core", &mut core)?;
+        from.end()?;
+        Ok(core)
+    }
+
+    /// The cursor of the calibration or, `endless`, of the navigation, somewhere on its way.
+    fn cursor_of(&self, endless: bool) -> Option<Cursor> {
+        let home = GimbalAngles::default();
+        let (rates, sample_s) = (self.config.turntable, self.sample_s);
+        if endless {
+            let plan = self.config.navigation.as_ref()?;
+            let (rotation, dwell_s) = (plan.rotation.clone(), plan.dwell_s);
+            return Some(Cursor::new(rotation, home, rates, dwell_s, sample_s, true));
+        }
+        let calibration = self.config.calibration.as_ref()?;
+        let dwell_s =
+            crate::schedule::dwell_s(&calibration.sequence, calibration.duration_s, &rates).ok()?;
+        Some(Cursor::new(calibration.sequence.clone(), home, rates, dwell_s, sample_s, false))
+    }
+}
+
+/// Something that is there for a part of the run only.
+fn unexpected(field: &'static str) -> StateError {
+    StateError::value(field, "it is there, and by the configuration it can't be")
+}
+
+impl State for Core {
+    fn save(&self, to: &mut Writer) {
+        let Self {
+            config: _,
+            sample_s: _,
+            calibration_ticks: _,
+            navigation_ticks: _,
+            settle_ticks: _,
+            tick,
+            phase_start,
+            mode,
+            cursor,
+            monitor,
+            screen,
+            bridge,
+            slips,
+            alignment,
+            estimation,
+            standstill,
+            parameters,
+            sigma,
+            revision,
+            compensation,
+            strapdown,
+            last_measured_tick,
+            due_tick,
+            nis_running,
+            gimbal_disagreements,
+            gimbal_tolerance: _,
+            refusal,
+            last_quality,
+            table,
+            gimbals,
+            answered,
+        } = self;
+        to.value("tick", tick);
+        to.value("phase_start", phase_start);
+        to.value("mode", mode);
+        to.value("cursor is endless", &cursor.as_ref().map(Cursor::is_endless));
+        if let Some(cursor) = cursor {
+            to.part("cursor", cursor);
+        }
+        to.part("monitor", monitor);
+        to.part("screen", screen);
+        to.value("bridge", bridge);
+        to.value("slips", slips);
+        to.value("aligns", &alignment.is_some());
+        if let Some((alignment, _)) = alignment {
+            to.part("alignment", alignment);
+        }
+        to.value("estimates", &!matches!(estimation, Estimation::Idle));
+        to.part("estimation", estimation);
+        to.value("standstill", standstill);
+        to.value("parameters", parameters);
+        to.value("sigma", sigma);
+        to.value("revision", revision);
+        to.value("compensation", compensation);
+        to.value("strapdown", strapdown);
+        to.value("last_measured_tick", last_measured_tick);
+        to.value("due_tick", due_tick);
+        to.value("nis_running", nis_running);
+        to.value("gimbal_disagreements", gimbal_disagreements);
+        to.value("refusal", refusal);
+        to.value("last_quality", last_quality);
+        to.value("table", table);
+        to.value("gimbals", gimbals);
+        to.value("answered", answered);
+    }
+
+    fn load(&mut self, from: &mut Reader<'_>) -> Result<(), StateError> {
+        self.tick = from.value("tick")?;
+        self.phase_start = from.value("phase_start")?;
+        check_count("tick", self.tick)?;
+        check_below("phase_start", self.phase_start, self.tick)?;
+        self.mode = from.value("mode")?;
+        self.cursor = match from.value("cursor is endless")? {
+            None => None,
+            Some(endless) => {
+                let mut cursor = self.cursor_of(endless).ok_or_else(|| unexpected("cursor"))?;
+                from.part("cursor", &mut cursor)?;
+                Some(cursor)
+            }
+        };
+        from.part("monitor", &mut self.monitor)?;
+        from.part("screen", &mut self.screen)?;
+        self.bridge = from.value("bridge")?;
+        self.slips = from.value("slips")?;
+        if from.value("aligns")? {
+            let (alignment, _) = self.alignment.as_mut().ok_or_else(|| unexpected("alignment"))?;
+            from.part("alignment", alignment)?;
+        } else {
+            self.alignment = None;
+        }
+        if !from.value("estimates")? {
+            self.estimation = Estimation::Idle;
+        } else if matches!(self.estimation, Estimation::Idle) {
+            return Err(unexpected("estimation"));
+        }
+        from.part("estimation", &mut self.estimation)?;
+        self.standstill = from.value("standstill")?;
+        self.parameters = from.value("parameters")?;
+        self.sigma = from.value("sigma")?;
+        self.revision = from.value("revision")?;
+        self.compensation = from.value("compensation")?;
+        self.strapdown = from.value("strapdown")?;
+        self.last_measured_tick = from.value("last_measured_tick")?;
+        check_below("last_measured_tick", self.last_measured_tick, self.tick)?;
+        self.due_tick = from.value("due_tick")?;
+        self.nis_running = from.value("nis_running")?;
+        self.gimbal_disagreements = from.value("gimbal_disagreements")?;
+        self.refusal = from.value("refusal")?;
+        self.last_quality = from.value("last_quality")?;
+        self.table = from.value("table")?;
+        self.gimbals = from.value("gimbals")?;
+        self.answered = from.value("answered")?;
+        Ok(())
+    }
+}
+
+impl State for Estimation {
+    fn save(&self, to: &mut Writer) {
+        match self {
+            Self::Idle => {}
+            Self::Kalman(filter) => to.part("filter", filter),
+            Self::LeastSquares(estimator) => to.part("least squares", estimator),
+            Self::ExternalTurntable(estimator) => to.part("external turntable", estimator),
+        }
+    }
+
+    fn load(&mut self, from: &mut Reader<'_>) -> Result<(), StateError> {
+        match self {
+            Self::Idle => Ok(()),
+            Self::Kalman(filter) => from.part("filter", filter),
+            Self::LeastSquares(estimator) => from.part("least squares", estimator),
+            Self::ExternalTurntable(estimator) => from.part("external turntable", estimator),
+        }
+    }
+}

@@ -1,0 +1,401 @@
+//! The kinds of faults on connections.
+
+use crate::catalogue::{Bounds, Dimension, Lasts, Parameter, Takes};
+use crate::setup::{BuildError, Setup, Stream};
+use crate::values::{Value, Values};
+use alloc::vec;
+use alloc::vec::Vec;
+use octant_random::normal::{Ziggurat, uniform};
+use octant_random::philox::block;
+use octant_random::stream::Phase;
+
+/// A kind of fault on connections.
+#[derive(Debug)]
+pub struct Kind {
+    /// Name in lists of faults.
+    pub name: &'static str,
+    /// What it is, in one sentence.
+    pub summary: &'static str,
+    /// What it does to values, exactly. Paragraphs are separated by empty lines, equations stand on
+    /// indented lines.
+    pub model: &'static str,
+    /// What it takes, beside what every fault takes.
+    pub parameters: &'static [Parameter],
+    /// How long it lasts.
+    pub lasts: Lasts,
+    /// Types of inputs that it can act on.
+    pub on: On,
+    build: fn(&Values, &Setup, &[Target]) -> Result<Rule, BuildError>,
+}
+
+/// Types of inputs that a kind can act on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum On {
+    /// Floating-point numbers.
+    Floats,
+    /// Numbers: not Booleans and enumerations.
+    Numbers,
+    /// Numbers, Booleans and enumerations.
+    All,
+}
+
+/// What an input takes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Target {
+    /// 64-bit floating point.
+    Float64,
+    /// 32-bit floating point.
+    Float32,
+    /// Whole numbers from, to.
+    Integer(f64, f64),
+    /// 0 or 1.
+    Boolean,
+    /// Values of named items; which, the receiver knows.
+    Enumeration,
+}
+
+impl Target {
+    /// A value as the input can have it: whole numbers are rounded to the nearest, ties to even, and
+    /// end at the limits of the type.
+    fn fitted(self, value: f64) -> f64 {
+        match self {
+            Self::Float64 => value,
+            Self::Float32 => f64::from(value as f32),
+            Self::Integer(from, to) => libm::rint(value).clamp(from, to),
+            Self::Boolean | Self::Enumeration => value,
+        }
+    }
+
+    /// The kind can act on it.
+    #[must_use]
+    pub const fn takes(self, on: On) -> bool {
+        match on {
+            On::Floats => matches!(self, Self::Float64 | Self::Float32),
+            On::Numbers => !matches!(self, Self::Boolean | Self::Enumeration),
+            On::All => true,
+        }
+    }
+}
+
+/// The kind of a name.
+#[must_use]
+pub fn named(name: &str) -> Option<&'static Kind> {
+    KINDS.iter().copied().find(|kind| kind.name == name)
+}
+
+/// All kinds, in the order of the documentation.
+pub static KINDS: &[&Kind] = &[&STUCK, &BIAS, &SCALE, &NOISE, &DELAY, &DROP, &NAN];
+
+static STUCK: Kind = Kind {
+    name: "stuck",
+    summary: "The input stays at one value.",
+    model: "While it lasts, the input gets the same value at every communication point: `value`, or, \
+            where that is left out, what was transferred last before the onset. At an onset with the \
+            first step there is nothing before; then it is what is transferred first.",
+    parameters: &[Parameter {
+        name: "value",
+        takes: Takes::Value,
+        default: Some("last"),
+        doc: "The value, in the unit of the input or with a unit, or \"last\".",
+    }],
+    lasts: Lasts::Span,
+    on: On::All,
+    build: |values, _, targets| {
+        let value = match values.get("value") {
+            Some(Value::Number(value)) => Some(value),
+            _ => None,
+        };
+        Ok(Rule::Stuck { value, held: vec![0.0; targets.len()] })
+    },
+};
+
+static BIAS: Kind = Kind {
+    name: "bias",
+    summary: "A constant is added.",
+    model: "While it lasts,\n\n    y = x + strength · value\n\nwith strength 1, falling to 0 over the \
+            recovery. Whole numbers are rounded to the nearest, ties to even, and end at the limits \
+            of their type.",
+    parameters: &[Parameter {
+        name: "value",
+        takes: Takes::Difference(Bounds::NotZero),
+        default: None,
+        doc: "What is added, in the unit of the input or with a unit.",
+    }],
+    lasts: Lasts::Fading,
+    on: On::Numbers,
+    build: |values, _, _| Ok(Rule::Bias(values.number("value")?)),
+};
+
+static SCALE: Kind = Kind {
+    name: "scale",
+    summary: "The value is multiplied.",
+    model: "While it lasts,\n\n    y = x + strength · (factor − 1) · x\n\nwith strength 1, falling to \
+            0 over the recovery. Whole numbers are rounded to the nearest, ties to even, and end at \
+            the limits of their type.",
+    parameters: &[Parameter {
+        name: "factor",
+        takes: Takes::Number(Bounds::Any),
+        default: None,
+        doc: "The factor; 1 would do nothing.",
+    }],
+    lasts: Lasts::Fading,
+    on: On::Numbers,
+    build: |values, _, _| {
+        let factor = values.number("factor")?;
+        if factor == 1.0 {
+            return Err(BuildError::value("factor", "found 1, with which nothing would happen"));
+        }
+        Ok(Rule::Scale(factor))
+    },
+};
+
+static NOISE: Kind = Kind {
+    name: "noise",
+    summary: "White noise is added.",
+    model: "While it lasts,\n\n    y = x + strength · sigma · n\n\nwith n standard normal, drawn anew \
+            at every communication point and for every element, and strength 1, falling to 0 over \
+            the recovery. n depends on the seed, the id of the fault, the number of the step and \
+            that of the element, and on nothing else. Whole numbers are rounded to the nearest, ties \
+            to even, and end at the limits of their type.",
+    parameters: &[Parameter {
+        name: "sigma",
+        takes: Takes::Difference(Bounds::Positive),
+        default: None,
+        doc: "Standard deviation, in the unit of the input or with a unit.",
+    }],
+    lasts: Lasts::Fading,
+    on: On::Numbers,
+    build: |values, setup, targets| {
+        let sigma = values.number("sigma")?;
+        // Three elements share a stream, which has three numbers for each counter.
+        let streams = targets.len().div_ceil(3);
+        let stream = |triad| match triad {
+            0 => setup.stream("noise"),
+            more => setup.stream(&alloc::format!("noise.{more}")),
+        };
+        Ok(Rule::Noise { sigma, streams: (0..streams).map(stream).collect() })
+    },
+};
+
+static DELAY: Kind = Kind {
+    name: "delay",
+    summary: "Values arrive late.",
+    model: "While it lasts, the input gets at every communication point what would have been \
+            transferred `delay` before. In the first steps, when there is nothing so old, it gets \
+            what was transferred first. At the end the input jumps to the present value: what was on \
+            its way is lost.",
+    parameters: &[Parameter {
+        name: "delay",
+        takes: Takes::Quantity(&[Dimension::Time, Dimension::Samples], Bounds::Positive),
+        default: None,
+        doc: "How late: a time, rounded to whole steps, or a number of steps, \"3 samples\".",
+    }],
+    lasts: Lasts::Span,
+    on: On::All,
+    build: |values, setup, targets| {
+        let (delay, dimension) = values.quantity_and_dimension("delay")?;
+        let steps = match dimension {
+            Dimension::Samples => delay,
+            _ => libm::rint(delay * 1e9 / setup.sample_period_ns as f64),
+        };
+        if !(1.0..=DELAY_MAX as f64).contains(&steps) {
+            let problem = alloc::format!("it is {steps} steps, expected 1 to {DELAY_MAX}");
+            return Err(BuildError::value("delay", problem));
+        }
+        let steps = steps as usize;
+        Ok(Rule::Delay { steps, kept: vec![0.0; (steps + 1) * targets.len()], first: 0 })
+    },
+};
+
+/// Steps of a delay at most.
+pub const DELAY_MAX: usize = 1_000_000;
+
+static DROP: Kind = Kind {
+    name: "drop",
+    summary: "Values don't arrive.",
+    model: "While it lasts, the transfer at a communication point is lost with `probability`, and \
+            the input keeps what it got last (`hold`), or gets 0 (`zero`). All elements of the \
+            connection are lost together. Which transfers are lost depends on the seed, the id of \
+            the fault and the number of the step, and on nothing else.",
+    parameters: &[
+        Parameter {
+            name: "probability",
+            takes: Takes::Number(Bounds::Within(f64::MIN_POSITIVE, 1.0, "above 0, up to 1")),
+            default: Some("1"),
+            doc: "Probability that a transfer is lost.",
+        },
+        Parameter {
+            name: "becomes",
+            takes: Takes::Choice(&[
+                ("hold", "the input keeps what it got last"),
+                ("zero", "the input gets 0, or false"),
+            ]),
+            default: Some("hold"),
+            doc: "What the input has instead.",
+        },
+    ],
+    lasts: Lasts::Span,
+    on: On::All,
+    build: |values, setup, targets| {
+        Ok(Rule::Drop {
+            probability: values.number("probability")?,
+            zero: values.choice("becomes")? == "zero",
+            stream: setup.stream("drop"),
+            delivered: vec![0.0; targets.len()],
+            lost: false,
+        })
+    },
+};
+
+static NAN: Kind = Kind {
+    name: "nan",
+    summary: "The value is not a number, or infinite.",
+    model: "While it lasts, the input gets NaN (quiet, positive, no payload: 7ff8000000000000), +∞ or \
+            −∞. An FMU that refuses such a value keeps the one before; the summary counts that.",
+    parameters: &[Parameter {
+        name: "value",
+        takes: Takes::Choice(&[
+            ("not-a-number", "NaN"),
+            ("infinity", "positive infinity"),
+            ("minus-infinity", "negative infinity"),
+        ]),
+        default: Some("not-a-number"),
+        doc: "What it becomes.",
+    }],
+    lasts: Lasts::Span,
+    on: On::Floats,
+    build: |values, _, _| {
+        Ok(Rule::Constant(match values.choice("value")? {
+            "infinity" => f64::INFINITY,
+            "minus-infinity" => f64::NEG_INFINITY,
+            _ => f64::NAN,
+        }))
+    },
+};
+
+/// What one fault does, with what it remembers of each element.
+#[derive(Debug)]
+pub(super) enum Rule {
+    Stuck {
+        value: Option<f64>,
+        held: Vec<f64>,
+    },
+    Bias(f64),
+    Scale(f64),
+    Noise {
+        sigma: f64,
+        streams: Vec<Stream>,
+    },
+    /// A ring: what was transferred at the epochs before, and where the present one is.
+    Delay {
+        steps: usize,
+        kept: Vec<f64>,
+        first: usize,
+    },
+    Drop {
+        probability: f64,
+        zero: bool,
+        stream: Stream,
+        delivered: Vec<f64>,
+        lost: bool,
+    },
+    Constant(f64),
+}
+
+/// What a rule knows of the moment.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Now {
+    /// Epoch, from 1.
+    pub(super) epoch: u64,
+    /// It acts.
+    pub(super) acting: bool,
+    /// It sets in at this epoch.
+    pub(super) onset: bool,
+    /// 1, or less while it fades.
+    pub(super) strength: f64,
+}
+
+impl Rule {
+    pub(super) fn new(
+        kind: &Kind,
+        values: &Values,
+        setup: &Setup,
+        targets: &[Target],
+    ) -> Result<Self, BuildError> {
+        (kind.build)(values, setup, targets)
+    }
+
+    /// It has to see what is transferred also while it doesn't act.
+    pub(super) const fn remembers(&self) -> bool {
+        matches!(self, Self::Stuck { value: None, .. } | Self::Delay { .. } | Self::Drop { .. })
+    }
+
+    /// Once an epoch, before the transfers.
+    pub(super) fn begin(&mut self, now: &Now) {
+        match self {
+            Self::Delay { steps, first, .. } => *first = (*first + 1) % (*steps + 1),
+            Self::Drop { probability, stream, lost, .. } => {
+                let key = stream.key(Phase::Calibration);
+                let draw = || uniform(block(key, [now.epoch - 1, 0, 0, 0])[0]);
+                *lost = now.acting && (*probability >= 1.0 || draw() < *probability);
+            }
+            _ => {}
+        }
+    }
+
+    /// A value on its way to an element; `again`: the epoch's transfer of this element was made
+    /// before, as when a step is made in parts.
+    pub(super) fn transfer(
+        &mut self,
+        element: usize,
+        value: f64,
+        target: Target,
+        now: &Now,
+        again: bool,
+    ) -> f64 {
+        match self {
+            Self::Stuck { value: Some(at), .. } => *at,
+            Self::Stuck { value: None, held } => {
+                let held = &mut held[element];
+                // At an onset with the first step there is nothing from before.
+                if !again && (!now.acting || (now.onset && now.epoch == 1)) {
+                    *held = value;
+                }
+                if now.acting { *held } else { value }
+            }
+            Self::Bias(bias) => target.fitted(value + now.strength * *bias),
+            Self::Scale(factor) => target.fitted(value + now.strength * (*factor - 1.0) * value),
+            Self::Noise { sigma, streams } => {
+                let key = streams[element / 3].key(Phase::Calibration);
+                let noise = Ziggurat::shared().three(key, now.epoch - 1)[element % 3];
+                target.fitted(value + now.strength * *sigma * noise)
+            }
+            Self::Delay { steps, kept, first } => {
+                let ring = &mut kept[element * (*steps + 1)..][..*steps + 1];
+                if !again {
+                    ring[*first] = value;
+                    if now.epoch == 1 {
+                        ring.fill(value);
+                    }
+                }
+                if now.acting { ring[(*first + 1) % (*steps + 1)] } else { value }
+            }
+            Self::Drop { zero, delivered, lost, .. } => {
+                let delivered = &mut delivered[element];
+                if !*lost {
+                    *delivered = value;
+                    return value;
+                }
+                if *zero {
+                    return 0.0;
+                }
+                if now.epoch == 1 && !again {
+                    // Nothing came before: the input keeps its start value, which is this one.
+                    *delivered = value;
+                }
+                *delivered
+            }
+            Self::Constant(value) => target.fitted(*value),
+        }
+    }
+}

@@ -1,0 +1,54 @@
+//! Bytes to values.
+
+use crate::{State, StateError};
+use serde::Deserialize;
+
+/// Gives the values of a state back, in the order in which they were written.
+#[derive(Debug)]
+pub struct Reader<'a> {
+    rest: &'a [u8],
+}
+
+impl<'a> Reader<'a> {
+    pub(crate) fn new(rest: &'a [u8]) -> Self {
+        Self { rest }
+    }
+
+    /// A value.
+    ///
+    /// # Errors
+    /// If the bytes end before it, or are none of such a value.
+    pub fn value<T: Deserialize<'a>>(&mut self, name: &'static str) -> Result<T, StateError> {
+        match postcard::take_from_bytes(self.rest) {
+            Ok((value, rest)) => {
+                self.rest = rest;
+                Ok(value)
+            }
+            Err(_) => Err(StateError::value(name, "the bytes end before it, or it is none")),
+        }
+    }
+
+    /// A part that has values of its own.
+    ///
+    /// # Errors
+    /// Those of the part.
+    pub fn part<T: State + ?Sized>(
+        &mut self,
+        _name: &'static str,
+        part: &mut T,
+    ) -> Result<(), StateError> {
+        part.load(self)
+    }
+
+    /// Nothing is left.
+    ///
+    /// # Errors
+    /// If something is.
+    pub fn end(&self) -> Result<(), StateError> {
+        match self.rest.len() {
+            0 => Ok(()),
+            1 => Err(StateError::value("end", "1 byte is left over")),
+            more => Err(StateError::value("end", alloc::format!("{more} bytes are left over"))),
+        }
+    }
+}
