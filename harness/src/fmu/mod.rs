@@ -4,6 +4,7 @@
 //! |---|---|
 //! | [`build`] | our own FMUs, from their tables |
 //! | [`archive`] | files of others opened and unpacked safely |
+//! | [`check`] | what is wrong with an FMU, by the rules of the standards |
 //! | [`description`] | what a `modelDescription.xml` says, of both standards in one form |
 //! | `exchange` | model exchange as co-simulation, with our solver |
 //! | [`library`] | the shared library of an unpacked FMU |
@@ -13,6 +14,7 @@
 
 pub mod archive;
 pub mod build;
+pub mod check;
 pub mod description;
 mod exchange;
 pub mod instance;
