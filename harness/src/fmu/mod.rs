@@ -10,6 +10,7 @@
 //! | [`library`] | the shared library of an unpacked FMU |
 //! | [`mapping`] | which of its variables is what |
 //! | [`instance`] | an FMU that runs, of both standards and both kinds, behind one trait |
+//! | [`run`] | any FMU stepped with inputs from a file |
 //! | [`master`] | several FMUs together: system structures, order, loops, faults on connections |
 
 pub mod archive;
@@ -21,5 +22,6 @@ pub mod instance;
 pub mod library;
 pub mod mapping;
 pub mod master;
+pub mod run;
 
 pub use instance::open::{OpenError, open, open_archive};

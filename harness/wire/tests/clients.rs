@@ -151,9 +151,9 @@ fn the_clients_pass_the_vectors() {
 fn the_clients_notice_vectors_that_are_wrong() {
     // A check that can't fail would be none.
     for (file, from, to) in [
-        ("messages.json", "\"delta_theta_x\":17000", "\"delta_theta_x\":17001"),
-        ("serial.json", "\"bytes_lost\":503", "\"bytes_lost\":504"),
-        ("can.json", "\"orphaned\":2", "\"orphaned\":3"),
+        ("messages.json", "\"delta_theta_x\": 17000", "\"delta_theta_x\": 17001"),
+        ("serial.json", "\"bytes_lost\": 503", "\"bytes_lost\": 504"),
+        ("can.json", "\"orphaned\": 2", "\"orphaned\": 3"),
         ("can.json", "\"unfinished\": 1", "\"unfinished\": 0"),
     ] {
         let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR"))

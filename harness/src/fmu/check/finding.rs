@@ -107,11 +107,6 @@ impl Findings {
     pub(super) fn has_errors(&self) -> bool {
         self.kept.iter().any(|finding| finding.rule.severity == Severity::Error)
     }
-
-    /// The rule was broken.
-    pub(super) fn has(&self, rule: &'static Rule) -> bool {
-        self.counts.contains_key(rule.id)
-    }
 }
 
 /// Where the standard says so.

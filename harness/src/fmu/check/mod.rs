@@ -1,6 +1,7 @@
 //! What is wrong with an FMU, by the rules of FMI 2.0 and FMI 3.0.
 //!
-//! Nothing of the FMU is run here: [`check`] reads its archive, its descriptions and its libraries.
+//! [`check`] reads its archive, its descriptions and its libraries, and runs nothing of it.
+//! [`load::load`] runs it, in a process of its own.
 //!
 //! | module | idea |
 //! |---|---|
@@ -17,6 +18,7 @@
 //! | `terminals` | terminals and icons |
 //! | `files` | documentation, licence, sources |
 //! | [`binaries`] | shared libraries, read without being run |
+//! | [`load`] | the library loaded, an instance made and stepped |
 //! | [`show`] | findings as text |
 
 pub mod binaries;
@@ -24,6 +26,7 @@ mod clocks;
 mod files;
 pub mod finding;
 mod head;
+pub mod load;
 mod model;
 mod names;
 mod references;
@@ -38,6 +41,7 @@ use super::archive::{Archive, ArchiveError, Limits};
 use super::description::schema::{self, Breaks, Node, Violation};
 use super::description::xml::{Element, File, shortened};
 use super::description::{Description, Standard, decode, read};
+use super::library::platforms;
 use binaries::Binary;
 use finding::{Finding, Findings, Place};
 use model::Model;
@@ -93,31 +97,15 @@ pub struct Checked {
 }
 
 impl Checked {
-    /// Nothing speaks against unpacking it and running its code but that it is foreign.
+    /// It has a library for this machine, and nothing in its archive speaks against unpacking it.
     #[must_use]
     pub fn can_be_loaded(&self) -> bool {
-        self.archive.problems().is_empty()
-            && self.description.is_some()
-            && !self.findings.has(&rules::BINARY_PLATFORM)
-            && !self.binaries.is_empty()
-    }
-
-    /// There is an error.
-    #[must_use]
-    pub fn has_errors(&self) -> bool {
-        self.findings.has_errors()
-    }
-
-    /// Adds what was found when it was run.
-    pub fn add(
-        &mut self,
-        rule: &'static rules::Rule,
-        entry: &str,
-        subject: &str,
-        found: impl Into<String>,
-        expected: impl Into<String>,
-    ) {
-        self.findings.add(rule, Place { entry, line: None, subject }, found, expected);
+        let Some(description) = &self.description else { return false };
+        let here = platforms(description.standard);
+        let is_here = |binary: &Binary| {
+            here.iter().any(|platform| binary.entry.starts_with(&format!("binaries/{platform}/")))
+        };
+        self.archive.problems().is_empty() && self.binaries.iter().any(is_here)
     }
 
     /// All that was found.

@@ -304,15 +304,11 @@ rules! {
         "A library for Linux needs no newer C library than this machine has.";
 
     LOAD_OPENS "load.opens" Error "2.3" "2.5.1"
-        "The library for this machine can be loaded.";
+        "The library for this machine can be loaded, and says that it is of the standard.";
     LOAD_SURVIVES "load.survives" Error "2.1" "2.2"
         "Nothing that is called crashes or hangs.";
-    LOAD_VERSION "load.version" Error "2.1.4" "2.2.4"
-        "The library says the version of the standard that the description says.";
-    LOAD_PLATFORM "load.types" Error "2.1.4" ""
-        "The library is built for the default types.";
     LOAD_INSTANTIATES "load.instantiates" Error "2.1.5" "2.3.1"
-        "An instance can be made and initialized with the start values.";
+        "An instance can be made, and initialized with the start values.";
     LOAD_STARTS "load.starts" Warning "2.2.7" "2.4.7.5"
         "Exact variables have the start value of the description when initialization begins.";
     LOAD_STEPS "load.steps" Error "4.2" "4.2"

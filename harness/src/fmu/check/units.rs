@@ -33,7 +33,9 @@ fn definitions(model: &Model<'_, '_>, findings: &mut Findings) {
             findings.add(&UNIT_UNIQUE, place, "the unit is there twice", "one of each name");
             continue;
         }
-        if unit.child("BaseUnit").is_none() {
+        // A number without dimension needs none.
+        let plain = known(name).first().is_some_and(|unit| unit.exponents == [0; 8]);
+        if unit.child("BaseUnit").is_none() && !plain {
             findings.add(&UNIT_BASE, place, "a unit without BaseUnit", "what it is in SI");
         } else if let Some(base) = model.description.unit(name).and_then(|unit| unit.base) {
             meaning(model, unit, name, &base, findings);
