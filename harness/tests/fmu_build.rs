@@ -147,7 +147,7 @@ fn same(
         let unit = description.unit(quantity.unit.name).unwrap();
         assert_eq!(unit.base.map(|base| base.exponents), quantity.unit.exponents, "{name}");
         assert_eq!(unit.base.map_or(quantity.unit.factor, |base| base.factor), quantity.unit.factor);
-        let display: Vec<_> = quantity.unit.display.iter().map(|(n, f)| ((*n).into(), *f, 0.0));
+        let display = quantity.unit.display.iter().map(|(n, f)| ((*n).into(), *f, 0.0));
         assert_eq!(unit.display, display.collect::<Vec<(String, f64, f64)>>());
     }
     if kind == Kind::Float64 {
