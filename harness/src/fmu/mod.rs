@@ -9,6 +9,7 @@
 //! | [`library`] | the shared library of an unpacked FMU |
 //! | [`mapping`] | which of its variables is what |
 //! | [`instance`] | an FMU that runs, of both standards and both kinds, behind one trait |
+//! | [`process`] | an FMU in a process of its own |
 //! | [`master`] | several FMUs together: system structures, order, loops, faults on connections |
 
 pub mod archive;
@@ -19,5 +20,6 @@ pub mod instance;
 pub mod library;
 pub mod mapping;
 pub mod master;
+pub mod process;
 
 pub use instance::open::{OpenError, open, open_archive};
