@@ -225,10 +225,12 @@ fn faults_fire_by_hand_and_act_on_both_methods() {
 // depend on which kinds the catalogue has: these are the plainest of each sort.
 
 /// Delivers these epochs (source numbers) instead of the one that came.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 struct Deliver {
     kept: Option<Epoch>,
 }
+
+octant_state::state! { Deliver { values: kept; parts: ; kept: } }
 
 impl DeliveryRule for Deliver {
     /// By its number since the onset: 0 lost; 1 kept; 2 delivered, then the kept one; 3 twice.
@@ -255,15 +257,19 @@ impl DeliveryRule for Deliver {
 
 /// Does this at its onset, or is without power.
 #[derive(Clone, Debug)]
-struct Unit(Option<UnitEvent>);
+struct Unit {
+    event: Option<UnitEvent>,
+}
+
+octant_state::state! { Unit { values: ; parts: ; kept: event } }
 
 impl UnitRule for Unit {
     fn on_epoch(&mut self, now: &Context<'_>) -> Option<UnitEvent> {
-        self.0.filter(|_| now.since_onset == 0)
+        self.event.filter(|_| now.since_onset == 0)
     }
 
     fn cuts_power(&self) -> bool {
-        self.0.is_none()
+        self.event.is_none()
     }
 }
 
@@ -282,12 +288,12 @@ macro_rules! test_kind {
     };
 }
 test_kind!(DELIVERY, Acts::Delivery, Rule::Delivery(Box::new(Deliver { kept: None })));
-test_kind!(RESTART, Acts::Unit, Rule::Unit(Box::new(Unit(Some(UnitEvent::Restart)))));
-test_kind!(POWER, Acts::Unit, Rule::Unit(Box::new(Unit(None))));
+test_kind!(RESTART, Acts::Unit, Rule::Unit(Box::new(Unit { event: Some(UnitEvent::Restart) })));
+test_kind!(POWER, Acts::Unit, Rule::Unit(Box::new(Unit { event: None })));
 test_kind!(STORED, Acts::Unit, {
     let mut offset = Parameters::default();
     offset.gyro_bias[0] = 1e-6;
-    Rule::Unit(Box::new(Unit(Some(UnitEvent::RestartWith { offset }))))
+    Rule::Unit(Box::new(Unit { event: Some(UnitEvent::RestartWith { offset }) }))
 });
 
 struct Driven {

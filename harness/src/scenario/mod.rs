@@ -21,13 +21,14 @@ pub mod suite;
 mod tour;
 mod write;
 
-pub(crate) use error::suggestion;
 pub use error::{Place, Problem, ScenarioError};
+pub(crate) use error::{nearest, suggestion};
 pub use keys::SCHEMA;
 pub use ports::{Code, Made, Port, Set, Setting, Written};
+pub(crate) use quantity::parse as quantity_of;
 pub use quantity::{Dimension, Quantity};
-pub(crate) use quantity::{parse as quantity_of, unit as unit_of_name};
 pub use read::faults::Fault;
+pub use read::faults::connection::{ConnectionFault, Given, connection_faults, text_of};
 pub use read::fmu::{Endpoint, Fmu, InterfaceChoice, Mapped, Process};
 pub use read::source::{FileName, Source};
 pub use schema::schema;

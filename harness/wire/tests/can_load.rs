@@ -40,7 +40,7 @@ fn crc(bits: &[bool], polynomial: u32, width: u32) -> u32 {
     let top = 1 << (width - 1);
     bits.iter().fold(0, |crc, bit| {
         let turn = *bit != (crc & top != 0);
-        (crc << 1 & (top << 1) - 1) ^ if turn { polynomial } else { 0 }
+        ((crc << 1) & ((top << 1) - 1)) ^ if turn { polynomial } else { 0 }
     })
 }
 

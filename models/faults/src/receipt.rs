@@ -3,6 +3,7 @@
 use alloc::string::String;
 use octant_sample::canonical::{AIDING_BYTES, SAMPLE_BYTES, aiding, sample};
 use octant_sample::{Epoch, GimbalCommand};
+use octant_state::{Reader, State, StateError, Writer};
 
 /// The receipt of one fault.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -46,6 +47,28 @@ pub(crate) struct Ledger {
     faulted: crc32fast::Hasher,
 }
 
+impl State for Ledger {
+    /// A checksum goes on from where it is.
+    fn save(&self, to: &mut Writer) {
+        let Self { first, last, altered, clean, faulted } = self;
+        to.value("first", first);
+        to.value("last", last);
+        to.value("altered", altered);
+        to.value("clean", &clean.clone().finalize());
+        to.value("faulted", &faulted.clone().finalize());
+    }
+
+    fn load(&mut self, from: &mut Reader<'_>) -> Result<(), StateError> {
+        self.first = from.value("first")?;
+        self.last = from.value("last")?;
+        self.altered = from.value("altered")?;
+        octant_state::check_count("altered", self.altered)?;
+        self.clean = crc32fast::Hasher::new_with_initial(from.value("clean")?);
+        self.faulted = crc32fast::Hasher::new_with_initial(from.value("faulted")?);
+        Ok(())
+    }
+}
+
 impl Ledger {
     /// The fault had its hand on an epoch.
     pub(crate) fn touched(&mut self, epoch: u64) {
@@ -55,6 +78,11 @@ impl Ledger {
         }
         self.first.get_or_insert(epoch);
         self.last = Some(epoch);
+    }
+
+    /// Epochs that it has altered.
+    pub(crate) fn altered(&self) -> u64 {
+        self.altered
     }
 
     pub(crate) fn clean(&mut self, epoch: &Epoch) {

@@ -1,20 +1,23 @@
 //! What a kind implements: one small trait for each place where a fault can act.
 //!
 //! A rule is called only while its fault is active. It doesn't report what it did: the station
-//! compares, counts and keeps the receipt.
+//! compares, counts and keeps the receipt. What a rule remembers from one call to the next is its
+//! [`State`]: a rule that was built from the same values and gets it goes on as the other would.
 
 use crate::disturbance::{Disturbance, Motor};
 use crate::setup::Stream;
 use alloc::boxed::Box;
 use alloc::vec::Vec;
 use core::fmt::Debug;
+use dyn_clone::DynClone;
 use octant_random::normal::{Ziggurat, uniform};
 use octant_random::philox::block;
 use octant_random::stream::Phase;
 use octant_sample::{Epoch, GimbalCommand, Output, Parameters};
+use octant_state::{Reader, State, StateError, Writer};
 
 /// The rule of one fault, by the place where it acts.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub enum Rule {
     /// Inside the plant.
     Plant(Box<dyn PlantRule>),
@@ -26,6 +29,34 @@ pub enum Rule {
     Delivery(Box<dyn DeliveryRule>),
     /// On the unit under test.
     Unit(Box<dyn UnitRule>),
+}
+
+dyn_clone::clone_trait_object!(PlantRule);
+dyn_clone::clone_trait_object!(CommandRule);
+dyn_clone::clone_trait_object!(SampleRule);
+dyn_clone::clone_trait_object!(DeliveryRule);
+dyn_clone::clone_trait_object!(UnitRule);
+
+impl State for Rule {
+    fn save(&self, to: &mut Writer) {
+        match self {
+            Self::Plant(rule) => rule.save(to),
+            Self::Command(rule) => rule.save(to),
+            Self::Samples(rule) => rule.save(to),
+            Self::Delivery(rule) => rule.save(to),
+            Self::Unit(rule) => rule.save(to),
+        }
+    }
+
+    fn load(&mut self, from: &mut Reader<'_>) -> Result<(), StateError> {
+        match self {
+            Self::Plant(rule) => rule.load(from),
+            Self::Command(rule) => rule.load(from),
+            Self::Samples(rule) => rule.load(from),
+            Self::Delivery(rule) => rule.load(from),
+            Self::Unit(rule) => rule.load(from),
+        }
+    }
 }
 
 /// What a rule knows of the moment.
@@ -57,7 +88,7 @@ pub struct Context<'a> {
 
 /// Set points that the turntable has had, after all faults. Before the first they are zero, where
 /// the gimbals start.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct SetPoints {
     /// That of the epoch before this one.
     pub last: GimbalCommand,
@@ -86,7 +117,7 @@ impl Context<'_> {
 }
 
 /// Acts on samples and aiding in place.
-pub trait SampleRule: Debug + Send {
+pub trait SampleRule: Debug + Send + DynClone + State {
     /// Acts on one epoch.
     fn on_epoch(&mut self, epoch: &mut Epoch, now: &Context<'_>);
 
@@ -107,7 +138,7 @@ pub trait SampleRule: Debug + Send {
 }
 
 /// Acts on the delivery of epochs.
-pub trait DeliveryRule: Debug + Send {
+pub trait DeliveryRule: Debug + Send + DynClone + State {
     /// One step of the source: takes the epochs that come in (one, or none or several where
     /// faults before this one have delayed some); what is to be delivered now goes to `out`, in
     /// order. `active` is false in steps after the fault's end, which a rule sees for as long as it
@@ -128,19 +159,19 @@ pub trait DeliveryRule: Debug + Send {
 }
 
 /// Acts on the set point that the turntable gets.
-pub trait CommandRule: Debug + Send {
+pub trait CommandRule: Debug + Send + DynClone + State {
     /// Acts on the set point of one epoch.
     fn on_command(&mut self, command: &mut GimbalCommand, now: &Context<'_>);
 }
 
 /// Acts inside the plant.
-pub trait PlantRule: Debug + Send {
+pub trait PlantRule: Debug + Send + DynClone + State {
     /// What the plant suffers from now on; `motor` is the turntable as it stands.
     fn begin(&mut self, now: &Context<'_>, motor: &Motor) -> Disturbance;
 }
 
 /// Acts on the unit under test.
-pub trait UnitRule: Debug + Send {
+pub trait UnitRule: Debug + Send + DynClone + State {
     /// What happens to it at this epoch, before it gets the epoch; `None`: nothing. Power is not
     /// told here but by [`Self::cuts_power`].
     fn on_epoch(&mut self, now: &Context<'_>) -> Option<UnitEvent>;
@@ -155,6 +186,7 @@ pub trait UnitRule: Debug + Send {
 /// What happens to the unit under test.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[allow(clippy::large_enum_variant, reason = "rare, and passed by value once")]
+#[derive(serde::Serialize, serde::Deserialize)]
 pub enum UnitEvent {
     /// It starts anew, as at power on, and forgets everything.
     Restart,

@@ -8,6 +8,7 @@ use alloc::string::String;
 use octant_random::normal::{uniform, words};
 use octant_random::philox::Key;
 use octant_sample::{Health, Mode, Output, Truth};
+use octant_state::StateError;
 
 /// When and how long.
 #[derive(Clone, Debug, PartialEq)]
@@ -190,7 +191,7 @@ impl Trigger {
 }
 
 /// What the core did with the epoch before, as far as triggers wait for it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub(crate) struct Scene {
     mode: Mode,
     stop: u16,
@@ -222,7 +223,7 @@ pub(crate) struct News<'a> {
 }
 
 /// Where a fault is in its life.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub(crate) enum State {
     /// For its trigger.
     Waiting,
@@ -248,6 +249,8 @@ pub(crate) struct Clock {
     held: bool,
 }
 
+octant_state::state! { Clock { values: state, firings, held; parts: ; kept: schedule, key } }
+
 /// What a clock did at an epoch.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Ticked {
@@ -266,6 +269,27 @@ impl Clock {
             _ => State::Waiting,
         };
         clock
+    }
+
+    /// What it says holds after an epoch.
+    pub(crate) fn check(&self, epoch: u64) -> Result<(), StateError> {
+        octant_state::check_below("firings", self.firings.into(), 1 << 31)?;
+        let (onset, until) = match self.state {
+            State::Active { onset, until } => (onset, until),
+            State::Fading { onset, from, until } => {
+                octant_state::check_below("from", from, epoch)?;
+                (onset, until)
+            }
+            State::Waiting | State::Pending(_) | State::Spent => return Ok(()),
+        };
+        octant_state::check_below("onset", onset, epoch)?;
+        let first = self.schedule.trigger.earliest().unwrap_or(0);
+        octant_state::check_below("first onset", first, onset)?;
+        if until <= epoch {
+            let problem = alloc::format!("{until} was found, more than {epoch} is expected");
+            return Err(StateError::value("until", problem));
+        }
+        Ok(())
     }
 
     pub(crate) fn trigger(&self) -> &Trigger {
@@ -314,6 +338,16 @@ impl Clock {
             self.state = State::Pending(epoch);
         }
         waits
+    }
+
+    /// It ends at the next epoch, if it lasts; if it was to set in then, it doesn't.
+    pub(crate) fn cut(&mut self, epoch: u64) -> bool {
+        match &mut self.state {
+            State::Active { until, .. } => *until = epoch,
+            State::Pending(_) => self.state = State::Waiting,
+            State::Waiting | State::Fading { .. } | State::Spent => return false,
+        }
+        true
     }
 
     /// Another fault has ended at an epoch.

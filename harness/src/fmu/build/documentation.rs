@@ -151,7 +151,7 @@ fn variables(model: &Model, standard: Standard) -> Markup {
                     table {
                         thead {
                             tr {
-                                th { "Name" } th { "Type" } th { "Unit" } th { "Range" }
+                                th { "Name" } th { "Reference" } th { "Type" } th { "Unit" } th { "Range" }
                                 @if has_start(these[0].1) { th { "Start" } }
                                 th { "Description" }
                             }
@@ -168,15 +168,16 @@ fn variables(model: &Model, standard: Standard) -> Markup {
 
 fn row(slot: usize, variable: &Variable, standard: Standard) -> Markup {
     let references = match (standard, variable.elements) {
-        (Standard::Fmi2, count) if count > 1 => format!("{slot} to {}", slot + count - 1),
+        (Standard::Fmi2, count) if count > 1 => format!("{slot}–{}", slot + count - 1),
         _ => slot.to_string(),
     };
     html! {
         tr {
-            td title={ "value reference " (references) } {
+            td {
                 code { (variable.name) @if variable.elements > 0 { "[" (variable.elements) "]" } }
                 @if variable.variability == Variability::Tunable { " " span.soft { "tunable" } }
             }
+            td { (references) }
             td { (kind(variable.kind, standard)) }
             td { (unit(variable)) }
             td { (range(variable)) }

@@ -49,7 +49,7 @@ pub(super) fn terminals(model: &Model) -> Element {
     let side = |terminals: Vec<(&'static Terminal, Vec<&'static Variable>)>, x: f64| {
         let count = terminals.len() as f64;
         terminals.into_iter().enumerate().map(move |(index, (terminal, members))| {
-            let y = 100.0 - 200.0 * (index as f64 + 1.0) / (count + 1.0);
+            let y = (100.0 - 200.0 * (index as f64 + 1.0) / (count + 1.0)).round();
             element(terminal, &members, [x - 10.0, y - 10.0, x + 10.0, y + 10.0])
         })
     };

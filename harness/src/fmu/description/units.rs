@@ -151,7 +151,8 @@ impl Conversion {
         })
     }
 
-    fn ratio(from: &BaseUnit, to: &BaseUnit) -> Self {
+    /// Between two units of the same dimension.
+    pub(crate) fn ratio(from: &BaseUnit, to: &BaseUnit) -> Self {
         if from.factor == to.factor && from.offset == to.offset {
             return Self::IDENTITY;
         }
@@ -178,7 +179,7 @@ impl Conversion {
 
 /// What a name may mean: what the description defines, else what it commonly means. More than one
 /// only for `g`, which is a gram and an acceleration.
-fn candidates(description: &Description, name: &str) -> Vec<BaseUnit> {
+pub(crate) fn candidates(description: &Description, name: &str) -> Vec<BaseUnit> {
     let known = known(name);
     if let Some(base) = description.unit(name).and_then(|unit| unit.base) {
         return vec![meant(&base, &known)];
@@ -201,7 +202,7 @@ fn candidates(description: &Description, name: &str) -> Vec<BaseUnit> {
 
 /// The known unit that a definition means: one of the same dimension, but for a radian that tools
 /// leave out, and with a factor that is the same as far as its digits go. Else what it defines.
-fn meant(defined: &BaseUnit, known: &[BaseUnit]) -> BaseUnit {
+pub(crate) fn meant(defined: &BaseUnit, known: &[BaseUnit]) -> BaseUnit {
     let close = |a: f64, b: f64| (a - b).abs() <= SAME_FACTOR * b.abs();
     let is_meant = |known: &&BaseUnit| {
         defined.exponents[..7] == known.exponents[..7]

@@ -52,7 +52,7 @@ impl Group {
 
 /// Groups for a list of variables, as few as it takes, and the place of each variable in the
 /// numbers that belong to all groups one after another.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Plan {
     /// The groups, for [`super::Instance::exchange`].
     pub groups: Vec<Group>,

@@ -9,7 +9,7 @@ use octant_sample::counts::{DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS};
 
 /// Adds real numbers of counts to integer channels: a fault that changes a value carries its
 /// remainder too.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, serde::Serialize, serde::Deserialize)]
 pub(crate) struct Adder {
     /// What was not yet added, counts.
     remainders: [f64; 6],
@@ -54,6 +54,8 @@ pub(crate) struct Added {
     counts: [f64; 6],
     adder: Adder,
 }
+
+octant_state::state! { Added { values: adder; parts: ; kept: channels, counts } }
 
 impl Added {
     /// From a parameter of channels and one of a rate or an acceleration, which have to fit.

@@ -8,8 +8,10 @@ use crate::values::Channels;
 use alloc::boxed::Box;
 use core::fmt;
 use octant_sample::Epoch;
+use octant_state::{Reader, State, StateError, Writer};
 
 /// Adds `strength · change(channel, count)` to every channel, in counts, remainder carried.
+#[derive(Clone)]
 pub(crate) struct Mapped<F> {
     channels: Channels,
     change: F,
@@ -17,7 +19,21 @@ pub(crate) struct Mapped<F> {
     onset: Onset,
 }
 
-impl<F: Fn(usize, f64) -> f64 + Send + 'static> Mapped<F> {
+impl<F> State for Mapped<F> {
+    fn save(&self, to: &mut Writer) {
+        let Self { channels: _, change: _, adder, onset } = self;
+        to.value("adder", adder);
+        to.value("onset", onset);
+    }
+
+    fn load(&mut self, from: &mut Reader<'_>) -> Result<(), StateError> {
+        self.adder = from.value("adder")?;
+        self.onset = from.value("onset")?;
+        Ok(())
+    }
+}
+
+impl<F: Fn(usize, f64) -> f64 + Clone + Send + 'static> Mapped<F> {
     pub(crate) fn rule(channels: Channels, change: F) -> Rule {
         let (adder, onset) = (Adder::default(), Onset::default());
         Rule::Samples(Box::new(Self { channels, change, adder, onset }))
@@ -30,7 +46,7 @@ impl<F> fmt::Debug for Mapped<F> {
     }
 }
 
-impl<F: Fn(usize, f64) -> f64 + Send> SampleRule for Mapped<F> {
+impl<F: Fn(usize, f64) -> f64 + Clone + Send> SampleRule for Mapped<F> {
     fn on_epoch(&mut self, epoch: &mut Epoch, now: &Context<'_>) {
         if self.onset.is_new(now) {
             self.adder.clear();

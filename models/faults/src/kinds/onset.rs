@@ -4,7 +4,7 @@ use crate::rule::Context;
 
 /// Knows whether the fault has set in anew. It goes by the number of the firing, not by the first
 /// epoch: that one may have been lost on the way to the rule.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, serde::Serialize, serde::Deserialize)]
 pub(crate) struct Onset {
     firing: Option<u32>,
 }

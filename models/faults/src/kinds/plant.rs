@@ -9,18 +9,22 @@ use alloc::boxed::Box;
 use alloc::format;
 
 /// A disturbance that is the same at every onset.
-#[derive(Debug)]
-struct Fixed(Disturbance);
+#[derive(Clone, Debug)]
+struct Fixed {
+    disturbance: Disturbance,
+}
+
+octant_state::state! { Fixed { values: ; parts: ; kept: disturbance } }
 
 impl PlantRule for Fixed {
     fn begin(&mut self, _: &Context<'_>, _: &Motor) -> Disturbance {
-        self.0.clone()
+        self.disturbance.clone()
     }
 }
 
 /// The rule of a disturbance that is the same at every onset.
 pub(crate) fn fixed(disturbance: Disturbance) -> Rule {
-    Rule::Plant(Box::new(Fixed(disturbance)))
+    Rule::Plant(Box::new(Fixed { disturbance }))
 }
 
 /// Time over which a motion swells and fades.

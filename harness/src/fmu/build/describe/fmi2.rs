@@ -6,20 +6,13 @@ use super::{
     causality, default_experiment, has_start, index_of, initial_knowns, initial_unknowns,
     log_categories, root, start, variability,
 };
-use octant_fmu::quantities::TIME;
 use octant_fmu::table::{Causality, Enumeration, Kind, Model, Variable};
 
 /// The description.
 pub(in super::super) fn fmi2(model: &Model, token: &str) -> Element {
-    // Where the scalars of each variable stand, counted from 1; the first is time.
-    let mut next = 2;
-    let places: Vec<std::ops::Range<usize>> = (model.variables.iter())
-        .map(|variable| {
-            let first = next;
-            next += variable.slots();
-            first..next
-        })
-        .collect();
+    // Scalars are counted from 1, in the order of the slots: a place is a slot.
+    let places: Vec<std::ops::Range<usize>> =
+        model.with_slots().map(|(slot, variable)| slot..slot + variable.slots()).collect();
     root(model, "2.0")
         .with("guid", token)
         .child(
@@ -53,23 +46,12 @@ fn type_definitions(model: &Model) -> Element {
     }))
 }
 
+/// All but time, which is there without being listed: FMI Library, which many tools read
+/// descriptions with, misses a start value on it that the standard forbids.
 fn variables(model: &Model) -> Element {
-    let time = Element::new("ScalarVariable")
-        .with("name", "time")
-        .with("valueReference", "0")
-        .with("description", "Time")
-        .with("causality", "independent")
-        .with("variability", "continuous")
-        .child(Element::new("Real").with("declaredType", TIME.name));
-    let mut all = Element::new("ModelVariables").child(time);
-    let mut slot = 1;
-    for variable in model.variables {
-        for element in 0..variable.slots() {
-            all = all.child(scalar(variable, element, slot));
-            slot += 1;
-        }
-    }
-    all
+    Element::new("ModelVariables").children(model.with_slots().flat_map(|(slot, variable)| {
+        (0..variable.slots()).map(move |element| scalar(variable, element, slot + element))
+    }))
 }
 
 fn scalar(variable: &Variable, element: usize, slot: usize) -> Element {

@@ -1,6 +1,7 @@
 //! The folder of a system structure: as it lies, or unpacked from an `.ssp`.
 
 use super::SspError;
+use crate::fmu::archive::{Archive, Unpacked};
 use std::path::{Path, PathBuf};
 
 /// The structure of a package.
@@ -16,8 +17,8 @@ pub struct Package {
     name: String,
     folder: PathBuf,
     structure: PathBuf,
-    /// Goes with the package.
-    _unpacked: Option<tempfile::TempDir>,
+    /// A temporary folder, which goes with the package.
+    _unpacked: Option<Unpacked>,
 }
 
 /// Whether a path given to `octant run` is a system structure and no scenario.
@@ -51,11 +52,22 @@ impl Package {
         Ok(Self { name, folder, structure, _unpacked: None })
     }
 
-    fn unpack(_path: &Path, name: String) -> Result<Self, SspError> {
-        Err(SspError::of_file(
-            &name,
-            "packages are not part of this version: unpack it, and give the folder",
-        ))
+    fn unpack(path: &Path, name: String) -> Result<Self, SspError> {
+        // These errors name the file themselves.
+        let failed = |error: crate::fmu::archive::ArchiveError| {
+            let text = error.to_string();
+            let message = text.strip_prefix(&format!("{name}: ")).unwrap_or(&text).to_owned();
+            SspError::of_file(&name, message)
+        };
+        let unpacked = Archive::open(path).and_then(|mut archive| archive.unpack());
+        let unpacked = unpacked.map_err(failed)?;
+        let folder = unpacked.path().to_owned();
+        let structure = folder.join(STRUCTURE);
+        if !structure.is_file() {
+            let message = format!("failed to find {STRUCTURE} in it");
+            return Err(SspError::of_file(&name, message));
+        }
+        Ok(Self { name, folder, structure, _unpacked: Some(unpacked) })
     }
 
     /// The `.ssd`.
@@ -88,7 +100,11 @@ impl Package {
             let message = format!("it has {bytes} bytes, at most {TEXT_MAX} are read");
             return Err(SspError::of_file(&name, message));
         }
-        std::fs::read_to_string(file).map_err(failed)
+        let mut text = std::fs::read_to_string(file).map_err(failed)?;
+        if text.starts_with('\u{feff}') {
+            text.drain(..'\u{feff}'.len_utf8());
+        }
+        Ok(text)
     }
 
     /// The file that a source of the structure means.

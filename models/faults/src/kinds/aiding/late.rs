@@ -56,7 +56,7 @@ fn build(values: &Values, setup: &Setup) -> Result<Rule, BuildError> {
     })))
 }
 
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 struct AidingLate {
     delay: u64,
     restamps: bool,
@@ -67,7 +67,17 @@ struct AidingLate {
     queue: VecDeque<(u64, Aiding)>,
 }
 
+octant_state::state! { AidingLate { values: count, queue; parts: ; kept: delay, restamps; check: Self::check_queue } }
+
 impl AidingLate {
+    /// As many as there is room for, and a count that goes on.
+    fn check_queue(&mut self) -> Result<(), octant_state::StateError> {
+        octant_state::check_count("count", self.count)?;
+        octant_state::check_below("queue", self.queue.len() as u64, FLIGHT_MAX as u64)?;
+        self.queue.reserve_exact(FLIGHT_MAX + 1 - self.queue.len());
+        Ok(())
+    }
+
     /// Gives what is due to a sample that has no aiding.
     fn give(&mut self, epoch: &mut Epoch) {
         let due = self.queue.front().is_some_and(|(due, _)| *due <= self.count);

@@ -30,11 +30,13 @@ fn build(values: &Values, setup: &Setup) -> Result<Rule, BuildError> {
     Ok(Rule::Samples(Box::new(AidingLost { loss, stream })))
 }
 
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 struct AidingLost {
     loss: f64,
     stream: Stream,
 }
+
+octant_state::state! { AidingLost { values: ; parts: ; kept: loss, stream } }
 
 impl SampleRule for AidingLost {
     fn on_epoch(&mut self, epoch: &mut Epoch, now: &Context<'_>) {

@@ -43,10 +43,12 @@ fn build_wrong(values: &Values, _: &Setup) -> Result<Rule, BuildError> {
     Ok(Rule::Samples(Box::new(AidingWrong { error: Offset::of(values, "error")? })))
 }
 
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 struct AidingWrong {
     error: Offset,
 }
+
+octant_state::state! { AidingWrong { values: ; parts: ; kept: error } }
 
 impl SampleRule for AidingWrong {
     fn on_epoch(&mut self, epoch: &mut Epoch, now: &Context<'_>) {
@@ -84,11 +86,13 @@ fn build_jump(values: &Values, _: &Setup) -> Result<Rule, BuildError> {
     Ok(Rule::Samples(Box::new(PositionJump { jump, jumps: 0 })))
 }
 
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 struct PositionJump {
     jump: Offset,
     jumps: u32,
 }
+
+octant_state::state! { PositionJump { values: jumps; parts: ; kept: jump } }
 
 impl SampleRule for PositionJump {
     fn on_epoch(&mut self, epoch: &mut Epoch, now: &Context<'_>) {
@@ -137,11 +141,13 @@ fn build_noise(values: &Values, setup: &Setup) -> Result<Rule, BuildError> {
     Ok(Rule::Samples(Box::new(AidingNoise { sigma, stream: setup.stream("noise") })))
 }
 
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 struct AidingNoise {
     sigma: Offset,
     stream: Stream,
 }
+
+octant_state::state! { AidingNoise { values: ; parts: ; kept: sigma, stream } }
 
 impl SampleRule for AidingNoise {
     fn on_epoch(&mut self, epoch: &mut Epoch, now: &Context<'_>) {

@@ -91,13 +91,15 @@ fn build_ramp(values: &Values, setup: &Setup) -> Result<Rule, BuildError> {
     Ok(Rule::Samples(Box::new(Bias { added, rise_s, onset: Onset::default() })))
 }
 
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 struct Bias {
     added: Added,
     /// 0: at once.
     rise_s: f64,
     onset: Onset,
 }
+
+octant_state::state! { Bias { values: onset; parts: added; kept: rise_s } }
 
 impl SampleRule for Bias {
     fn on_epoch(&mut self, epoch: &mut Epoch, now: &Context<'_>) {

@@ -104,13 +104,15 @@ fn build_g(values: &Values, _: &Setup) -> Result<Rule, BuildError> {
 }
 
 /// Adds the same linear combination of counts to every channel.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 struct Cross {
     channels: Channels,
     row: [f64; 6],
     adder: Adder,
     onset: Onset,
 }
+
+octant_state::state! { Cross { values: adder, onset; parts: ; kept: channels, row } }
 
 impl Cross {
     fn rule(channels: Channels, row: [f64; 6]) -> Rule {

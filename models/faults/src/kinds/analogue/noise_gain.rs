@@ -76,7 +76,7 @@ fn build(values: &Values, setup: &Setup) -> Result<Rule, BuildError> {
     })))
 }
 
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 struct NoiseGain {
     channels: Channels,
     /// Standard deviation, counts.
@@ -85,6 +85,8 @@ struct NoiseGain {
     adder: Adder,
     onset: Onset,
 }
+
+octant_state::state! { NoiseGain { values: adder, onset; parts: ; kept: channels, counts, noise } }
 
 impl SampleRule for NoiseGain {
     fn on_epoch(&mut self, epoch: &mut Epoch, now: &Context<'_>) {

@@ -64,12 +64,23 @@ fn build(values: &Values, _: &Setup) -> Result<Rule, BuildError> {
     })))
 }
 
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 struct Quantization {
     channels: Channels,
     step: i64,
     remainder: [i64; 6],
     onset: Onset,
+}
+
+octant_state::state! { Quantization { values: remainder, onset; parts: ; kept: channels, step; check: Self::check_remainder } }
+
+impl Quantization {
+    fn check_remainder(&self) -> Result<(), octant_state::StateError> {
+        let step = self.step.unsigned_abs();
+        self.remainder
+            .iter()
+            .try_for_each(|left| octant_state::check_below("remainder", left.unsigned_abs(), step))
+    }
 }
 
 impl SampleRule for Quantization {

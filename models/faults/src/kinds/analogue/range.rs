@@ -109,13 +109,15 @@ fn build_saturation(values: &Values, setup: &Setup) -> Result<Rule, BuildError> 
     Ok(Rule::Samples(Box::new(Saturation { channels, limit: counts as i32, flag })))
 }
 
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 struct Saturation {
     channels: Channels,
     /// Counts.
     limit: i32,
     flag: bool,
 }
+
+octant_state::state! { Saturation { values: ; parts: ; kept: channels, limit, flag } }
 
 impl SampleRule for Saturation {
     fn on_epoch(&mut self, epoch: &mut Epoch, _: &Context<'_>) {

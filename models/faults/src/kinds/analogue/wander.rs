@@ -135,7 +135,7 @@ struct Process {
     mean: f64,
 }
 
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 struct Wander {
     channels: Channels,
     process: Process,
@@ -146,6 +146,8 @@ struct Wander {
     adder: Adder,
     onset: Onset,
 }
+
+octant_state::state! { Wander { values: bias, adder, onset; parts: ; kept: channels, process, counts, walk, second } }
 
 impl Wander {
     fn rule(channels: Channels, process: Process, setup: &Setup) -> Rule {

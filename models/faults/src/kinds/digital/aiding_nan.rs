@@ -62,11 +62,13 @@ fn build(values: &Values, _: &Setup) -> Result<Rule, BuildError> {
     Ok(Rule::Samples(Box::new(AidingNan { hit, value })))
 }
 
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 struct AidingNan {
     hit: [bool; 3],
     value: f64,
 }
+
+octant_state::state! { AidingNan { values: ; parts: ; kept: hit, value } }
 
 impl SampleRule for AidingNan {
     fn on_epoch(&mut self, epoch: &mut Epoch, _: &Context<'_>) {

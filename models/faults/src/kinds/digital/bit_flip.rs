@@ -89,13 +89,15 @@ enum Becomes {
     Cleared,
 }
 
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 struct BitFlip {
     channels: Channels,
     mask: i32,
     becomes: Becomes,
     dice: Option<(Six, f64)>,
 }
+
+octant_state::state! { BitFlip { values: ; parts: ; kept: channels, mask, becomes, dice } }
 
 impl SampleRule for BitFlip {
     fn on_epoch(&mut self, epoch: &mut Epoch, now: &Context<'_>) {

@@ -137,7 +137,7 @@ struct Chain {
 }
 
 /// What a sample is filled with.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, serde::Serialize, serde::Deserialize)]
 struct Fill {
     counts: [i32; 6],
     gimbal: GimbalAngles,
@@ -149,7 +149,7 @@ impl Fill {
     }
 }
 
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 struct Dropout {
     channels: Channels,
     gimbal: bool,
@@ -160,6 +160,8 @@ struct Dropout {
     fill: Fill,
     onset: Onset,
 }
+
+octant_state::state! { Dropout { values: out, fill, onset; parts: ; kept: channels, gimbal, held, chain } }
 
 impl Dropout {
     fn rule(values: &Values, held: bool, chain: Option<Chain>) -> Result<Rule, BuildError> {

@@ -55,11 +55,13 @@ fn build(values: &Values, _: &Setup) -> Result<Rule, BuildError> {
     Ok(Rule::Samples(Box::new(LyingStatus { flag, set })))
 }
 
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 struct LyingStatus {
     flag: Status,
     set: bool,
 }
+
+octant_state::state! { LyingStatus { values: ; parts: ; kept: flag, set } }
 
 impl SampleRule for LyingStatus {
     fn on_epoch(&mut self, epoch: &mut Epoch, _: &Context<'_>) {

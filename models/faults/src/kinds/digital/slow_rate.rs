@@ -78,7 +78,7 @@ enum Between {
     Summed,
 }
 
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 struct SlowRate {
     channels: Channels,
     every: i64,
@@ -88,6 +88,20 @@ struct SlowRate {
     /// The last fresh counts, or the sums since then.
     kept: [i64; 6],
     onset: Onset,
+}
+
+octant_state::state! { SlowRate { values: seen, kept, onset; parts: ; kept: channels, every, between; check: Self::check_counts } }
+
+impl SlowRate {
+    fn check_counts(&self) -> Result<(), octant_state::StateError> {
+        let every = self.every.unsigned_abs();
+        octant_state::check_below("seen", self.seen as u64, every - 1)?;
+        // The sum of so many samples at most.
+        let largest = every.saturating_mul(1 << 31);
+        self.kept
+            .iter()
+            .try_for_each(|sum| octant_state::check_below("kept", sum.unsigned_abs(), largest))
+    }
 }
 
 impl SampleRule for SlowRate {

@@ -41,10 +41,12 @@ fn build(values: &Values, setup: &Setup) -> Result<Rule, BuildError> {
     Ok(Rule::Samples(Box::new(Spike { added })))
 }
 
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 struct Spike {
     added: Added,
 }
+
+octant_state::state! { Spike { values: ; parts: added; kept:  } }
 
 impl SampleRule for Spike {
     fn on_epoch(&mut self, epoch: &mut Epoch, now: &Context<'_>) {

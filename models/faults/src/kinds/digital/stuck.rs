@@ -106,12 +106,14 @@ fn build_current(values: &Values, _: &Setup) -> Result<Rule, BuildError> {
     Ok(Rule::Samples(Box::new(Current { channels, held: [0; 6], onset: Onset::default() })))
 }
 
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 struct Current {
     channels: Channels,
     held: [i32; 6],
     onset: Onset,
 }
+
+octant_state::state! { Current { values: held, onset; parts: ; kept: channels } }
 
 impl SampleRule for Current {
     fn on_epoch(&mut self, epoch: &mut Epoch, now: &Context<'_>) {
@@ -144,11 +146,13 @@ fn build_value(values: &Values, setup: &Setup) -> Result<Rule, BuildError> {
     Ok(Rule::Samples(Box::new(Constant { channels, count: count as i32 })))
 }
 
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 struct Constant {
     channels: Channels,
     count: i32,
 }
+
+octant_state::state! { Constant { values: ; parts: ; kept: channels, count } }
 
 impl SampleRule for Constant {
     fn on_epoch(&mut self, epoch: &mut Epoch, _: &Context<'_>) {
@@ -168,13 +172,15 @@ fn build_limit(values: &Values, _: &Setup) -> Result<Rule, BuildError> {
     Ok(Rule::Samples(Box::new(Limit { channels, at, flag: values.flag("flag")? })))
 }
 
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 struct Limit {
     channels: Channels,
     /// `None`: on the side of the sign.
     at: Option<i32>,
     flag: bool,
 }
+
+octant_state::state! { Limit { values: ; parts: ; kept: channels, at, flag } }
 
 impl SampleRule for Limit {
     fn on_epoch(&mut self, epoch: &mut Epoch, _: &Context<'_>) {

@@ -56,10 +56,12 @@ fn build_flip(values: &Values, _: &Setup) -> Result<Rule, BuildError> {
     Ok(Rule::Samples(Box::new(SignFlip { channels: values.channels("channels")? })))
 }
 
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 struct SignFlip {
     channels: Channels,
 }
+
+octant_state::state! { SignFlip { values: ; parts: ; kept: channels } }
 
 impl SampleRule for SignFlip {
     fn on_epoch(&mut self, epoch: &mut Epoch, _: &Context<'_>) {
@@ -74,10 +76,12 @@ fn build_swap(values: &Values, _: &Setup) -> Result<Rule, BuildError> {
     Ok(Rule::Samples(Box::new(AxisSwap { channels: pair(values, "first", "second")? })))
 }
 
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 struct AxisSwap {
     channels: [usize; 2],
 }
+
+octant_state::state! { AxisSwap { values: ; parts: ; kept: channels } }
 
 impl SampleRule for AxisSwap {
     fn on_epoch(&mut self, epoch: &mut Epoch, _: &Context<'_>) {

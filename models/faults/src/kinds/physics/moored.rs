@@ -144,7 +144,7 @@ fn build_sway(values: &Values, setup: &Setup) -> Result<Rule, BuildError> {
     Ok(Rule::Plant(Box::new(sway)))
 }
 
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 struct Sway {
     angles: [f64; 3],
     angle_periods_s: [f64; 3],
@@ -153,6 +153,8 @@ struct Sway {
     edge_s: f64,
     stream: Stream,
 }
+
+octant_state::state! { Sway { values: ; parts: ; kept: angles, angle_periods_s, displacement, displacement_periods_s, edge_s, stream } }
 
 impl PlantRule for Sway {
     fn begin(&mut self, now: &Context<'_>, _: &Motor) -> Disturbance {

@@ -110,7 +110,7 @@ fn square(value: f64) -> f64 {
     value * value
 }
 
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 struct Random {
     psd: [f64; 3],
     rate: [f64; 3],
@@ -120,6 +120,8 @@ struct Random {
     edge_s: f64,
     streams: [Stream; 3],
 }
+
+octant_state::state! { Random { values: ; parts: ; kept: psd, rate, low_hz, bin_hz, lines, edge_s, streams } }
 
 impl Random {
     /// Amplitude of the acceleration of a line.

@@ -94,7 +94,7 @@ fn build(values: &Values, setup: &Setup) -> Result<Rule, BuildError> {
     })))
 }
 
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 struct DitherResidual {
     channels: Channels,
     amplitude_counts: f64,
@@ -110,6 +110,8 @@ struct DitherResidual {
     adder: Adder,
     onset: Onset,
 }
+
+octant_state::state! { DitherResidual { values: walked, sine, adder, onset; parts: ; kept: channels, amplitude_counts, cycles, phase_rad, walk, noise } }
 
 impl SampleRule for DitherResidual {
     fn on_epoch(&mut self, epoch: &mut Epoch, now: &Context<'_>) {

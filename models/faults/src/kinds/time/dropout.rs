@@ -49,13 +49,15 @@ fn build(values: &Values, setup: &Setup) -> Result<Rule, BuildError> {
     })))
 }
 
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 struct Dropout {
     loss: f64,
     keeps_aiding: bool,
     stream: Stream,
     kept: Option<Aiding>,
 }
+
+octant_state::state! { Dropout { values: kept; parts: ; kept: loss, keeps_aiding, stream } }
 
 impl DeliveryRule for Dropout {
     fn on_step(

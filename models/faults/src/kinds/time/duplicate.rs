@@ -52,7 +52,7 @@ fn build(values: &Values, setup: &Setup) -> Result<Rule, BuildError> {
     })))
 }
 
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 struct Duplicate {
     copies: usize,
     delay: u64,
@@ -60,7 +60,13 @@ struct Duplicate {
     queue: VecDeque<(u64, Epoch)>,
 }
 
+octant_state::state! { Duplicate { values: queue; parts: ; kept: copies, delay; check: Self::check_queue } }
+
 impl Duplicate {
+    fn check_queue(&mut self) -> Result<(), octant_state::StateError> {
+        super::check_queue(&mut self.queue)
+    }
+
     fn let_out(&mut self, out: &mut Vec<Epoch>) {
         if let Some((_, epoch)) = self.queue.pop_front() {
             out.extend(core::iter::repeat_n(epoch, self.copies));

@@ -59,13 +59,15 @@ fn build(values: &Values, setup: &Setup) -> Result<Rule, BuildError> {
     })))
 }
 
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 struct TimeJitter {
     clocks: Clocks,
     sigma_ns: f64,
     limit_ns: i64,
     noise: Stream,
 }
+
+octant_state::state! { TimeJitter { values: ; parts: ; kept: clocks, sigma_ns, limit_ns, noise } }
 
 impl SampleRule for TimeJitter {
     fn on_epoch(&mut self, epoch: &mut Epoch, now: &Context<'_>) {

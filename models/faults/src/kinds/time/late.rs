@@ -72,7 +72,7 @@ enum CatchUp {
     Overtaken,
 }
 
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 struct LateDelivery {
     delay: u64,
     catch_up: CatchUp,
@@ -80,7 +80,13 @@ struct LateDelivery {
     queue: VecDeque<(u64, Epoch)>,
 }
 
+octant_state::state! { LateDelivery { values: queue; parts: ; kept: delay, catch_up; check: Self::check_queue } }
+
 impl LateDelivery {
+    fn check_queue(&mut self) -> Result<(), octant_state::StateError> {
+        super::check_queue(&mut self.queue)
+    }
+
     fn hold(&mut self, until: u64, epoch: &Epoch, out: &mut Vec<Epoch>) {
         if self.queue.len() == FLIGHT_MAX {
             out.extend(self.queue.pop_front().map(|(_, oldest)| oldest));

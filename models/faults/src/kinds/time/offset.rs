@@ -43,11 +43,13 @@ fn build_offset(values: &Values, _: &Setup) -> Result<Rule, BuildError> {
     Ok(Rule::Samples(Box::new(TimeOffset { clocks, offset_ns })))
 }
 
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 struct TimeOffset {
     clocks: Clocks,
     offset_ns: i64,
 }
+
+octant_state::state! { TimeOffset { values: ; parts: ; kept: clocks, offset_ns } }
 
 impl SampleRule for TimeOffset {
     fn on_epoch(&mut self, epoch: &mut Epoch, now: &Context<'_>) {
@@ -87,12 +89,14 @@ fn build_step(values: &Values, _: &Setup) -> Result<Rule, BuildError> {
     Ok(Rule::Samples(Box::new(TimeStep { clocks, step_ns, error_ns: 0 })))
 }
 
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 struct TimeStep {
     clocks: Clocks,
     step_ns: i64,
     error_ns: i64,
 }
+
+octant_state::state! { TimeStep { values: error_ns; parts: ; kept: clocks, step_ns } }
 
 impl SampleRule for TimeStep {
     fn on_epoch(&mut self, epoch: &mut Epoch, now: &Context<'_>) {

@@ -134,7 +134,7 @@ fn rate(change: f64, values: &Values, setup: &Setup) -> Result<Rule, BuildError>
     })))
 }
 
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 struct WrongRate {
     clocks: Clocks,
     /// Error of the clock's rate.
@@ -149,6 +149,8 @@ struct WrongRate {
     gained_ns: i64,
     elapsed_ns: u64,
 }
+
+octant_state::state! { WrongRate { values: start_ns, left_ns, gained_ns, elapsed_ns; parts: ; kept: clocks, change, stays, period_ns } }
 
 impl WrongRate {
     fn error_ns(&self) -> i64 {

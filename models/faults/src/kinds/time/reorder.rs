@@ -55,7 +55,7 @@ fn build(values: &Values, setup: &Setup) -> Result<Rule, BuildError> {
     })))
 }
 
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 struct Reorder {
     window: usize,
     /// Random numbers, where the order is random.
@@ -64,7 +64,15 @@ struct Reorder {
     held: Vec<Epoch>,
 }
 
+octant_state::state! { Reorder { values: held; parts: ; kept: window, shuffle; check: Self::check_held } }
+
 impl Reorder {
+    fn check_held(&mut self) -> Result<(), octant_state::StateError> {
+        octant_state::check_below("held", self.held.len() as u64, self.window as u64 - 1)?;
+        self.held.reserve_exact(self.window - self.held.len());
+        Ok(())
+    }
+
     fn let_out(&mut self, out: &mut Vec<Epoch>) {
         match self.shuffle {
             Some(_) => out.extend_from_slice(&self.held),

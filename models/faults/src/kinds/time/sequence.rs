@@ -50,12 +50,14 @@ fn build(values: &Values, _: &Setup) -> Result<Rule, BuildError> {
     Ok(Rule::Samples(Box::new(SequenceGap { skip, stays: super::clock::stays(values)?, error: 0 })))
 }
 
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 struct SequenceGap {
     skip: i64,
     stays: bool,
     error: i64,
 }
+
+octant_state::state! { SequenceGap { values: error; parts: ; kept: skip, stays } }
 
 impl SampleRule for SequenceGap {
     fn on_epoch(&mut self, epoch: &mut Epoch, now: &Context<'_>) {

@@ -43,7 +43,7 @@ fn build(values: &Values, setup: &Setup) -> Result<Rule, BuildError> {
     })))
 }
 
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 struct DuplicateStamp {
     run: u64,
     period_ns: u64,
@@ -51,6 +51,8 @@ struct DuplicateStamp {
     nth: u64,
     stamp: DeviceTime,
 }
+
+octant_state::state! { DuplicateStamp { values: nth, stamp; parts: ; kept: run, period_ns; check: |rule: &Self| octant_state::check_below("nth", rule.nth, rule.run - 1) } }
 
 impl SampleRule for DuplicateStamp {
     fn on_epoch(&mut self, epoch: &mut Epoch, now: &Context<'_>) {

@@ -79,7 +79,7 @@ fn instead(values: &Values, place: fn(&Context<'_>) -> GimbalCommand) -> Result<
 }
 
 /// Goes to another place instead of to new positions.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 struct Instead {
     positions: i64,
     place: fn(&Context<'_>) -> GimbalCommand,
@@ -90,6 +90,8 @@ struct Instead {
     /// What the turntable gets, once a set point was replaced.
     instead: Option<GimbalCommand>,
 }
+
+octant_state::state! { Instead { values: left, ordered, instead; parts: ; kept: positions, place } }
 
 impl CommandRule for Instead {
     fn on_command(&mut self, command: &mut GimbalCommand, now: &Context<'_>) {
@@ -149,12 +151,14 @@ fn build_direction(values: &Values, _: &Setup) -> Result<Rule, BuildError> {
     })))
 }
 
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 struct WrongDirection {
     azimuth: bool,
     roll: bool,
     pivot: GimbalCommand,
 }
+
+octant_state::state! { WrongDirection { values: pivot; parts: ; kept: azimuth, roll } }
 
 impl CommandRule for WrongDirection {
     fn on_command(&mut self, command: &mut GimbalCommand, now: &Context<'_>) {
@@ -204,12 +208,34 @@ fn build_late(values: &Values, setup: &Setup) -> Result<Rule, BuildError> {
     Ok(Rule::Command(Box::new(CommandLate { ring, next: 0 })))
 }
 
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 struct CommandLate {
     /// The last set points, as many as the delay has epochs.
     ring: Vec<GimbalCommand>,
     /// The oldest of them.
     next: usize,
+}
+
+impl octant_state::State for CommandLate {
+    fn save(&self, to: &mut octant_state::Writer) {
+        let Self { ring, next } = self;
+        to.value("next", next);
+        for command in ring {
+            to.value("command", command);
+        }
+    }
+
+    fn load(
+        &mut self,
+        from: &mut octant_state::Reader<'_>,
+    ) -> Result<(), octant_state::StateError> {
+        self.next = from.value("next")?;
+        octant_state::check_below("next", self.next as u64, self.ring.len() as u64 - 1)?;
+        for command in &mut self.ring {
+            *command = from.value("command")?;
+        }
+        Ok(())
+    }
 }
 
 impl CommandRule for CommandLate {
@@ -242,10 +268,12 @@ fn build_lost(_: &Values, _: &Setup) -> Result<Rule, BuildError> {
     Ok(Rule::Command(Box::new(CommandLost { held: GimbalCommand::default() })))
 }
 
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 struct CommandLost {
     held: GimbalCommand,
 }
+
+octant_state::state! { CommandLost { values: held; parts: ; kept:  } }
 
 impl CommandRule for CommandLost {
     fn on_command(&mut self, command: &mut GimbalCommand, now: &Context<'_>) {

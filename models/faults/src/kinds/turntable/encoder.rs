@@ -72,11 +72,13 @@ fn build_index(values: &Values, _: &Setup) -> Result<Rule, BuildError> {
     Ok(Rule::Plant(Box::new(IndexLoss { gimbal, flagged })))
 }
 
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 struct IndexLoss {
     gimbal: Gimbal,
     flagged: bool,
 }
+
+octant_state::state! { IndexLoss { values: ; parts: ; kept: gimbal, flagged } }
 
 impl PlantRule for IndexLoss {
     fn begin(&mut self, _: &Context<'_>, motor: &Motor) -> Disturbance {

@@ -34,10 +34,12 @@ fn build_restart(_: &Values, _: &Setup) -> Result<Rule, BuildError> {
 }
 
 /// One event at each onset.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Once {
     pub(super) event: UnitEvent,
 }
+
+octant_state::state! { Once { values: ; parts: ; kept: event } }
 
 impl UnitRule for Once {
     fn on_epoch(&mut self, now: &Context<'_>) -> Option<UnitEvent> {
@@ -66,8 +68,10 @@ fn build_brown_out(_: &Values, _: &Setup) -> Result<Rule, BuildError> {
     Ok(Rule::Unit(Box::new(BrownOut)))
 }
 
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 struct BrownOut;
+
+octant_state::state! { BrownOut { values: ; parts: ; kept: } }
 
 impl UnitRule for BrownOut {
     fn on_epoch(&mut self, _: &Context<'_>) -> Option<UnitEvent> {

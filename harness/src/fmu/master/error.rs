@@ -1,0 +1,88 @@
+//! Why FMUs can't be run together any further.
+
+use super::solve::SolveError;
+use crate::fmu::instance::InstanceError;
+
+/// Why a system can't go on. What was recorded before is kept.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum MasterError {
+    /// An FMU failed.
+    #[error("{node} failed at {time_s} s: {error}")]
+    Instance {
+        /// Its name in the system.
+        node: String,
+        /// Where the system was, s.
+        time_s: f64,
+        /// What it says.
+        error: InstanceError,
+    },
+    /// A value can't be what it would have to be.
+    #[error("the connection {source_name} -> {target} can't carry {value} at {time_s} s: {reason}")]
+    Value {
+        /// The output.
+        source_name: String,
+        /// The input.
+        target: String,
+        /// The value of the output.
+        value: f64,
+        /// Where the system was, s.
+        time_s: f64,
+        /// Why not.
+        reason: String,
+    },
+    /// An FMU refused a value that no fault has altered.
+    #[error("{target} refused {value} at {time_s} s{said}")]
+    Refused {
+        /// The input.
+        target: String,
+        /// The value.
+        value: f64,
+        /// Where the system was, s.
+        time_s: f64,
+        /// What the FMU logged, after a colon; else empty.
+        said: String,
+    },
+    /// Values depend on themselves, and no solution was found.
+    #[error(
+        "the initial values of {} depend on each other, and {reason}: start values nearer to the \
+         solution, or an FMU between them that doesn't answer at once, may help",
+        .variables.join(" -> ")
+    )]
+    Loop {
+        /// The variables on the way around.
+        variables: Vec<String>,
+        /// What the iteration came to.
+        reason: String,
+    },
+    /// An FMU discarded a step, and it can't be made in parts.
+    #[error("{node} discarded the step from {time_s} s to {end_s} s{said}; {reason}")]
+    Discarded {
+        /// The FMU that refused.
+        node: String,
+        /// Start of the step, s.
+        time_s: f64,
+        /// Its end, s.
+        end_s: f64,
+        /// What the FMU logged, after a colon; else empty.
+        said: String,
+        /// Why no smaller step is made.
+        reason: String,
+    },
+}
+
+impl MasterError {
+    /// What an iteration came to.
+    pub(super) fn of_loop(variables: Vec<String>, error: SolveError<Self>) -> Self {
+        let reason = match error {
+            SolveError::Failed(error) => return error,
+            SolveError::NotSettled(residual) if residual.is_finite() => {
+                format!("after all iterations they still change by {residual:.1e} of their size")
+            }
+            SolveError::NotSettled(_) | SolveError::NotFinite => {
+                "the iteration leads to a value that is not finite".to_owned()
+            }
+            SolveError::Singular => "they have no single solution".to_owned(),
+        };
+        Self::Loop { variables, reason }
+    }
+}

@@ -1,0 +1,570 @@
+//! FMUs stepped together: transfers, steps, and what is done when one refuses.
+//!
+//! Step n goes from communication point n − 1 to point n, which is at start + n · step. In the
+//! order of Jacobi all transfers of a step come first, and every FMU steps from the values at point
+//! n − 1. In that of Gauss-Seidel an FMU's transfers come just before it steps: from those before it
+//! in the order it gets values of point n.
+//!
+//! An FMU that discards a step makes all of them go back to the states that they had at its
+//! beginning, and the step is made in parts: up to where the FMU came, or halves. Values are
+//! transferred between the parts; faults don't move on until the step is whole.
+
+use super::error::MasterError;
+use super::faults::Faulting;
+use super::initialize::{Initializer, Loop};
+use super::solve::Limits;
+use super::system::{Side, System};
+use crate::fmu::description::Interface;
+use crate::fmu::instance::{Instance, InstanceError, Outcome, Stepped};
+use octant_faults::connection::Station;
+
+/// How FMUs are stepped.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Settings {
+    /// The FMUs in their order.
+    pub order: Vec<usize>,
+    /// All step from the same values.
+    pub jacobi: bool,
+    /// Start, s.
+    pub start_s: f64,
+    /// Communication step, s.
+    pub step_s: f64,
+    /// Number of steps.
+    pub steps: u64,
+    /// Relative tolerance that FMUs are told.
+    pub tolerance: Option<f64>,
+    /// When loops are given up.
+    pub loops: Limits,
+    /// How often a step may be halved.
+    pub halvings: u32,
+}
+
+/// What can be done with an FMU.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Abilities {
+    /// It keeps its states and goes back to them.
+    pub state: bool,
+    /// Its steps may have any length.
+    pub variable_step: bool,
+}
+
+impl Abilities {
+    /// Of an interface that is used; model exchange is integrated over steps of any length.
+    #[must_use]
+    pub const fn of(interface: &Interface, model_exchange: bool) -> Self {
+        Self { state: interface.state, variable_step: interface.variable_step || model_exchange }
+    }
+}
+
+/// What happened to an FMU in a run.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counts {
+    /// Steps that it discarded.
+    pub discarded: u64,
+    /// Values that it refused; each is altered by a fault.
+    pub refused: u64,
+}
+
+/// FMUs that run together.
+pub struct Simulation<'a> {
+    system: &'a System,
+    settings: &'a Settings,
+    instances: Vec<Box<dyn Instance>>,
+    abilities: Vec<Abilities>,
+    /// Faults on wires; elements are the numbers of the wires.
+    faulting: Option<Faulting>,
+    inputs: Vec<Vec<f64>>,
+    outputs: Vec<Vec<f64>>,
+    /// Outputs at the beginning of a part.
+    before: Vec<Vec<f64>>,
+    /// Wires into each FMU.
+    into: Vec<Vec<usize>>,
+    /// Wires that have faults.
+    faulted: Vec<bool>,
+    /// The step in which each wire was transferred last.
+    transferred: Vec<u64>,
+    /// What each input got at the beginning of the step.
+    delivered: Vec<f64>,
+    /// Kept states, one for each FMU, while a part is made.
+    states: Vec<u64>,
+    rolls_back: bool,
+    /// Steps done.
+    step: u64,
+    /// How many of the faults' hands have come.
+    fired: usize,
+    counts: Vec<Counts>,
+    /// Parts of steps that were made anew.
+    rejected: u64,
+    loops: Vec<Loop>,
+}
+
+/// How an attempt at a step, or a part of one, ended.
+enum Attempt {
+    Done { ended_by: Option<usize> },
+    Discarded { node: usize, reached_s: f64 },
+}
+
+impl<'a> Simulation<'a> {
+    /// FMUs that were instantiated and have their parameters, in the order of the system's nodes.
+    #[must_use]
+    pub fn new(
+        system: &'a System,
+        settings: &'a Settings,
+        instances: Vec<Box<dyn Instance>>,
+        abilities: Vec<Abilities>,
+        faulting: Option<Faulting>,
+    ) -> Self {
+        let nodes = &system.nodes;
+        let numbers = |side: fn(&super::system::Node) -> &Side| -> Vec<Vec<f64>> {
+            nodes.iter().map(|node| vec![0.0; side(node).plan.elements]).collect()
+        };
+        let mut into = vec![Vec::new(); nodes.len()];
+        for (number, wire) in system.wires.iter().enumerate() {
+            into[wire.to.node].push(number);
+        }
+        let wires = system.wires.len();
+        let has_fault =
+            |wire: usize| faulting.as_ref().is_some_and(|faulting| faulting.station.is_on(wire));
+        let able = |of: fn(&Abilities) -> bool| abilities.iter().all(of);
+        Self {
+            inputs: numbers(|node| &node.inputs),
+            outputs: numbers(|node| &node.outputs),
+            before: numbers(|node| &node.outputs),
+            into,
+            faulted: (0..wires).map(has_fault).collect(),
+            transferred: vec![0; wires],
+            delivered: vec![0.0; wires],
+            states: Vec::with_capacity(nodes.len()),
+            rolls_back: able(|one| one.state) && able(|one| one.variable_step),
+            step: 0,
+            fired: 0,
+            counts: vec![Counts::default(); nodes.len()],
+            rejected: 0,
+            loops: Vec::new(),
+            system,
+            settings,
+            instances,
+            abilities,
+            faulting,
+        }
+    }
+
+    /// Time of a communication point, s. A product: sums would add up their roundings.
+    #[must_use]
+    pub fn time_s(&self, point: u64) -> f64 {
+        self.settings.start_s + point as f64 * self.settings.step_s
+    }
+
+    /// Steps done.
+    #[must_use]
+    pub const fn steps(&self) -> u64 {
+        self.step
+    }
+
+    /// What connected inputs got at the beginning of the last step, in the order of the wires.
+    #[must_use]
+    pub fn delivered(&self) -> &[f64] {
+        &self.delivered
+    }
+
+    /// Numbers of the connected inputs of an FMU.
+    #[must_use]
+    pub fn inputs(&self, node: usize) -> &[f64] {
+        &self.inputs[node]
+    }
+
+    /// Numbers of the connected outputs of an FMU.
+    #[must_use]
+    pub fn outputs(&self, node: usize) -> &[f64] {
+        &self.outputs[node]
+    }
+
+    /// Values of the connected outputs in the order of the wires.
+    pub fn sources(&self) -> impl Iterator<Item = f64> + '_ {
+        self.system.wires.iter().map(|wire| self.outputs[wire.from.node][wire.from.place])
+    }
+
+    /// The loops that were found in the initialization.
+    #[must_use]
+    pub fn loops(&self) -> &[Loop] {
+        &self.loops
+    }
+
+    /// What happened to each FMU.
+    #[must_use]
+    pub fn counts(&self) -> &[Counts] {
+        &self.counts
+    }
+
+    /// Parts of steps that were made anew, because an FMU discarded them.
+    #[must_use]
+    pub const fn rejected(&self) -> u64 {
+        self.rejected
+    }
+
+    /// The faults.
+    pub fn station(&mut self) -> Option<&mut Station> {
+        self.faulting.as_mut().map(|faulting| &mut faulting.station)
+    }
+
+    /// The instances.
+    pub fn instances(&mut self) -> &mut [Box<dyn Instance>] {
+        &mut self.instances
+    }
+
+    fn failed(&self, node: usize, time_s: f64) -> impl Fn(InstanceError) -> MasterError + use<> {
+        let node = self.system.nodes[node].name.clone();
+        move |error| MasterError::Instance { node: node.clone(), time_s, error }
+    }
+
+    /// Initializes all FMUs; the number of one that wants the simulation to end at once.
+    ///
+    /// # Errors
+    /// If one fails, or a loop can't be solved.
+    pub fn initialize(&mut self) -> Result<Option<usize>, MasterError> {
+        let settings = self.settings;
+        let start_s = settings.start_s;
+        let stop_s = Some(self.time_s(settings.steps));
+        for node in 0..self.instances.len() {
+            let entered =
+                self.instances[node].enter_initialization(start_s, stop_s, settings.tolerance);
+            entered.map_err(self.failed(node, start_s))?;
+        }
+        let initializer = Initializer {
+            system: self.system,
+            instances: &mut self.instances,
+            inputs: &mut self.inputs,
+            outputs: &mut self.outputs,
+            start_s,
+        };
+        self.loops = initializer.run(&settings.loops)?;
+        self.carry_texts(None, start_s)?;
+        let mut ended_by = None;
+        for node in 0..self.instances.len() {
+            let ended = self.instances[node].exit_initialization();
+            if ended.map_err(self.failed(node, start_s))? {
+                ended_by.get_or_insert(node);
+            }
+        }
+        for node in 0..self.instances.len() {
+            let groups = &self.system.nodes[node].outputs.plan.groups;
+            let mut rest = self.outputs[node].as_mut_slice();
+            for group in groups {
+                let (these, others) = rest.split_at_mut(group.elements);
+                let got = self.instances[node].get(group, these);
+                rest = others;
+                got.map_err(|error| MasterError::Instance {
+                    node: self.system.nodes[node].name.clone(),
+                    time_s: start_s,
+                    error,
+                })?;
+            }
+        }
+        Ok(ended_by)
+    }
+
+    /// Makes one step; the number of an FMU that wants the simulation to end after it.
+    ///
+    /// # Errors
+    /// If an FMU fails, or refuses the step in whole and in parts.
+    pub fn advance(&mut self) -> Result<Option<usize>, MasterError> {
+        let (start_s, end_s) = (self.time_s(self.step), self.time_s(self.step + 1));
+        self.step += 1;
+        self.begin_faults();
+        let mut ended_by = None;
+        let mut time_s = start_s;
+        // The whole step as it was told: a difference of times would be rounded.
+        let mut length_s = self.settings.step_s;
+        loop {
+            let last = time_s + length_s >= end_s
+                || (time_s == start_s && length_s == self.settings.step_s);
+            if self.rolls_back {
+                self.keep(time_s)?;
+            }
+            match self.attempt(time_s, length_s)? {
+                Attempt::Done { ended_by: node } => {
+                    ended_by = ended_by.or(node);
+                    if self.rolls_back {
+                        self.forget(time_s)?;
+                    }
+                    if last {
+                        return Ok(ended_by);
+                    }
+                    time_s += length_s;
+                    length_s = end_s - time_s;
+                }
+                Attempt::Discarded { node, reached_s } => {
+                    self.counts[node].discarded += 1;
+                    self.rejected += 1;
+                    length_s = self.shorter(node, time_s, length_s, reached_s)?;
+                    self.go_back(time_s)?;
+                }
+            }
+        }
+    }
+
+    /// Triggers are looked at, with the outputs at the beginning of the step.
+    fn begin_faults(&mut self) {
+        let Some(faulting) = &mut self.faulting else { return };
+        while let Some((_, id)) = faulting.fires.get(self.fired).filter(|(at, _)| *at == self.step)
+        {
+            faulting.station.fire(id);
+            self.fired += 1;
+        }
+        let (conditions, outputs) = (&faulting.conditions, &self.outputs);
+        faulting.station.begin(|fault| {
+            let condition = conditions.get(fault).copied().flatten()?;
+            condition.holds(outputs[condition.spot.node][condition.spot.place])
+        });
+    }
+
+    /// All transfers, and all FMUs over a time.
+    fn attempt(&mut self, time_s: f64, length_s: f64) -> Result<Attempt, MasterError> {
+        let settings = self.settings;
+        let mut ended_by = None;
+        if settings.jacobi {
+            for node in 0..self.instances.len() {
+                self.transfer(node, time_s)?;
+            }
+            self.carry_texts(None, time_s)?;
+        }
+        for node in &settings.order {
+            if !settings.jacobi {
+                self.transfer(*node, time_s)?;
+                self.carry_texts(Some(*node), time_s)?;
+            }
+            let stepped = self.exchange(*node, time_s, length_s)?;
+            match stepped.outcome {
+                Outcome::Discarded if !stepped.terminate => {
+                    return Ok(Attempt::Discarded { node: *node, reached_s: stepped.time_s });
+                }
+                _ if stepped.terminate => ended_by = ended_by.or(Some(*node)),
+                _ => {}
+            }
+        }
+        Ok(Attempt::Done { ended_by })
+    }
+
+    /// The values of the wires into an FMU.
+    fn transfer(&mut self, node: usize, time_s: f64) -> Result<(), MasterError> {
+        for number in &self.into[node] {
+            let wire = &self.system.wires[*number];
+            let value = self.outputs[wire.from.node][wire.from.place];
+            let mut value = wire.convert(value, time_s)?;
+            let again = std::mem::replace(&mut self.transferred[*number], self.step) == self.step;
+            if self.faulted[*number]
+                && let Some(faulting) = &mut self.faulting
+            {
+                value = faulting.station.transfer(*number, value, again);
+            }
+            if !again {
+                self.delivered[*number] = value;
+            }
+            self.inputs[node][wire.to.place] = value;
+        }
+        Ok(())
+    }
+
+    /// Texts and bytes, into one FMU or all.
+    fn carry_texts(&mut self, only: Option<usize>, time_s: f64) -> Result<(), MasterError> {
+        for wire in &self.system.texts {
+            let (from, to) = (wire.from.0, wire.to.0);
+            if only.is_some_and(|only| only != to) {
+                continue;
+            }
+            if wire.binary {
+                let value = self.instances[from].get_binaries(&wire.from.1);
+                let value = value.map_err(self.failed(from, time_s))?;
+                let set = self.instances[to].set_binaries(&wire.to.1, &value);
+                set.map_err(self.failed(to, time_s))?;
+            } else {
+                let value = self.instances[from].get_strings(&wire.from.1);
+                let value = value.map_err(self.failed(from, time_s))?;
+                let set = self.instances[to].set_strings(&wire.to.1, &value);
+                set.map_err(self.failed(to, time_s))?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Sets the inputs of an FMU, steps it, and gets its outputs.
+    fn exchange(
+        &mut self,
+        node: usize,
+        time_s: f64,
+        length_s: f64,
+    ) -> Result<Stepped, MasterError> {
+        let sides = &self.system.nodes[node];
+        let (set, get) = (&sides.inputs.plan.groups, &sides.outputs.plan.groups);
+        let (inputs, outputs) = (&self.inputs[node], &mut self.outputs[node]);
+        let instance = &mut self.instances[node];
+        match instance.exchange(set, inputs, time_s, length_s, get, outputs) {
+            Ok(stepped) => Ok(stepped),
+            Err(error) if is_refusal(&error) => {
+                self.set_one_by_one(node, time_s)?;
+                let outputs = &mut self.outputs[node];
+                let stepped =
+                    self.instances[node].exchange(&[], &[], time_s, length_s, get, outputs);
+                stepped.map_err(self.failed(node, time_s))
+            }
+            Err(error) => Err(self.failed(node, time_s)(error)),
+        }
+    }
+
+    /// The FMU refused some of its inputs: finds out which. One that a fault has altered keeps the
+    /// value before.
+    #[cold]
+    fn set_one_by_one(&mut self, node: usize, time_s: f64) -> Result<(), MasterError> {
+        let side = &self.system.nodes[node].inputs;
+        for (number, range) in side.variables.iter().zip(&side.plan.places) {
+            let instance = &mut self.instances[node];
+            let description = instance.description();
+            let group =
+                crate::fmu::instance::Group::of(description, &description.variables[*number]);
+            let set =
+                group.and_then(|group| instance.set(&group, &self.inputs[node][range.clone()]));
+            let error = match set {
+                Ok(()) => continue,
+                Err(error) if is_refusal(&error) => error,
+                Err(error) => return Err(self.failed(node, time_s)(error)),
+            };
+            let wires = self.into[node]
+                .iter()
+                .filter(|wire| range.contains(&self.system.wires[**wire].to.place));
+            let wires: Vec<usize> = wires.copied().collect();
+            let acts = |wire: &&usize| {
+                self.faulting.as_ref().is_some_and(|faulting| faulting.station.acts_on(**wire))
+            };
+            if wires.iter().any(|wire| acts(&wire)) {
+                self.counts[node].refused += 1;
+                continue;
+            }
+            let said = match error {
+                InstanceError::Failed { said, .. } => said,
+                _ => String::new(),
+            };
+            let wire = wires.first().map(|wire| &self.system.wires[*wire]);
+            return Err(MasterError::Refused {
+                target: wire.map_or_else(String::new, |wire| wire.target.clone()),
+                value: wire.map_or(f64::NAN, |wire| self.inputs[node][wire.to.place]),
+                time_s,
+                said,
+            });
+        }
+        Ok(())
+    }
+
+    /// Keeps the states of all FMUs.
+    fn keep(&mut self, time_s: f64) -> Result<(), MasterError> {
+        self.states.clear();
+        for node in 0..self.instances.len() {
+            let state = self.instances[node].keep_state().map_err(self.failed(node, time_s))?;
+            self.states.push(state);
+            self.before[node].copy_from_slice(&self.outputs[node]);
+        }
+        Ok(())
+    }
+
+    fn forget(&mut self, time_s: f64) -> Result<(), MasterError> {
+        for node in 0..self.states.len() {
+            let state = self.states[node];
+            self.instances[node].forget_state(state).map_err(self.failed(node, time_s))?;
+        }
+        self.states.clear();
+        Ok(())
+    }
+
+    /// All FMUs go back to their kept states.
+    fn go_back(&mut self, time_s: f64) -> Result<(), MasterError> {
+        for node in 0..self.states.len() {
+            let state = self.states[node];
+            self.instances[node].restore_state(state).map_err(self.failed(node, time_s))?;
+            self.outputs[node].copy_from_slice(&self.before[node]);
+        }
+        self.forget(time_s)
+    }
+
+    /// Length of a shorter part after a step was discarded.
+    fn shorter(
+        &mut self,
+        node: usize,
+        time_s: f64,
+        length_s: f64,
+        reached_s: f64,
+    ) -> Result<f64, MasterError> {
+        let reason = if self.rolls_back {
+            // As far as it came, if that is a part worth making.
+            let came_s = reached_s - time_s;
+            let shorter = if came_s > 0.0 && came_s < length_s { came_s } else { length_s / 2.0 };
+            let smallest = self.settings.step_s * 0.5f64.powi(self.settings.halvings as i32);
+            if shorter >= smallest {
+                return Ok(shorter);
+            }
+            format!("parts of less than {smallest} s are not tried")
+        } else {
+            let unable = |can: fn(&Abilities) -> bool| -> Vec<&str> {
+                let unable = self.abilities.iter().zip(&self.system.nodes);
+                unable.filter(|(one, _)| !can(one)).map(|(_, node)| node.name.as_str()).collect()
+            };
+            let mut reasons = Vec::new();
+            let no_state = unable(|one| one.state);
+            if !no_state.is_empty() {
+                reasons.push(format!("{} can't go back to a kept state", no_state.join(" and ")));
+            }
+            let no_step = unable(|one| one.variable_step);
+            if !no_step.is_empty() {
+                reasons.push(format!("{} can't make shorter steps", no_step.join(" and ")));
+            }
+            reasons.join("; ")
+        };
+        let messages = self.instances[node].messages();
+        let last = messages.iter().rev().find(|message| message.status != "ok");
+        Err(MasterError::Discarded {
+            node: self.system.nodes[node].name.clone(),
+            time_s,
+            end_s: time_s + length_s,
+            said: last.map_or_else(String::new, |message| format!(": {}", message.text.trim())),
+            reason,
+        })
+    }
+
+    /// Gets the outputs of an FMU that go nowhere.
+    ///
+    /// # Errors
+    /// If it fails.
+    pub fn watched(&mut self, node: usize, numbers: &mut [f64]) -> Result<(), MasterError> {
+        let time_s = self.time_s(self.step);
+        let mut rest = numbers;
+        for group in &self.system.nodes[node].watched.plan.groups {
+            let (these, others) = rest.split_at_mut(group.elements);
+            self.instances[node].get(group, these).map_err(self.failed(node, time_s))?;
+            rest = others;
+        }
+        Ok(())
+    }
+
+    /// Ends all FMUs in order.
+    ///
+    /// # Errors
+    /// If one fails; the others are ended all the same.
+    pub fn terminate(&mut self) -> Result<(), MasterError> {
+        let time_s = self.time_s(self.step);
+        let mut first = Ok(());
+        for node in 0..self.instances.len() {
+            let ended = self.instances[node].terminate().map_err(self.failed(node, time_s));
+            if first.is_ok() {
+                first = ended;
+            }
+        }
+        first
+    }
+}
+
+/// A value was refused, and nothing else is wrong.
+fn is_refusal(error: &InstanceError) -> bool {
+    matches!(
+        error,
+        InstanceError::Failed { function, status, .. }
+            if status == "discard" && (function.starts_with("fmi2Set") || function.starts_with("fmi3Set"))
+    )
+}

@@ -1,0 +1,500 @@
+//! From wires between names to wires between numbers: connectors found in the descriptions of the
+//! FMUs, with what happens to values on the way.
+
+use super::convert::{Conversion, Terminal, Unit};
+use super::flat::{Flat, FlatComponent, FlatWire, Port};
+use super::ssp::SspError;
+use super::ssp::structure::{Connector, ConnectorKind, Structure};
+use super::values::{is_numeric, kind_name};
+use crate::fmu::description::{Causality, Description, Kind, Variability, Variable};
+use crate::fmu::instance::{Group, InstanceError, Plan};
+use crate::scenario::suggestion;
+
+/// A system of FMUs, ready to be initialized.
+#[derive(Clone, Debug)]
+pub struct System {
+    /// The FMUs.
+    pub nodes: Vec<Node>,
+    /// Every number that goes from an FMU to another at each communication point.
+    pub wires: Vec<Wire>,
+    /// Numbers that go from calculated parameters to parameters, during initialization alone.
+    pub fixed: Vec<Wire>,
+    /// Texts and bytes on their way.
+    pub texts: Vec<TextWire>,
+}
+
+/// An FMU of a system.
+#[derive(Clone, Debug)]
+pub struct Node {
+    /// Its name in the system.
+    pub name: String,
+    /// Variables that get values at every communication point.
+    pub inputs: Side,
+    /// Variables that get values during initialization alone.
+    pub fixed: Side,
+    /// Variables whose values go to others.
+    pub outputs: Side,
+    /// Outputs whose values go nowhere but into the recording.
+    pub watched: Side,
+}
+
+/// Variables of an FMU that are exchanged together, and where their numbers lie.
+#[derive(Clone, Debug, Default)]
+pub struct Side {
+    /// Numbers of the variables in the description.
+    pub variables: Vec<usize>,
+    /// Groups and places.
+    pub plan: Plan,
+}
+
+/// Where a number lies: which FMU, and its place on that side.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Spot {
+    /// Number of the FMU.
+    pub node: usize,
+    /// Place among the numbers of the side.
+    pub place: usize,
+}
+
+/// A number on its way from an output to an input.
+#[derive(Clone, Debug)]
+pub struct Wire {
+    /// Where it comes from.
+    pub from: Spot,
+    /// Where it goes.
+    pub to: Spot,
+    /// What happens to it.
+    pub conversion: Conversion,
+    /// Name of the output: `plant.imu.valid`, with the element of an array: `plant.x[2]`.
+    pub source: String,
+    /// Name of the input.
+    pub target: String,
+    /// Unit of the input.
+    pub unit: Option<Unit>,
+    /// Values and names of the input's enumeration.
+    pub items: Vec<(i64, String)>,
+}
+
+/// A text, or bytes, on their way.
+#[derive(Clone, Debug)]
+pub struct TextWire {
+    /// FMU and variable that it comes from.
+    pub from: (usize, Group),
+    /// FMU and variable that it goes to.
+    pub to: (usize, Group),
+    /// The bytes of a Binary.
+    pub binary: bool,
+    /// Name of the output.
+    pub source: String,
+    /// Name of the input.
+    pub target: String,
+}
+
+/// Elements of a variable that a connector stands for.
+struct Found<'a> {
+    number: usize,
+    variable: &'a Variable,
+    /// First element and how many; of a scalar 0 and 1.
+    first: usize,
+    count: usize,
+}
+
+impl System {
+    /// Finds the connectors of a system in the descriptions of its FMUs, in their order. Variables
+    /// in `also` are got at every step though nothing may be connected to them.
+    ///
+    /// # Errors
+    /// If a connector isn't there, or is another than the structure says, or values can't go the
+    /// way that they should.
+    pub fn new(
+        structure: &Structure,
+        flat: &Flat,
+        descriptions: &[&Description],
+        also: &[(usize, String)],
+    ) -> Result<Self, SspError> {
+        let builder = Builder { structure, flat, descriptions };
+        for (number, component) in flat.components.iter().enumerate() {
+            for connector in &component.connectors {
+                builder.check(number, component, connector)?;
+            }
+        }
+        // Which variables are on which side of each FMU.
+        let mut sides = vec![[const { Vec::new() }; 3]; descriptions.len()];
+        let mut add = |port: &Port, side: usize| -> Result<(), SspError> {
+            let found = builder.find(port)?;
+            let list: &mut Vec<usize> = &mut sides[port.component][side];
+            if is_numeric(found.variable.kind) && !list.contains(&found.number) {
+                list.push(found.number);
+            }
+            Ok(())
+        };
+        for wire in &flat.wires {
+            add(&wire.from, 2)?;
+            add(&wire.to, if is_fixed(wire) { 1 } else { 0 })?;
+        }
+        for (component, connector) in also {
+            add(&Port { component: *component, connector: connector.clone() }, 2)?;
+        }
+        let mut nodes = Vec::with_capacity(descriptions.len());
+        for ((component, description), [inputs, fixed, outputs]) in
+            flat.components.iter().zip(descriptions).zip(sides)
+        {
+            let watched = description.variables.iter().enumerate().filter(|(number, variable)| {
+                variable.causality == Causality::Output
+                    && is_numeric(variable.kind)
+                    && !outputs.contains(number)
+            });
+            let watched = watched.map(|(number, _)| number).collect();
+            let side = |variables: Vec<usize>| {
+                Side::new(description, variables)
+                    .map_err(|error| builder.of_component(component, error.to_string()))
+            };
+            nodes.push(Node {
+                name: component.name.clone(),
+                inputs: side(inputs)?,
+                fixed: side(fixed)?,
+                outputs: side(outputs)?,
+                watched: side(watched)?,
+            });
+        }
+        let mut system = Self { nodes, wires: Vec::new(), fixed: Vec::new(), texts: Vec::new() };
+        for wire in &flat.wires {
+            builder.wire(wire, &mut system)?;
+        }
+        Ok(system)
+    }
+}
+
+impl System {
+    /// Where a number lies that is got at every step, and its variable.
+    #[must_use]
+    pub fn output<'a>(
+        &self,
+        node: usize,
+        name: &str,
+        description: &'a Description,
+    ) -> Option<(Spot, &'a Variable)> {
+        let found = find(description, name).ok().filter(|found| found.count == 1)?;
+        let place = self.nodes.get(node)?.outputs.place(found.number)? + found.first;
+        Some((Spot { node, place }, found.variable))
+    }
+}
+
+/// It carries values during initialization alone.
+fn is_fixed(wire: &FlatWire) -> bool {
+    wire.to_kind == ConnectorKind::Parameter
+}
+
+impl Side {
+    /// The variables of these numbers.
+    ///
+    /// # Errors
+    /// If the size of an array can't be told.
+    pub fn new(description: &Description, variables: Vec<usize>) -> Result<Self, InstanceError> {
+        let list: Vec<&Variable> =
+            variables.iter().map(|number| &description.variables[*number]).collect();
+        let plan = Plan::new(description, &list)?;
+        Ok(Self { variables, plan })
+    }
+
+    /// Place of the first element of a variable.
+    fn place(&self, number: usize) -> Option<usize> {
+        let at = self.variables.iter().position(|known| *known == number)?;
+        Some(self.plan.places.get(at)?.start)
+    }
+}
+
+struct Builder<'a> {
+    structure: &'a Structure,
+    flat: &'a Flat,
+    descriptions: &'a [&'a Description],
+}
+
+impl<'a> Builder<'a> {
+    fn error(&self, line: u32, element: String, message: String) -> SspError {
+        SspError { file: self.structure.file.clone(), line: Some(line), element, message }
+    }
+
+    fn of_component(&self, component: &FlatComponent, message: String) -> SspError {
+        self.error(component.line, format!("Component {:?}", component.name), message)
+    }
+
+    /// The connector is a variable of the FMU, and of the kind and type that the structure says.
+    fn check(
+        &self,
+        number: usize,
+        component: &FlatComponent,
+        connector: &Connector,
+    ) -> Result<(), SspError> {
+        let port = Port { component: number, connector: connector.name.clone() };
+        let element = format!("Connector {:?} of {}", connector.name, component.name);
+        let error = |message: String| self.error(connector.line, element.clone(), message);
+        let found = self.find(&port)?;
+        let variable = found.variable;
+        use ConnectorKind as Of;
+        let fits = match connector.kind {
+            Of::Input => variable.causality == Causality::Input,
+            Of::Output => variable.causality == Causality::Output,
+            Of::Parameter => variable.causality == Causality::Parameter,
+            Of::CalculatedParameter => variable.causality == Causality::CalculatedParameter,
+            Of::StructuralParameter => variable.causality == Causality::StructuralParameter,
+            Of::Constant => variable.variability == Variability::Constant,
+            Of::Local => variable.causality == Causality::Local,
+        };
+        if !fits {
+            return Err(error(format!(
+                "it is of kind {}, and the variable of {} has causality {:?}",
+                connector.kind.name(),
+                component.source,
+                variable.causality
+            )));
+        }
+        if !connector.dimensions.is_empty() {
+            let sizes: Option<Vec<u64>> = connector.dimensions.iter().copied().collect();
+            let count: Option<u64> = sizes.map(|sizes| sizes.iter().product());
+            if count.is_some_and(|count| count != found.count as u64) {
+                return Err(error(format!(
+                    "it has {} elements, and the variable of {} has {}",
+                    count.unwrap_or_default(),
+                    component.source,
+                    found.count
+                )));
+            }
+        }
+        let Some(of_type) = &connector.of_type else { return Ok(()) };
+        let whole = is_numeric(variable.kind)
+            && !matches!(variable.kind, Kind::Boolean | Kind::Float64 | Kind::Float32);
+        let fits = match of_type.name.as_str() {
+            // SSP 1.0 has one name for all of a sort.
+            "Real" => matches!(variable.kind, Kind::Float64 | Kind::Float32),
+            "Integer" => whole,
+            _ => variable.kind == of_type.kind,
+        };
+        if !fits {
+            return Err(error(format!(
+                "it is of type {}, and the variable of {} is a {}",
+                of_type.name,
+                component.source,
+                kind_name(variable.kind)
+            )));
+        }
+        let own = Unit::of_variable(self.descriptions[number], variable);
+        if let (Some(said), Some(own)) = (&of_type.unit, own) {
+            let said = Unit::named(said, &self.structure.units);
+            let same = said.to(&own).map_err(&error)?;
+            if !same.is_identity() && (same.factor - 1.0).abs() + same.offset.abs() > 1e-9 {
+                return Err(error(format!(
+                    "it is in {:?}, and the variable of {} is in {:?}",
+                    said.name, component.source, own.name
+                )));
+            }
+        }
+        Ok(())
+    }
+
+    fn connector(&self, port: &Port) -> Option<&'a Connector> {
+        let connectors = &self.flat.components[port.component].connectors;
+        connectors.iter().find(|connector| connector.name == port.connector)
+    }
+
+    /// The variable behind a connector: by its name, or an element of an array, `x[2]`, `m[1,3]`.
+    fn find(&self, port: &Port) -> Result<Found<'a>, SspError> {
+        let component = &self.flat.components[port.component];
+        let line = self.connector(port).map_or(component.line, |connector| connector.line);
+        let element = format!("Connector {:?} of {}", port.connector, component.name);
+        find(self.descriptions[port.component], &port.connector).map_err(|message| {
+            self.error(line, element, format!("{}: {message}", component.source))
+        })
+    }
+
+    fn terminal(&self, port: &Port, found: &Found<'a>) -> Terminal<'a> {
+        let description = self.descriptions[port.component];
+        let of_type = self.connector(port).and_then(|connector| connector.of_type.as_ref());
+        let said = of_type.and_then(|of_type| of_type.unit.as_ref());
+        let unit = Unit::of_variable(description, found.variable)
+            .or_else(|| said.map(|name| Unit::named(name, &self.structure.units)));
+        let items = found.variable.enumeration.as_ref();
+        let enumeration = of_type.and_then(|of_type| of_type.enumeration.as_ref());
+        let all = &self.structure.enumerations;
+        Terminal {
+            kind: found.variable.kind,
+            unit,
+            items: items.and_then(|name| description.enumeration(name)).unwrap_or_default(),
+            enumeration: enumeration.and_then(|name| all.iter().find(|one| one.name == *name)),
+        }
+    }
+
+    /// Adds the numbers, or the text, of a wire.
+    fn wire(&self, wire: &FlatWire, system: &mut System) -> Result<(), SspError> {
+        let (from, to) = (self.find(&wire.from)?, self.find(&wire.to)?);
+        let names = |port: &Port| {
+            format!("{}.{}", self.flat.components[port.component].name, port.connector)
+        };
+        let (source, target) = (names(&wire.from), names(&wire.to));
+        let error = |message: String| {
+            self.error(wire.line, format!("Connection {source} -> {target}"), message)
+        };
+        if from.count != to.count {
+            return Err(error(format!(
+                "the output has {} elements and the input {}: expected the same number",
+                from.count, to.count
+            )));
+        }
+        let (a, b) = (self.terminal(&wire.from, &from), self.terminal(&wire.to, &to));
+        let conversion =
+            Conversion::of(&a, &b, &wire.hops, &self.structure.units).map_err(&error)?;
+        let (a_node, b_node) = (wire.from.component, wire.to.component);
+        if !is_numeric(to.variable.kind) {
+            let group = |node: usize, variable: &Variable| {
+                Group::of(self.descriptions[node], variable).map_err(|e| error(e.to_string()))
+            };
+            system.texts.push(TextWire {
+                from: (a_node, group(a_node, from.variable)?),
+                to: (b_node, group(b_node, to.variable)?),
+                binary: to.variable.kind == Kind::Binary,
+                source: source.clone(),
+                target: target.clone(),
+            });
+            return Ok(());
+        }
+        let (nodes, fixed) = (&system.nodes, is_fixed(wire));
+        let side = if fixed { &nodes[b_node].fixed } else { &nodes[b_node].inputs };
+        let (Some(out), Some(into)) =
+            (nodes[a_node].outputs.place(from.number), side.place(to.number))
+        else {
+            return Err(error("its variables are not exchanged".to_owned()));
+        };
+        let description = |port: &Port| self.descriptions[port.component];
+        let list = if fixed { &mut system.fixed } else { &mut system.wires };
+        for element in 0..from.count {
+            let name = |port: &Port, found: &Found<'_>| {
+                let of = &self.flat.components[port.component].name;
+                let element = element_name(description(port), found, element, &port.connector);
+                format!("{of}.{element}")
+            };
+            list.push(Wire {
+                from: Spot { node: a_node, place: out + from.first + element },
+                to: Spot { node: b_node, place: into + to.first + element },
+                conversion: conversion.clone(),
+                source: name(&wire.from, &from),
+                target: name(&wire.to, &to),
+                unit: b.unit.clone(),
+                items: b.items.to_vec(),
+            });
+        }
+        Ok(())
+    }
+}
+
+/// The variable of a name, or an element of one.
+fn find<'a>(description: &'a Description, name: &str) -> Result<Found<'a>, String> {
+    let by_name = |name: &str| {
+        let named = |variable: &Variable| variable.name == name || variable.has_alias(name);
+        description.variables.iter().position(named)
+    };
+    let whole = |number: usize| {
+        let variable = &description.variables[number];
+        let count = description.elements(variable).map_err(|error| error.to_string())?;
+        Ok::<_, String>(Found { number, variable, first: 0, count })
+    };
+    if let Some(number) = by_name(name) {
+        return whole(number);
+    }
+    let element = name
+        .strip_suffix(']')
+        .and_then(|rest| rest.rsplit_once('['))
+        .and_then(|(array, index)| Some((by_name(array)?, index)));
+    if let Some((number, index)) = element {
+        let found = whole(number)?;
+        let sizes = sizes(description, found.variable);
+        let first = position(index, &sizes).ok_or_else(|| {
+            format!("{name:?} is no element of {}, which has {sizes:?}", found.variable.name)
+        })?;
+        return Ok(Found { first, count: 1, ..found });
+    }
+    let names = description.variables.iter().map(|variable| variable.name.as_str());
+    Err(match crate::scenario::nearest(name, names.clone()) {
+        Some(near) => format!("it has no variable {name:?}, did you mean {near:?}?"),
+        None if description.variables.len() < 20 => {
+            format!("it has no variable {name:?}, {}", suggestion(name, names, "variables"))
+        }
+        None => format!("it has no variable {name:?}"),
+    })
+}
+
+/// Sizes of the dimensions of a variable.
+fn sizes(description: &Description, variable: &Variable) -> Vec<usize> {
+    let size = |dimension| {
+        let alone = Variable { dimensions: vec![dimension], ..variable.clone() };
+        description.elements(&alone).unwrap_or(0)
+    };
+    variable.dimensions.iter().copied().map(size).collect()
+}
+
+/// The element of an index such as `2` or `1,3`, counted from 1, rows first.
+fn position(index: &str, sizes: &[usize]) -> Option<usize> {
+    let parts: Vec<usize> =
+        index.split(',').map(|part| part.trim().parse().ok()).collect::<Option<_>>()?;
+    if parts.len() != sizes.len() {
+        return None;
+    }
+    parts
+        .iter()
+        .zip(sizes)
+        .try_fold(0, |at, (part, size)| (1..=*size).contains(part).then(|| at * size + part - 1))
+}
+
+/// Name of an element of what a connector stands for.
+fn element_name(
+    description: &Description,
+    found: &Found<'_>,
+    element: usize,
+    connector: &str,
+) -> String {
+    if found.variable.dimensions.is_empty() || connector.ends_with(']') {
+        return connector.to_owned();
+    }
+    format!("{connector}[{}]", index_of(&sizes(description, found.variable), element))
+}
+
+/// The index of an element, counted from 1, rows first.
+#[must_use]
+pub fn index_of(sizes: &[usize], element: usize) -> String {
+    let mut rest = element;
+    let mut parts: Vec<String> = Vec::with_capacity(sizes.len());
+    for size in sizes.iter().rev() {
+        parts.push((rest % size.max(&1) + 1).to_string());
+        rest /= size.max(&1);
+    }
+    parts.reverse();
+    parts.join(",")
+}
+
+/// Names of the elements of a variable: its own, or one for each element.
+#[must_use]
+pub fn element_names(description: &Description, variable: &Variable) -> Vec<String> {
+    if variable.dimensions.is_empty() {
+        return vec![variable.name.clone()];
+    }
+    let sizes = sizes(description, variable);
+    let count: usize = sizes.iter().product();
+    (0..count).map(|element| format!("{}[{}]", variable.name, index_of(&sizes, element))).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn elements_are_counted_from_1_rows_first() {
+        assert_eq!(position("2", &[3]), Some(1));
+        assert_eq!(position("2, 3", &[2, 3]), Some(5));
+        for (index, sizes) in [("0", &[3][..]), ("4", &[3]), ("1", &[2, 2]), ("x", &[3]), ("", &[])]
+        {
+            assert_eq!(position(index, sizes), None, "{index}");
+        }
+        for element in 0..6 {
+            assert_eq!(position(&index_of(&[2, 3], element), &[2, 3]), Some(element));
+        }
+    }
+}

@@ -1,0 +1,124 @@
+//! The station as bytes, and back.
+//!
+//! The bytes hold what has changed since the start: of each fault its clock, its receipt and what its
+//! rule remembers. A station is built from the same faults, and gets the rest.
+
+use super::{OCCURRENCES_MAX, Occurrence, Spec, Stage, Station};
+use crate::rule::UnitEvent;
+use crate::setup::Setup;
+use alloc::format;
+use alloc::string::{String, ToString};
+use alloc::vec::Vec;
+use octant_state::{Format, Reader, State, StateError, Writer, check_below, check_count};
+
+/// What the state of a station looks like. The version has to be raised when the layout changes; a
+/// test compares it with the stored one.
+pub const FORMAT: Format =
+    Format { magic: "OCTANTST", version: 1, what: "the state of a station of faults" };
+
+impl Station {
+    /// Appends everything that the station needs to go on, bit for bit, as after this epoch: the same
+    /// station gives the same bytes.
+    pub fn save(&self, bytes: &mut Vec<u8>) {
+        FORMAT.write(bytes, |to| to.part("station", self));
+    }
+
+    /// A station that goes on where another was when [`Self::save`] wrote these bytes; `specs` and
+    /// `setup` are those that it was built with.
+    ///
+    /// # Errors
+    /// If the bytes are not those of a station of these faults and this version, whole and unaltered,
+    /// or if it can't be built. Whatever they are, this doesn't panic, nor does the station that comes
+    /// of them.
+    pub fn load(specs: &[Spec], setup: &Setup, bytes: &[u8]) -> Result<Self, StateError> {
+        let mut from = FORMAT.read(bytes)?;
+        let mut station = Self::new(specs, setup)
+            .map_err(|(id, error)| StateError::value("faults", format!("{id:?}: {error}")))?;
+        from.part("station", &mut station)?;
+        from.end()?;
+        Ok(station)
+    }
+}
+
+impl Stage {
+    /// What it is known by.
+    fn name(&self) -> (&str, &'static str) {
+        (&self.id, self.kind.name)
+    }
+}
+
+impl State for Station {
+    fn save(&self, to: &mut Writer) {
+        let Self {
+            stages,
+            dt_s: _,
+            calibration_samples: _,
+            epoch,
+            // What has to be looked at next follows from the others.
+            wake: _,
+            busy: _,
+            remember: _,
+            seen,
+            scene,
+            conditions: _,
+            truth: _,
+            commands: _,
+            set_points,
+            last,
+            // Filled and emptied within an epoch.
+            flight: _,
+            landed: _,
+            burst: _,
+            occurrences,
+            events,
+            without_power,
+        } = self;
+        to.value("epoch", epoch);
+        to.value("seen", seen);
+        to.value("scene", scene);
+        to.value("set_points", set_points);
+        to.value("last", last);
+        to.value("occurrences", occurrences);
+        to.value("events", events);
+        to.value("without_power", without_power);
+        for stage in stages {
+            to.value("fault", &stage.name());
+            let Stage { id: _, kind: _, rule, clock, ledger, fresh } = stage;
+            to.value("fresh", fresh);
+            to.part("clock", clock);
+            to.part("ledger", ledger);
+            to.part("rule", rule);
+        }
+    }
+
+    fn load(&mut self, from: &mut Reader<'_>) -> Result<(), StateError> {
+        self.epoch = from.value("epoch")?;
+        check_count("epoch", self.epoch)?;
+        self.seen = from.value("seen")?;
+        self.scene = from.value("scene")?;
+        self.set_points = from.value("set_points")?;
+        self.last = from.value("last")?;
+        let occurrences: Vec<Occurrence> = from.value("occurrences")?;
+        check_below("occurrences", occurrences.len() as u64, OCCURRENCES_MAX as u64)?;
+        self.occurrences.extend(occurrences);
+        let events: Vec<UnitEvent> = from.value("events")?;
+        check_below("events", events.len() as u64, self.stages.len() as u64 + 1)?;
+        self.events.extend(events);
+        self.without_power = from.value("without_power")?;
+        for stage in &mut self.stages {
+            let (id, kind): (String, String) = from.value("fault")?;
+            if (id.as_str(), kind.as_str()) != stage.name() {
+                let (expected, of) = stage.name();
+                let problem = format!("{id:?} ({kind}) was found, {expected:?} ({of}) is expected");
+                return Err(StateError::value("fault", problem.to_string()));
+            }
+            stage.fresh = from.value("fresh")?;
+            from.part("clock", &mut stage.clock)?;
+            stage.clock.check(self.epoch)?;
+            from.part("ledger", &mut stage.ledger)?;
+            from.part("rule", &mut stage.rule)?;
+        }
+        self.plan();
+        Ok(())
+    }
+}

@@ -1,0 +1,275 @@
+//! A station that was saved and loaded goes on bit for bit, with every kind of the catalogue under
+//! way; other bytes are refused.
+
+use crate::common::{Log, setup};
+use crate::draw::{plain, spec};
+use crate::{EPOCHS, answer, bytes, source};
+use octant_faults::disturbance::Disturbance;
+use octant_faults::rule::UnitEvent;
+use octant_faults::station::{Delivered, Occurrence, STATE_FORMAT};
+use octant_faults::trigger::{Repeat, Schedule, Trigger};
+use octant_faults::{Kind, Receipt, Spec, Station, kinds};
+use octant_sample::{GimbalCommand, Truth};
+use octant_state::{StateError, Writer, assert_layout};
+use proptest::prelude::*;
+use std::sync::LazyLock;
+use std::time::Instant;
+
+/// What came of one epoch.
+#[derive(Debug, PartialEq)]
+struct Step {
+    delivered: Vec<u8>,
+    command: GimbalCommand,
+    events: Vec<UnitEvent>,
+    occurrences: Vec<Occurrence>,
+    begun: Vec<(u32, Disturbance)>,
+    ended: Vec<u32>,
+    receipts: Vec<Receipt>,
+}
+
+fn step(station: &mut Station, specs: &[Spec], k: u64) -> Step {
+    if k == 20 {
+        for spec in specs {
+            station.fire(&spec.id);
+        }
+    }
+    let mut log = Log { truth: Some(Truth::default()), ..Log::default() };
+    let output = answer(k - 1);
+    let mut command = output.gimbal_command;
+    station.before(&mut command, &output, &mut log);
+    let epoch = source(k);
+    let delivered = match station.after(&epoch, &output) {
+        Delivered::Untouched => bytes(&[epoch]),
+        Delivered::These(epochs) => bytes(epochs),
+    };
+    let (events, occurrences) = (station.unit_events().to_vec(), station.occurrences().to_vec());
+    station.told();
+    let receipts = station.receipts();
+    Step { delivered, command, events, occurrences, begun: log.begun, ended: log.ended, receipts }
+}
+
+fn saved(station: &Station) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    station.save(&mut bytes);
+    bytes
+}
+
+fn load(specs: &[Spec], bytes: &[u8]) -> Result<Station, StateError> {
+    Station::load(specs, &setup(), bytes)
+}
+
+/// Runs, with what was saved and loaded at some epochs, and a clone made there, beside it.
+fn goes_on(specs: &[Spec], points: &[u64]) {
+    let mut station = Station::new(specs, &setup()).unwrap();
+    let mut copies = Vec::new();
+    for k in 1..=EPOCHS {
+        let expected = step(&mut station, specs, k);
+        for copy in &mut copies {
+            let found = step(copy, specs, k);
+            assert_eq!(
+                format!("{found:?}"),
+                format!("{expected:?}"),
+                "{} at {k}",
+                specs[0].kind.name
+            );
+        }
+        if points.contains(&k) {
+            copies.push(load(specs, &saved(&station)).unwrap());
+            copies.push(station.clone());
+        }
+    }
+    let bytes = saved(&station);
+    assert!(copies.iter().all(|copy| saved(copy) == bytes), "{}", specs[0].kind.name);
+}
+
+/// Lasts from epoch 15 to 300, then fades if it can; twice.
+fn long(kind: &'static Kind, id: &str) -> Spec {
+    let fades = kind.lasts == octant_faults::catalogue::Lasts::Fading;
+    let schedule = Schedule {
+        trigger: Trigger::Epoch(15),
+        duration: Some(150),
+        recovery: if fades { 30 } else { 0 },
+        repeat: Repeat::Times { times: 2, every: 200 },
+    };
+    Spec { id: id.into(), kind, values: plain(kind), schedule }
+}
+
+/// All kinds at once.
+fn all_at_once() -> Vec<Spec> {
+    kinds::all().map(|kind| long(kind, kind.name)).collect()
+}
+
+#[test]
+fn a_loaded_station_goes_on_bit_for_bit_with_every_kind_under_way() {
+    for kind in kinds::all() {
+        let spec = long(kind, "f0");
+        // Before, at the onset, in the middle, while it fades, afterwards, in the second firing.
+        goes_on(&[spec], &[3, 14, 15, 16, 77, 164, 166, 180, 197, 214, 215, 260, 365, 390]);
+    }
+}
+
+#[test]
+fn a_loaded_station_goes_on_bit_for_bit_with_all_kinds_at_once() {
+    let specs = all_at_once();
+    goes_on(&specs, &[15, 60, 150, 181, 240]);
+}
+
+#[test]
+fn a_station_of_other_faults_does_not_take_it() {
+    let (one, other) =
+        (long(kinds::named("spike").unwrap(), "a"), long(kinds::named("spike").unwrap(), "b"));
+    let mut station = Station::new(std::slice::from_ref(&one), &setup()).unwrap();
+    step(&mut station, &[], 1);
+    let bytes = saved(&station);
+    assert!(load(std::slice::from_ref(&one), &bytes).is_ok());
+    let said = |specs: &[Spec]| load(specs, &bytes).unwrap_err().to_string();
+    assert_eq!(
+        said(std::slice::from_ref(&other)),
+        "fault: \"a\" (spike) was found, \"b\" (spike) is expected"
+    );
+    assert_eq!(said(&[one, other.clone()]), "fault: the bytes end before it, or it is none");
+    assert!(said(&[]).starts_with("end: "), "{}", said(&[]));
+    let error = load(&[other.clone(), other], &bytes).unwrap_err();
+    assert_eq!(error.to_string(), "faults: \"b\": the id \"b\" is given to two faults");
+}
+
+#[test]
+fn the_layout_is_the_stored_one() {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/state");
+    let specs = all_at_once();
+    let mut station = Station::new(&specs, &setup()).unwrap();
+    for k in 1..=60 {
+        step(&mut station, &specs, k);
+    }
+    let outlines = [("every kind", Writer::outline(&station))];
+    assert_layout(&format!("{folder}/station.txt"), STATE_FORMAT.version, &outlines);
+
+    // And bytes of that version are still read.
+    let path = format!("{folder}/station-{}.bin", STATE_FORMAT.version);
+    if std::env::var_os("OCTANT_WRITE_FIXTURES").is_some() {
+        std::fs::write(&path, saved(&station)).unwrap();
+    }
+    let stored = std::fs::read(&path).unwrap();
+    assert_eq!(saved(&load(&specs, &stored).unwrap()), stored);
+}
+
+/// The frame with a payload replaced and its checksum made right.
+fn reframed(payload: &[u8]) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    STATE_FORMAT.write(&mut bytes, |to| payload.iter().for_each(|byte| to.value("byte", byte)));
+    bytes
+}
+
+fn payload(bytes: &[u8]) -> &[u8] {
+    &bytes[18..bytes.len() - 4]
+}
+
+/// Every kind alone, saved while it lasts, and once while it fades or is over.
+static SAVED: LazyLock<Vec<(Spec, Vec<u8>)>> = LazyLock::new(|| {
+    let mut all = Vec::new();
+    for kind in kinds::all() {
+        let spec = long(kind, "f0");
+        let mut station = Station::new(std::slice::from_ref(&spec), &setup()).unwrap();
+        for k in 1..=180 {
+            step(&mut station, &[], k);
+            if k == 77 || k == 180 {
+                all.push((spec.clone(), saved(&station)));
+            }
+        }
+    }
+    all
+});
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 512, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn whatever_the_faults_and_the_moment_it_goes_on(
+        mut specs in proptest::collection::vec(spec(), 1..5),
+        points in proptest::collection::vec(1..EPOCHS, 1..4),
+    ) {
+        for (index, spec) in specs.iter_mut().enumerate() {
+            spec.id = format!("f{index}");
+        }
+        // A few are refused; the others still make a run.
+        while let Err(error) = Station::new(&specs, &setup()) {
+            specs.retain(|spec| spec.id != error.0);
+        }
+        if !specs.is_empty() {
+            goes_on(&specs, &points);
+        }
+    }
+
+    #[test]
+    fn any_altered_bit_and_any_cut_is_refused(
+        which in any::<prop::sample::Index>(),
+        at in any::<prop::sample::Index>(),
+        bit in 0..8u8,
+    ) {
+        let (spec, good) = &SAVED[which.index(SAVED.len())];
+        let specs = std::slice::from_ref(spec);
+        let at = at.index(good.len());
+        prop_assert!(load(specs, &good[..at]).is_err());
+        let mut altered = good.clone();
+        altered[at] ^= 1 << bit;
+        let error = load(specs, &altered).unwrap_err();
+        prop_assert!(!matches!(error, StateError::Value { .. }), "{error}");
+    }
+
+    /// Whatever a right checksum stands for: it is refused, or what comes of it doesn't panic.
+    #[test]
+    fn nonsense_with_a_right_checksum_does_not_panic(
+        which in any::<prop::sample::Index>(),
+        changes in prop::collection::vec(
+            (any::<prop::sample::Index>(), prop_oneof![any::<u8>(), Just(0xFF), Just(0)]),
+            1..8,
+        ),
+        run in 1..9usize,
+    ) {
+        let (spec, good) = &SAVED[which.index(SAVED.len())];
+        let mut altered = payload(good).to_vec();
+        for (at, value) in &changes {
+            let at = at.index(altered.len());
+            let end = (at + run).min(altered.len());
+            altered[at..end].fill(*value);
+        }
+        if let Ok(mut station) = load(std::slice::from_ref(spec), &reframed(&altered)) {
+            for k in 100..300 {
+                step(&mut station, &[], k);
+            }
+            let _ = saved(&station);
+        }
+    }
+}
+
+/// For reading: how long it takes, and how large it is.
+#[test]
+fn figures() {
+    let specs = all_at_once();
+    let mut station = Station::new(&specs, &setup()).unwrap();
+    for k in 1..=60 {
+        step(&mut station, &specs, k);
+    }
+    const TIMES: u32 = 100;
+    let start = Instant::now();
+    for _ in 0..TIMES {
+        std::hint::black_box(station.clone());
+    }
+    let cloned = start.elapsed() / TIMES;
+    let start = Instant::now();
+    let mut bytes = Vec::new();
+    for _ in 0..TIMES {
+        bytes = saved(&station);
+    }
+    let save = start.elapsed() / TIMES;
+    let start = Instant::now();
+    for _ in 0..TIMES {
+        std::hint::black_box(load(&specs, &bytes).unwrap());
+    }
+    let loaded = start.elapsed() / TIMES;
+    println!(
+        "{} faults: {} bytes saved; clone {cloned:?}, save {save:?}, load {loaded:?}",
+        specs.len(),
+        bytes.len()
+    );
+}
