@@ -175,6 +175,12 @@ impl Dimension {
         exponents(self.powers)
     }
 
+    /// The SI unit, in which every value can be written exactly.
+    #[must_use]
+    pub(crate) const fn si_unit(self) -> &'static str {
+        self.si_unit
+    }
+
     /// The dimension with these exponents that scenarios use, where there is one.
     pub(crate) fn with_exponents(exponents: &[i8; 8]) -> Option<Self> {
         Self::ALL.into_iter().find(|dimension| dimension.exponents().as_ref() == Some(exponents))
@@ -210,12 +216,6 @@ fn exponents([m, s, rad, k, samples]: Powers) -> Option<[i8; 8]> {
     }
     let half = |power: i16| i8::try_from(power / 2).ok();
     Some([0, half(m)?, half(s)?, 0, half(k)?, 0, 0, half(rad)?])
-}
-
-/// A unit by its name: SI value of one, and its exponents as [`Dimension::exponents`].
-pub(crate) fn unit(name: &str) -> Option<(f64, [i8; 8])> {
-    let (factor, powers) = parse_unit(name.trim()).ok()?;
-    Some((factor, exponents(powers)?))
 }
 
 /// A number without exponent where that reads well.
