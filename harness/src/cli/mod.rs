@@ -99,13 +99,26 @@ impl Failure {
     }
 }
 
+impl Failure {
+    /// With "failed to" before the message.
+    fn failed(self) -> Self {
+        Self { message: format!("failed to {}", self.message), ..self }
+    }
+}
+
 impl From<crate::run::method::MethodError> for Failure {
     fn from(error: crate::run::method::MethodError) -> Self {
+        use crate::endpoint::OpenError;
+        use crate::fmu::mapping::stepper::UseError;
         use crate::run::RunError;
         use crate::run::method::{MethodError, SetupError};
         use crate::source::SourceError;
         match &error {
-            MethodError::Setup(SetupError::Recorder(_)) => Self::bench(error),
+            MethodError::Setup(
+                SetupError::Recorder(_)
+                | SetupError::Source(SourceError::Use(UseError::Gone { .. }))
+                | SetupError::Endpoint(OpenError::Use(UseError::Gone { .. })),
+            ) => Self::bench(error),
             // A file that can't be read to its end is bad input, not a bench that failed.
             MethodError::Setup(_)
             | MethodError::Run(RunError::Source(SourceError::Read { .. })) => Self::input(error),

@@ -58,7 +58,12 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     let scenario: Scenario = scenario;
     let bad = |error: &dyn std::fmt::Display| Failure::input(format!("failed to {error}"));
     let (_, core, _) = configurations(&scenario, method, seed).map_err(|e| bad(&e))?;
-    let mut endpoint = InProcess::new(&core).map_err(|e| bad(&format!("set up the core: {e}")))?;
+    // Where the recording's core was an FMU, that FMU again.
+    let endpoint = crate::endpoint::open(&scenario, &core).map_err(|e| bad(&e))?;
+    let mut endpoint: Box<dyn Endpoint> = match endpoint {
+        Some(endpoint) => endpoint,
+        None => Box::new(InProcess::new(&core).map_err(|e| bad(&format!("set up the core: {e}")))?),
+    };
     let mut source = Replay::open(path, None).map_err(|e| bad(&e))?;
     let (mut hash, mut samples, mut revision) = (StreamHash::new(), 0u64, 0);
     let mut first_difference_sample = None;

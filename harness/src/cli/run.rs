@@ -2,12 +2,12 @@
 
 use super::progress::with_progress;
 use super::{Failure, ScenarioArguments, load_fired, print, write};
-use crate::evidence::{Existing, FolderError, Manifest, RunFacts, RunFolder};
+use crate::evidence::{self, Existing, FmuFacts, FolderError, Manifest, RunFacts, RunFolder};
 use crate::report;
 use crate::run::assemble::{parameter_text, text};
-use crate::run::method::{configurations, core_problem};
+use crate::run::method::{MethodError, SetupError, configurations, run_as_far_as_it_goes};
 use crate::run::raw_counts;
-use crate::run::{Control, MethodRun, Recording, Run, assemble, run_method};
+use crate::run::{Control, Ended, MethodRun, Recording, Run, assemble};
 use crate::scenario::{Method, Scenario};
 use crate::score::junit::junit;
 use crate::score::verdict::Verdict;
@@ -60,22 +60,16 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         more.push(format!("source.uri={}", from_here(uri)?));
     }
     if let Some(uri) = &arguments.endpoint {
-        more.push(format!("endpoint.uri={uri}"));
+        more.push(format!("endpoint.uri={}", from_here(uri)?));
     }
     let scenario = load_fired(&arguments.scenario, &more, &arguments.fire)?;
     let seed = arguments.seed.unwrap_or(scenario.seed);
-    // What contradicts itself is said before anything is written.
+    // What contradicts itself, or can't be opened, is said before anything is written.
+    let tasks = tasks(&scenario, !arguments.no_twin);
     for method in methods(&scenario) {
-        let (_, core, _) = configurations(&scenario, method, seed)
-            .map_err(|e| Failure::input(format!("failed to {e}")))?;
-        octant_calibration::Core::new(&core).map_err(|e| {
-            Failure::input(format!("failed to set up the core: {}", core_problem(&e)))
-        })?;
+        set_up(&scenario, method, seed)?;
     }
-    // A recording that can't be read, too.
-    if scenario.source != crate::scenario::Source::Plant {
-        crate::source::open(&scenario).map_err(|e| Failure::input(format!("failed to {e}")))?;
-    }
+    let fmus = fmus(&scenario, tasks)?;
     let (path, existing) = match &arguments.out {
         Some(path) if arguments.force => (path.clone(), Existing::Replace),
         Some(path) => (path.clone(), Existing::Refuse),
@@ -89,7 +83,11 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     write(&folder.path().join("scenario.toml"), scenario.to_resolved_toml(seed, &draws))?;
 
     let runs = execute(&scenario, seed, !arguments.no_twin, folder.path())?;
-    let interrupted = runs.iter().any(|run| run.ended == crate::run::Ended::Cancelled);
+    let unfinished = |ended| matches!(ended, Ended::Cancelled | Ended::Broken);
+    let interrupted = runs.iter().any(|run| {
+        unfinished(run.ended) || run.twin.as_ref().is_some_and(|twin| twin.ended == Ended::Broken)
+    });
+    let broken = runs.iter().any(|run| run.broken.is_some());
     let mut runs = runs.into_iter();
     let (Some(primary), baseline) = (runs.next(), runs.next()) else {
         return Err(Failure::bench("failed to run the scenario: no method ran"));
@@ -112,6 +110,7 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         started,
         ended: SystemTime::now(),
         command_line: rerun(arguments, seed),
+        fmus,
     };
     let raw = estimate.map_or(String::new(), |e| raw_counts::text(&scenario.source, &e));
     let (verdict, json) = write_results(folder.path(), run, &facts)?;
@@ -121,6 +120,9 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     } else {
         folder.finish().map_err(|error| Failure::bench(format!("failed to {error}")))?
     };
+    if broken {
+        eprintln!("octant: the run broke off; what was recorded is in {}", place.display());
+    }
     if arguments.json {
         print(&json.text)?;
     } else {
@@ -130,11 +132,42 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     Ok(verdict)
 }
 
+/// Sets up a method as a run does, and leaves it again.
+fn set_up(scenario: &Scenario, method: Method, seed: u64) -> Result<(), Failure> {
+    let failure = |error: SetupError| Failure::from(MethodError::from(error)).failed();
+    let (plant, core, _) = configurations(scenario, method, seed).map_err(failure)?;
+    octant_calibration::Core::new(&core).map_err(|error| failure(error.into()))?;
+    crate::source::open(scenario, &plant).map_err(|error| failure(error.into()))?;
+    crate::endpoint::open(scenario, &core).map_err(|error| failure(error.into()))?;
+    Ok(())
+}
+
+/// Runs that go on at the same time: methods, and their twins.
+fn tasks(scenario: &Scenario, twins: bool) -> usize {
+    let twins = twins && !scenario.faults.is_empty();
+    methods(scenario).len() * if twins { 2 } else { 1 }
+}
+
+/// What the manifest says about the FMUs of a run of so many tasks.
+fn fmus(scenario: &Scenario, tasks: usize) -> Result<Vec<FmuFacts>, Failure> {
+    let fmus = evidence::fmus(scenario).map_err(|e| Failure::input(format!("failed to {e}")))?;
+    match fmus.iter().find(|fmu| fmu.only_once && fmu.process == "shared") {
+        Some(fmu) if tasks > 1 => Err(Failure::input(format!(
+            "failed to run {tasks} instances of {}: it can be there once in a process, expected \
+             process = \"own\" in {}.fmu",
+            fmu.file, fmu.role
+        ))),
+        _ => Ok(fmus),
+    }
+}
+
 /// A source with its file made absolute: a name on the command line starts at the current folder,
 /// one in a scenario at the scenario's.
 fn from_here(uri: &str) -> Result<String, Failure> {
     match uri.split_once(':') {
-        Some((kind @ ("replay" | "text"), file)) if !file.is_empty() && !file.starts_with("${") => {
+        Some((kind @ ("replay" | "text" | "fmu"), file))
+            if !file.is_empty() && !file.starts_with("${") =>
+        {
             let file = std::path::absolute(file)
                 .map_err(|error| Failure::input(format!("failed to find {file}: {error}")))?;
             Ok(format!("{kind}:{}", file.display()))
@@ -196,9 +229,13 @@ fn execute(
                     let path = folder.join(name);
                     scope.spawn(move || match clean {
                         None => {
-                            run_method(scenario, *method, seed, Recording::File(&path), control)
+                            let recording = Recording::File(&path);
+                            run_as_far_as_it_goes(scenario, *method, seed, recording, control)
                         }
-                        Some(clean) => run_method(clean, *method, seed, Recording::Hash, control),
+                        Some(clean) => {
+                            let recording = Recording::Hash;
+                            run_as_far_as_it_goes(clean, *method, seed, recording, control)
+                        }
                     })
                 })
                 .collect();

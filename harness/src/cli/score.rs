@@ -33,6 +33,15 @@ struct Scores {
     navigation: Option<Navigation>,
 }
 
+/// Whether the instrument of a recording had the errors that its scenario draws.
+fn true_parameters(path: &Path, scenario: &Scenario) -> Result<bool, Failure> {
+    let recording = Recording::open(path)
+        .map_err(|error| Failure::input(format!("failed to read {}: {error}", path.display())))?;
+    // Recordings of before FMUs don't say it.
+    let said = recording.info().run.get("true_parameters").map(|text| text == "true");
+    Ok(said.unwrap_or(scenario.source == crate::scenario::Source::Plant))
+}
+
 /// The scenario inside a recording.
 pub(super) fn scenario_of(path: &Path) -> Result<(Scenario, Method, u64), Failure> {
     let recording = Recording::open(path)
@@ -61,10 +70,9 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         ),
         None => None,
     };
-    let simulated = scenario.source == crate::scenario::Source::Plant;
     let (_, _, draws) = crate::run::method::configurations(&scenario, method, seed)
         .map_err(|error| Failure::input(format!("failed to {error}")))?;
-    let truth = simulated.then_some(draws.parameters);
+    let truth = true_parameters(path, &scenario)?.then_some(draws.parameters);
     let parameters = watcher
         .last_parameters
         .map(|estimate| score(truth.as_ref(), &estimate.parameters, &estimate.sigma))

@@ -1,6 +1,6 @@
 //! The core in this process.
 
-use super::{Endpoint, EndpointError, ParameterEstimate};
+use super::{Conclusion, Endpoint, EndpointError, ParameterEstimate};
 use crate::source::Epoch;
 use octant_calibration::{Config, Core};
 use octant_sample::{Output, Parameters};
@@ -23,13 +23,6 @@ impl InProcess {
         Ok(Self { core: Core::new(config)?, revision: 0, config: Box::new(config.clone()) })
     }
 
-    /// The source has ended: see [`Core::end_of_stream`].
-    pub fn end_of_stream(&mut self) -> Output {
-        let output = self.core.end_of_stream();
-        self.revision = output.parameters_revision;
-        output
-    }
-
     /// The core behind the endpoint, for what no wire carries: diagnostics and table.
     #[must_use]
     pub fn core(&self) -> &Core {
@@ -48,10 +41,7 @@ impl Endpoint for InProcess {
     fn restart(&mut self, offset: Option<&Parameters>) -> Result<(), EndpointError> {
         let mut config = Config::clone(&self.config);
         if let Some(offset) = offset {
-            let stored = config.initial_parameters.to_array();
-            let offset = offset.to_array();
-            config.initial_parameters =
-                Parameters::from_array(&std::array::from_fn(|i| stored[i] + offset[i]));
+            config.initial_parameters = super::sum(&config.initial_parameters, offset);
         }
         self.core = Core::new(&config).map_err(|error| EndpointError::Restart {
             uri: "in-process".to_owned(),
@@ -66,6 +56,23 @@ impl Endpoint for InProcess {
             revision: self.revision,
             parameters: *self.core.parameters(),
             sigma: *self.core.sigma(),
+        }
+    }
+
+    /// See [`Core::end_of_stream`].
+    fn end_of_stream(&mut self) -> Result<Option<Output>, EndpointError> {
+        let output = self.core.end_of_stream();
+        self.revision = output.parameters_revision;
+        Ok(Some(output))
+    }
+
+    fn conclusion(&mut self) -> Conclusion {
+        let quality = self.core.diagnostics().quality;
+        Conclusion {
+            refused: self.core.refusal().map(ToString::to_string),
+            nis_mean: Some(quality.nis_mean),
+            measurements: Some(quality.used + quality.rejected),
+            table: self.core.table().cloned(),
         }
     }
 }

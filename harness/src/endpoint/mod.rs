@@ -1,10 +1,17 @@
 //! Where the core is: in this process, in an FMU, at the other end of a wire.
 
+mod fmu;
 mod in_process;
 
+pub use fmu::FmuEndpoint;
 pub use in_process::InProcess;
 
+use crate::fmu::mapping::stepper::UseError;
+use crate::scenario::{self, Scenario};
 use crate::source::Epoch;
+use octant_calibration::Config;
+use octant_calibration::state_machine::ConfigError;
+use octant_calibration::table::CalibrationTable;
 use octant_sample::parameters::PARAMETER_COUNT;
 use octant_sample::{Output, Parameters};
 
@@ -38,6 +45,86 @@ pub trait Endpoint {
 
     /// The parameters as of the last output.
     fn parameters(&self) -> ParameterEstimate;
+
+    /// The source has ended: what the core makes of that. `None`: it can't be told.
+    ///
+    /// # Errors
+    /// If the endpoint failed.
+    fn end_of_stream(&mut self) -> Result<Option<Output>, EndpointError> {
+        Ok(None)
+    }
+
+    /// What is known of the core at the end of a run beside its outputs; the parameters are then
+    /// those of the end.
+    fn conclusion(&mut self) -> Conclusion {
+        Conclusion::default()
+    }
+}
+
+impl<E: Endpoint + ?Sized> Endpoint for Box<E> {
+    fn step(&mut self, epoch: &Epoch, output: &mut Output) -> Result<(), EndpointError> {
+        (**self).step(epoch, output)
+    }
+
+    fn restart(&mut self, offset: Option<&Parameters>) -> Result<(), EndpointError> {
+        (**self).restart(offset)
+    }
+
+    fn parameters(&self) -> ParameterEstimate {
+        (**self).parameters()
+    }
+
+    fn end_of_stream(&mut self) -> Result<Option<Output>, EndpointError> {
+        (**self).end_of_stream()
+    }
+
+    fn conclusion(&mut self) -> Conclusion {
+        (**self).conclusion()
+    }
+}
+
+/// What a core says at the end of a run, as far as its realisation tells.
+#[derive(Clone, Debug, Default)]
+pub struct Conclusion {
+    /// Why it refused its calibration.
+    pub refused: Option<String>,
+    /// Mean NIS of the measurements used.
+    pub nis_mean: Option<f64>,
+    /// Measurements, used and rejected.
+    pub measurements: Option<u64>,
+    /// The calibration table, where the calibration was accepted.
+    pub table: Option<CalibrationTable>,
+}
+
+/// Why the endpoint of a scenario can't be opened.
+#[derive(Debug, thiserror::Error)]
+pub enum OpenError {
+    /// The core's configuration contradicts itself.
+    #[error(transparent)]
+    Core(#[from] ConfigError),
+    /// An FMU can't be used.
+    #[error(transparent)]
+    Use(#[from] UseError),
+}
+
+/// Opens the endpoint of a scenario with the core of `config`; `None` where it is the core in this
+/// process, which is called directly: see [`InProcess`].
+///
+/// # Errors
+/// If it can't be opened, or doesn't fit.
+pub fn open(scenario: &Scenario, config: &Config) -> Result<Option<Box<dyn Endpoint>>, OpenError> {
+    match &scenario.endpoint {
+        scenario::Endpoint::InProcess => Ok(None),
+        scenario::Endpoint::Fmu(fmu) => {
+            Ok(Some(Box::new(FmuEndpoint::open(scenario, fmu, config)?)))
+        }
+    }
+}
+
+/// Stored parameters with an offset.
+fn sum(stored: &Parameters, offset: &Parameters) -> Parameters {
+    let (stored, offset) = (stored.to_array(), offset.to_array());
+    Parameters::from_array(&std::array::from_fn(|i| stored[i] + offset[i]))
 }
 
 /// Why an endpoint could not go on.

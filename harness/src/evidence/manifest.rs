@@ -37,6 +37,9 @@ pub struct Manifest {
     pub command_line: Vec<String>,
     /// A line for a POSIX shell that runs it again.
     pub rerun: String,
+    /// FMUs that took part; left out where none did.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub fmus: Vec<FmuFacts>,
     /// Every other file of the folder, by path.
     pub files: Vec<FileHash>,
     /// Runs are not signed in this version: always `null`.
@@ -80,6 +83,30 @@ pub struct FileHash {
     pub sha256: String,
 }
 
+/// An FMU of a run.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct FmuFacts {
+    /// `source` or `endpoint`.
+    pub role: String,
+    /// The file.
+    pub file: String,
+    /// SHA-256 of the file, hexadecimal; `null` of an unpacked one.
+    pub sha256: Option<String>,
+    /// Name of the model.
+    pub model: String,
+    /// `guid` or `instantiationToken`.
+    pub token: String,
+    /// Version of the standard, as in the description.
+    pub fmi: String,
+    /// The tool that made it, as in the description.
+    pub generation_tool: String,
+    /// `own` or `shared`: the process in which it ran.
+    pub process: String,
+    /// There can be one instance in a process only.
+    #[serde(skip)]
+    pub only_once: bool,
+}
+
 /// What the run knows about itself.
 #[derive(Clone, Debug)]
 pub struct RunFacts {
@@ -91,6 +118,8 @@ pub struct RunFacts {
     pub ended: SystemTime,
     /// The command line, program first.
     pub command_line: Vec<String>,
+    /// FMUs that took part.
+    pub fmus: Vec<FmuFacts>,
 }
 
 /// Why a manifest could not be written or read.
@@ -144,6 +173,7 @@ impl Manifest {
             ended: humantime::format_rfc3339_millis(facts.ended).to_string(),
             rerun: shell_line(&facts.command_line),
             command_line: facts.command_line.clone(),
+            fmus: facts.fmus.clone(),
             files: Vec::new(),
             signature: None,
         }
@@ -157,6 +187,21 @@ impl Manifest {
         });
         let host = &self.host;
         let cpu = host.cpu.as_deref().unwrap_or(&host.arch);
+        let fmus = self.fmus.iter().map(|fmu| {
+            let sha256 = fmu.sha256.as_deref().unwrap_or("not hashed");
+            let text = format!(
+                "{} (FMI {}, {}, SHA-256 {sha256}), in {} process",
+                fmu.file,
+                fmu.fmi,
+                if fmu.generation_tool.is_empty() {
+                    "tool not named"
+                } else {
+                    &fmu.generation_tool
+                },
+                if fmu.process == "own" { "its own" } else { "the program's" },
+            );
+            (format!("FMU as {}", fmu.role), text)
+        });
         [
             ("octant", self.octant.clone()),
             ("source revision", git),
@@ -167,7 +212,9 @@ impl Manifest {
             ("signature", self.signature.clone().unwrap_or_else(|| "unsigned".to_owned())),
         ]
         .map(|(name, value)| (name.to_owned(), value))
-        .into()
+        .into_iter()
+        .chain(fmus)
+        .collect()
     }
 
     /// Hashes everything in the folder of a run and writes its manifest.
@@ -332,6 +379,7 @@ mod tests {
             command_line: ["octant", "run", "my run.toml", "--set", "imu.x='1 ug'"]
                 .map(String::from)
                 .to_vec(),
+            fmus: Vec::new(),
         }
     }
 

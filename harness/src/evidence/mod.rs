@@ -1,7 +1,9 @@
 //! What a run leaves behind as evidence: its folder, written in one piece, and the manifest.
 
+mod fmus;
 pub mod folder;
 pub mod manifest;
 
+pub use fmus::fmus;
 pub use folder::{Existing, FolderError, RunFolder};
-pub use manifest::{Manifest, ManifestError, RunFacts};
+pub use manifest::{FmuFacts, Manifest, ManifestError, RunFacts};

@@ -5,7 +5,7 @@ use super::method::MethodRun;
 use super::twin::difference;
 use crate::report::counterfactual::in_words;
 use crate::report::{Provenance, ReportData, number};
-use crate::scenario::{Motion, Scenario, Source};
+use crate::scenario::{Endpoint, Motion, Scenario, Source};
 use crate::score::reference::{ReferenceInput, reference};
 use crate::score::summary::{
     AlteredStreams, Baseline, FaultResult, ParameterScore, SCHEMA, Summary,
@@ -48,7 +48,7 @@ pub fn assemble(
         estimated_g_zz: g_zz(&primary),
         baseline_estimated_g_zz: baseline.as_ref().and_then(g_zz),
     });
-    let findings = findings(&primary);
+    let findings = findings(&primary, baseline.as_ref());
     let counterfactual = difference(scenario, &primary);
     let baseline_counterfactual = baseline.as_ref().and_then(|run| difference(scenario, run));
     let mut summary = Summary {
@@ -93,8 +93,11 @@ pub fn assemble(
 }
 
 /// What besides requirements bears on the verdict.
-fn findings(run: &MethodRun) -> Vec<Finding> {
-    let mut findings = Vec::new();
+fn findings(run: &MethodRun, baseline: Option<&MethodRun>) -> Vec<Finding> {
+    let mut findings = broken(run, "");
+    if let Some(baseline) = baseline {
+        findings.extend(broken(baseline, &format!(" in {}", baseline.label)));
+    }
     let mut inconclusive =
         |reason: String| findings.push(Finding { verdict: Verdict::Inconclusive, reason });
     if run.ended == Ended::Cancelled {
@@ -105,6 +108,20 @@ fn findings(run: &MethodRun) -> Vec<Finding> {
         inconclusive(format!("{unlisted} reports of the core found no place in the list"));
     }
     findings
+}
+
+/// What went away in a run or its twin.
+fn broken(run: &MethodRun, place: &str) -> Vec<Finding> {
+    let twin = run.twin.as_deref().map(|twin| (twin, " in the twin without faults"));
+    std::iter::once((run, ""))
+        .chain(twin)
+        .filter_map(|(run, side)| {
+            let error = run.broken.as_ref()?;
+            let at_s = run.watcher.elapsed_s();
+            let reason = format!("after {at_s:.3} s{place}{side}: {error}");
+            Some(Finding { verdict: Verdict::Error, reason })
+        })
+        .collect()
 }
 
 /// What a run was made on, for the head of the report.
@@ -141,8 +158,18 @@ pub fn facts(scenario: &Scenario) -> Vec<(String, String)> {
             format!("{:.2} µg/√Hz", imu.velocity_random_walk / MICRO_G),
         ),
     ];
-    if scenario.source != Source::Plant {
-        facts.push(("source".to_owned(), "recorded samples, no truth".to_owned()));
+    match &scenario.source {
+        Source::Plant => {}
+        Source::Replay { .. } | Source::Text(_) => {
+            facts.push(("source".to_owned(), "recorded samples, no truth".to_owned()));
+        }
+        Source::Fmu(fmu) if fmu.is_motion() => {
+            facts.push(("motion of the case".to_owned(), format!("FMU {}", fmu.file.0)));
+        }
+        Source::Fmu(fmu) => facts.push(("source".to_owned(), format!("FMU {}", fmu.file.0))),
+    }
+    if let Endpoint::Fmu(fmu) = &scenario.endpoint {
+        facts.push(("core".to_owned(), format!("FMU {}", fmu.file.0)));
     }
     facts
 }

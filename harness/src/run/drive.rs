@@ -38,6 +38,8 @@ pub enum Ended {
     SourceEnded,
     /// Somebody asked for it.
     Cancelled,
+    /// Source or endpoint went away.
+    Broken,
 }
 
 /// Why a run broke off. These are failures of the bench, not of the core.
@@ -55,6 +57,14 @@ pub enum RunError {
     /// A navigation can't be scored.
     #[error(transparent)]
     Drift(#[from] crate::score::drift::DriftError),
+}
+
+impl RunError {
+    /// Source or endpoint went away: what was done before stands.
+    #[must_use]
+    pub fn is_gone(&self) -> bool {
+        matches!(self, Self::Source(SourceError::Gone { .. }) | Self::Endpoint(_))
+    }
 }
 
 /// Drives the source through the endpoint until one of them ends.

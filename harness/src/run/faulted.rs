@@ -37,11 +37,29 @@ impl<S: Source + ?Sized> World for Behind<'_, S> {
 }
 
 /// As [`drive`](super::drive()), with faults between source and endpoint. Their receipts are
-/// recorded at the end.
+/// recorded at the end, whatever it is.
 ///
 /// # Errors
 /// If source, endpoint or recorder fail; what was recorded before stays readable.
 pub fn drive_faulted<S, E>(
+    source: &mut S,
+    faulted: &mut Faulted,
+    endpoint: &mut E,
+    recorder: &mut Recorder,
+    watcher: &mut Watcher,
+    control: &Control,
+) -> Result<Ended, RunError>
+where
+    S: Source + ?Sized,
+    E: Endpoint + ?Sized,
+{
+    let ended = pass(source, faulted, endpoint, recorder, watcher, control);
+    recorder.event(receipts(&faulted.station.receipts()));
+    ended
+}
+
+/// The loop itself.
+fn pass<S, E>(
     source: &mut S,
     faulted: &mut Faulted,
     endpoint: &mut E,
@@ -67,10 +85,10 @@ where
     let mut epochs = 0u64;
     let mut epoch = Epoch::default();
     let total = source.samples_total().unwrap_or(u64::MAX);
-    let ended = loop {
+    loop {
         // Nothing sets in at a sample that won't come.
         if epochs == total {
-            break Ended::SourceEnded;
+            return Ok(Ended::SourceEnded);
         }
         while let Some((_, id)) = fires.next_if(|(at, _)| *at == epochs + 1) {
             station.fire(id);
@@ -78,7 +96,7 @@ where
         let mut command = run.command;
         station.before(&mut command, &run.output, &mut Behind(source));
         if !source.next(&command, &mut epoch)? {
-            break Ended::SourceEnded;
+            return Ok(Ended::SourceEnded);
         }
         for event in station.unit_events() {
             run.unit(event, epochs + 1)?;
@@ -93,14 +111,12 @@ where
             station.told();
         }
         if let Some(ended) = ended {
-            break ended;
+            return Ok(ended);
         }
         if epochs.is_multiple_of(CONTROL_EPOCHS) && control.look(epochs) {
-            break Ended::Cancelled;
+            return Ok(Ended::Cancelled);
         }
-    };
-    run.recorder.event(receipts(&station.receipts()));
-    Ok(ended)
+    }
 }
 
 /// What the loop carries from epoch to epoch.

@@ -5,7 +5,7 @@ use super::drive::{Control, Ended, RunError, drive};
 use super::faulted::{Faulted, drive_faulted};
 use super::watch::Watcher;
 use crate::calibrate::{PassError, in_passes};
-use crate::endpoint::{Endpoint, InProcess};
+use crate::endpoint::{Conclusion, Endpoint, InProcess, ParameterEstimate};
 use crate::recorder::{
     Event, Policy, Recorder, RecorderError, RecorderOptions, RecorderSummary, Samples,
 };
@@ -14,14 +14,14 @@ use crate::scenario::{Method, Scenario, Source as SourceKind};
 use crate::score::parameters::{nees, score, worst_normalized_error};
 use crate::score::summary::{Calibration, HeightChannel, Navigation};
 use crate::score::trace::Trace;
-use crate::source::{PlantSource, SourceError};
+use crate::source::{PlantSource, Source, SourceError};
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use octant_calibration::config as core;
 use octant_calibration::state_machine::ConfigError;
 use octant_calibration::table::CalibrationTable;
 use octant_faults::Receipt;
 use octant_plant::Plant;
-use octant_sample::{Mode, Parameters};
+use octant_sample::{Mode, Output, Parameters};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -48,6 +48,9 @@ pub enum SetupError {
     /// A source could not be opened.
     #[error(transparent)]
     Source(#[from] SourceError),
+    /// An endpoint could not be opened.
+    #[error(transparent)]
+    Endpoint(crate::endpoint::OpenError),
     /// A fault can't be injected.
     #[error("inject fault {id:?}: {reason}")]
     Fault {
@@ -62,6 +65,15 @@ pub enum SetupError {
     /// The recorder could not be set up.
     #[error(transparent)]
     Recorder(#[from] RecorderError),
+}
+
+impl From<crate::endpoint::OpenError> for SetupError {
+    fn from(error: crate::endpoint::OpenError) -> Self {
+        match error {
+            crate::endpoint::OpenError::Core(error) => Self::Core(error),
+            other => Self::Endpoint(other),
+        }
+    }
 }
 
 /// Why a core can't be set up, in the figures of the scenario.
@@ -116,6 +128,8 @@ pub struct MethodRun {
     pub receipts: Vec<Receipt>,
     /// The same run without its faults.
     pub twin: Option<Arc<MethodRun>>,
+    /// What went away in the middle, and ended it.
+    pub broken: Option<RunError>,
 }
 
 /// Name of a method, for people.
@@ -177,21 +191,33 @@ pub fn run_method(
     recording: Recording<'_>,
     control: &Control,
 ) -> Result<MethodRun, MethodError> {
-    if scenario.endpoint != crate::scenario::Endpoint::InProcess {
-        return Err(SetupError::Source(SourceError::Read {
-            path: "endpoint.uri".to_owned(),
-            reason: "FMUs as an endpoint are not part of this version".to_owned(),
-        })
-        .into());
+    let mut run = run_as_far_as_it_goes(scenario, method, seed, recording, control)?;
+    match run.broken.take() {
+        None => Ok(run),
+        Some(error) => Err(error.into()),
     }
+}
+
+/// As [`run_method`]; where source or endpoint go away in the middle, the run ends there, with a
+/// recording that is complete up to there, and says so.
+///
+/// # Errors
+/// If it can't be set up, a file can't be read to its end, or the recorder fails.
+pub fn run_as_far_as_it_goes(
+    scenario: &Scenario,
+    method: Method,
+    seed: u64,
+    recording: Recording<'_>,
+    control: &Control,
+) -> Result<MethodRun, MethodError> {
     let (plant, mut core, draws) = configurations(scenario, method, seed)?;
-    let opened = crate::source::open(scenario).map_err(SetupError::Source)?;
-    let simulated = opened.is_none();
-    if !simulated {
-        settle(scenario, &mut core)?;
+    if scenario.source.is_recorded() {
+        settle(scenario, &plant, &mut core)?;
     }
-    let mut endpoint = InProcess::new(&core).map_err(SetupError::Core)?;
-    let options = recorder_options(scenario, seed, &draws, method);
+    let opened = crate::source::open(scenario, &plant).map_err(SetupError::Source)?;
+    let elsewhere = crate::endpoint::open(scenario, &core).map_err(SetupError::from)?;
+    let true_parameters = opened.as_ref().is_none_or(|source| source.has_true_parameters());
+    let options = recorder_options(scenario, seed, &draws, method, true_parameters);
     let mut recorder = match recording {
         Recording::File(path) => Recorder::to_file(path, &options).map_err(SetupError::Recorder)?,
         Recording::Hash => Recorder::hash_only(&options).map_err(SetupError::Recorder)?,
@@ -203,31 +229,74 @@ pub fn run_method(
         watcher.trace = Some(Trace::new());
     }
     let mut faulted = faulted(scenario, seed)?;
-    let ended = match opened {
+    let samples = scenario.samples().unwrap_or(u64::MAX);
+    let closed = match (opened, elsewhere) {
         // Statically dispatched: this loop passes ten million samples a second.
-        None => {
-            let samples = scenario.samples().unwrap_or(u64::MAX);
+        (None, None) => {
             let mut source = PlantSource::new(&plant, samples).map_err(SetupError::Plant)?;
-            match &mut faulted {
-                None => drive(&mut source, &mut endpoint, &mut recorder, &mut watcher, control)?,
-                Some(faulted) => {
-                    let (endpoint, recorder) = (&mut endpoint, &mut recorder);
-                    drive_faulted(&mut source, faulted, endpoint, recorder, &mut watcher, control)?
-                }
-            }
+            let mut endpoint = InProcess::new(&core).map_err(SetupError::Core)?;
+            let faulted = faulted.as_mut();
+            to_the_end(&mut source, faulted, &mut endpoint, &mut recorder, &mut watcher, control)?
         }
-        Some(mut source) => match &mut faulted {
-            None => drive(&mut source, &mut endpoint, &mut recorder, &mut watcher, control)?,
-            Some(faulted) => {
-                let (endpoint, recorder) = (&mut endpoint, &mut recorder);
-                drive_faulted(&mut source, faulted, endpoint, recorder, &mut watcher, control)?
-            }
-        },
+        (opened, elsewhere) => {
+            let mut source: Box<dyn Source> = match opened {
+                Some(source) => source,
+                None => Box::new(PlantSource::new(&plant, samples).map_err(SetupError::Plant)?),
+            };
+            let mut endpoint: Box<dyn Endpoint> = match elsewhere {
+                Some(endpoint) => endpoint,
+                None => Box::new(InProcess::new(&core).map_err(SetupError::Core)?),
+            };
+            let faulted = faulted.as_mut();
+            to_the_end(&mut source, faulted, &mut endpoint, &mut recorder, &mut watcher, control)?
+        }
     };
     let receipts = faulted.map_or_else(Vec::new, |faulted| faulted.station.receipts());
-    let truth = simulated.then_some(draws.parameters);
-    let run = finish(scenario, method, ended, endpoint, recorder, watcher, truth)?;
+    let truth = true_parameters.then_some(draws.parameters);
+    let run = finish(scenario, method, closed, recorder, watcher, truth)?;
     Ok(MethodRun { receipts, ..run })
+}
+
+/// What is left when a loop has ended.
+struct Closed {
+    ended: Ended,
+    broken: Option<RunError>,
+    /// The answer to the end of the source.
+    last: Option<Output>,
+    conclusion: Conclusion,
+    estimate: ParameterEstimate,
+}
+
+/// Drives until the end, whatever it is, and asks the core for its last words.
+fn to_the_end<S: Source, E: Endpoint>(
+    source: &mut S,
+    faulted: Option<&mut Faulted>,
+    endpoint: &mut E,
+    recorder: &mut Recorder,
+    watcher: &mut Watcher,
+    control: &Control,
+) -> Result<Closed, RunError> {
+    let driven = match faulted {
+        None => drive(source, endpoint, recorder, watcher, control),
+        Some(faulted) => drive_faulted(source, faulted, endpoint, recorder, watcher, control),
+    };
+    let driven = driven.and_then(|ended| match ended {
+        Ended::SourceEnded => Ok((ended, endpoint.end_of_stream()?)),
+        _ => Ok((ended, None)),
+    });
+    let (ended, last, broken) = match driven {
+        Ok((ended, last)) => (ended, last, None),
+        Err(error) if error.is_gone() => {
+            recorder.event(Event {
+                kind: "error".to_owned(),
+                detail: serde_json::json!({ "reason": error.to_string() }),
+            });
+            (Ended::Broken, None, Some(error))
+        }
+        Err(error) => return Err(error),
+    };
+    let conclusion = endpoint.conclusion();
+    Ok(Closed { ended, broken, last, conclusion, estimate: endpoint.parameters() })
 }
 
 /// The station of a scenario; `None` without faults.
@@ -245,7 +314,11 @@ pub(super) fn faulted(scenario: &Scenario, seed: u64) -> Result<Option<Faulted>,
 /// Least squares linearises about its initial parameters, and a real instrument's errors can be
 /// large: it passes over the recorded samples until nothing moves, and the run that is recorded is
 /// one more pass.
-fn settle(scenario: &Scenario, core: &mut core::Config) -> Result<(), MethodError> {
+fn settle(
+    scenario: &Scenario,
+    plant: &octant_plant::config::Config,
+    core: &mut core::Config,
+) -> Result<(), MethodError> {
     let least_squares = core
         .calibration
         .as_ref()
@@ -253,7 +326,7 @@ fn settle(scenario: &Scenario, core: &mut core::Config) -> Result<(), MethodErro
     if !least_squares {
         return Ok(());
     }
-    let open = || match crate::source::open(scenario)? {
+    let open = || match crate::source::open(scenario, plant)? {
         Some(source) => Ok(source),
         None => Err(SourceError::Read {
             path: "source.uri".to_owned(),
@@ -276,6 +349,7 @@ fn recorder_options(
     seed: u64,
     draws: &Draws,
     method: Method,
+    true_parameters: bool,
 ) -> RecorderOptions {
     let record = &scenario.record;
     let method = match method {
@@ -289,9 +363,13 @@ fn recorder_options(
             parameters_period_ns: record.parameters_period_ns,
         },
         scenario: scenario.to_resolved_toml(seed, draws),
-        metadata: [("method", method.to_owned()), ("seed", seed.to_string())]
-            .map(|(key, value)| (key.to_owned(), value))
-            .into(),
+        metadata: [
+            ("method", method.to_owned()),
+            ("seed", seed.to_string()),
+            ("true_parameters", true_parameters.to_string()),
+        ]
+        .map(|(key, value)| (key.to_owned(), value))
+        .into(),
         ..RecorderOptions::default()
     }
 }
@@ -300,15 +378,13 @@ fn recorder_options(
 fn finish(
     scenario: &Scenario,
     method: Method,
-    ended: Ended,
-    mut endpoint: InProcess,
+    closed: Closed,
     mut recorder: Recorder,
     mut watcher: Watcher,
     truth: Option<Parameters>,
 ) -> Result<MethodRun, MethodError> {
-    if ended == Ended::SourceEnded {
-        let output = endpoint.end_of_stream();
-        let estimate = endpoint.parameters();
+    let Closed { ended, broken, last, conclusion, estimate, .. } = closed;
+    if let Some(output) = last {
         watcher.last_parameters = Some(estimate);
         // No sample goes with this output: the recording keeps the parameters as an event.
         if output.mode != watcher.last_mode && output.mode != Mode::Refused {
@@ -317,8 +393,10 @@ fn finish(
         }
         watcher.epoch(&output);
     }
-    let core = endpoint.core();
-    let refused = core.refusal().map(ToString::to_string);
+    let refused = match conclusion.refused {
+        None if watcher.last_mode == Mode::Refused => Some("the core doesn't say why".to_owned()),
+        refused => refused,
+    };
     if let Some(reason) = &refused {
         recorder.event(Event {
             kind: "refused".to_owned(),
@@ -330,15 +408,15 @@ fn finish(
         Method::Baseline => scenario.baseline.as_ref(),
     }
     .map(|plan| {
-        let parameters = score(truth.as_ref(), core.parameters(), core.sigma());
-        let diagnostics = core.diagnostics();
+        let parameters = score(truth.as_ref(), &estimate.parameters, &estimate.sigma);
         let mut health = watcher.health.counts().clone();
-        health.measurements = diagnostics.quality.used + diagnostics.quality.rejected;
+        health.measurements = conclusion.measurements.unwrap_or(health.measurements);
+        let nis_mean = conclusion.nis_mean.or(watcher.health.nis_mean());
         Calibration {
             positions: plan.name.clone(),
             estimator: estimator_name(&plan.estimator).to_owned(),
             duration_h: plan.duration_s / 3600.0,
-            nis_mean: Some(diagnostics.quality.nis_mean).filter(|nis| nis.is_finite()),
+            nis_mean: nis_mean.filter(|nis| nis.is_finite()),
             nees: nees(&parameters),
             worst_normalized_error: worst_normalized_error(&parameters),
             parameters,
@@ -350,7 +428,7 @@ fn finish(
         Some(drift) => Some(drift.finish(HeightChannel::Held).map_err(RunError::from)?),
         None => None,
     };
-    let table = core.table().cloned();
+    let table = conclusion.table;
     let recorder = recorder.finish().map_err(RunError::from)?;
     Ok(MethodRun {
         label: label(scenario, method),
@@ -363,6 +441,7 @@ fn finish(
         table,
         receipts: Vec::new(),
         twin: None,
+        broken,
     })
 }
 

@@ -42,7 +42,7 @@ pub enum PairedError {
     #[error("compare: both methods need a navigation of at least 24 h ([procedure.navigation])")]
     NoNavigation,
     /// Samples that are not simulated know nothing of seeds.
-    #[error("compare: seeds need source.uri = \"plant\"")]
+    #[error("compare: seeds need source.uri = \"plant\", or a ship under it")]
     NotSimulated,
     /// Somebody asked for it.
     #[error("compare: interrupted")]
@@ -63,7 +63,7 @@ pub fn paired(
     controls: &[Control],
 ) -> Result<Comparison, PairedError> {
     let scenario = &second.scenario;
-    if [first, second].iter().any(|s| s.scenario.source != crate::scenario::Source::Plant) {
+    if [first, second].iter().any(|s| !s.scenario.source.has_plant()) {
         return Err(PairedError::NotSimulated);
     }
     // Said before hours of simulation, not after.

@@ -15,7 +15,7 @@ pub fn difference(scenario: &Scenario, run: &MethodRun) -> Option<Counterfactual
 /// What the faults of a run did, against a twin that may be that of many.
 #[must_use]
 pub fn between(scenario: &Scenario, run: &MethodRun, twin: &MethodRun) -> Option<Counterfactual> {
-    if [run, twin].iter().any(|side| side.ended == Ended::Cancelled) {
+    if [run, twin].iter().any(|side| matches!(side.ended, Ended::Cancelled | Ended::Broken)) {
         return None;
     }
     let sample_s = scenario.sample_period_ns as f64 * 1e-9;

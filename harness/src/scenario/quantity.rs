@@ -175,6 +175,12 @@ impl Dimension {
         exponents(self.powers)
     }
 
+    /// The SI unit, in which every value can be written exactly.
+    #[must_use]
+    pub(crate) const fn si_unit(self) -> &'static str {
+        self.si_unit
+    }
+
     /// The dimension with these exponents that scenarios use, where there is one.
     pub(crate) fn with_exponents(exponents: &[i8; 8]) -> Option<Self> {
         Self::ALL.into_iter().find(|dimension| dimension.exponents().as_ref() == Some(exponents))
@@ -212,12 +218,6 @@ fn exponents([m, s, rad, k, samples]: Powers) -> Option<[i8; 8]> {
     Some([0, half(m)?, half(s)?, 0, half(k)?, 0, 0, half(rad)?])
 }
 
-/// A unit by its name: SI value of one, and its exponents as [`Dimension::exponents`].
-pub(crate) fn unit(name: &str) -> Option<(f64, [i8; 8])> {
-    let (factor, powers) = parse_unit(name.trim()).ok()?;
-    Some((factor, exponents(powers)?))
-}
-
 /// A number without exponent where that reads well.
 fn plain(number: f64) -> String {
     let size = number.abs();
@@ -241,6 +241,11 @@ impl Quantity {
     #[must_use]
     pub fn same_dimension(self, other: Self) -> bool {
         self.powers == other.powers
+    }
+
+    /// Exponents of kg, m, s, A, K, mol, cd, rad; `None`: it has roots, or counts samples.
+    pub(crate) fn exponents(self) -> Option<[i8; 8]> {
+        exponents(self.powers)
     }
 
     /// Whether this is a quantity of the dimension.

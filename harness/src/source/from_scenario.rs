@@ -2,14 +2,16 @@
 
 use super::{Replay, Source, SourceError, TextFiles, TextMapping, TextSource};
 use crate::scenario::{self, FileName, Scenario};
+use octant_plant::config::Config;
 use std::path::PathBuf;
 
-/// Opens the recorded source of a scenario; `None` where it is the plant, which is made from what
-/// the seed draws: see [`super::PlantSource`].
+/// Opens the source of a scenario; `None` where it is the plant alone, which is made from what the
+/// seed draws: see [`super::PlantSource`]. `plant` is that plant: a ship under it, or our Plant FMU,
+/// needs to know it.
 ///
 /// # Errors
 /// If a file name can't be expanded, or a file can't be read.
-pub fn open(scenario: &Scenario) -> Result<Option<Box<dyn Source>>, SourceError> {
+pub fn open(scenario: &Scenario, plant: &Config) -> Result<Option<Box<dyn Source>>, SourceError> {
     let path = |name: &FileName| name.path(&scenario.folder).map_err(SourceError::FileName);
     match &scenario.source {
         scenario::Source::Plant => Ok(None),
@@ -27,9 +29,6 @@ pub fn open(scenario: &Scenario) -> Result<Option<Box<dyn Source>>, SourceError>
             let mapping = TextMapping { files, ..mapping.clone() };
             Ok(Some(Box::new(TextSource::open(&mapping)?)))
         }
-        scenario::Source::Fmu(fmu) => Err(SourceError::Read {
-            path: fmu.file.0.clone(),
-            reason: "FMUs as a source are not part of this version".to_owned(),
-        }),
+        scenario::Source::Fmu(fmu) => Ok(Some(super::fmu::open(scenario, fmu, plant)?)),
     }
 }

@@ -2,6 +2,7 @@
 
 mod counting;
 mod fields;
+mod fmu;
 mod foreign;
 mod from_scenario;
 mod plant;
@@ -48,6 +49,11 @@ pub trait Source {
     fn disturbed(&mut self) -> Option<&mut dyn Disturbed> {
         None
     }
+
+    /// The instrument has the errors that the scenario gives it or draws.
+    fn has_true_parameters(&self) -> bool {
+        false
+    }
 }
 
 impl<S: Source + ?Sized> Source for Box<S> {
@@ -66,6 +72,10 @@ impl<S: Source + ?Sized> Source for Box<S> {
     fn disturbed(&mut self) -> Option<&mut dyn Disturbed> {
         (**self).disturbed()
     }
+
+    fn has_true_parameters(&self) -> bool {
+        (**self).has_true_parameters()
+    }
 }
 
 /// Why a source could not go on.
@@ -82,6 +92,17 @@ pub enum SourceError {
     /// A file name could not be expanded.
     #[error("{0}")]
     FileName(String),
+    /// An FMU could not be used as a source.
+    #[error(transparent)]
+    Use(#[from] crate::fmu::mapping::stepper::UseError),
+    /// The FMU failed, or its process is gone.
+    #[error("source {uri} is gone: {reason}")]
+    Gone {
+        /// URI of the source.
+        uri: String,
+        /// What happened.
+        reason: String,
+    },
 }
 
 /// The period of a nominal rate, rounded to a nanosecond.

@@ -53,6 +53,10 @@ impl Source for PlantSource {
     fn disturbed(&mut self) -> Option<&mut dyn Disturbed> {
         Some(&mut self.plant)
     }
+
+    fn has_true_parameters(&self) -> bool {
+        true
+    }
 }
 
 #[cfg(test)]

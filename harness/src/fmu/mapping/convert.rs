@@ -1,8 +1,9 @@
 //! Between the unit of an FMU's variable and SI.
 
 use super::channel::{Channel, Class};
-use crate::fmu::description::{BaseUnit, Description, Kind, Variable};
-use crate::scenario::{Dimension, unit_of_name};
+use crate::fmu::description::units::{Conversion as Units, UnitError};
+use crate::fmu::description::{Description, Kind, Variable};
+use crate::scenario::Dimension;
 
 /// SI value = factor · value + offset.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -14,18 +15,6 @@ pub struct Conversion {
 impl Conversion {
     /// The value as it is, to the last bit.
     pub const IDENTITY: Self = Self { factor: 1.0, offset: 0.0 };
-
-    /// With this factor.
-    #[must_use]
-    pub const fn times(factor: f64) -> Self {
-        Self { factor, offset: 0.0 }
-    }
-
-    /// This one after the value was multiplied.
-    #[must_use]
-    pub fn scaled(self, scale: f64) -> Self {
-        Self { factor: self.factor * scale, ..self }
-    }
 
     /// Into SI.
     #[must_use]
@@ -41,6 +30,10 @@ impl Conversion {
     pub fn from_si(self, si: f64) -> f64 {
         if self == Self::IDENTITY { si } else { (si - self.offset) / self.factor }
     }
+
+    fn scaled(units: Units, scale: f64) -> Self {
+        Self { factor: units.factor * scale, offset: units.offset }
+    }
 }
 
 /// How values of a variable become those of a channel. `unit` is what the scenario says where the
@@ -55,51 +48,23 @@ pub fn conversion(
     unit: Option<&str>,
     scale: f64,
 ) -> Result<Conversion, String> {
-    let wrong = |expected: &str| {
-        Err(format!(
-            "{} is {}, and {} is {expected}",
-            variable.name,
-            article(kind_name(variable.kind)),
-            channel.name
-        ))
-    };
-    let whole = matches!(
-        variable.kind,
-        Kind::Int8
-            | Kind::UInt8
-            | Kind::Int16
-            | Kind::UInt16
-            | Kind::Int32
-            | Kind::UInt32
-            | Kind::Int64
-            | Kind::UInt64
-            | Kind::Enumeration
-    );
-    let real = matches!(variable.kind, Kind::Float64 | Kind::Float32);
+    fits(variable, channel)?;
     match channel.class {
-        Class::Flag if variable.kind == Kind::Boolean || whole => no_scale(channel, scale),
-        Class::Flag => wrong("true or false"),
-        Class::Code if whole || real => no_scale(channel, scale),
-        Class::Code => wrong("a code: a whole number or an enumeration"),
-        Class::Whole if whole || real => Ok(Conversion::times(scale)),
-        Class::Whole => wrong("a whole number"),
-        _ if !whole && !real => wrong("a number"),
+        Class::Flag | Class::Code if scale != 1.0 => {
+            Err(format!("found a scale, and {} is nothing that can be scaled", channel.name))
+        }
+        Class::Flag | Class::Code | Class::Whole => Ok(Conversion::scaled(Units::IDENTITY, scale)),
         Class::Nanoseconds => {
-            let unit = unit_of(description, variable, channel, unit, Dimension::TIME)?;
-            Ok(unit.map_or(Conversion::times(scale), |unit| {
-                // A nanosecond has to be one to the last bit.
-                let factor = unit.factor * 1e9;
-                let factor = if (factor - 1.0).abs() < 1e-12 { 1.0 } else { factor };
-                Conversion::times(factor).scaled(scale)
-            }))
+            let units = units(description, variable, channel, unit, "ns")?;
+            Ok(Conversion::scaled(units.unwrap_or(Units::IDENTITY), scale))
         }
         Class::Number => {
-            let unit = unit_of(description, variable, channel, unit, Dimension::RATIO)?;
-            Ok(unit.unwrap_or(Conversion::IDENTITY).scaled(scale))
+            let units = units(description, variable, channel, unit, "1")?;
+            Ok(Conversion::scaled(units.unwrap_or(Units::IDENTITY), scale))
         }
         Class::Quantity(dimension) => {
-            match unit_of(description, variable, channel, unit, dimension)? {
-                Some(unit) => Ok(unit.scaled(scale)),
+            match units(description, variable, channel, unit, dimension.si_unit())? {
+                Some(units) => Ok(Conversion::scaled(units, scale)),
                 None => Err(format!(
                     "{} has no unit in its description, and {} is {}: say which, as in {{ variable \
                      = {:?}, unit = {:?} }}",
@@ -110,128 +75,78 @@ pub fn conversion(
     }
 }
 
-fn no_scale(channel: &Channel, scale: f64) -> Result<Conversion, String> {
-    if scale == 1.0 {
-        return Ok(Conversion::IDENTITY);
+/// Whether the type of a variable can hold what a channel is.
+///
+/// # Errors
+/// If it can't: both, in words.
+pub fn fits(variable: &Variable, channel: &Channel) -> Result<(), String> {
+    let number =
+        !matches!(variable.kind, Kind::Boolean | Kind::String | Kind::Binary | Kind::Clock);
+    let (good, expected) = match channel.class {
+        Class::Flag => (variable.kind == Kind::Boolean || is_whole(variable.kind), "true or false"),
+        Class::Code => (number, "a code: a whole number or an enumeration"),
+        Class::Whole | Class::Nanoseconds => (number, "a whole number"),
+        Class::Number | Class::Quantity(_) => (number, "a number"),
+    };
+    if good {
+        return Ok(());
     }
-    Err(format!("found a scale, and {} is nothing that can be scaled", channel.name))
+    Err(format!(
+        "{} is {}, and {} is {expected}",
+        variable.name,
+        article(variable.kind.name()),
+        channel.name
+    ))
 }
 
-/// The unit of a variable as a conversion into SI of a dimension; `None` where nobody says one.
-fn unit_of(
+fn is_whole(kind: Kind) -> bool {
+    !kind.is_float() && !matches!(kind, Kind::Boolean | Kind::String | Kind::Binary | Kind::Clock)
+}
+
+/// From the unit of a variable into another; `None` where nobody says one.
+fn units(
     description: &Description,
     variable: &Variable,
     channel: &Channel,
     said: Option<&str>,
-    dimension: Dimension,
-) -> Result<Option<Conversion>, String> {
-    let described = match &variable.unit {
-        None => None,
-        Some(name) => Some((name, of_description(description, name, variable)?)),
-    };
-    let said = match said {
-        None => None,
-        Some(name) => {
-            Some((name, by_name(name).ok_or_else(|| format!("found the unknown unit {name:?}"))?))
+    wanted: &str,
+) -> Result<Option<Units>, String> {
+    let problem = |error: UnitError, unit: &str| match error {
+        UnitError::Dimension { from_exponents, .. } => {
+            let found = match Dimension::with_exponents(&from_exponents) {
+                Some(dimension) => dimension.name.to_owned(),
+                None => crate::fmu::description::units::dimension(from_exponents),
+            };
+            let expected = match channel.class {
+                Class::Quantity(dimension) => {
+                    format!("{}, such as {}", dimension.name, dimension.unit)
+                }
+                Class::Nanoseconds => "a time, in ns".to_owned(),
+                _ => "a number without unit".to_owned(),
+            };
+            format!("{} is in {unit}, {found}, and {} is {expected}", variable.name, channel.name)
         }
+        other => format!("{}: {other}", variable.name),
     };
-    let base = match (&described, &said) {
-        (None, None) => return Ok(None),
-        (None, Some((_, base))) => *base,
-        (Some((_, base)), None) => *base,
-        (Some((name, base)), Some((said, other))) => {
-            if !same(base, other) {
+    match (&variable.unit, said) {
+        (None, None) => Ok(None),
+        (None, Some(said)) => {
+            let found = Units::between(description, said, wanted).map_err(|e| problem(e, said))?;
+            Ok(Some(found))
+        }
+        (Some(unit), said) => {
+            let found =
+                Units::of(description, variable, wanted).map_err(|error| problem(error, unit))?;
+            if let Some(said) = said
+                && !Units::between(description, said, unit).is_ok_and(|units| units.is_identity())
+            {
                 return Err(format!(
-                    "found unit = {said:?}, and the description says that {} is in {name}",
+                    "found unit = {said:?}, and the description says that {} is in {unit}",
                     variable.name
                 ));
             }
-            *base
+            Ok(Some(found))
         }
-    };
-    let expected = dimension.exponents().unwrap_or_default();
-    let is = base.exponents;
-    let but_rad = is[..7] == expected[..7];
-    // Many tools leave the radian out of base units: its name tells.
-    let angular = is[7] == 0
-        && but_rad
-        && described.as_ref().is_some_and(|(name, _)| {
-            ["rad", "deg", "°", "arc", "grad"].iter().any(|part| name.contains(part))
-        });
-    if is != expected && !angular {
-        let name = described.as_ref().map(|(name, _)| name.as_str());
-        let name = name.or(said.as_ref().map(|(name, _)| *name)).unwrap_or_default();
-        let found = Dimension::with_exponents(&is).map_or("another dimension", |d| d.name);
-        let expected = if dimension == Dimension::RATIO {
-            "a number without unit".to_owned()
-        } else {
-            format!("{}, such as {}", dimension.name, dimension.unit)
-        };
-        return Err(format!(
-            "{} is in {name}, {found}, and {} is {expected}",
-            variable.name, channel.name
-        ));
-    }
-    Ok(Some(Conversion { factor: base.factor, offset: base.offset }))
-}
-
-fn same(a: &BaseUnit, b: &BaseUnit) -> bool {
-    a.exponents[..7] == b.exponents[..7]
-        && (a.factor - b.factor).abs() <= 1e-9 * b.factor.abs()
-        && a.offset == b.offset
-}
-
-/// The unit of a variable; `None` where it has none.
-///
-/// # Errors
-/// If nobody knows it.
-pub fn base_unit(
-    description: &Description,
-    variable: &Variable,
-) -> Result<Option<BaseUnit>, String> {
-    variable.unit.as_ref().map(|name| of_description(description, name, variable)).transpose()
-}
-
-/// A unit as the description defines it, or by its name where it has no definition.
-fn of_description(
-    description: &Description,
-    name: &str,
-    variable: &Variable,
-) -> Result<BaseUnit, String> {
-    let defined = description.units.iter().find(|unit| unit.name == name);
-    defined.and_then(|unit| unit.base).or_else(|| by_name(name)).ok_or_else(|| {
-        format!(
-            "{} is in {name}, a unit that the description doesn't define and that isn't known by \
-             its name",
-            variable.name
-        )
-    })
-}
-
-/// A unit by its name.
-fn by_name(name: &str) -> Option<BaseUnit> {
-    let (factor, exponents) = unit_of_name(name)?;
-    Some(BaseUnit { exponents, factor, offset: 0.0 })
-}
-
-/// The name of a type as the standards have it.
-pub(super) fn kind_name(kind: Kind) -> &'static str {
-    match kind {
-        Kind::Float64 => "Real (Float64)",
-        Kind::Float32 => "Float32",
-        Kind::Int8 => "Int8",
-        Kind::UInt8 => "UInt8",
-        Kind::Int16 => "Int16",
-        Kind::UInt16 => "UInt16",
-        Kind::Int32 => "Integer (Int32)",
-        Kind::UInt32 => "UInt32",
-        Kind::Int64 => "Int64",
-        Kind::UInt64 => "UInt64",
-        Kind::Boolean => "Boolean",
-        Kind::String => "String",
-        Kind::Binary => "Binary",
-        Kind::Enumeration => "Enumeration",
-        Kind::Clock => "Clock",
     }
 }
 
@@ -239,4 +154,18 @@ pub(super) fn kind_name(kind: Kind) -> &'static str {
 pub(super) fn article(word: &str) -> String {
     let vowel = word.starts_with(['A', 'E', 'I', 'O', 'a', 'e', 'i', 'o']);
     format!("{} {word}", if vowel { "an" } else { "a" })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_conversion_and_its_inverse() {
+        let celsius = Conversion { factor: 1.0, offset: 273.15 };
+        assert_eq!(celsius.to_si(20.0), 293.15);
+        assert!((celsius.from_si(293.15) - 20.0).abs() < 1e-12);
+        assert_eq!(Conversion::IDENTITY.to_si(-0.0).to_bits(), (-0.0f64).to_bits());
+        assert_eq!(Conversion::IDENTITY.from_si(-0.0).to_bits(), (-0.0f64).to_bits());
+    }
 }

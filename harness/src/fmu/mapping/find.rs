@@ -1,7 +1,7 @@
 //! Variables by the names that scenarios use, and what is said where there is none.
 
-use super::convert::{article, kind_name};
-use crate::fmu::description::{Causality, Description, Dimension, Variability, Variable};
+use super::convert::article;
+use crate::fmu::description::{Causality, Description, Variability, Variable};
 
 /// Which way values go.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -38,7 +38,7 @@ fn plain<'a>(
     name: &str,
     elements: usize,
 ) -> Option<Vec<(&'a Variable, usize)>> {
-    let named = |name: &str| description.variables.iter().find(|variable| variable.name == name);
+    let named = |name: &str| description.variable(name);
     if let Some(variable) = named(name) {
         let count = count(description, variable);
         return Some((0..count).map(|element| (variable, element)).collect());
@@ -54,19 +54,10 @@ fn plain<'a>(
     (1..=count(description, variable)).contains(&index).then(|| vec![(variable, index - 1)])
 }
 
-/// Elements of a variable, with structural parameters as they start.
+/// Elements of a variable, with structural parameters as they start; 0 where that isn't known.
 #[must_use]
 pub fn count(description: &Description, variable: &Variable) -> usize {
-    let size = |dimension: &Dimension| match *dimension {
-        Dimension::Fixed(size) => usize::try_from(size).unwrap_or(usize::MAX),
-        Dimension::Of(reference) => description
-            .variables
-            .iter()
-            .find(|other| other.reference == reference)
-            .and_then(|other| other.start.first()?.trim().parse().ok())
-            .unwrap_or(0),
-    };
-    variable.dimensions.iter().map(size).fold(1, usize::saturating_mul)
+    description.elements(variable).unwrap_or(0)
 }
 
 /// Why a variable can't be used in a way.
@@ -127,5 +118,5 @@ pub fn unknown(description: &Description, name: &str, could: impl Fn(&Variable) 
 
 /// What a variable is, for messages: `the Boolean x`.
 pub(crate) fn described(variable: &Variable) -> String {
-    format!("the {} {}", kind_name(variable.kind), variable.name)
+    format!("the {} {}", variable.kind.name(), variable.name)
 }

@@ -1,0 +1,282 @@
+//! Inputs of an FMU from a CSV file: the first column is time, every other one a variable.
+//!
+//! What changes continuously is interpolated linearly, everything else is held from its row on; two
+//! rows of the same time are a step. Before the first row and after the last the nearest one holds.
+
+use crate::fmu::description::units::{Conversion, known};
+use crate::fmu::description::{Causality, Description, Kind, Variability, Variable};
+use crate::fmu::instance::{InstanceError, Plan};
+use crate::fmu::mapping::find::{Way, allowed, count, find, unknown};
+use std::path::Path;
+
+/// Why inputs can't be read.
+#[derive(Debug, thiserror::Error)]
+pub enum InputError {
+    /// The file can't be read.
+    #[error("read {path}: {source}")]
+    Open {
+        /// The file.
+        path: String,
+        /// What the system said.
+        source: std::io::Error,
+    },
+    /// Something in it is wrong.
+    #[error("{path}:{line}:{column}: {reason}")]
+    Content {
+        /// The file.
+        path: String,
+        /// Line, from 1.
+        line: u64,
+        /// Column of the table, from 1.
+        column: usize,
+        /// What was found and what is expected.
+        reason: String,
+    },
+    /// The variables can't be set together.
+    #[error(transparent)]
+    Instance(#[from] InstanceError),
+}
+
+/// The table, and where its columns go.
+#[derive(Clone, Debug)]
+pub struct Inputs {
+    /// The groups that are set.
+    pub plan: Plan,
+    /// Their numbers.
+    pub numbers: Vec<f64>,
+    time_s: Vec<f64>,
+    columns: Vec<Column>,
+    /// The last row at or before the time that was asked for last.
+    row: usize,
+}
+
+#[derive(Clone, Debug)]
+struct Column {
+    /// Place in the numbers.
+    place: usize,
+    continuous: bool,
+    values: Vec<f64>,
+}
+
+/// What a header says.
+struct Header<'a> {
+    variable: &'a Variable,
+    element: usize,
+    units: Conversion,
+}
+
+impl Inputs {
+    /// Reads a file for an FMU.
+    ///
+    /// # Errors
+    /// If it can't be read, a column is no input of the FMU, or a field is no number: with line and
+    /// column.
+    pub fn read(path: &Path, description: &Description) -> Result<Self, InputError> {
+        let name = path.display().to_string();
+        let file = std::fs::File::open(path)
+            .map_err(|source| InputError::Open { path: name.clone(), source })?;
+        Self::from_reader(std::io::BufReader::new(file), &name, description)
+    }
+
+    /// As [`Self::read`], from anything; `name` is for messages.
+    ///
+    /// # Errors
+    /// As [`Self::read`].
+    pub fn from_reader(
+        reader: impl std::io::Read,
+        name: &str,
+        description: &Description,
+    ) -> Result<Self, InputError> {
+        let content = |line: u64, column: usize, reason: String| InputError::Content {
+            path: name.to_owned(),
+            line,
+            column,
+            reason,
+        };
+        let mut rows = csv::ReaderBuilder::new()
+            .trim(csv::Trim::All)
+            .comment(Some(b'#'))
+            .flexible(true)
+            .from_reader(reader);
+        let header = rows.headers().map_err(|e| content(1, 1, e.to_string()))?.clone();
+        let line = header.position().map_or(1, csv::Position::line);
+        let first = header.get(0).unwrap_or_default().trim_start_matches('\u{feff}');
+        let time_factor = time(first).ok_or_else(|| {
+            content(line, 1, format!("found {first:?}, expected time as the first column"))
+        })?;
+        let headers = (1..header.len()).map(|index| {
+            of_header(description, &header[index]).map_err(|e| content(line, index + 1, e))
+        });
+        let headers: Vec<Header<'_>> = headers.collect::<Result<_, _>>()?;
+        for (index, one) in headers.iter().enumerate() {
+            let same = |other: &Header<'_>| {
+                std::ptr::eq(other.variable, one.variable) && other.element == one.element
+            };
+            if headers[..index].iter().any(same) {
+                let reason = format!("{} a second time", &header[index + 1]);
+                return Err(content(line, index + 2, reason));
+            }
+        }
+
+        let mut variables: Vec<&Variable> = Vec::new();
+        for header in &headers {
+            if !variables.iter().any(|known| std::ptr::eq(*known, header.variable)) {
+                variables.push(header.variable);
+            }
+        }
+        let plan = Plan::new(description, &variables)?;
+        let mut numbers = vec![0.0; plan.elements];
+        for (variable, place) in variables.iter().zip(&plan.places) {
+            crate::fmu::mapping::bind::start(variable, &mut numbers[place.clone()]);
+        }
+        let column = |header: &Header<'_>| {
+            let known = variables.iter().position(|known| std::ptr::eq(*known, header.variable));
+            Column {
+                place: known.map_or(0, |index| plan.places[index].start) + header.element,
+                continuous: header.variable.kind.is_float()
+                    && header.variable.variability == Variability::Continuous,
+                values: Vec::new(),
+            }
+        };
+        let mut columns: Vec<Column> = headers.iter().map(column).collect();
+        let mut time_s: Vec<f64> = Vec::new();
+        let mut record = csv::StringRecord::new();
+        loop {
+            let line = rows.position().line();
+            match rows.read_record(&mut record) {
+                Ok(false) => break,
+                Ok(true) => {}
+                Err(error) => return Err(content(line, 1, error.to_string())),
+            }
+            let line = record.position().map_or(line, csv::Position::line);
+            if record.len() != header.len() {
+                let reason = format!("found {} columns, expected {}", record.len(), header.len());
+                return Err(content(line, record.len().min(header.len()), reason));
+            }
+            let now = number(&record[0], Kind::Float64)
+                .map_err(|reason| content(line, 1, reason))?
+                * time_factor;
+            if let Some(before) = time_s.last().filter(|before| **before > now) {
+                let reason = format!("found the time {now} s after {before} s");
+                return Err(content(line, 1, reason));
+            }
+            time_s.push(now);
+            for (index, (column, header)) in columns.iter_mut().zip(&headers).enumerate() {
+                let value = number(&record[index + 1], header.variable.kind)
+                    .map_err(|reason| content(line, index + 2, reason))?;
+                column.values.push(header.units.apply(value));
+            }
+        }
+        if time_s.is_empty() {
+            return Err(content(line + 1, 1, "the file ends, expected a row of numbers".into()));
+        }
+        Ok(Self { plan, numbers, time_s, columns, row: 0 })
+    }
+
+    /// First and last time of the table, s.
+    #[must_use]
+    pub fn span_s(&self) -> (f64, f64) {
+        (self.time_s[0], self.time_s[self.time_s.len() - 1])
+    }
+
+    /// Puts the inputs at a time into the numbers. Times come in order.
+    pub fn at(&mut self, time_s: f64) {
+        // A communication point is a product, and a row's time may be the same in decimals.
+        let reached = time_s + 1e-12 * time_s.abs();
+        if self.time_s[self.row] > reached {
+            self.row = 0;
+        }
+        while self.time_s.get(self.row + 1).is_some_and(|next| *next <= reached) {
+            self.row += 1;
+        }
+        let (row, next) = (self.row, self.row + 1);
+        let here = self.time_s[row];
+        let part = match self.time_s.get(next) {
+            Some(there) if *there > here && time_s > here => (time_s - here) / (there - here),
+            _ => 0.0,
+        };
+        for column in &self.columns {
+            let value = column.values[row];
+            self.numbers[column.place] = if column.continuous && part > 0.0 {
+                value + part * (column.values[next] - value)
+            } else {
+                value
+            };
+        }
+    }
+}
+
+/// The SI value of the unit of a time column; `None` where it is none.
+fn time(header: &str) -> Option<f64> {
+    let (name, unit) = split_unit(header);
+    if !name.eq_ignore_ascii_case("time") {
+        return None;
+    }
+    let Some(unit) = unit else { return Some(1.0) };
+    let units = known(unit);
+    units.iter().find(|unit| unit.exponents == [0, 0, 1, 0, 0, 0, 0, 0]).map(|unit| unit.factor)
+}
+
+/// A name and the unit in brackets after a blank: `imu.w[1] [deg/s]`.
+fn split_unit(header: &str) -> (&str, Option<&str>) {
+    let header = header.trim();
+    let unit = header.strip_suffix(']').and_then(|rest| rest.rsplit_once(" ["));
+    unit.map_or((header, None), |(name, unit)| (name.trim(), Some(unit.trim())))
+}
+
+fn of_header<'a>(description: &'a Description, header: &str) -> Result<Header<'a>, String> {
+    let is_input = |variable: &Variable| variable.causality == Causality::Input;
+    let (name, unit) = split_unit(header);
+    let found = find(description, name, 1).filter(|found| !found.negated);
+    let Some(found) = found else { return Err(unknown(description, name, is_input)) };
+    let [(variable, element)] = found.elements[..] else {
+        let variable = found.elements.first().map_or(name, |(variable, _)| &variable.name);
+        return Err(format!(
+            "{variable} is an array of {}, expected a column for each element, as {variable}[1]",
+            found.elements.len()
+        ));
+    };
+    allowed(variable, Way::In)?;
+    if matches!(variable.kind, Kind::String | Kind::Binary | Kind::Clock) {
+        return Err(format!(
+            "{name} is a {:?}, and a column of numbers can't be one",
+            variable.kind
+        ));
+    }
+    debug_assert!(element < count(description, variable).max(1));
+    let units = match unit {
+        None => Conversion::IDENTITY,
+        Some(unit) => units(description, variable, unit)?,
+    };
+    Ok(Header { variable, element, units })
+}
+
+/// From a column's unit to the variable's.
+fn units(description: &Description, variable: &Variable, unit: &str) -> Result<Conversion, String> {
+    let Some(own) = &variable.unit else {
+        return Err(format!("found the unit {unit:?}, and {} has none", variable.name));
+    };
+    Conversion::between(description, unit, own)
+        .map_err(|error| format!("{}: {error}", variable.name))
+}
+
+fn number(text: &str, kind: Kind) -> Result<f64, String> {
+    match (text, kind) {
+        ("true", Kind::Boolean) => return Ok(1.0),
+        ("false", Kind::Boolean) => return Ok(0.0),
+        _ => {}
+    }
+    let value: f64 = text.parse().map_err(|_| format!("found {text:?}, expected a number"))?;
+    let fits = match kind {
+        Kind::Boolean => value == 0.0 || value == 1.0,
+        Kind::Float64 | Kind::Float32 => true,
+        _ => value.fract() == 0.0,
+    };
+    if fits {
+        return Ok(value);
+    }
+    Err(match kind {
+        Kind::Boolean => format!("found {text:?}, expected 0, 1, true or false"),
+        _ => format!("found {text:?}, expected a whole number"),
+    })
+}

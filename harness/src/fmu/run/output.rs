@@ -1,0 +1,303 @@
+//! Rows of an FMU's outputs, as CSV or as an MCAP file of JSON messages.
+
+use crate::fmu::description::{Causality, Description, Kind, Variable};
+use crate::fmu::instance::{InstanceError, Plan};
+use crate::fmu::mapping::find::{count, find, unknown};
+use std::collections::BTreeMap;
+use std::fs::File;
+use std::io::{self, BufWriter, Write};
+use std::path::Path;
+
+/// What is got at every row.
+#[derive(Clone, Debug)]
+pub struct Outputs {
+    /// The groups that are got.
+    pub plan: Plan,
+    /// Columns beside time.
+    pub columns: Vec<Column>,
+    /// Outputs that are no numbers, and left out.
+    pub left_out: Vec<String>,
+}
+
+/// A column.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Column {
+    /// Its name: of the variable, with the number of the element where it is an array.
+    pub name: String,
+    /// Type of its values.
+    pub kind: Kind,
+    /// Place in the numbers that are got.
+    pub place: usize,
+    /// Its unit, where it has one.
+    pub unit: Option<String>,
+}
+
+impl Outputs {
+    /// The variables of these names; without names the outputs of the FMU.
+    ///
+    /// # Errors
+    /// If there is no such variable, or it is no number.
+    pub fn choose(description: &Description, names: &[String]) -> Result<Self, String> {
+        let number = |variable: &Variable| {
+            !matches!(variable.kind, Kind::String | Kind::Binary | Kind::Clock)
+        };
+        let mut elements: Vec<(&Variable, usize)> = Vec::new();
+        let mut left_out = Vec::new();
+        if names.is_empty() {
+            for variable in &description.variables {
+                if variable.causality != Causality::Output {
+                    continue;
+                }
+                if number(variable) {
+                    elements.extend((0..count(description, variable)).map(|n| (variable, n)));
+                } else {
+                    left_out.push(variable.name.clone());
+                }
+            }
+        }
+        for name in names {
+            // As one element first: an array of scalars has no variable of its own name.
+            let array = || (2..=4096).rev().find_map(|n| scalars(description, name, n));
+            let found = find(description, name, 1)
+                .filter(|found| !found.negated)
+                .map(|found| found.elements)
+                .or_else(array)
+                .ok_or_else(|| unknown(description, name, |_| true))?;
+            if let Some((variable, _)) = found.iter().find(|(variable, _)| !number(variable)) {
+                return Err(format!(
+                    "{} is a {:?}: numbers, Booleans and enumerations are recorded",
+                    variable.name, variable.kind
+                ));
+            }
+            elements.extend(found);
+        }
+        let mut variables: Vec<&Variable> = Vec::new();
+        for (variable, _) in &elements {
+            if !variables.iter().any(|known| std::ptr::eq(*known, *variable)) {
+                variables.push(variable);
+            }
+        }
+        let plan =
+            Plan::new(description, &variables).map_err(|error: InstanceError| error.to_string())?;
+        let column = |(variable, element): &(&Variable, usize)| {
+            let known = variables.iter().position(|known| std::ptr::eq(*known, *variable));
+            Column {
+                name: element_name(description, variable, *element),
+                kind: variable.kind,
+                place: known.map_or(0, |index| plan.places[index].start) + element,
+                unit: variable.unit.clone(),
+            }
+        };
+        let columns = elements.iter().map(column).collect();
+        Ok(Self { plan, columns, left_out })
+    }
+}
+
+/// All elements of an array that is so many scalars in the file, no less.
+fn scalars<'a>(
+    description: &'a Description,
+    name: &str,
+    elements: usize,
+) -> Option<Vec<(&'a Variable, usize)>> {
+    let last = format!("{name}[{elements}]");
+    // Cheap first: most names have no such element.
+    description.variables.iter().find(|variable| variable.name == last)?;
+    find(description, name, elements).filter(|found| !found.negated).map(|found| found.elements)
+}
+
+/// Name of an element as FMI 2.0 names it, `w[2]` or `m[2,1]`, counted from 1, rows first.
+fn element_name(description: &Description, variable: &Variable, element: usize) -> String {
+    if variable.dimensions.is_empty() {
+        return variable.name.clone();
+    }
+    let one = |dimension: &crate::fmu::description::Dimension| {
+        let alone = Variable { dimensions: vec![*dimension], ..variable.clone() };
+        count(description, &alone).max(1)
+    };
+    let mut rest = element;
+    let mut subscripts = Vec::with_capacity(variable.dimensions.len());
+    for dimension in variable.dimensions.iter().rev() {
+        let size = one(dimension);
+        subscripts.push((rest % size + 1).to_string());
+        rest /= size;
+    }
+    subscripts.reverse();
+    format!("{}[{}]", variable.name, subscripts.join(","))
+}
+
+/// A value as its type is written: whole numbers without a point, everything else so that it is
+/// read back to the same bits.
+fn write_value(out: &mut impl Write, kind: Kind, value: f64) -> io::Result<()> {
+    match kind {
+        Kind::Float64 => write!(out, "{value:?}"),
+        Kind::Float32 => write!(out, "{:?}", value as f32),
+        _ if value.fract() == 0.0 && value.abs() < 1e18 => write!(out, "{}", value as i64),
+        _ => write!(out, "{value:?}"),
+    }
+}
+
+/// Where rows go.
+pub enum Sink {
+    /// Nowhere.
+    None,
+    /// A CSV file, in the form that FMPy reads.
+    Csv(BufWriter<File>),
+    /// A CSV file on standard output.
+    Stdout(BufWriter<io::Stdout>),
+    /// An MCAP file with a JSON message a row.
+    Mcap(Box<Mcap>),
+}
+
+/// An MCAP file of rows.
+pub struct Mcap {
+    writer: mcap::Writer<BufWriter<File>>,
+    channel: u16,
+    sequence: u32,
+    text: Vec<u8>,
+}
+
+/// Topic of the rows in an MCAP file.
+pub const TOPIC: &str = "/fmu/outputs";
+
+impl Sink {
+    /// A file by its name: `.csv` or `.mcap`.
+    ///
+    /// # Errors
+    /// If it can't be made, or has another ending.
+    pub fn file(path: &Path, outputs: &Outputs, model: &str) -> Result<Self, String> {
+        let create =
+            || File::create(path).map_err(|error| format!("create {}: {error}", path.display()));
+        let fail = |error: &dyn std::fmt::Display| format!("write {}: {error}", path.display());
+        match path.extension().and_then(|extension| extension.to_str()) {
+            Some("csv") => {
+                let mut sink = Self::Csv(BufWriter::new(create()?));
+                sink.header(outputs).map_err(|e| fail(&e))?;
+                Ok(sink)
+            }
+            Some("mcap") => Ok(Self::Mcap(Box::new(
+                Mcap::new(create()?, outputs, model).map_err(|e| fail(&e))?,
+            ))),
+            _ => {
+                Err(format!("write {}: expected a name that ends in .csv or .mcap", path.display()))
+            }
+        }
+    }
+
+    /// Writes the names of the columns of a CSV file.
+    ///
+    /// # Errors
+    /// If it can't be written.
+    pub fn header(&mut self, outputs: &Outputs) -> io::Result<()> {
+        let write = |out: &mut dyn Write| {
+            write!(out, "\"time\"")?;
+            for column in &outputs.columns {
+                write!(out, ",\"{}\"", column.name.replace('"', "\"\""))?;
+            }
+            writeln!(out)
+        };
+        match self {
+            Self::Csv(out) => write(out),
+            Self::Stdout(out) => write(out),
+            Self::None | Self::Mcap(_) => Ok(()),
+        }
+    }
+
+    /// Writes a row.
+    ///
+    /// # Errors
+    /// If it can't be written.
+    pub fn row(&mut self, time_s: f64, outputs: &Outputs, numbers: &[f64]) -> io::Result<()> {
+        fn csv(
+            out: &mut impl Write,
+            time_s: f64,
+            outputs: &Outputs,
+            numbers: &[f64],
+        ) -> io::Result<()> {
+            write!(out, "{time_s:?}")?;
+            for column in &outputs.columns {
+                out.write_all(b",")?;
+                write_value(out, column.kind, numbers[column.place])?;
+            }
+            out.write_all(b"\n")
+        }
+        match self {
+            Self::None => Ok(()),
+            Self::Csv(out) => csv(out, time_s, outputs, numbers),
+            Self::Stdout(out) => csv(out, time_s, outputs, numbers),
+            Self::Mcap(mcap) => mcap.row(time_s, outputs, numbers),
+        }
+    }
+
+    /// Writes what is left.
+    ///
+    /// # Errors
+    /// If it can't be written.
+    pub fn finish(self) -> io::Result<()> {
+        match self {
+            Self::None => Ok(()),
+            Self::Csv(mut out) => out.flush(),
+            Self::Stdout(mut out) => out.flush(),
+            Self::Mcap(mut mcap) => mcap.writer.finish().map(|_| ()).map_err(io::Error::other),
+        }
+    }
+}
+
+impl Mcap {
+    fn new(file: File, outputs: &Outputs, model: &str) -> Result<Self, mcap::McapError> {
+        let mut writer = mcap::WriteOptions::new()
+            .profile("")
+            .library(concat!("octant ", env!("CARGO_PKG_VERSION")))
+            .compression(Some(mcap::Compression::Zstd))
+            .compression_threads(0)
+            .create(BufWriter::new(file))?;
+        let property = |column: &Column| {
+            let kind = match column.kind {
+                Kind::Boolean => "boolean",
+                Kind::Float64 | Kind::Float32 => "number",
+                _ => "integer",
+            };
+            let mut property = serde_json::json!({ "type": [kind, "null"] });
+            if let Some(unit) = &column.unit {
+                property["description"] = format!("in {unit}").into();
+            }
+            (column.name.clone(), property)
+        };
+        let mut properties: serde_json::Map<String, serde_json::Value> =
+            outputs.columns.iter().map(property).collect();
+        properties
+            .insert("time".into(), serde_json::json!({ "type": "number", "description": "s" }));
+        let schema =
+            serde_json::json!({ "title": model, "type": "object", "properties": properties });
+        let schema = writer.add_schema(model, "jsonschema", schema.to_string().as_bytes())?;
+        let channel = writer.add_channel(schema, TOPIC, "json", &BTreeMap::new())?;
+        Ok(Self { writer, channel, sequence: 0, text: Vec::new() })
+    }
+
+    fn row(&mut self, time_s: f64, outputs: &Outputs, numbers: &[f64]) -> io::Result<()> {
+        let text = &mut self.text;
+        text.clear();
+        write!(text, "{{\"time\":{time_s:?}")?;
+        for column in &outputs.columns {
+            text.extend_from_slice(b",");
+            serde_json::to_writer(&mut *text, &column.name)?;
+            text.extend_from_slice(b":");
+            let value = numbers[column.place];
+            match column.kind {
+                Kind::Boolean => write!(text, "{}", value != 0.0)?,
+                // JSON has no such numbers.
+                _ if !value.is_finite() => text.extend_from_slice(b"null"),
+                kind => write_value(text, kind, value)?,
+            }
+        }
+        text.extend_from_slice(b"}");
+        let time_ns = (time_s.max(0.0) * 1e9).round() as u64;
+        self.sequence = self.sequence.wrapping_add(1);
+        let header = mcap::records::MessageHeader {
+            channel_id: self.channel,
+            sequence: self.sequence,
+            log_time: time_ns,
+            publish_time: time_ns,
+        };
+        self.writer.write_to_known_channel(&header, &self.text).map_err(io::Error::other)
+    }
+}

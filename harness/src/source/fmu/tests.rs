@@ -1,0 +1,290 @@
+use super::*;
+use crate::fmu::description::{Causality, Description, Kind};
+use crate::fmu::mapping::testing::{Scripted, description, variable};
+use crate::run::method::configurations;
+use crate::scenario::{self, Method};
+use crate::source::Epoch;
+use octant_sample::counts::{DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS};
+use octant_sample::{GimbalAngles, GimbalCommand, Reference, Status};
+use std::path::Path;
+
+fn sine() -> Description {
+    use Causality::{Input, Output, Parameter};
+    description(
+        "imu",
+        vec![
+            variable("w", 1, Kind::Float64, Output).array(3).in_unit("deg/h"),
+            variable("fx", 4, Kind::Float64, Output),
+            variable("fy", 5, Kind::Float64, Output),
+            variable("fz", 6, Kind::Float64, Output),
+            variable("az", 7, Kind::Float64, Output).in_unit("deg"),
+            variable("el", 8, Kind::Float64, Output).in_unit("deg"),
+            variable("cmd[1]", 9, Kind::Float64, Input).in_unit("deg"),
+            variable("cmd[2]", 10, Kind::Float64, Input).in_unit("deg"),
+            variable("vn", 11, Kind::Float64, Output).in_unit("m/s"),
+            variable("lat", 12, Kind::Float64, Output).in_unit("deg"),
+            variable("ok", 13, Kind::Boolean, Output),
+            variable("mass", 14, Kind::Float64, Parameter).in_unit("kg"),
+            variable("length", 15, Kind::Float64, Parameter).in_unit("m"),
+            variable("mode", 16, Kind::Int32, Parameter),
+        ],
+    )
+}
+
+const MAP: &str = "[source.fmu.map]\ngyro.rate = \"w\"\n\
+    accelerometer.specific_force = [{ variable = \"fx\", unit = \"g\" }, \
+    { variable = \"-fy\", unit = \"g\" }, { variable = \"fz\", unit = \"g\" }]\n";
+
+fn scenario(more: &str) -> Scenario {
+    let text = format!(
+        "schema = 1\n[procedure.calibration]\nduration = \"4 min\"\n[source]\n\
+         uri = \"fmu:imu.fmu\"\n{more}"
+    );
+    Scenario::parse(&text, "imu.toml", Path::new(""), &[]).unwrap_or_else(|e| panic!("{e}"))
+}
+
+fn open(
+    scenario: &Scenario,
+    description: Description,
+    behaviour: impl FnMut(&mut [f64], f64) -> Result<bool, String> + Send + 'static,
+) -> Result<Box<dyn Source>, SourceError> {
+    let scenario::Source::Fmu(fmu) = &scenario.source else { panic!("an FMU") };
+    let (plant, ..) = configurations(scenario, Method::Primary, 1).unwrap();
+    let instance = Scripted::boxed(description, behaviour);
+    of_instance(scenario, fmu, &plant, Kept { instance, uri: "fmu:imu.fmu".to_owned() })
+}
+
+#[test]
+fn rates_of_any_unit_become_counts_with_remainders_carried() {
+    let scenario = scenario(MAP);
+    let mut source = open(&scenario, sine(), |cells, time_s| {
+        cells[1] = 3600.0 * (2.0 * time_s).sin();
+        cells[4..7].copy_from_slice(&[0.1, 0.2, -1.0]);
+        Ok(true)
+    })
+    .unwrap();
+    let (mut epoch, mut sum) = (Epoch::default(), [0i64; 4]);
+    let (mut turned, mut last_ns) = (0.0, 0);
+    for k in 1..=48_000u64 {
+        assert!(source.next(&GimbalCommand::default(), &mut epoch).unwrap());
+        let sample = epoch.sample;
+        assert_eq!((sample.sequence, sample.status), (k, Status::GIMBAL_INVALID));
+        assert_eq!(sample.device_time.ns, last_ns + 5_000_000);
+        last_ns = sample.device_time.ns;
+        // The closed form: 1 deg/s · sin(2 t) at the end of each interval, held over 5 ms.
+        turned += (2.0 * (k as f64 * 0.005)).sin().to_radians() * 0.005;
+        sum[0] += i64::from(sample.delta_theta[0]);
+        for axis in 0..3 {
+            sum[1 + axis] += i64::from(sample.delta_velocity[axis]);
+        }
+        assert!((sum[0] as f64 - turned / DELTA_THETA_LSB_RAD).abs() < 0.51, "at {k}");
+        for (axis, g) in [(0, 0.1), (1, -0.2), (2, -1.0)] {
+            let velocity = g * 9.806_65 * (k as f64 * 0.005) / DELTA_VELOCITY_LSB_MPS;
+            assert!((sum[1 + axis] as f64 - velocity).abs() < 0.51, "at {k}");
+        }
+    }
+    assert!(!source.next(&GimbalCommand::default(), &mut epoch).unwrap(), "four minutes");
+    assert!(source.truth().is_none() && !source.has_true_parameters());
+}
+
+#[test]
+fn a_command_acts_from_the_end_of_the_interval_that_it_comes_with() {
+    let more = "gimbal.azimuth = \"az\"\ngimbal.roll = \"el\"\n\
+        gimbal_command.azimuth = \"cmd[1]\"\ngimbal_command.roll = \"cmd[2]\"\n";
+    let scenario = scenario(&format!("{MAP}{more}"));
+    // The table stands at once where it is told to at the step's start.
+    let mut source = open(&scenario, sine(), |cells, _| {
+        cells[7] = cells[9];
+        cells[8] = cells[10];
+        Ok(true)
+    })
+    .unwrap();
+    let mut epoch = Epoch::default();
+    let target =
+        |k: i32| GimbalCommand { target: GimbalAngles { azimuth: k << 20, roll: -k << 20 } };
+    for k in 1..=10 {
+        assert!(source.next(&target(k), &mut epoch).unwrap());
+        // What came with the call before is felt in this interval.
+        assert_eq!(epoch.sample.gimbal, target(k - 1).target);
+        assert_eq!(epoch.sample.status, Status::empty());
+    }
+}
+
+#[test]
+fn references_come_with_the_period_or_when_the_fmu_says() {
+    let velocity =
+        "reference.velocity = [\"vn\", { constant = \"0 m/s\" }, { constant = \"1 mm/s\" }]\n";
+    let every = scenario(&format!("{MAP}{velocity}"));
+    let fresh = scenario(&format!("{MAP}{velocity}reference.valid = \"ok\"\n"));
+    for (scenario, due) in [
+        (every, Box::new(|k: u64| k.is_multiple_of(200)) as Box<dyn Fn(u64) -> bool>),
+        (fresh, Box::new(|k| k.is_multiple_of(7))),
+    ] {
+        let mut source = open(&scenario, sine(), |cells, time_s| {
+            let k = (time_s / 0.005).round() as u64;
+            cells[11] = k as f64;
+            cells[13] = f64::from(u8::from(k.is_multiple_of(7)));
+            Ok(true)
+        })
+        .unwrap();
+        let mut epoch = Epoch::default();
+        for k in 1..=1000 {
+            assert!(source.next(&GimbalCommand::default(), &mut epoch).unwrap());
+            assert_eq!(epoch.aiding.is_some(), due(k), "{k}");
+            if let Some(aiding) = epoch.aiding {
+                assert_eq!(aiding.device_time, epoch.sample.device_time);
+                assert_eq!(aiding.reference, Reference::Velocity([k as f64, 0.0, 1e-3]));
+            }
+        }
+    }
+}
+
+#[test]
+fn increments_of_short_steps_add_up_and_steps_without_a_sample_give_none() {
+    let text = "[source.fmu]\nstep = \"1 ms\"\n[source.fmu.map]\n\
+        gyro.delta_theta = [{ variable = \"fx\", unit = \"rad\" }, { constant = \"0 rad\" }, { constant = \"0 rad\" }]\n\
+        accelerometer.delta_velocity = [{ variable = \"fy\", unit = \"mm/s\", scale = 2.0 }, \
+        { constant = \"0 m/s\" }, { constant = \"0 m/s\" }]\nimu.valid = \"ok\"\n";
+    let scenario = scenario(text);
+    let mut steps = 0u64;
+    let mut source = open(&scenario, sine(), move |cells, time_s| {
+        steps += 1;
+        assert!((time_s - steps as f64 * 1e-3).abs() < 1e-12);
+        cells[4] = DELTA_THETA_LSB_RAD * 3.0;
+        cells[5] = DELTA_VELOCITY_LSB_MPS * 1e3;
+        // Every second sample is none.
+        cells[13] = f64::from(u8::from(steps.div_ceil(5) % 2 == 1));
+        Ok(true)
+    })
+    .unwrap();
+    let mut epoch = Epoch::default();
+    for k in 1..=100u64 {
+        assert!(source.next(&GimbalCommand::default(), &mut epoch).unwrap());
+        assert_eq!(epoch.sample.delta_theta, [15, 0, 0]);
+        assert_eq!(epoch.sample.delta_velocity, [10, 0, 0]);
+        assert_eq!(epoch.sample.sequence, k);
+        assert_eq!(epoch.sample.device_time.ns, (2 * k - 1) * 5_000_000);
+    }
+}
+
+#[test]
+fn truth_is_known_where_it_is_mapped() {
+    let more = "truth.latitude = \"lat\"\ntruth.longitude = { constant = \"10 deg\" }\n\
+        truth.height = { constant = \"5 m\" }\n";
+    let scenario = scenario(&format!("{MAP}{more}"));
+    let mut source = open(&scenario, sine(), |cells, _| {
+        cells[12] = 45.0;
+        Ok(true)
+    })
+    .unwrap();
+    assert!(source.next(&GimbalCommand::default(), &mut Epoch::default()).unwrap());
+    let truth = source.truth().unwrap();
+    assert!((truth.latitude_rad - 45f64.to_radians()).abs() < 1e-15);
+    assert_eq!((truth.height_m, truth.time.ns), (5.0, 5_000_000));
+}
+
+#[test]
+fn an_fmu_that_ends_is_the_end_and_one_that_crashes_is_gone() {
+    let scenario = scenario(MAP);
+    let run = |end: Result<bool, String>| {
+        let mut source =
+            open(
+                &scenario,
+                sine(),
+                move |_, time_s| {
+                    if time_s > 0.02 { end.clone() } else { Ok(true) }
+                },
+            )
+            .unwrap();
+        let mut samples = 0;
+        loop {
+            match source.next(&GimbalCommand::default(), &mut Epoch::default()) {
+                Ok(true) => samples += 1,
+                Ok(false) => return (samples, String::new()),
+                Err(error) => return (samples, error.to_string()),
+            }
+        }
+    };
+    assert_eq!(run(Ok(false)), (4, String::new()));
+    let (samples, error) = run(Err("gave no answer to fmi3DoStep for 10 s".to_owned()));
+    assert_eq!(samples, 4);
+    assert_eq!(
+        error,
+        "source fmu:imu.fmu is gone: at 0.02 s the process of imu gave no answer to fmi3DoStep for \
+         10 s"
+    );
+}
+
+#[test]
+fn what_doesnt_fit_an_instrument_is_told_with_its_place() {
+    for (more, expected) in [
+        (
+            "[source.fmu.map]\ngyro.rate = \"az\"\n",
+            "imu.toml:7:13: source.fmu.map.gyro.rate: the Float64 az has 1 elements, expected 3",
+        ),
+        ("", "neither gyro.delta_theta nor gyro.rate is mapped"),
+        (
+            "[source.fmu.map]\ngyro.rate = \"w\"\naccelerometer.specific_force = [\"fx\", \"fy\", \"fz\"]\n",
+            "fx has no unit in its description, and accelerometer.specific_force is an acceleration: \
+             say which, as in { variable = \"fx\", unit = \"m/s^2\" }",
+        ),
+        (
+            "[source.fmu.map]\ngyro.rate = [\"w[1]\", \"az\", \"w[3]\"]\n",
+            "source.fmu.map.gyro.rate[1]: az is in deg, an angle, and gyro.rate is an angular rate",
+        ),
+        (
+            "[source.fmu.map]\ngyro.rate = [\"w[1]\", \"w[2]\", { variable = \"w[3]\", unit = \"rad/s\" }]\n",
+            "found unit = \"rad/s\", and the description says that w is in deg/h",
+        ),
+        (
+            "[source.fmu.map]\ngyro.rate = \"w\"\ngimbal.azimuth = \"az\"\n",
+            "gimbal.roll is mapped to nothing",
+        ),
+        (
+            "[source.fmu.map]\ngimbal_command.azimuth = \"az\"\n",
+            "az is an output of the FMU, expected an input",
+        ),
+        (
+            "[source.fmu.map]\nimu.valid = \"az\"\n",
+            "az is a Float64, and imu.valid is true or false",
+        ),
+        (
+            "[source.fmu]\nparameters = { mas = 3.0 }\n",
+            "imu.toml:7:22: source.fmu.parameters.mas: the FMU has no variable \"mas\"; nearest are \"mass\"",
+        ),
+        (
+            "[source.fmu]\nparameters = { length = \"3 s\" }\n",
+            "length is in m, a length, and the value is a time, such as s",
+        ),
+        (
+            "[source.fmu]\nparameters = { mode = 1.5 }\n",
+            "mode is an Int32: expected a whole number from",
+        ),
+        (
+            "[source.fmu]\nparameters = { mode = true }\n",
+            "found true, and mode is an Int32: expected a whole number",
+        ),
+        (
+            "[source.fmu]\nparameters = { az = 3.0 }\n",
+            "az can't be set: it is an output that the FMU calculates",
+        ),
+        ("[source.fmu]\nparameters = { w = 3.0 }\n", "found 1 values, and w has 3 elements"),
+    ] {
+        let scenario = scenario(more);
+        let error = open(&scenario, sine(), |_, _| Ok(true)).err();
+        let error = error.map(|error| error.to_string()).unwrap_or_default();
+        assert!(error.contains(expected), "{more}:\n  {error}\n  {expected}");
+    }
+}
+
+#[test]
+fn parameters_are_set_in_their_units() {
+    let more = "[source.fmu]\nparameters = { mass = 3.2e6, length = \"5 cm\", mode = 7 }\n";
+    let scenario = scenario(&format!("{more}{MAP}"));
+    let mut source = open(&scenario, sine(), |cells, _| {
+        assert_eq!(&cells[14..17], &[3.2e6, 0.05, 7.0]);
+        Ok(true)
+    })
+    .unwrap();
+    assert!(source.next(&GimbalCommand::default(), &mut Epoch::default()).unwrap());
+}
