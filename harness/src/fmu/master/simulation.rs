@@ -6,7 +6,8 @@
 //! in the order it gets values of point n.
 //!
 //! An FMU that discards a step makes all of them go back to the states that they had at its
-//! beginning, and the step is made in parts: up to where the FMU came, or halves. Values are
+//! beginning, and the step is made in parts: up to where the FMU came and on from there, or in
+//! halves, and these again in halves. Values are
 //! transferred between the parts; faults don't move on until the step is whole.
 
 use super::error::MasterError;
@@ -85,6 +86,8 @@ pub struct Simulation<'a> {
     transferred: Vec<u64>,
     /// What each input got at the beginning of the step.
     delivered: Vec<f64>,
+    /// Ends of the parts of a step that are left.
+    ends: Vec<f64>,
     /// Kept states, one for each FMU, while a part is made.
     states: Vec<u64>,
     rolls_back: bool,
@@ -134,6 +137,7 @@ impl<'a> Simulation<'a> {
             faulted: (0..wires).map(has_fault).collect(),
             transferred: vec![0; wires],
             delivered: vec![0.0; wires],
+            ends: Vec::new(),
             states: Vec::with_capacity(nodes.len()),
             rolls_back: able(|one| one.state) && able(|one| one.variable_step),
             step: 0,
@@ -273,11 +277,13 @@ impl<'a> Simulation<'a> {
         self.begin_faults();
         let mut ended_by = None;
         let mut time_s = start_s;
-        // The whole step as it was told: a difference of times would be rounded.
-        let mut length_s = self.settings.step_s;
-        loop {
-            let last = time_s + length_s >= end_s
-                || (time_s == start_s && length_s == self.settings.step_s);
+        // Ends of the parts that are left, the next one last.
+        self.ends.clear();
+        self.ends.push(end_s);
+        while let Some(until_s) = self.ends.last().copied() {
+            let whole = time_s == start_s && self.ends.len() == 1;
+            // The whole step as it was told: a difference of times would be rounded.
+            let length_s = if whole { self.settings.step_s } else { until_s - time_s };
             if self.rolls_back {
                 self.keep(time_s)?;
             }
@@ -287,20 +293,19 @@ impl<'a> Simulation<'a> {
                     if self.rolls_back {
                         self.forget(time_s)?;
                     }
-                    if last {
-                        return Ok(ended_by);
-                    }
-                    time_s += length_s;
-                    length_s = end_s - time_s;
+                    time_s = until_s;
+                    self.ends.pop();
                 }
                 Attempt::Discarded { node, reached_s } => {
                     self.counts[node].discarded += 1;
                     self.rejected += 1;
-                    length_s = self.shorter(node, time_s, length_s, reached_s)?;
+                    let shorter_s = self.shorter(node, time_s, length_s, reached_s)?;
+                    self.ends.push(time_s + shorter_s);
                     self.go_back(time_s)?;
                 }
             }
         }
+        Ok(ended_by)
     }
 
     /// Triggers are looked at, with the outputs at the beginning of the step.

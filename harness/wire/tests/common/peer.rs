@@ -5,6 +5,7 @@ use octant_sample::{
     GimbalAngles, GimbalCommand, Health, Mode, Navigation, Output, Parameters, Reference,
 };
 use octant_wire::message::*;
+use octant_wire::requests::{Requests, Verdict};
 use octant_wire::serial::{Decoder, Encoder, Event};
 use std::collections::VecDeque;
 use std::io::{Read, Write};
@@ -212,53 +213,48 @@ pub(crate) fn hello(role: Role, session: u32) -> Hello {
 /// Answers a harness in lock-step until it says bye. With `lost`, each so many-th answer is lost on
 /// its way, and each so many-th request isn't heard.
 pub(crate) fn serve(peer: &mut Peer, lost: Option<usize>) {
-    let (mut session, mut step, mut echo) = (0, Step::default(), Echo::new(None));
-    let (mut answer, mut aiding, mut heard): (Vec<Message>, Option<AidingMessage>, usize) =
-        (Vec::new(), None, 0);
+    let (mut session, mut echo, mut heard) = (0, Echo::new(None), 0);
+    let mut requests = Requests::new(Pacing::LockStep);
+    let mut answer: Vec<Message> = Vec::new();
     while let Some(message) = peer.receive(Duration::from_secs(20)) {
         heard += 1;
         if lost.is_some_and(|n| heard % n == n / 2) {
             continue;
         }
-        let request = match message {
+        let verdict = match &message {
             Message::Bye(_) => return,
             Message::Hello(theirs) => {
                 if theirs.session != session {
                     session = theirs.session;
-                    (step, echo) = (Step::default(), Echo::new(None));
+                    (requests, echo) = (Requests::new(Pacing::LockStep), Echo::new(None));
                 }
                 let ours = hello(Role::Device, session);
-                agree(&ours, &theirs).expect("the client is a harness");
+                agree(&ours, theirs).expect("the client is a harness");
                 peer.send(&Message::Hello(ours));
                 continue;
             }
-            Message::Aiding(message) => {
-                aiding = Some(message);
+            Message::Aiding(aiding) => {
+                requests.aiding(aiding);
                 continue;
             }
-            Message::Sample(SampleMessage { step, .. })
-            | Message::Restart(Restart { step, .. })
-            | Message::End(End { step }) => step,
-            _ => continue,
-        };
-        let aided = aiding.as_ref().filter(|message| message.step == request);
-        match request.since(step) {
-            0 => {}
-            1 => {
-                match &message {
-                    Message::Sample(sample) if sample.aided && aided.is_none() => continue,
-                    Message::Sample(sample) => {
-                        answer = echo.sample(sample, aided.filter(|_| sample.aided));
-                    }
-                    Message::Restart(restart) => {
-                        echo = Echo::new(restart.offset);
-                        answer = vec![Message::Ready(Ready { step: request })];
-                    }
-                    _ => answer = echo.end(request),
-                }
-                step = request;
+            Message::Sample(sample) => requests.sample(sample),
+            Message::Restart(Restart { step, .. }) | Message::End(End { step }) => {
+                requests.other(*step)
             }
             _ => continue,
+        };
+        match (verdict, &message) {
+            (Verdict::Do(aiding), Message::Sample(sample)) => {
+                let aiding = aiding.map(|aiding| AidingMessage { step: sample.step, aiding });
+                answer = echo.sample(sample, aiding.as_ref());
+            }
+            (Verdict::Do(_), Message::Restart(restart)) => {
+                echo = Echo::new(restart.offset);
+                answer = vec![Message::Ready(Ready { step: restart.step })];
+            }
+            (Verdict::Do(_), _) => answer = echo.end(requests.last()),
+            (Verdict::Again, _) => {}
+            (Verdict::Nothing, _) => continue,
         }
         for (i, message) in answer.iter().enumerate() {
             if lost.is_some_and(|n| (heard + i) % n == 0) {
