@@ -150,8 +150,11 @@ fn same(
             unit.base.map_or(quantity.unit.factor, |base| base.factor),
             quantity.unit.factor
         );
-        let display = quantity.unit.display.iter().map(|(n, f)| ((*n).into(), *f, 0.0));
-        assert_eq!(unit.display, display.collect::<Vec<(String, f64, f64)>>());
+        let found: Vec<_> =
+            unit.display.iter().map(|d| (d.name.as_str(), d.factor, d.offset, d.inverse)).collect();
+        let made: Vec<_> =
+            quantity.unit.display.iter().map(|(name, factor)| (*name, *factor, 0.0, false)).collect();
+        assert_eq!(found, made);
     }
     if kind == Kind::Float64 {
         assert_eq!(found.max, variable.max, "{name}");
