@@ -16,6 +16,7 @@
 pub mod c;
 pub mod calibrator;
 pub mod component;
+mod groups;
 pub mod plant;
 pub mod quantities;
 pub mod table;

@@ -9,9 +9,14 @@ use octant_earth::units::{
     STANDARD_GRAVITY_MPS2,
 };
 
-/// Exponents of kg, m, s and rad: no other base unit is needed.
+/// Exponents of kg, m, s and rad.
 const fn base(kg: i8, m: i8, s: i8, rad: i8) -> Option<[i8; 8]> {
     Some([kg, m, s, 0, 0, 0, 0, rad])
+}
+
+/// Exponents of m, s, K and rad, for what temperature does.
+const fn thermal(m: i8, s: i8, k: i8, rad: i8) -> Option<[i8; 8]> {
+    Some([0, m, s, 0, k, 0, 0, rad])
 }
 
 macro_rules! units {
@@ -51,6 +56,20 @@ units! {
     S = "s" base(0, 0, 1, 0), 1.0, ["min" 60.0, "h" 3600.0];
     /// Time as whole nanoseconds.
     NS = "ns" base(0, 0, 1, 0), 1e-9, ["ms" 1e-3];
+    /// Rate random walk.
+    RAD_PER_S_SQRT_S = "rad/s^(3/2)" None, 1.0, ["deg/h^(3/2)" DEG_PER_HOUR / 60.0];
+    /// Frequency.
+    HZ = "Hz" base(0, 0, -1, 0), 1.0, [];
+    /// Temperature.
+    K = "K" thermal(0, 0, 1, 0), 1.0, [];
+    /// Rate of change of temperature.
+    K_PER_S = "K/s" thermal(0, -1, 1, 0), 1.0, ["K/h" 1.0 / 3600.0];
+    /// Angular rate per temperature.
+    RAD_PER_S_PER_K = "rad/(s.K)" thermal(0, -1, -1, 1), 1.0, ["deg/(h.K)" DEG_PER_HOUR];
+    /// Acceleration per temperature.
+    M_PER_S2_PER_K = "m/(s2.K)" thermal(1, -2, -1, 0), 1.0, ["ug/K" MICRO_G];
+    /// Ratio per temperature.
+    PER_K = "1/K" thermal(0, 0, -1, 0), 1.0, ["ppm/K" PPM];
     /// A ratio.
     ONE = "1" base(0, 0, 0, 0), 1.0, ["ppm" PPM];
 }
@@ -95,6 +114,20 @@ quantities! {
     JERK = "Jerk" M_PER_S3 None;
     /// Velocity random walk.
     VELOCITY_RANDOM_WALK = "VelocityRandomWalk" M_PER_S2_PER_SQRT_HZ Some("ug/Hz^(1/2)");
+    /// Rate random walk.
+    RATE_RANDOM_WALK = "RateRandomWalk" RAD_PER_S_SQRT_S Some("deg/h^(3/2)");
+    /// Frequency.
+    FREQUENCY = "Frequency" HZ None;
+    /// Change of temperature.
+    TEMPERATURE = "TemperatureChange" K None;
+    /// Rate of change of temperature.
+    TEMPERATURE_RATE = "TemperatureRate" K_PER_S Some("K/h");
+    /// Sensitivity of a gyro's bias to temperature.
+    GYRO_BIAS_PER_K = "GyroBiasPerTemperature" RAD_PER_S_PER_K Some("deg/(h.K)");
+    /// Sensitivity of an accelerometer's bias to temperature.
+    ACCEL_BIAS_PER_K = "AccelerometerBiasPerTemperature" M_PER_S2_PER_K Some("ug/K");
+    /// Sensitivity of a scale factor to temperature.
+    SCALE_PER_K = "ScaleFactorPerTemperature" PER_K Some("ppm/K");
     /// Time.
     TIME = "Time" S None;
     /// Time of the length of a procedure.

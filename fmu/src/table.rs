@@ -288,6 +288,15 @@ impl Model {
         })
     }
 
+    /// Name of the variable that a slot belongs to, for messages.
+    #[must_use]
+    pub fn label(&self, slot: usize) -> &'static str {
+        self.with_slots()
+            .take_while(|(first, _)| *first <= slot)
+            .last()
+            .map_or("time", |(_, variable)| variable.name)
+    }
+
     /// A variable with its first slot, by name.
     #[must_use]
     pub fn find(&self, name: &str) -> Option<(usize, &'static Variable)> {

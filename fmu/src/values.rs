@@ -1,6 +1,6 @@
 //! The values of all variables of an instance.
 
-use crate::table::{Kind, Model};
+use crate::table::{Causality, Kind, Model};
 
 /// One cell a slot; what is in a cell is known from the model's table.
 #[derive(Clone, Debug)]
@@ -25,6 +25,26 @@ impl Values {
             }
         }
         Self { cells: cells.into() }
+    }
+
+    /// Name of each parameter, and a number for each of its elements: numbers as they are, counts as
+    /// whole numbers (exact up to 2⁵³), enumerations by their values, Booleans as 0 and 1.
+    #[must_use]
+    pub fn parameters(&self, model: &'static Model) -> Vec<(&'static str, Vec<f64>)> {
+        let of = |slot: usize, kind: Kind| match kind {
+            Kind::Real => self.real(slot),
+            Kind::Count => self.count(slot) as f64,
+            Kind::Integer | Kind::Enumeration(_) => f64::from(self.integer(slot)),
+            Kind::Boolean => f64::from(u8::from(self.boolean(slot))),
+        };
+        model
+            .with_slots()
+            .filter(|(_, variable)| variable.causality == Causality::Parameter)
+            .map(|(slot, variable)| {
+                let elements = slot..slot + variable.slots();
+                (variable.name, elements.map(|slot| of(slot, variable.kind)).collect())
+            })
+            .collect()
     }
 
     /// The cells as they are.

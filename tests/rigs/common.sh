@@ -15,16 +15,31 @@ install_quietly() {
   "$@" >"$log" 2>&1 || { tail -n 20 "$log" >&2; return 1; }
 }
 
-# Pinned packages of tests/rigs/requirements.txt, in .rigs/python.
+# Pinned packages of tests/rigs/requirements.txt, in .rigs/python; with a NAME those of
+# requirements-NAME.txt, in .rigs/python-NAME.
 python_packages() {
-  cmp -s tests/rigs/requirements.txt .rigs/python/requirements.txt && return
-  echo "installing the packages of tests/rigs/requirements.txt into .rigs/python"
+  local requirements=tests/rigs/requirements${1:+-$1}.txt folder=.rigs/python${1:+-$1}
+  cmp -s "$requirements" "$folder/requirements.txt" && return
+  echo "installing the packages of $requirements into $folder"
   command -v python3 >/dev/null || skip "there is no python3 here"
-  rm -rf .rigs/python
-  install_quietly python3 -m venv .rigs/python || skip "python3 -m venv doesn't work here"
-  install_quietly .rigs/python/bin/pip install --no-deps -r tests/rigs/requirements.txt \
-    || skip "pip could not install tests/rigs/requirements.txt"
-  cp tests/rigs/requirements.txt .rigs/python/
+  rm -rf "$folder"
+  install_quietly python3 -m venv "$folder" || skip "python3 -m venv doesn't work here"
+  install_quietly "$folder/bin/pip" install --no-deps -r "$requirements" \
+    || skip "pip could not install $requirements"
+  cp "$requirements" "$folder/requirements.txt"
+}
+
+# A Debian package, unpacked into .rigs/debian and not installed.
+debian_package() {
+  local package=$1
+  [ -e ".rigs/debian/$package" ] && return
+  echo "unpacking the Debian package $package into .rigs/debian"
+  mkdir -p .rigs/debian/download
+  (cd .rigs/debian/download && rm -f "$package"_*.deb && apt-get download "$package" >download.log 2>&1) \
+    || skip "the Debian package $package can't be fetched here"
+  dpkg-deb -x .rigs/debian/download/"$package"_*.deb .rigs/debian \
+    || skip "the Debian package $package can't be unpacked here"
+  touch ".rigs/debian/$package"
 }
 
 # Pinned packages of tests/rigs/package-lock.json, in .rigs/npm.

@@ -4,7 +4,6 @@ mod screening;
 mod sequence;
 
 use super::table::{MODEL, slot};
-use crate::table::{Causality, Kind};
 use crate::values::Values;
 use nalgebra::{Quaternion, Unit};
 use octant_calibration::Config;
@@ -23,20 +22,7 @@ const NORM_TOLERANCE: f64 = 1e-6;
 pub fn start_values(config: &Config) -> Vec<(&'static str, Vec<f64>)> {
     let mut values = Values::new(&MODEL);
     put(config, &mut values);
-    let of = |slot: usize, kind: Kind| match kind {
-        Kind::Real => values.real(slot),
-        Kind::Count => values.count(slot) as f64,
-        Kind::Integer | Kind::Enumeration(_) => f64::from(values.integer(slot)),
-        Kind::Boolean => f64::from(u8::from(values.boolean(slot))),
-    };
-    MODEL
-        .with_slots()
-        .filter(|(_, variable)| variable.causality == Causality::Parameter)
-        .map(|(slot, variable)| {
-            let elements = slot..slot + variable.slots();
-            (variable.name, elements.map(|slot| of(slot, variable.kind)).collect())
-        })
-        .collect()
+    values.parameters(&MODEL)
 }
 
 /// Sets the parameters to a configuration. What plays no part in it stays as it was.
@@ -319,9 +305,5 @@ fn no_item(slot: usize, values: &Values) -> String {
 }
 
 fn label(slot: usize) -> &'static str {
-    MODEL
-        .with_slots()
-        .take_while(|(first, _)| *first <= slot)
-        .last()
-        .map_or("a parameter", |(_, variable)| variable.name)
+    MODEL.label(slot)
 }

@@ -355,7 +355,8 @@ pub(crate) fn number(value: &Value) -> Option<f64> {
 fn takes(kind: &Kind, value: &Value) -> bool {
     matches!(
         (kind, value),
-        (Kind::Choice(_), Value::Text(_))
+        (Kind::Choice(_) | Kind::Text, Value::Text(_))
+            | (Kind::Boolean, Value::Boolean(_))
             | (Kind::Integer(..) | Kind::Number(_), Value::Integer(_))
             | (Kind::Number(_), Value::Number(_))
             | (Kind::Table(_), Value::Table(_))

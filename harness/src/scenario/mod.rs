@@ -29,6 +29,7 @@ pub use ports::{Code, Made, Port, Set, Setting, Written};
 pub(crate) use quantity::parse as quantity_of;
 pub use quantity::{Dimension, Quantity};
 pub use read::faults::Fault;
+pub use read::faults::connection::{ConnectionFault, Given, connection_faults, text_of};
 pub use read::fmu::{Endpoint, Fmu, InterfaceChoice, Mapped, Process};
 pub use read::source::{FileName, Source};
 pub use schema::schema;

@@ -243,6 +243,11 @@ impl Quantity {
         self.powers == other.powers
     }
 
+    /// Exponents of kg, m, s, A, K, mol, cd, rad; `None`: it has roots, or counts samples.
+    pub(crate) fn exponents(self) -> Option<[i8; 8]> {
+        exponents(self.powers)
+    }
+
     /// Whether this is a quantity of the dimension.
     #[must_use]
     pub fn is(self, dimension: Dimension) -> bool {

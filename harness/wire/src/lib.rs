@@ -4,6 +4,9 @@
 //! frames with CRC-32 on a line of bytes, for serial ports and UDP ([`serial`]), and CAN frames, FD or
 //! classic ([`can`]). `README.md` beside this crate describes them byte by byte.
 //!
+//! [`requests`] keeps the steps of a device in order, and [`traffic`] is what the load of a line or bus is
+//! computed from.
+//!
 //! Nothing here allocates, waits or knows a device: bytes go in, messages come out, and the other
 //! way round. What a receiver could not use it counts and reports.
 #![no_std]
@@ -11,6 +14,7 @@
 pub mod can;
 pub mod layout;
 pub mod message;
+pub mod requests;
 pub mod serial;
 pub mod traffic;
 

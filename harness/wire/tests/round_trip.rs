@@ -150,6 +150,25 @@ fn frames_are_numbered_and_gaps_counted() {
 }
 
 #[test]
+fn half_of_the_numbers_are_ahead_and_half_behind() {
+    let end = *one_of_each().iter().find(|message| message.kind() == Kind::End).unwrap();
+    for (second, expected) in [
+        (1, Order::Next),
+        (2, Order::Missing(1)),
+        (0x8000, Order::Missing(0x7FFF)),
+        (0x8001, Order::Behind(0x8000)),
+        (0xFFFF, Order::Behind(2)),
+        (0, Order::Behind(1)),
+    ] {
+        let mut decoder = Decoder::new();
+        let first = Encoder::starting_at(0).encode(&end, ClockTime::default()).to_vec();
+        let second = Encoder::starting_at(second).encode(&end, ClockTime::default()).to_vec();
+        let events = decode(&mut decoder, &[&first, &second]);
+        assert_eq!(received(&events)[1].order, expected);
+    }
+}
+
+#[test]
 fn the_longest_frame_fits() {
     // No zero in it: stuffing is at its longest.
     let mut longest = 0;

@@ -10,15 +10,21 @@ use octant_wire::can::{self, Format, Frame, Reassembler, Slot};
 use octant_wire::layout::{Type, fields};
 use octant_wire::message::{Kind, Message, Role};
 use octant_wire::serial::{Decoder, Encoder};
-use serde_json::{Map, Value, json};
+use serde_json::{Value, json};
 
 fn hex(bytes: &[u8]) -> String {
     bytes.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
-/// The fields of a payload, by the table alone.
-fn fields_of(kind: Kind, payload: &[u8]) -> Value {
-    let mut all = Map::new();
+/// An object as JSON text, in this order.
+fn object(pairs: &[(&str, impl std::fmt::Display)]) -> String {
+    let pairs: Vec<_> = pairs.iter().map(|(key, value)| format!("\"{key}\": {value}")).collect();
+    format!("{{{}}}", pairs.join(", "))
+}
+
+/// The fields of a payload, by the table alone and in its order: as JSON text.
+fn fields_of(kind: Kind, payload: &[u8]) -> String {
+    let mut all = Vec::new();
     for field in fields(kind) {
         let bytes = &payload[field.at..field.at + field.ty.bytes()];
         let number = bytes.iter().rev().take(8).fold(0u64, |n, byte| n << 8 | u64::from(*byte));
@@ -29,7 +35,7 @@ fn fields_of(kind: Kind, payload: &[u8]) -> Value {
             Type::F64 => json!(format!("{number:016x}")),
             Type::Step(flag) => {
                 if let Some(flag) = flag {
-                    all.insert(flag.to_owned(), json!(number >> 15 == 1));
+                    all.push((flag, json!(number >> 15 == 1)));
                 }
                 json!(number & 0x7FFF)
             }
@@ -40,9 +46,9 @@ fn fields_of(kind: Kind, payload: &[u8]) -> Value {
             }
             Type::Zero(_) => continue,
         };
-        all.insert(field.name.to_owned(), value);
+        all.push((field.name, value));
     }
-    Value::Object(all)
+    object(&all)
 }
 
 fn can_frames(vector: &Vector, format: Format) -> Vec<Frame> {
@@ -58,12 +64,8 @@ fn serial_frame(vector: &Vector) -> Vec<u8> {
 }
 
 /// Writes or compares a file, one entry a line so that changes can be read.
-fn check(name: &str, about: &str, entries: &[Vec<(&str, Value)>]) {
-    let line = |entry: &Vec<(&str, Value)>| {
-        let pairs: Vec<_> =
-            entry.iter().map(|(key, value)| format!("\"{key}\": {value}")).collect();
-        format!("    {{{}}}", pairs.join(", "))
-    };
+fn check(name: &str, about: &str, entries: &[Vec<(&str, String)>]) {
+    let line = |entry: &Vec<(&str, String)>| format!("    {}", object(entry));
     let lines: Vec<_> = entries.iter().map(line).collect();
     let made = format!(
         "{{\n  \"about\": {},\n  \"version\": {},\n  \"vectors\": [\n{}\n  ]\n}}\n",
@@ -98,16 +100,16 @@ fn messages_have_these_bytes() {
             assert!(same(&common::messages(&events), &[vector.message]), "{}", vector.name);
         }
         entries.push(vec![
-            ("name", json!(vector.name)),
-            ("sender", json!(vector.sender.name())),
-            ("kind", json!(kind.name())),
-            ("fields", json!(fields_of(kind, payload.bytes()))),
-            ("payload", json!(hex(payload.bytes()))),
-            ("sequence", json!(vector.sequence)),
-            ("clock_ns", json!(vector.clock.ns.to_string())),
-            ("frame", json!(hex(&frame))),
-            ("classic", json!(texts(&can_frames(vector, Format::Classic)))),
-            ("fd", json!(texts(&can_frames(vector, Format::Fd)))),
+            ("name", json!(vector.name).to_string()),
+            ("sender", json!(vector.sender.name()).to_string()),
+            ("kind", json!(kind.name()).to_string()),
+            ("fields", fields_of(kind, payload.bytes())),
+            ("payload", json!(hex(payload.bytes())).to_string()),
+            ("sequence", json!(vector.sequence).to_string()),
+            ("clock_ns", json!(vector.clock.ns.to_string()).to_string()),
+            ("frame", json!(hex(&frame)).to_string()),
+            ("classic", json!(texts(&can_frames(vector, Format::Classic))).to_string()),
+            ("fd", json!(texts(&can_frames(vector, Format::Fd))).to_string()),
         ]);
     }
     // Something for every identifier.
@@ -439,14 +441,16 @@ fn damage_on_a_line_leaves_this() {
         assert_eq!(counts, case.counts, "{}: {events:?}", case.name);
         let bytes: usize = case.pieces.iter().map(Vec::len).sum();
         assert_eq!(c.bytes, bytes as u64);
-        let counts: Map<_, _> =
-            counts.iter().map(|(name, count)| ((*name).to_owned(), json!(count))).collect();
+        let counts: Vec<_> = counts.iter().map(|(name, count)| (*name, json!(count))).collect();
         entries.push(vec![
-            ("name", json!(case.name)),
-            ("about", json!(case.about)),
-            ("bytes", json!(case.pieces.iter().map(|piece| hex(piece)).collect::<Vec<_>>())),
-            ("messages", json!(case.messages)),
-            ("counts", json!(counts)),
+            ("name", json!(case.name).to_string()),
+            ("about", json!(case.about).to_string()),
+            (
+                "bytes",
+                json!(case.pieces.iter().map(|piece| hex(piece)).collect::<Vec<_>>()).to_string(),
+            ),
+            ("messages", json!(case.messages).to_string()),
+            ("counts", object(&counts)),
         ]);
     }
     check("serial.json", "what comes out of a damaged line; see harness/wire/README.md", &entries);
@@ -711,17 +715,16 @@ fn damage_on_a_bus_leaves_this() {
         .collect();
         assert_eq!(counts, case.counts, "{}: {events:?}", case.name);
         assert_eq!(reassembler.unfinished(), case.unfinished, "{}", case.name);
-        let counts: Map<_, _> =
-            counts.iter().map(|(name, count)| ((*name).to_owned(), json!(count))).collect();
+        let counts: Vec<_> = counts.iter().map(|(name, count)| (*name, json!(count))).collect();
         entries.push(vec![
-            ("name", json!(case.name)),
-            ("about", json!(case.about)),
-            ("format", json!(if case.format == Format::Fd { "fd" } else { "classic" })),
-            ("senders", json!(listened.map(Role::name))),
-            ("frames", json!(texts(&case.frames))),
-            ("messages", json!(case.messages)),
-            ("counts", json!(counts)),
-            ("unfinished", json!(case.unfinished)),
+            ("name", json!(case.name).to_string()),
+            ("about", json!(case.about).to_string()),
+            ("format", json!(if case.format == Format::Fd { "fd" } else { "classic" }).to_string()),
+            ("senders", json!(listened.map(Role::name)).to_string()),
+            ("frames", json!(texts(&case.frames)).to_string()),
+            ("messages", json!(case.messages).to_string()),
+            ("counts", object(&counts)),
+            ("unfinished", json!(case.unfinished).to_string()),
         ]);
     }
     check("can.json", "what comes out of a disturbed bus; see harness/wire/README.md", &entries);

@@ -80,6 +80,11 @@ impl Ledger {
         self.last = Some(epoch);
     }
 
+    /// Epochs that it has altered.
+    pub(crate) fn altered(&self) -> u64 {
+        self.altered
+    }
+
     pub(crate) fn clean(&mut self, epoch: &Epoch) {
         digest(&mut self.clean, epoch);
     }

@@ -62,6 +62,17 @@ pub struct Occurrence {
     pub begins: bool,
 }
 
+/// How a fault does.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Progress {
+    /// It lasts, or fades.
+    pub active: bool,
+    /// How often it has set in.
+    pub firings: u32,
+    /// Epochs that it has altered; see [`Receipt::samples_altered`].
+    pub samples_altered: u64,
+}
+
 #[derive(Clone, Debug)]
 struct Stage {
     id: String,
@@ -291,17 +302,31 @@ impl Station {
 
     /// Before the source makes its next epoch: `command` is what it would get from the core,
     /// `output` the core's last output.
+    ///
+    /// This is [`Self::begin`], then [`Self::command`]. Who gets the command later, but before the
+    /// source does, calls these one by one.
     #[inline]
     pub fn before(&mut self, command: &mut GimbalCommand, output: &Output, world: &mut dyn World) {
+        self.begin(output, world);
+        self.command(command, output);
+    }
+
+    /// The next epoch begins: what sets in and what ends with it, and faults of the plant and of the
+    /// unit under test.
+    #[inline]
+    pub fn begin(&mut self, output: &Output, world: &mut dyn World) {
         self.epoch += 1;
-        if self.epoch < self.wake
-            && !self.busy
-            && Scene::of(output).packed() == self.seen
-            && (!self.commands || *command == self.set_points.last)
-        {
-            return;
+        if self.epoch >= self.wake || self.busy || Scene::of(output).packed() != self.seen {
+            self.look(output, world);
         }
-        self.look(command, output, world);
+    }
+
+    /// Faults of set points act on that of the present epoch.
+    #[inline]
+    pub fn command(&mut self, command: &mut GimbalCommand, output: &Output) {
+        if self.commands && (self.busy || *command != self.set_points.last) {
+            self.act_on(command, output);
+        }
     }
 
     /// Whether anything has to be done with the epoch that the source has made.
@@ -335,7 +360,7 @@ impl Station {
     }
 
     #[inline(never)]
-    fn look(&mut self, command: &mut GimbalCommand, output: &Output, world: &mut dyn World) {
+    fn look(&mut self, output: &Output, world: &mut dyn World) {
         let scene = Scene::of(output);
         let truth = if self.truth { world.truth() } else { None };
         let news =
@@ -361,13 +386,32 @@ impl Station {
                 stage.fresh = true;
                 self.tell(index, true);
             }
-            self.act_before(index, &shared, command, output);
+            self.act_before(index, &shared, output);
         }
         self.settle_power(events);
+        self.plan();
+    }
+
+    #[inline(never)]
+    fn act_on(&mut self, command: &mut GimbalCommand, output: &Output) {
+        let shared = self.shared();
+        for stage in &mut self.stages {
+            if !stage.acting() {
+                continue;
+            }
+            let now = stage.context(&shared, &self.last, output);
+            if let Rule::Command(rule) = &mut stage.rule {
+                let clean = *command;
+                rule.on_command(command, &now);
+                if *command != clean {
+                    stage.ledger.touched(shared.epoch);
+                    stage.ledger.commands(&clean, command);
+                }
+            }
+        }
         if *command != self.set_points.last {
             self.set_points = SetPoints { last: *command, before: self.set_points.last };
         }
-        self.plan();
     }
 
     /// Power goes with the first fault that cuts it and comes back with the last; `from`: number of
@@ -407,27 +451,13 @@ impl Station {
         }
     }
 
-    fn act_before(
-        &mut self,
-        index: usize,
-        shared: &Shared,
-        command: &mut GimbalCommand,
-        output: &Output,
-    ) {
+    fn act_before(&mut self, index: usize, shared: &Shared, output: &Output) {
         let stage = &mut self.stages[index];
         if !stage.acting() {
             return;
         }
         let now = stage.context(shared, &self.last, output);
         match &mut stage.rule {
-            Rule::Command(rule) => {
-                let clean = *command;
-                rule.on_command(command, &now);
-                if *command != clean {
-                    stage.ledger.touched(shared.epoch);
-                    stage.ledger.commands(&clean, command);
-                }
-            }
             Rule::Unit(rule) => {
                 let event = rule.on_epoch(&now);
                 // What happens to a unit that is without power already alters nothing.
@@ -437,7 +467,7 @@ impl Station {
                 self.events.extend(event);
             }
             Rule::Plant(_) => stage.ledger.touched(shared.epoch),
-            Rule::Samples(_) | Rule::Delivery(_) => {}
+            Rule::Command(_) | Rule::Samples(_) | Rule::Delivery(_) => {}
         }
     }
 
@@ -528,6 +558,35 @@ impl Station {
             .is_some_and(|stage| stage.clock.fire(next));
         self.plan();
         fired
+    }
+
+    /// Ends a fault with a manual trigger at the next epoch, as at the end of its duration; one that
+    /// was to set in then doesn't. False if there is none of that id that lasts.
+    pub fn end(&mut self, id: &str) -> bool {
+        let next = self.epoch + 1;
+        let ended = self
+            .stages
+            .iter_mut()
+            .find(|stage| stage.id == id && *stage.clock.trigger() == Trigger::Manual)
+            .is_some_and(|stage| stage.clock.cut(next));
+        self.plan();
+        ended
+    }
+
+    /// How a fault does, by its number in the scenario from 0.
+    #[must_use]
+    pub fn progress(&self, fault: usize) -> Option<Progress> {
+        self.stages.get(fault).map(|stage| Progress {
+            active: stage.acting(),
+            firings: stage.clock.firings,
+            samples_altered: stage.ledger.altered(),
+        })
+    }
+
+    /// The most epochs that can be delivered in one step of the source.
+    #[must_use]
+    pub fn most_delivered(&self) -> usize {
+        self.burst
     }
 
     /// Whether a place has faults at all.

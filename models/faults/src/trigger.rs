@@ -340,6 +340,16 @@ impl Clock {
         waits
     }
 
+    /// It ends at the next epoch, if it lasts; if it was to set in then, it doesn't.
+    pub(crate) fn cut(&mut self, epoch: u64) -> bool {
+        match &mut self.state {
+            State::Active { until, .. } => *until = epoch,
+            State::Pending(_) => self.state = State::Waiting,
+            State::Waiting | State::Fading { .. } | State::Spent => return false,
+        }
+        true
+    }
+
     /// Another fault has ended at an epoch.
     pub(crate) fn other_ended(&mut self, epoch: u64) {
         if let (State::Waiting, Trigger::After { delay, .. }) = (self.state, &self.schedule.trigger)

@@ -3,12 +3,13 @@
 
 mod common;
 
-use common::{clean, fault, run, run_with};
+use common::{clean, fault, run, run_with, setup};
 use octant_faults::catalogue::Dimension;
-use octant_faults::trigger::{Comparison, Repeat, Signal, Trigger};
-use octant_faults::{Channels, Spec, Value};
+use octant_faults::station::Delivered;
+use octant_faults::trigger::{Comparison, Repeat, Schedule, Signal, Trigger};
+use octant_faults::{Channels, Spec, Station, Value};
 use octant_sample::counts::DELTA_THETA_LSB_RAD;
-use octant_sample::{Mode, Output};
+use octant_sample::{GimbalCommand, Mode, Output};
 
 /// A spike of so many counts a sample on the x gyro.
 fn spike(counts: f64, first: u64, epochs: u64) -> Spec {
@@ -135,4 +136,42 @@ fn a_fault_can_follow_another() {
     let after = triggered(Trigger::After { fault: "first".into(), delay: 5 }, 1);
     assert_eq!(altered(&run(&[after.clone(), first.clone()], 100)).last(), Some(&65));
     assert_eq!(altered(&run(&[first, after], 100)).last(), Some(&65));
+}
+
+/// A fault by hand lasts from its firing to its end, as often as somebody likes, and one that is ended
+/// before it could set in doesn't.
+#[test]
+fn a_fault_by_hand_lasts_as_long_as_the_hand_says() {
+    let mut held = triggered(Trigger::Manual, 1);
+    held.schedule = Schedule { duration: None, repeat: Repeat::EveryTime, ..held.schedule };
+    let id = held.id.clone();
+    let mut station = Station::new(&[held], &setup()).unwrap();
+    let (mut world, output) = (common::Log::default(), Output::default());
+    let mut altered = Vec::new();
+    let mut active = Vec::new();
+    for k in 1..=60 {
+        match k {
+            10 | 30 | 50 => assert!(station.fire(&id)),
+            20 | 33 => assert!(station.end(&id)),
+            25 => assert!(!station.end(&id), "it doesn't last"),
+            _ => {}
+        }
+        if k == 50 {
+            assert!(!station.fire(&id), "it is on its way");
+            assert!(station.end(&id));
+        }
+        station.begin(&output, &mut world);
+        station.command(&mut GimbalCommand::default(), &output);
+        if station.after(&clean(k), &output) != Delivered::Untouched {
+            altered.push(k);
+        }
+        if station.progress(0).unwrap().active {
+            active.push(k);
+        }
+    }
+    let expected: Vec<u64> = (10..20).chain(30..33).collect();
+    assert_eq!((&altered, &active), (&expected, &expected));
+    let progress = station.progress(0).unwrap();
+    assert_eq!((progress.firings, progress.samples_altered), (2, 13));
+    assert_eq!(station.progress(1), None);
 }

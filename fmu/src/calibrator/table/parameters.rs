@@ -5,7 +5,7 @@
 //! Names follow the keys of a scenario.
 
 use super::enumerations as of;
-use super::ports::{group, groups};
+use crate::groups::groups;
 use crate::quantities as q;
 use crate::table::Kind::{Boolean, Count, Enumeration, Integer, Real};
 use crate::table::{Variable, concatenated};

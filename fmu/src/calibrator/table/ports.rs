@@ -1,6 +1,7 @@
 //! What goes in and out at every sample.
 
 use super::enumerations as of;
+use crate::groups::groups;
 use crate::quantities as q;
 use crate::table::Kind::{Boolean, Count, Enumeration, Integer, Real};
 use crate::table::Variable;
@@ -95,115 +96,6 @@ pub(super) const INPUTS: [Variable; 14] = [
              is of this sample, positive where it is older.",
         ),
 ];
-
-/// Three outputs of a parameter group or its σ, or its start values.
-macro_rules! group {
-    ($make:ident, $prefix:literal, $group:literal, $elements:literal, $quantity:expr, $nominal:expr, $text:expr) => {
-        Variable::$make(concat!($prefix, ".", $group), Real)
-            .elements($elements)
-            .of($quantity)
-            .nominal($nominal)
-            .described($text)
-    };
-}
-pub(super) use group;
-
-/// All parameter groups under one prefix. Text that comes before that of the group, and after it.
-macro_rules! groups {
-    ($make:ident, $prefix:literal, $before:literal, $after:literal) => {
-        [
-            group!(
-                $make,
-                $prefix,
-                "gyro_bias",
-                3,
-                &q::GYRO_BIAS,
-                0.005 * DEG_PER_HOUR,
-                concat!($before, "constant gyro bias; body axes x, y, z.", $after)
-            ),
-            group!(
-                $make,
-                $prefix,
-                "gyro_scale",
-                3,
-                &q::SCALE_ERROR,
-                30.0 * PPM,
-                concat!(
-                    $before,
-                    "gyro scale factor error, the diagonal of M_g; body axes x, y, z.",
-                    $after
-                )
-            ),
-            group!(
-                $make,
-                $prefix,
-                "gyro_misalignment",
-                6,
-                &q::SMALL_ANGLE,
-                40.0 * ARCSEC,
-                concat!(
-                    $before,
-                    "gyro misalignment, the other entries of M_g: xy, xz, yx, yz, zx, zy (row, \
-                     column).",
-                    $after
-                )
-            ),
-            group!(
-                $make,
-                $prefix,
-                "g_dependent",
-                9,
-                &q::G_DEPENDENT,
-                5e-4 * DEG_PER_HOUR_PER_G,
-                concat!(
-                    $before,
-                    "g-dependent gyro bias, the matrix G by rows: xx, xy, xz, yx, yy, yz, zx, zy, \
-                     zz; it takes specific force in body axes into a gyro error.",
-                    $after
-                )
-            ),
-            group!(
-                $make,
-                $prefix,
-                "accel_bias",
-                3,
-                &q::ACCEL_BIAS,
-                100.0 * MICRO_G,
-                concat!($before, "constant accelerometer bias; body axes x, y, z.", $after)
-            ),
-            group!(
-                $make,
-                $prefix,
-                "accel_scale",
-                3,
-                &q::SCALE_ERROR,
-                30.0 * PPM,
-                concat!(
-                    $before,
-                    "accelerometer scale factor error, the diagonal of M_a; body axes x, y, z.",
-                    $after
-                )
-            ),
-            group!(
-                $make,
-                $prefix,
-                "accel_misalignment",
-                3,
-                &q::SMALL_ANGLE,
-                40.0 * ARCSEC,
-                concat!(
-                    $before,
-                    "accelerometer misalignment, the lower triangle of M_a: yx, zx, zy (row, \
-                     column).",
-                    $after
-                )
-            ),
-        ]
-    };
-}
-pub(super) use groups;
-
-use octant_earth::units::{ARCSEC, DEG_PER_HOUR, DEG_PER_HOUR_PER_G, MICRO_G, PPM};
 
 const ESTIMATES: [Variable; 7] = groups!(
     output,

@@ -1,14 +1,104 @@
 //! `octant fmu check`.
 
-use super::super::Failure;
+use super::super::{Failure, print, print_json};
+use crate::fmu::archive::ArchiveError;
+use crate::fmu::check::load::load;
+use crate::fmu::check::rules::Severity;
+use crate::fmu::check::{Report, check, show};
+use crate::fmu::instance::Options;
 use crate::score::verdict::Verdict;
 use clap::Args;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
 
-/// Check any FMU, ours or another's.
+/// Check any FMU, ours or another's: its archive, its description, its libraries.
+///
+/// Exit status: 0 no error, 1 errors, 2 a file can't be read.
 #[derive(Debug, Args)]
-pub(super) struct Arguments {}
+pub(super) struct Arguments {
+    /// The FMUs: files, or folders that were some.
+    #[arg(value_name = "FILE", required = true)]
+    files: Vec<PathBuf>,
+    /// Print one JSON object, nothing else.
+    #[arg(long)]
+    json: bool,
+    /// Load the library for this machine and make an instance, in a process of its own. This is
+    /// the default; it runs the FMU's code.
+    #[arg(long, overrides_with = "no_load")]
+    load: bool,
+    /// Run nothing of the FMU.
+    #[arg(long, overrides_with = "load")]
+    no_load: bool,
+    /// Initialize the instance with the start values, and do a first step.
+    #[arg(long, conflicts_with = "no_load")]
+    step: bool,
+    /// Longest time for loading and initializing, and for any other call, s.
+    #[arg(long, value_name = "SECONDS", default_value_t = 30.0)]
+    time_limit: f64,
+}
 
 /// Runs the command.
-pub(super) fn command(_arguments: &Arguments) -> Result<Verdict, Failure> {
-    Err(Failure::input("octant fmu check is not part of this version"))
+pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
+    let limit = Duration::try_from_secs_f64(arguments.time_limit)
+        .ok()
+        .filter(|limit| !limit.is_zero())
+        .ok_or_else(|| {
+            let found = arguments.time_limit;
+            Failure::input(format!("--time-limit is {found}, expected a positive number of seconds"))
+        })?;
+    let options = Options { start_limit: limit, time_limit: limit, ..Options::default() };
+    let mut results = Vec::new();
+    for file in &arguments.files {
+        results.push((file, one(file, arguments, &options)));
+    }
+    if arguments.json {
+        print_json(&json(&results))?;
+    } else {
+        for (_, result) in &results {
+            if let Ok(report) = result {
+                print(&show::text(report))?;
+            }
+        }
+    }
+    let unreadable: Vec<String> =
+        results.iter().filter_map(|(_, result)| Some(result.as_ref().err()?.to_string())).collect();
+    if !unreadable.is_empty() {
+        return Err(Failure::input(unreadable.join("\n")));
+    }
+    let errors = results.iter().flat_map(|(_, result)| result).any(|report| {
+        report.count(Severity::Error) > 0
+    });
+    Ok(if errors { Verdict::Fail } else { Verdict::Pass })
+}
+
+/// Checks one file.
+fn one(file: &Path, arguments: &Arguments, options: &Options) -> Result<Report, ArchiveError> {
+    let mut checked = check(file)?;
+    if !arguments.no_load && checked.can_be_loaded() {
+        load(&mut checked, options, arguments.step);
+    }
+    Ok(checked.report())
+}
+
+/// All reports, and how much there is in them.
+fn json(results: &[(&PathBuf, Result<Report, ArchiveError>)]) -> serde_json::Value {
+    let count = |severity| -> usize {
+        results.iter().flat_map(|(_, result)| result).map(|report| report.count(severity)).sum()
+    };
+    let files: Vec<serde_json::Value> = results
+        .iter()
+        .map(|(file, result)| match result {
+            Ok(report) => serde_json::json!(report),
+            Err(error) => serde_json::json!({
+                "file": file.display().to_string(),
+                "unreadable": error.to_string(),
+            }),
+        })
+        .collect();
+    serde_json::json!({
+        "files": files,
+        "errors": count(Severity::Error),
+        "warnings": count(Severity::Warning),
+        "notes": count(Severity::Note),
+    })
 }

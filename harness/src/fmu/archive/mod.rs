@@ -142,6 +142,28 @@ pub struct Entry {
     pub stated_bytes: u64,
 }
 
+/// Something about an entry that the standards forbid, but that does no harm here.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Odd {
+    /// The entry; empty: the archive as a whole.
+    pub entry: String,
+    /// What it is.
+    pub what: Oddity,
+}
+
+/// What other tools may stumble over.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Oddity {
+    /// The entry says that it needs this version of the format, times ten.
+    Version(u16),
+    /// It isn't packed, but its size comes after it: who reads from the start can't tell its end.
+    Descriptor,
+    /// Its name isn't ASCII, nor marked as UTF-8: others read it as code page 437.
+    Unmarked,
+    /// The headers before the entries say something else than the directory at the end.
+    Headers(String),
+}
+
 /// An archive or an unpacked folder whose entries are known.
 #[derive(Debug)]
 pub struct Archive {
@@ -149,6 +171,7 @@ pub struct Archive {
     limits: Limits,
     entries: Vec<Entry>,
     problems: Vec<NameProblem>,
+    oddities: Vec<Odd>,
     contents: Contents,
 }
 
@@ -219,8 +242,9 @@ impl Archive {
         source: Box<dyn zipped::Source>,
         limits: Limits,
     ) -> Result<Self, ArchiveError> {
-        let (zip, entries, problems) = Zipped::open(&file, source, &limits)?;
-        Ok(Self { file, limits, entries, problems, contents: Contents::Zip(zip) })
+        let zipped::Opened { zip, entries, problems, oddities } =
+            Zipped::open(&file, source, &limits)?;
+        Ok(Self { file, limits, entries, problems, oddities, contents: Contents::Zip(zip) })
     }
 
     /// The files below a folder. Links aren't followed.
@@ -257,7 +281,8 @@ impl Archive {
             }
         }
         entries.sort_by(|a, b| a.name.cmp(&b.name));
-        Ok(Self { file, limits, entries, problems, contents: Contents::Folder(path.to_owned()) })
+        let contents = Contents::Folder(path.to_owned());
+        Ok(Self { file, limits, entries, problems, oddities: Vec::new(), contents })
     }
 
     fn without_problems(self) -> Result<Self, ArchiveError> {
@@ -289,6 +314,12 @@ impl Archive {
     #[must_use]
     pub fn problems(&self) -> &[NameProblem] {
         &self.problems
+    }
+
+    /// What other tools may stumble over.
+    #[must_use]
+    pub fn oddities(&self) -> &[Odd] {
+        &self.oddities
     }
 
     /// There is a file of this name.

@@ -1,7 +1,7 @@
 //! A zip archive: its entries looked through, and read with every byte counted.
 
 use super::names::{self, NameProblem, Names};
-use super::{ArchiveError, Entry, Limits};
+use super::{ArchiveError, Entry, Limits, Odd, Oddity};
 use std::collections::BTreeMap;
 use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::sync::Arc;
@@ -49,13 +49,21 @@ pub(super) struct Zipped {
     places: BTreeMap<String, (usize, bool)>,
 }
 
+/// An archive that was opened.
+pub(super) struct Opened {
+    pub(super) zip: Zipped,
+    pub(super) entries: Vec<Entry>,
+    pub(super) problems: Vec<NameProblem>,
+    pub(super) oddities: Vec<Odd>,
+}
+
 impl Zipped {
     /// Opens it and looks at every entry's header.
     pub(super) fn open(
         file: &str,
         mut source: Box<dyn Source>,
         limits: &Limits,
-    ) -> Result<(Self, Vec<Entry>, Vec<NameProblem>), ArchiveError> {
+    ) -> Result<Opened, ArchiveError> {
         let mut start = [0; 4];
         let length = read_start(&mut source, &mut start)
             .map_err(|error| ArchiveError::Open { file: file.into(), error })?;
@@ -80,7 +88,7 @@ impl Zipped {
             }
             error => ArchiveError::Damaged { file: file.into(), reason: reason(&error) },
         };
-        let mut archive = ZipArchive::with_config(config, metered).map_err(damaged)?;
+        let archive = ZipArchive::with_config(config, metered).map_err(damaged)?;
         if archive.len() > limits.entries {
             return Err(ArchiveError::TooMuch {
                 file: file.into(),
@@ -88,18 +96,24 @@ impl Zipped {
                 limit: limits.entries.to_string(),
             });
         }
-        let mut problems = Vec::new();
-        if archive.has_duplicate_names() {
-            let start = archive.central_directory_start();
-            let mut metered = archive.into_inner();
-            problems =
-                duplicates(&mut metered, start).map_err(|error| damaged(ZipError::Io(error)))?;
-            archive = ZipArchive::with_config(config, metered).map_err(damaged)?;
-        }
+        // The archive keeps one entry a name, and not every field: the directory is read once more.
+        let start = archive.central_directory_start();
+        let mut metered = archive.into_inner();
+        left.store(limits.directory_bytes, Ordering::Relaxed);
+        let (mut problems, mut oddities) =
+            directory(&mut metered, start).map_err(|error| damaged(ZipError::Io(error)))?;
+        left.store(limits.directory_bytes, Ordering::Relaxed);
+        let mut archive = ZipArchive::with_config(config, metered).map_err(damaged)?;
         // Two entries that share bytes: how a small file becomes a huge one.
         if archive.has_overlapping_entries().map_err(damaged)? {
             let reason = "entries overlap".into();
             return Err(ArchiveError::Damaged { file: file.into(), reason });
+        }
+        if problems.is_empty()
+            && let Err(error) = archive.validate_header_consistency()
+        {
+            let entry = String::new();
+            oddities.push(Odd { entry, what: Oddity::Headers(reason(&error)) });
         }
         left.store(u64::MAX, Ordering::Relaxed);
         let mut seen = Names::default();
@@ -116,7 +130,7 @@ impl Zipped {
                 }
             }
         }
-        Ok((Self { archive, places }, entries, problems))
+        Ok(Opened { zip: Self { archive, places }, entries, problems, oddities })
     }
 
     /// The archive marks the entry as a program.
@@ -235,31 +249,42 @@ fn look(
     Ok(Ok(Some((Entry { name: name.into(), stated_bytes: entry.size() }, is_program))))
 }
 
-/// The names that the directory has twice. The archive keeps one entry a name only, so the directory
-/// is read once more, header by header.
-fn duplicates(source: &mut Metered, start: u64) -> io::Result<Vec<NameProblem>> {
+/// What the headers of the directory say that the archive doesn't keep: names that are there twice,
+/// and what other tools may stumble over.
+fn directory(source: &mut Metered, start: u64) -> io::Result<(Vec<NameProblem>, Vec<Odd>)> {
     source.seek(SeekFrom::Start(start))?;
     let mut seen = std::collections::BTreeSet::new();
     let mut problems = Vec::new();
+    let mut oddities = Vec::new();
     let mut header = [0; 46];
     loop {
         source.read_exact(&mut header[..4])?;
         if &header[..4] != b"PK\x01\x02" {
-            return Ok(problems);
+            return Ok((problems, oddities));
         }
         source.read_exact(&mut header[4..])?;
-        let length = |at: usize| usize::from(u16::from_le_bytes([header[at], header[at + 1]]));
-        let mut name = vec![0; length(28)];
+        let field = |at: usize| u16::from_le_bytes([header[at], header[at + 1]]);
+        let mut name = vec![0; field(28).into()];
         source.read_exact(&mut name)?;
-        source.seek(SeekFrom::Current((length(30) + length(32)) as i64))?;
-        if seen.contains(&name) {
+        source.seek(SeekFrom::Current(i64::from(field(30)) + i64::from(field(32))))?;
+        let (version, flags, method) = (field(6), field(8), field(10));
+        let mut odd = |what| oddities.push(Odd { entry: names::printable(&name), what });
+        if version & 0xff > 20 {
+            odd(Oddity::Version(version & 0xff));
+        }
+        if flags & 1 << 3 != 0 && method == 0 {
+            odd(Oddity::Descriptor);
+        }
+        if flags & 1 << 11 == 0 && !name.is_ascii() {
+            odd(Oddity::Unmarked);
+        }
+        if !seen.insert(name.clone()) {
             problems.push(NameProblem {
                 name: names::printable(&name),
                 found: "is there twice".into(),
                 expected: "one entry of a name",
             });
         }
-        seen.insert(name);
     }
 }
 

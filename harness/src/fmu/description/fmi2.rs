@@ -4,7 +4,9 @@ use super::read::{
     causality, default_initial, default_variability, initial, interface, optional, variability,
 };
 use super::xml::Element;
-use super::{Causality, Description, DescriptionError, Kind, Unknown, Variability, Variable};
+use super::{
+    Causality, Description, DescriptionError, Kind, Standard, Unknown, Variability, Variable,
+};
 use std::collections::BTreeMap;
 
 /// Types of a variable, by their element.
@@ -44,7 +46,6 @@ pub(super) fn read<'a, 't: 'a>(
         let mut derivatives = Vec::new();
         for element in list.children() {
             if element.name() != "ScalarVariable" {
-                element.tolerate("unknown element", || "no ScalarVariable, left out".into());
                 continue;
             }
             let (variable, state) = read_variable(element, &types)?;
@@ -77,7 +78,6 @@ fn types<'a, 't: 'a>(
         let name = element.required("name")?;
         let known = |child: &Element<'_, '_>| TYPES.iter().any(|(tag, _)| *tag == child.name());
         let Some(definition) = element.children().find(known) else {
-            element.tolerate("unknown type", || "a type of no known kind, left out".into());
             continue;
         };
         if definition.name() == "Enumeration" {
@@ -172,7 +172,8 @@ fn read_variable<'a, 't: 'a>(
         enumeration: declared.filter(|_| kind == Kind::Enumeration).map(str::to_owned),
         causality,
         variability,
-        initial: initial(element)?.or_else(|| default_initial(causality, variability)),
+        initial: initial(element)?
+            .or_else(|| default_initial(Standard::Fmi2, causality, variability)),
         dimensions: Vec::new(),
         start: value.text("start").map(str::to_owned).into_iter().collect(),
         min: number("min")?,
@@ -246,7 +247,7 @@ fn structure(root: Element<'_, '_>, description: &mut Description) -> Result<(),
             "Outputs" => description.structure.outputs = unknowns,
             "Derivatives" => description.structure.derivatives = unknowns,
             "InitialUnknowns" => description.structure.initial_unknowns = unknowns,
-            _ => part.tolerate("unknown element", || "unknown, left out".into()),
+            _ => {}
         }
     }
     Ok(())

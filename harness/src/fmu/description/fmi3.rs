@@ -8,7 +8,7 @@ use super::read::{
 use super::xml::Element;
 use super::{
     Alias, Causality, Clock, Description, DescriptionError, Dimension, IntervalVariability, Kind,
-    Unknown, Variable,
+    Standard, Unknown, Variable,
 };
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -52,7 +52,6 @@ pub(super) fn read<'a, 't: 'a>(
         let kind = Kind::ALL.into_iter().find(|kind| kind.name() == element.name());
         let Some(kind) = kind else {
             // Minor versions of the standard may add types.
-            element.tolerate("unknown element", || "a variable of unknown type, left out".into());
             continue;
         };
         description.variables.push(read_variable(element, kind, &types)?);
@@ -83,7 +82,6 @@ fn types<'a, 't: 'a>(
             .strip_suffix("Type")
             .is_some_and(|name| Kind::ALL.iter().any(|kind| kind.name() == name));
         if !known {
-            element.tolerate("unknown type", || "a type of no known kind, left out".into());
             continue;
         }
         let name = element.required("name")?;
@@ -155,7 +153,7 @@ fn read_variable<'a, 't: 'a>(
         .collect::<Result<_, DescriptionError>>()?;
     let initial = match kind {
         Kind::Clock => None,
-        _ => initial(element)?.or_else(|| default_initial(causality, variability)),
+        _ => initial(element)?.or_else(|| default_initial(Standard::Fmi3, causality, variability)),
     };
     Ok(Variable {
         name,
@@ -262,11 +260,7 @@ fn structure(root: Element<'_, '_>, description: &mut Description) -> Result<(),
             "ClockedState" => &mut description.structure.clocked_states,
             "InitialUnknown" => &mut description.structure.initial_unknowns,
             "EventIndicator" => &mut description.structure.event_indicators,
-            "Annotations" => continue,
-            _ => {
-                element.tolerate("unknown element", || "unknown, left out".into());
-                continue;
-            }
+            _ => continue,
         };
         let attribute = "valueReference";
         let reference: u32 = element.whole(attribute)?.ok_or_else(|| {

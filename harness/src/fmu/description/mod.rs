@@ -9,11 +9,13 @@
 //! | `xml` | elements, attributes and their types, with the place of each |
 //! | `read` | what both standards share |
 //! | `fmi2`, `fmi3` | variables, types and structure of each |
+//! | `schema` | which elements and attributes the standards know |
 //! | [`units`] | conversion between units, with a check of their dimension |
 
 mod fmi2;
 mod fmi3;
 mod read;
+pub(crate) mod schema;
 mod text;
 pub mod units;
 pub(crate) mod xml;
@@ -21,7 +23,6 @@ pub(crate) mod xml;
 pub use read::{read, read_bytes};
 pub use text::decode;
 
-use serde::{Deserialize, Serialize};
 
 /// Why a model description can't be used.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]

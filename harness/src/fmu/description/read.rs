@@ -1,5 +1,6 @@
 //! What both standards share: the head of the description, units and interfaces.
 
+use super::schema::{self, Breaks};
 use super::xml::{Element, File};
 use super::{
     BaseUnit, Causality, Description, DescriptionError, DisplayUnit, Experiment, Initial,
@@ -108,6 +109,7 @@ pub fn read(text: &str, file: &str) -> Result<Description, DescriptionError> {
         return Err(root.error(None, "no interface", expected));
     }
     names_and_units(root, &description);
+    unknown(root, standard);
     description.tolerated = file.tolerated();
     Ok(description)
 }
@@ -153,39 +155,47 @@ fn units(list: Element<'_, '_>) -> Result<Vec<Unit>, DescriptionError> {
             element.tolerate("unit twice", || "the unit is defined twice, the first counts".into());
             continue;
         }
-        let base = element.child("BaseUnit").map(base_unit).transpose()?;
+        let base = match element.child("BaseUnit") {
+            Some(child) => base_unit(child)?,
+            None => None,
+        };
         let mut display = Vec::new();
         for child in element.children().filter(|child| child.name() == "DisplayUnit") {
-            display.push(DisplayUnit {
-                name: child.required("name")?.to_owned(),
-                factor: factor(child)?,
-                offset: child.real("offset")?.unwrap_or(0.0),
-                inverse: child.boolean("inverse")?,
-            });
+            let name = child.required("name")?.to_owned();
+            if let Some((factor, offset)) = conversion(child)? {
+                display.push(DisplayUnit {
+                    name,
+                    factor,
+                    offset,
+                    inverse: child.boolean("inverse")?,
+                });
+            }
         }
         units.push(Unit { name, base, display });
     }
     Ok(units)
 }
 
-fn base_unit(element: Element<'_, '_>) -> Result<BaseUnit, DescriptionError> {
+fn base_unit(element: Element<'_, '_>) -> Result<Option<BaseUnit>, DescriptionError> {
     let mut exponents = [0; 8];
     for (exponent, name) in exponents.iter_mut().zip(super::units::BASE_NAMES) {
         *exponent = element.whole(name)?.unwrap_or(0);
     }
-    Ok(BaseUnit {
-        exponents,
-        factor: factor(element)?,
-        offset: element.real("offset")?.unwrap_or(0.0),
-    })
+    let base = |(factor, offset)| BaseUnit { exponents, factor, offset };
+    Ok(conversion(element)?.map(base))
 }
 
-fn factor(element: Element<'_, '_>) -> Result<f64, DescriptionError> {
+/// Factor and offset; none where nothing can be converted with them.
+fn conversion(element: Element<'_, '_>) -> Result<Option<(f64, f64)>, DescriptionError> {
     let factor = element.real("factor")?.unwrap_or(1.0);
-    if factor == 0.0 || !factor.is_finite() {
-        return Err(element.error(Some("factor"), factor.to_string(), "a finite number but 0"));
+    let offset = element.real("offset")?.unwrap_or(0.0);
+    if factor == 0.0 || !factor.is_finite() || !offset.is_finite() {
+        element.tolerate("unit without a meaning", || {
+            format!("factor {factor} and offset {offset} convert nothing, left out")
+        });
+        return Ok(None);
     }
-    Ok(factor)
+    Ok(Some((factor, offset)))
 }
 
 /// What the interfaces of both standards have in common. `names`: how the standard spells the
@@ -264,9 +274,14 @@ pub(super) fn default_variability(kind: Kind, causality: Causality) -> Variabili
 }
 
 /// `initial` of a variable that has none: the table of both standards (FMI 2.0, 2.2.7; FMI 3.0,
-/// 2.4.7.5). `None`: there is none.
-pub(super) fn default_initial(causality: Causality, variability: Variability) -> Option<Initial> {
+/// 2.4.7.5). `None`: it can have none, as an input of FMI 2.0.
+pub(crate) fn default_initial(
+    standard: Standard,
+    causality: Causality,
+    variability: Variability,
+) -> Option<Initial> {
     match (causality, variability) {
+        (Causality::Input, _) if standard == Standard::Fmi3 => Some(Initial::Exact),
         (Causality::Parameter | Causality::StructuralParameter, _)
         | (Causality::Output | Causality::Local, Variability::Constant) => Some(Initial::Exact),
         (Causality::CalculatedParameter | Causality::Output | Causality::Local, _) => {
@@ -274,6 +289,29 @@ pub(super) fn default_initial(causality: Causality, variability: Variability) ->
         }
         (Causality::Input | Causality::Independent, _) => None,
     }
+}
+
+/// Notes elements and attributes that the standard doesn't know: they are left out.
+fn unknown(root: Element<'_, '_>, standard: Standard) {
+    let schema = match standard {
+        Standard::Fmi2 => &schema::FMI2,
+        Standard::Fmi3 => &schema::FMI3,
+    };
+    schema::walk(root, schema, &mut |violation| {
+        // A start that should be an element is read all the same.
+        if violation.place.ends_with(", start") {
+            return;
+        }
+        let kind = match violation.breaks {
+            Breaks::UnknownElement => "unknown element",
+            Breaks::UnknownAttribute => "unknown attribute",
+            // What else is wrong was noted where it was read.
+            _ => return,
+        };
+        root.file().tolerate(kind, violation.line, || {
+            format!("{}: {}, left out", violation.place, violation.found)
+        });
+    });
 }
 
 /// Notes names that are there twice and units that aren't defined.

@@ -160,10 +160,10 @@ impl<'a, 't: 'a> Element<'a, 't> {
     }
 
     /// What an error says of the element's place.
-    fn place(self, attribute: Option<&str>) -> String {
+    pub(crate) fn place(self, attribute: Option<&str>) -> String {
         let mut place = self.name().to_owned();
         if let Some(name) = self.text("name") {
-            place = format!("{place} {name:?}");
+            place = format!("{place} {:?}", shortened(name));
         }
         if let Some(attribute) = attribute {
             place = format!("{place}, {attribute}");
@@ -262,6 +262,14 @@ impl<'a, 't: 'a> Element<'a, 't> {
         list.map(Some).map_err(|_| {
             self.error(Some(attribute), format!("{text:?}"), "whole numbers, separated by blanks")
         })
+    }
+}
+
+/// The beginning of a text, for a message.
+pub(crate) fn shortened(text: &str) -> String {
+    match text.char_indices().nth(80) {
+        Some((end, _)) => format!("{}…", &text[..end]),
+        None => text.to_owned(),
     }
 }
 

@@ -106,6 +106,8 @@ struct Edge {
     from: Place,
     hop: Hop,
     line: u32,
+    /// Number of the connection, in the order of the file.
+    number: usize,
 }
 
 struct Flattener<'a> {
@@ -331,7 +333,8 @@ impl<'a> Flattener<'a> {
             );
             return Err(self.error(connection.line, "Connection", message));
         }
-        self.into.insert(to, Edge { from, hop, line: connection.line });
+        let number = self.into.len();
+        self.into.insert(to, Edge { from, hop, line: connection.line, number });
         Ok(())
     }
 
@@ -376,7 +379,7 @@ impl<'a> Flattener<'a> {
 
     /// Follows connections back through systems to the FMUs.
     fn wires(&mut self) -> Result<Vec<FlatWire>, SspError> {
-        let mut wires = Vec::new();
+        let mut wires: Vec<(usize, FlatWire)> = Vec::new();
         let mut given: Vec<(usize, FlatParameter)> = Vec::new();
         let sinks: Vec<(&Place, usize)> = self
             .into
@@ -430,21 +433,22 @@ impl<'a> Flattener<'a> {
                 );
                 return Err(self.error(last.line, "Connection", message));
             }
-            wires.push(FlatWire {
+            let wire = FlatWire {
                 from: Port { component: source, connector: at.1.clone() },
                 from_kind: from.kind,
                 to: Port { component, connector: sink.1.clone() },
                 to_kind: to.kind,
                 hops,
                 line: last.line,
-            });
+            };
+            wires.push((last.number, wire));
         }
         // In the order of the file.
-        wires.sort_by_key(|wire| wire.line);
+        wires.sort_by_key(|(number, _)| *number);
         for (component, parameter) in given {
             self.components[component].parameters.push(parameter);
         }
-        Ok(wires)
+        Ok(wires.into_iter().map(|(_, wire)| wire).collect())
     }
 }
 

@@ -13,6 +13,7 @@
 
 pub mod convert;
 pub mod error;
+pub mod faults;
 pub mod flat;
 pub mod graph;
 pub mod initialize;

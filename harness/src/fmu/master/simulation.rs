@@ -6,10 +6,12 @@
 //! in the order it gets values of point n.
 //!
 //! An FMU that discards a step makes all of them go back to the states that they had at its
-//! beginning, and the step is made in parts: up to where the FMU came, or halves. Values are
+//! beginning, and the step is made in parts: up to where the FMU came and on from there, or in
+//! halves, and these again in halves. Values are
 //! transferred between the parts; faults don't move on until the step is whole.
 
 use super::error::MasterError;
+use super::faults::Faulting;
 use super::initialize::{Initializer, Loop};
 use super::solve::Limits;
 use super::system::{Side, System};
@@ -71,7 +73,7 @@ pub struct Simulation<'a> {
     instances: Vec<Box<dyn Instance>>,
     abilities: Vec<Abilities>,
     /// Faults on wires; elements are the numbers of the wires.
-    station: Option<Station>,
+    faulting: Option<Faulting>,
     inputs: Vec<Vec<f64>>,
     outputs: Vec<Vec<f64>>,
     /// Outputs at the beginning of a part.
@@ -84,11 +86,15 @@ pub struct Simulation<'a> {
     transferred: Vec<u64>,
     /// What each input got at the beginning of the step.
     delivered: Vec<f64>,
+    /// Ends of the parts of a step that are left.
+    ends: Vec<f64>,
     /// Kept states, one for each FMU, while a part is made.
     states: Vec<u64>,
     rolls_back: bool,
     /// Steps done.
     step: u64,
+    /// How many of the faults' hands have come.
+    fired: usize,
     counts: Vec<Counts>,
     /// Parts of steps that were made anew.
     rejected: u64,
@@ -109,7 +115,7 @@ impl<'a> Simulation<'a> {
         settings: &'a Settings,
         instances: Vec<Box<dyn Instance>>,
         abilities: Vec<Abilities>,
-        station: Option<Station>,
+        faulting: Option<Faulting>,
     ) -> Self {
         let nodes = &system.nodes;
         let numbers = |side: fn(&super::system::Node) -> &Side| -> Vec<Vec<f64>> {
@@ -120,7 +126,8 @@ impl<'a> Simulation<'a> {
             into[wire.to.node].push(number);
         }
         let wires = system.wires.len();
-        let has_fault = |wire: usize| station.as_ref().is_some_and(|station| station.is_on(wire));
+        let has_fault =
+            |wire: usize| faulting.as_ref().is_some_and(|faulting| faulting.station.is_on(wire));
         let able = |of: fn(&Abilities) -> bool| abilities.iter().all(of);
         Self {
             inputs: numbers(|node| &node.inputs),
@@ -130,9 +137,11 @@ impl<'a> Simulation<'a> {
             faulted: (0..wires).map(has_fault).collect(),
             transferred: vec![0; wires],
             delivered: vec![0.0; wires],
+            ends: Vec::new(),
             states: Vec::with_capacity(nodes.len()),
             rolls_back: able(|one| one.state) && able(|one| one.variable_step),
             step: 0,
+            fired: 0,
             counts: vec![Counts::default(); nodes.len()],
             rejected: 0,
             loops: Vec::new(),
@@ -140,7 +149,7 @@ impl<'a> Simulation<'a> {
             settings,
             instances,
             abilities,
-            station,
+            faulting,
         }
     }
 
@@ -199,7 +208,7 @@ impl<'a> Simulation<'a> {
 
     /// The faults.
     pub fn station(&mut self) -> Option<&mut Station> {
-        self.station.as_mut()
+        self.faulting.as_mut().map(|faulting| &mut faulting.station)
     }
 
     /// The instances.
@@ -258,21 +267,23 @@ impl<'a> Simulation<'a> {
         Ok(ended_by)
     }
 
-    /// Makes one step; the number of an FMU that wants the simulation to end after it. `holds`
-    /// answers for faults whose condition is on a value: see [`Station::begin`].
+    /// Makes one step; the number of an FMU that wants the simulation to end after it.
     ///
     /// # Errors
     /// If an FMU fails, or refuses the step in whole and in parts.
     pub fn advance(&mut self) -> Result<Option<usize>, MasterError> {
         let (start_s, end_s) = (self.time_s(self.step), self.time_s(self.step + 1));
         self.step += 1;
+        self.begin_faults();
         let mut ended_by = None;
         let mut time_s = start_s;
-        // The whole step as it was told: a difference of times would be rounded.
-        let mut length_s = self.settings.step_s;
-        loop {
-            let last = time_s + length_s >= end_s
-                || (time_s == start_s && length_s == self.settings.step_s);
+        // Ends of the parts that are left, the next one last.
+        self.ends.clear();
+        self.ends.push(end_s);
+        while let Some(until_s) = self.ends.last().copied() {
+            let whole = time_s == start_s && self.ends.len() == 1;
+            // The whole step as it was told: a difference of times would be rounded.
+            let length_s = if whole { self.settings.step_s } else { until_s - time_s };
             if self.rolls_back {
                 self.keep(time_s)?;
             }
@@ -282,20 +293,34 @@ impl<'a> Simulation<'a> {
                     if self.rolls_back {
                         self.forget(time_s)?;
                     }
-                    if last {
-                        return Ok(ended_by);
-                    }
-                    time_s += length_s;
-                    length_s = end_s - time_s;
+                    time_s = until_s;
+                    self.ends.pop();
                 }
                 Attempt::Discarded { node, reached_s } => {
                     self.counts[node].discarded += 1;
                     self.rejected += 1;
-                    length_s = self.shorter(node, time_s, length_s, reached_s)?;
+                    let shorter_s = self.shorter(node, time_s, length_s, reached_s)?;
+                    self.ends.push(time_s + shorter_s);
                     self.go_back(time_s)?;
                 }
             }
         }
+        Ok(ended_by)
+    }
+
+    /// Triggers are looked at, with the outputs at the beginning of the step.
+    fn begin_faults(&mut self) {
+        let Some(faulting) = &mut self.faulting else { return };
+        while let Some((_, id)) = faulting.fires.get(self.fired).filter(|(at, _)| *at == self.step)
+        {
+            faulting.station.fire(id);
+            self.fired += 1;
+        }
+        let (conditions, outputs) = (&faulting.conditions, &self.outputs);
+        faulting.station.begin(|fault| {
+            let condition = conditions.get(fault).copied().flatten()?;
+            condition.holds(outputs[condition.spot.node][condition.spot.place])
+        });
     }
 
     /// All transfers, and all FMUs over a time.
@@ -333,9 +358,9 @@ impl<'a> Simulation<'a> {
             let mut value = wire.convert(value, time_s)?;
             let again = std::mem::replace(&mut self.transferred[*number], self.step) == self.step;
             if self.faulted[*number]
-                && let Some(station) = &mut self.station
+                && let Some(faulting) = &mut self.faulting
             {
-                value = station.transfer(*number, value, again);
+                value = faulting.station.transfer(*number, value, again);
             }
             if !again {
                 self.delivered[*number] = value;
@@ -413,7 +438,7 @@ impl<'a> Simulation<'a> {
                 .filter(|wire| range.contains(&self.system.wires[**wire].to.place));
             let wires: Vec<usize> = wires.copied().collect();
             let acts = |wire: &&usize| {
-                self.station.as_ref().is_some_and(|station| station.acts_on(**wire))
+                self.faulting.as_ref().is_some_and(|faulting| faulting.station.acts_on(**wire))
             };
             if wires.iter().any(|wire| acts(&wire)) {
                 self.counts[node].refused += 1;

@@ -100,7 +100,8 @@ struct Found<'a> {
 }
 
 impl System {
-    /// Finds the connectors of a system in the descriptions of its FMUs, in their order.
+    /// Finds the connectors of a system in the descriptions of its FMUs, in their order. Variables
+    /// in `also` are got at every step though nothing may be connected to them.
     ///
     /// # Errors
     /// If a connector isn't there, or is another than the structure says, or values can't go the
@@ -109,6 +110,7 @@ impl System {
         structure: &Structure,
         flat: &Flat,
         descriptions: &[&Description],
+        also: &[(usize, String)],
     ) -> Result<Self, SspError> {
         let builder = Builder { structure, flat, descriptions };
         for (number, component) in flat.components.iter().enumerate() {
@@ -129,6 +131,9 @@ impl System {
         for wire in &flat.wires {
             add(&wire.from, 2)?;
             add(&wire.to, if is_fixed(wire) { 1 } else { 0 })?;
+        }
+        for (component, connector) in also {
+            add(&Port { component: *component, connector: connector.clone() }, 2)?;
         }
         let mut nodes = Vec::with_capacity(descriptions.len());
         for ((component, description), [inputs, fixed, outputs]) in
@@ -157,6 +162,21 @@ impl System {
             builder.wire(wire, &mut system)?;
         }
         Ok(system)
+    }
+}
+
+impl System {
+    /// Where a number lies that is got at every step, and its variable.
+    #[must_use]
+    pub fn output<'a>(
+        &self,
+        node: usize,
+        name: &str,
+        description: &'a Description,
+    ) -> Option<(Spot, &'a Variable)> {
+        let found = find(description, name).ok().filter(|found| found.count == 1)?;
+        let place = self.nodes.get(node)?.outputs.place(found.number)? + found.first;
+        Some((Spot { node, place }, found.variable))
     }
 }
 

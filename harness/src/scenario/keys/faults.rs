@@ -19,27 +19,38 @@ pub(crate) fn kind_section(kind: &str) -> Option<&'static Section> {
     FORMS.iter().find(|(name, _)| *name == kind).map(|(_, section)| *section)
 }
 
-fn leak<T>(value: T) -> &'static T {
+pub(super) fn leak<T>(value: T) -> &'static T {
     Box::leak(Box::new(value))
 }
 
-fn leak_all<T>(values: Vec<T>) -> &'static [T] {
+pub(super) fn leak_all<T>(values: Vec<T>) -> &'static [T] {
     Box::leak(values.into_boxed_slice())
 }
 
 fn fault(kind: &'static catalogue::Kind) -> Section {
     let mut keys = vec![
         key("id", Kind::Text, Default::Required, "Name of the fault, unique in the scenario."),
-        key(
-            "kind",
-            Kind::Choice(leak_all(vec![(kind.name, kind.summary)])),
-            Default::Required,
-            "What happens: the name of a kind of fault.",
-        ),
+        named(kind.name, kind.summary),
     ];
     keys.extend(kind.parameters.iter().map(parameter));
     keys.push(key("trigger", Kind::Variants(&TRIGGER), Default::Required, "When it sets in."));
-    keys.push(match kind.lasts {
+    keys.extend(lasting(kind.lasts));
+    Section { keys: leak_all(keys), one_of: false }
+}
+
+/// The key of the kind, in the form of one kind.
+pub(super) fn named(name: &'static str, summary: &'static str) -> Key {
+    key(
+        "kind",
+        Kind::Choice(leak_all(vec![(name, summary)])),
+        Default::Required,
+        "What happens: the name of a kind of fault.",
+    )
+}
+
+/// How long a fault lasts, how it fades and comes back.
+pub(super) fn lasting(lasts: Lasts) -> [Key; 3] {
+    let duration = match lasts {
         Lasts::Instant => refused("duration", "this kind is over in an instant"),
         Lasts::Span | Lasts::Fading => key(
             "duration",
@@ -47,8 +58,8 @@ fn fault(kind: &'static catalogue::Kind) -> Section {
             Default::Absent("to the end of the run"),
             "How long it lasts, rounded to whole samples.",
         ),
-    });
-    keys.push(match kind.lasts {
+    };
+    let recovery = match lasts {
         Lasts::Fading => key(
             "recovery",
             Kind::Quantity(&[Dimension::TIME, Dimension::SAMPLES], Bounds::NotNegative),
@@ -57,14 +68,14 @@ fn fault(kind: &'static catalogue::Kind) -> Section {
         ),
         Lasts::Span => refused("recovery", "this kind doesn't fade: it is there or it isn't"),
         Lasts::Instant => refused("recovery", "this kind is over in an instant"),
-    });
-    keys.push(key(
+    };
+    let repeat = key(
         "repeat",
         Kind::Either(&OFTEN),
         Default::Absent("once, or as often as a periodic or random trigger says"),
         "How often it comes back: so many times in all at this distance, or every time.",
-    ));
-    Section { keys: leak_all(keys), one_of: false }
+    );
+    [duration, recovery, repeat]
 }
 
 const fn refused(name: &'static str, reason: &'static str) -> Key {
@@ -72,7 +83,7 @@ const fn refused(name: &'static str, reason: &'static str) -> Key {
 }
 
 /// The key of a parameter of the catalogue.
-fn parameter(parameter: &'static Parameter) -> Key {
+pub(super) fn parameter(parameter: &'static Parameter) -> Key {
     let dimensions = |all: &[catalogue::Dimension]| leak_all(all.iter().map(dimension).collect());
     let kind = match parameter.takes {
         Takes::Quantity(all, limits) => Kind::Quantity(dimensions(all), bounds(limits)),
@@ -149,7 +160,7 @@ pub(crate) fn dimension(dimension: &catalogue::Dimension) -> Dimension {
 const SPAN: Kind = Kind::Quantity(&[Dimension::TIME, Dimension::SAMPLES], Bounds::Positive);
 /// A time, or a number of samples, from 0.
 const DELAY: Kind = Kind::Quantity(&[Dimension::TIME, Dimension::SAMPLES], Bounds::NotNegative);
-const AFTER: Key = key("after", DELAY, Default::Value("0 s"), "How long after that.");
+pub(super) const AFTER: Key = key("after", DELAY, Default::Value("0 s"), "How long after that.");
 const STOP: Kind = Kind::Integer(1, u16::MAX as i64);
 const PHASE: Key = key(
     "phase",
@@ -189,13 +200,13 @@ pub(super) static TRIGGER: Variants = Variants {
     },
 };
 
-static AT: Section = section(&[key(
+pub(super) static AT: Section = section(&[key(
     "at",
     DELAY,
     Default::Required,
     "Time of the run: the first sample that it alters is that of the interval which begins then.",
 )]);
-static SAMPLE: Section = section(&[key(
+pub(super) static SAMPLE: Section = section(&[key(
     "sample",
     Kind::Integer(1, i64::MAX),
     Default::Required,
@@ -236,12 +247,12 @@ static MODE: Section = section(&[
 ]);
 static WHEN: Section =
     section(&[key("when", Kind::Condition, Default::Required, "A signal crosses a value."), AFTER]);
-static EVERY: Section = section(&[
+pub(super) static EVERY: Section = section(&[
     key("every", SPAN, Default::Required, "Again and again, onsets so far apart."),
     FROM,
     UNTIL,
 ]);
-static POISSON: Section = section(&[
+pub(super) static POISSON: Section = section(&[
     key(
         "poisson",
         Kind::Quantity(&[Dimension::TIME, Dimension::FREQUENCY], Bounds::Positive),
@@ -251,11 +262,11 @@ static POISSON: Section = section(&[
     FROM,
     UNTIL,
 ]);
-static AFTER_FAULT: Section = section(&[
+pub(super) static AFTER_FAULT: Section = section(&[
     key("after_fault", Kind::Text, Default::Required, "The fault of this id has ended."),
     AFTER,
 ]);
-static MANUAL: Section = section(&[
+pub(super) static MANUAL: Section = section(&[
     key("manual", Kind::Boolean, Default::Required, "By hand."),
     key(
         "fire",

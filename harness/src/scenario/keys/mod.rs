@@ -3,6 +3,7 @@
 //! Checking, defaults, error messages, the JSON Schema and the test of the tour all read it.
 
 mod calibration;
+mod connection;
 mod faults;
 mod fmu;
 mod instrument;
@@ -13,6 +14,7 @@ mod suite;
 use super::quantity::Dimension;
 use crate::fmu::mapping::channel::Channel;
 
+pub(crate) use connection::CONNECTIONS;
 pub(crate) use faults::{dimension, kind_section};
 pub(crate) use fmu::{ENDPOINT_FMU, ENDPOINT_MAP, SOURCE_FMU, SOURCE_MAP};
 pub(crate) use run::{POSITIONS, SCENARIO};

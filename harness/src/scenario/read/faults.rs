@@ -1,6 +1,8 @@
 //! Faults: from checked keys to what the station is built with, and what can be known before the
 //! run about whether they can act at all.
 
+pub(crate) mod connection;
+mod grid;
 mod schedule;
 
 use super::Reader;
@@ -8,6 +10,7 @@ use super::source::Source;
 use crate::scenario::document::{Node, Value as Written};
 use crate::scenario::error::{Place, Problem};
 use crate::scenario::{Method, Scenario, keys, quantity};
+use grid::{Waiting, check_chains};
 use octant_faults::catalogue::{Acts, Kind, Parameter, Takes};
 use octant_faults::station::Spec;
 use octant_faults::{BuildError, Channels, Setup, Station, Value, Values, kinds};
@@ -82,7 +85,15 @@ pub(super) fn read(root: &Reader<'_>, scenario: &Scenario) -> Result<Vec<Fault>,
         }
         all.push(fault);
     }
-    schedule::check_chains(&tables, &all)?;
+    let waiting: Vec<Waiting<'_>> = all
+        .iter()
+        .map(|fault| Waiting {
+            id: &fault.spec.id,
+            schedule: &fault.spec.schedule,
+            lasts: fault.spec.kind.lasts,
+        })
+        .collect();
+    check_chains(&tables, &waiting)?;
     for (index, table) in tables.iter().enumerate() {
         timing.check(table, &all, index)?;
     }

@@ -38,7 +38,8 @@ impl Format {
     }
 }
 
-/// A data frame with an identifier of 11 bits.
+/// A data frame with an identifier of 11 bits. Remote frames, error frames and those with 29 bits are
+/// none of ours: who takes frames from a bus leaves them out.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub struct Frame {
     id: u16,

@@ -200,7 +200,27 @@ pub struct TimeReply {
     pub sent: ClockTime,
 }
 
+/// What two clocks show at the same time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Offset {
+    /// How far the other clock is ahead of the harness's, ns.
+    pub ahead_ns: i128,
+    /// By how much this may be wrong, ns: half of the time that was spent on the way. Negative where
+    /// the stamps contradict each other.
+    pub error_ns: i128,
+}
+
 impl TimeReply {
+    /// The offset of the replier's clock, when the reply came at this time of the harness's clock.
+    #[must_use]
+    pub fn offset(&self, harness_received: ClockTime) -> Offset {
+        let between =
+            |later: ClockTime, earlier: ClockTime| i128::from(later.ns) - i128::from(earlier.ns);
+        let there = between(self.received, self.harness_sent);
+        let back = between(harness_received, self.sent);
+        Offset { ahead_ns: (there - back) / 2, error_ns: (there + back) / 2 }
+    }
+
     pub(super) fn write(&self, w: &mut Writer<'_>) {
         w.u16(self.id);
         w.u16(0);

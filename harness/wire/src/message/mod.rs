@@ -14,7 +14,9 @@ mod steps;
 
 pub use hello::{Agreement, Capabilities, Hello, Limits, Pacing, Refusal, agree};
 pub use kind::{Kind, Role};
-pub use link::{Bye, ClockTime, Condition, Heartbeat, Reason, Status, TimeReply, TimeRequest};
+pub use link::{
+    Bye, ClockTime, Condition, Heartbeat, Offset, Reason, Status, TimeReply, TimeRequest,
+};
 pub use parameters::{Gathered, Gathering, PARAMETERS_SEGMENTS, ParametersSegment, SEGMENT_VALUES};
 pub use step::Step;
 pub use steps::{AidingMessage, End, OutputMessage, Ready, Restart, SampleMessage};

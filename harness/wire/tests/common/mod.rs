@@ -2,6 +2,7 @@
 #![allow(dead_code, reason = "each test uses its part")]
 
 pub(crate) mod arbitrary;
+pub(crate) mod peer;
 pub(crate) mod vectors;
 
 use octant_wire::can::{self, Format, Frame, Reassembler};

@@ -1,22 +1,21 @@
 //! When faults set in: triggers in epochs, and those that can't come true.
 
+use super::grid::Grid;
 use super::{Fault, Reader, method_name};
 use crate::scenario::condition;
-use crate::scenario::document::{Node, Value};
-use crate::scenario::error::{Problem, suggestion};
-use crate::scenario::quantity::{self, Dimension};
+use crate::scenario::error::Problem;
 use crate::scenario::{Alignment, Calibration, Method, Scenario, Source};
 use octant_calibration::config::TurntableRates;
 use octant_calibration::schedule::move_between_s;
 use octant_calibration::sequence::{Sequence, Stop};
-use octant_faults::catalogue::{Kind, Lasts};
-use octant_faults::trigger::{Repeat, Schedule, Trigger};
+use octant_faults::catalogue::Kind;
+use octant_faults::trigger::{Schedule, Trigger};
 use octant_sample::Mode;
 
 /// What is known of the run's time before it starts.
 pub(super) struct Timing<'a> {
     scenario: &'a Scenario,
-    period_s: f64,
+    grid: Grid,
     /// Epochs of the whole run, where they are known.
     total: Option<u64>,
     calibration_samples: u64,
@@ -36,43 +35,10 @@ impl<'a> Timing<'a> {
     pub(super) fn of(scenario: &'a Scenario) -> Self {
         Self {
             scenario,
-            period_s: scenario.sample_period_ns as f64 * 1e-9,
+            grid: Grid { period_ns: scenario.sample_period_ns as f64, step: "sample" },
             total: scenario.samples(),
             calibration_samples: scenario.calibration_samples(),
         }
-    }
-
-    /// A time, or a number of samples, as epochs.
-    fn epochs(&self, table: &Reader<'_>, key: &str) -> Result<Option<u64>, Problem> {
-        let Some(text) = table.optional_text(key) else { return Ok(None) };
-        let quantity = quantity::parse(text).map_err(|_| table.problem(key, "missing"))?;
-        Ok(Some(if quantity.is(Dimension::SAMPLES) {
-            quantity.si as u64
-        } else {
-            self.of_time(quantity.si)
-        }))
-    }
-
-    fn of_time(&self, time_s: f64) -> u64 {
-        // The cast saturates: past any run.
-        (time_s * 1e9 / self.scenario.sample_period_ns as f64).round() as u64
-    }
-
-    /// As [`Timing::epochs`], one at least.
-    fn span(&self, table: &Reader<'_>, key: &str) -> Result<Option<u64>, Problem> {
-        match self.epochs(table, key)? {
-            Some(0) => {
-                let found = table.text(key)?;
-                let message =
-                    format!("found {found:?}, which is less than a sample of {} s", self.period_s);
-                Err(table.problem(key, message))
-            }
-            other => Ok(other),
-        }
-    }
-
-    fn or_zero(&self, table: &Reader<'_>, key: &str) -> Result<u64, Problem> {
-        self.epochs(table, key).map(Option::unwrap_or_default)
     }
 
     /// The schedule of a fault, and the epochs at which it is fired by hand.
@@ -82,20 +48,12 @@ impl<'a> Timing<'a> {
         kind: &Kind,
     ) -> Result<(Schedule, Vec<u64>), Problem> {
         let (trigger, fires) = self.trigger(&table.table("trigger")?)?;
-        let schedule = Schedule {
-            trigger,
-            duration: self.span(table, "duration")?,
-            recovery: self.or_zero(table, "recovery")?,
-            repeat: self.repeat(table)?,
-        };
-        self.check_repetition(table, kind, &schedule, &fires)?;
+        let schedule = self.grid.schedule(table, kind.lasts, trigger, &fires)?;
         Ok((schedule, fires))
     }
 
     fn trigger(&self, table: &Reader<'_>) -> Result<(Trigger, Vec<u64>), Problem> {
-        let delay = self.or_zero(table, "after")?;
-        let first = || Ok(self.or_zero(table, "from")?.saturating_add(1));
-        let last = || Ok(self.span(table, "until")?.map(|until| until.saturating_add(1)));
+        let delay = self.grid.delay(table)?;
         let mode = || {
             Ok(if table.text("phase")? == "calibration" {
                 Mode::Calibrating
@@ -104,11 +62,7 @@ impl<'a> Timing<'a> {
             })
         };
         let stop = |key| Ok(table.integer::<u16>(key)?.saturating_sub(1));
-        let trigger = if table.node("at").is_some() {
-            Trigger::Epoch(self.or_zero(table, "at")?.saturating_add(1))
-        } else if table.node("sample").is_some() {
-            Trigger::Epoch(table.integer("sample")?)
-        } else if table.node("position").is_some() {
+        let trigger = if table.node("position").is_some() {
             Trigger::Position { stop: stop("position")?, mode: mode()?, delay }
         } else if table.node("moving_to").is_some() {
             Trigger::Move { stop: stop("moving_to")?, mode: mode()?, delay }
@@ -130,106 +84,10 @@ impl<'a> Timing<'a> {
                 return Err(table.problem("when", message));
             }
             Trigger::Condition { signal, comparison, value, delay }
-        } else if table.node("every").is_some() {
-            let period = self.span(table, "every")?.unwrap_or(1);
-            Trigger::Periodic { first: first()?, period, last: last()? }
-        } else if table.node("poisson").is_some() {
-            let quantity = quantity::parse(table.text("poisson")?)
-                .map_err(|_| table.problem("poisson", "missing"))?;
-            let is_time = quantity.is(Dimension::TIME);
-            let mean_s = if is_time { quantity.si } else { 1.0 / quantity.si };
-            Trigger::Poisson { first: first()?, last: last()?, mean: mean_s / self.period_s }
-        } else if table.node("after_fault").is_some() {
-            Trigger::After { fault: table.text("after_fault")?.to_owned(), delay }
         } else {
-            if !table.boolean("manual")? {
-                return Err(table.problem("manual", "found false, expected true"));
-            }
-            Trigger::Manual
+            return self.grid.trigger(table);
         };
-        if let Trigger::Periodic { first, last: Some(last), .. }
-        | Trigger::Poisson { first, last: Some(last), .. } = &trigger
-            && last < first
-        {
-            let message = format!("found {:?}, which is before from", table.text("until")?);
-            return Err(table.problem("until", message));
-        }
-        let mut fires: Vec<u64> = (table.optional_si_vec("fire").unwrap_or_default().into_iter())
-            .map(|time_s| self.of_time(time_s).saturating_add(1))
-            .collect();
-        fires.sort_unstable();
-        Ok((trigger, fires))
-    }
-
-    fn repeat(&self, table: &Reader<'_>) -> Result<Repeat, Problem> {
-        match table.node("repeat") {
-            None => Ok(Repeat::Once),
-            Some(Node { value: Value::Text(_), .. }) => Ok(Repeat::EveryTime),
-            Some(_) => {
-                let repeat = table.table("repeat")?;
-                let every = self.span(&repeat, "every")?.unwrap_or(1);
-                Ok(Repeat::Times { times: repeat.integer("times")?, every })
-            }
-        }
-    }
-
-    /// What comes back has to end before, and a repetition has to have an effect.
-    fn check_repetition(
-        &self,
-        table: &Reader<'_>,
-        kind: &Kind,
-        schedule: &Schedule,
-        fires: &[u64],
-    ) -> Result<(), Problem> {
-        let length = match (kind.lasts, schedule.duration) {
-            (Lasts::Instant, _) => Some(1),
-            (_, duration) => duration.map(|epochs| epochs.saturating_add(schedule.recovery)),
-        };
-        let by_itself =
-            matches!(schedule.trigger, Trigger::Periodic { .. } | Trigger::Poisson { .. });
-        if schedule.duration.is_none() && schedule.recovery > 0 {
-            let message = "without effect: without a duration it lasts to the end of the run";
-            return Err(table.problem("recovery", message));
-        }
-        if by_itself && schedule.repeat != Repeat::Once {
-            let message = "without effect: this trigger comes back by itself";
-            return Err(table.problem("repeat", message));
-        }
-        if schedule.repeat == Repeat::EveryTime && matches!(schedule.trigger, Trigger::Epoch(_)) {
-            let message = "without effect: a time comes once; give times and every";
-            return Err(table.problem("repeat", message));
-        }
-        if length.is_none() && (by_itself || schedule.repeat != Repeat::Once) {
-            let message = "missing: without it the fault lasts to the end of the run, and never \
-                           comes back";
-            return Err(table.problem("duration", message));
-        }
-        let (distance, key) = match (&schedule.trigger, schedule.repeat) {
-            (Trigger::Periodic { period, .. }, _) => (Some(*period), "trigger"),
-            (_, Repeat::Times { every, .. }) => (Some(every), "repeat"),
-            _ => (None, ""),
-        };
-        if let (Some(distance), Some(length)) = (distance, length)
-            && distance <= length
-        {
-            let message = format!(
-                "every {} comes before the fault is over, which takes {} with its recovery",
-                self.words(distance),
-                self.words(length)
-            );
-            return Err(table.problem(key, message));
-        }
-        if fires.len() > 1 && schedule.repeat != Repeat::EveryTime {
-            let message =
-                format!("fired {} times, which needs repeat = \"every time\"", fires.len());
-            return Err(table.problem("trigger", message));
-        }
-        Ok(())
-    }
-
-    fn words(&self, epochs: u64) -> String {
-        use crate::report::number::plain;
-        format!("{} s", plain(epochs as f64 * self.period_s, 9))
+        Ok((trigger, Vec::new()))
     }
 
     /// Refuses a fault that can't fire, as far as that is known before the run.
@@ -248,8 +106,8 @@ impl<'a> Timing<'a> {
         if let Some(fire) = all[index].fires.iter().find(|fire| **fire > total) {
             let message = format!(
                 "found {}, and the run ends at {}",
-                self.words(fire.saturating_sub(1)),
-                self.words(total)
+                self.grid.words(fire.saturating_sub(1)),
+                self.grid.words(total)
             );
             return Err(trigger.problem("fire", message));
         }
@@ -261,8 +119,8 @@ impl<'a> Timing<'a> {
             };
             let message = format!(
                 "it can't fire: it would set in at {}{at_the_earliest}, and the run ends at {}",
-                self.words(earliest.saturating_sub(1)),
-                self.words(total)
+                self.grid.words(earliest.saturating_sub(1)),
+                self.grid.words(total)
             );
             return Err(trigger.problem(key, message));
         }
@@ -308,7 +166,7 @@ impl<'a> Timing<'a> {
                 );
                 return Err(table.problem(key, message));
             }
-            if moving && walk.move_to_s(*stop, &self.rates()) < self.period_s {
+            if moving && walk.move_to_s(*stop, &self.rates()) < self.grid.period_s() {
                 let message = format!(
                     "it can't fire: in {} the gimbals are at position {number} already when its \
                      turn comes",
@@ -371,7 +229,7 @@ impl<'a> Timing<'a> {
                 // The later one: the fault is to fire in both methods.
                 let reached = walks
                     .iter()
-                    .map(|walk| self.of_time(walk.reached_s(*stop, moving, &self.rates())));
+                    .map(|walk| self.grid.of_time(walk.reached_s(*stop, moving, &self.rates())));
                 after(self.start(*mode).saturating_add(reached.max()?), delay)
             }
             Trigger::Mode { mode, delay } => after(self.start(*mode), delay),
@@ -392,7 +250,7 @@ impl<'a> Timing<'a> {
     fn start(&self, mode: Mode) -> u64 {
         match (mode, self.scenario.alignment) {
             (Mode::Navigating, _) => self.calibration_samples,
-            (Mode::Calibrating, Alignment::Coarse { duration_s }) => self.of_time(duration_s),
+            (Mode::Calibrating, Alignment::Coarse { duration_s }) => self.grid.of_time(duration_s),
             _ => 0,
         }
     }
@@ -423,46 +281,6 @@ impl Walk<'_> {
 
 fn positions(calibration: &Calibration) -> u64 {
     calibration.sequence.stops().len() as u64 * u64::from(calibration.sequence.passes())
-}
-
-/// Faults that wait for others: those are there, they end, and something starts the chain.
-pub(super) fn check_chains(tables: &[Reader<'_>], all: &[Fault]) -> Result<(), Problem> {
-    let of = |id: &str| all.iter().position(|fault| fault.spec.id == id);
-    let waits_for = |fault: &Fault| match &fault.spec.schedule.trigger {
-        Trigger::After { fault, .. } => Some(fault.clone()),
-        _ => None,
-    };
-    for (table, fault) in tables.iter().zip(all) {
-        let Some(id) = waits_for(fault) else { continue };
-        let trigger = table.table("trigger")?;
-        let problem = |message: String| Err(trigger.problem("after_fault", message));
-        let Some(mut at) = of(&id) else {
-            let ids = all.iter().map(|fault| fault.spec.id.as_str());
-            return problem(format!("found {id:?}, {}", suggestion(&id, ids, "faults")));
-        };
-        let other = &all[at].spec;
-        if other.schedule.duration.is_none() && other.kind.lasts != Lasts::Instant {
-            return problem(format!(
-                "it can't fire: it waits for the end of {id:?}, which lasts to the end of the run"
-            ));
-        }
-        let mut chain = vec![fault.spec.id.clone()];
-        loop {
-            let spec = &all[at].spec;
-            if chain.contains(&spec.id) {
-                return problem(format!(
-                    "it can't fire: {} wait for each other and nothing starts them",
-                    chain.iter().map(|id| format!("{id:?}")).collect::<Vec<_>>().join(" and ")
-                ));
-            }
-            chain.push(spec.id.clone());
-            match waits_for(&all[at]).and_then(|next| of(&next)) {
-                Some(next) => at = next,
-                None => break,
-            }
-        }
-    }
-    Ok(())
 }
 
 /// What a source without truth is, in words. An FMU without a map may be our plant, which has it.

@@ -1,0 +1,106 @@
+//! Which requests a device does, which it answers again, and which it lets be: the tables of "What is
+//! said when" in `README.md`.
+
+use crate::message::{AidingMessage, Pacing, SampleMessage, Status, Step};
+use octant_sample::Aiding;
+
+/// What a device does with a request.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Verdict {
+    /// Does it and answers; a sample with this aiding.
+    Do(Option<Aiding>),
+    /// Answers again what it answered last.
+    Again,
+    /// Nothing: it comes too late, too early, or without its aiding and will come again.
+    Nothing,
+}
+
+/// Keeps the steps of a session in order, on the side of the device.
+#[derive(Clone, Copy, Debug)]
+pub struct Requests {
+    pacing: Pacing,
+    aiding: Option<AidingMessage>,
+    answered: bool,
+    status: Status,
+}
+
+impl Requests {
+    /// A session begins.
+    #[must_use]
+    pub fn new(pacing: Pacing) -> Self {
+        Self { pacing, aiding: None, answered: false, status: Status::default() }
+    }
+
+    /// The last step that was done.
+    #[must_use]
+    pub fn last(&self) -> Step {
+        self.status.step
+    }
+
+    /// Counts of steps and requests; those of the line are of its decoder.
+    #[must_use]
+    pub fn status(&self) -> Status {
+        self.status
+    }
+
+    /// Aiding came: it waits for its sample.
+    pub fn aiding(&mut self, aiding: &AidingMessage) {
+        self.aiding = Some(*aiding);
+    }
+
+    /// A sample came.
+    #[must_use]
+    pub fn sample(&mut self, message: &SampleMessage) -> Verdict {
+        let order = self.order(message.step);
+        if order != Verdict::Do(None) || !message.aided {
+            return self.decide(message.step, order);
+        }
+        let aiding = self.aiding.filter(|aiding| aiding.step == message.step);
+        match (aiding, self.pacing) {
+            (Some(aiding), _) => self.decide(message.step, Verdict::Do(Some(aiding.aiding))),
+            (None, pacing) => {
+                add(&mut self.status.aiding_missing, 1);
+                match pacing {
+                    Pacing::LockStep => Verdict::Nothing,
+                    Pacing::RealTime => self.decide(message.step, order),
+                }
+            }
+        }
+    }
+
+    /// Another request came: a restart, or the end.
+    #[must_use]
+    pub fn other(&mut self, step: Step) -> Verdict {
+        let order = self.order(step);
+        self.decide(step, order)
+    }
+
+    fn order(&self, step: Step) -> Verdict {
+        match (step.since(self.status.step), self.pacing) {
+            (1, _) | (2.., Pacing::RealTime) => Verdict::Do(None),
+            (0, Pacing::LockStep) if self.answered => Verdict::Again,
+            _ => Verdict::Nothing,
+        }
+    }
+
+    fn decide(&mut self, step: Step, verdict: Verdict) -> Verdict {
+        let status = &mut self.status;
+        match verdict {
+            Verdict::Do(_) => {
+                let between = step.since(status.step) - 1;
+                add(&mut status.skipped, between.unsigned_abs().into());
+                add(&mut status.steps, 1);
+                status.step = step;
+                self.answered = true;
+            }
+            Verdict::Again => add(&mut status.repeated, 1),
+            Verdict::Nothing => {}
+        }
+        verdict
+    }
+}
+
+/// Counts stay at their largest value.
+fn add(count: &mut u32, more: u32) {
+    *count = count.saturating_add(more);
+}

@@ -1,0 +1,76 @@
+//! Encoding and decoding allocate nothing, damaged or not.
+#![allow(clippy::unwrap_used)]
+#![allow(unsafe_code, reason = "an allocator that counts is unsafe by its trait")]
+
+mod common;
+
+use common::arbitrary::one_of_each;
+use octant_wire::can::{self, Format, Reassembler};
+use octant_wire::message::{ClockTime, Role};
+use octant_wire::serial::{Decoder, Encoder};
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::cell::Cell;
+use std::hint::black_box;
+
+thread_local! {
+    static COUNT: Cell<u64> = const { Cell::new(0) };
+}
+
+struct Counting;
+
+// SAFETY: every call goes on to the system's allocator as it came.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        COUNT.with(|count| count.set(count.get() + 1));
+        // SAFETY: the caller keeps the contract of `alloc`, which is this one.
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
+        // SAFETY: the pointer came from `alloc` above, which is the system's.
+        unsafe { System.dealloc(pointer, layout) }
+    }
+}
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
+
+#[test]
+fn nothing_is_allocated() {
+    let messages = one_of_each();
+    let garbage = [0xA5; 1000];
+    let before = COUNT.with(Cell::get);
+    let (mut encoder, mut decoder) = (Encoder::new(), Decoder::new());
+    for round in 0..20u64 {
+        for message in &messages {
+            let frame = encoder.encode(message, ClockTime::from_ns(round));
+            let mut bytes = frame;
+            while let Some(event) = decoder.next(&mut bytes) {
+                black_box(&event);
+            }
+            for length in [1, 300, 1000] {
+                let mut bytes = &garbage[..length];
+                black_box(decoder.next(&mut bytes));
+            }
+            black_box(decoder.end());
+            for (sender, format) in
+                Role::ALL.into_iter().flat_map(|r| [(r, Format::Classic), (r, Format::Fd)])
+            {
+                let mut reassembler = Reassembler::new(&Role::ALL, format);
+                for (i, frame) in
+                    can::segments(message, sender, format).into_iter().flatten().enumerate()
+                {
+                    // Each round another segment is lost.
+                    if i as u64 != round {
+                        black_box(reassembler.receive(&frame));
+                    }
+                }
+            }
+        }
+    }
+    assert_eq!(COUNT.with(Cell::get) - before, 0);
+    assert!(decoder.counters().frames > 200 && decoder.counters().damaged() > 200);
+    // And it would have been noticed.
+    black_box(vec![0u8; 10]);
+    assert!(COUNT.with(Cell::get) > before);
+}
