@@ -142,8 +142,6 @@ pub enum Sink {
     None,
     /// A CSV file, in the form that FMPy reads.
     Csv(BufWriter<File>),
-    /// A CSV file on standard output.
-    Stdout(BufWriter<io::Stdout>),
     /// An MCAP file with a JSON message a row.
     Mcap(Box<Mcap>),
 }
@@ -197,7 +195,6 @@ impl Sink {
         };
         match self {
             Self::Csv(out) => write(out),
-            Self::Stdout(out) => write(out),
             Self::None | Self::Mcap(_) => Ok(()),
         }
     }
@@ -223,7 +220,6 @@ impl Sink {
         match self {
             Self::None => Ok(()),
             Self::Csv(out) => csv(out, time_s, outputs, numbers),
-            Self::Stdout(out) => csv(out, time_s, outputs, numbers),
             Self::Mcap(mcap) => mcap.row(time_s, outputs, numbers),
         }
     }
@@ -236,7 +232,6 @@ impl Sink {
         match self {
             Self::None => Ok(()),
             Self::Csv(mut out) => out.flush(),
-            Self::Stdout(mut out) => out.flush(),
             Self::Mcap(mut mcap) => mcap.writer.finish().map(|_| ()).map_err(io::Error::other),
         }
     }
