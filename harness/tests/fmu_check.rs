@@ -91,8 +91,9 @@ fn libraries_that_it_needs_are_found() {
     let extra = binaries.join("libextra.so");
     let source = folder.path().join("extra.c");
     std::fs::write(&source, "int extra(void) { return 1; }").unwrap();
-    let made = Command::new("gcc").args(["-shared", "-fPIC", "-o"]).arg(&extra).arg(&source);
-    assert!({ made }.status().unwrap().success());
+    let mut gcc = Command::new("gcc");
+    gcc.args(["-shared", "-fPIC", "-o"]).arg(&extra).arg(&source);
+    assert!(gcc.status().unwrap().success());
     std::fs::remove_file(source).unwrap();
     let with = ["-Wl,--no-as-needed", "-L.", "-lextra"];
     let library = binaries.join("gain_fmi2.so");
