@@ -146,7 +146,10 @@ fn same(
         assert_eq!(found.display_unit.as_deref(), quantity.display, "{name}");
         let unit = description.unit(quantity.unit.name).unwrap();
         assert_eq!(unit.base.map(|base| base.exponents), quantity.unit.exponents, "{name}");
-        assert_eq!(unit.base.map_or(quantity.unit.factor, |base| base.factor), quantity.unit.factor);
+        assert_eq!(
+            unit.base.map_or(quantity.unit.factor, |base| base.factor),
+            quantity.unit.factor
+        );
         let display: Vec<_> = quantity.unit.display.iter().map(|(n, f)| ((*n).into(), *f, 0.0));
         assert_eq!(unit.display, display.collect::<Vec<(String, f64, f64)>>());
     }
@@ -261,7 +264,8 @@ fn references_are_what_the_libraries_give() {
 #[test]
 fn parameters_of_a_scenario_are_written_with_all_their_bits() {
     let folder = tempfile::tempdir().unwrap();
-    let scenario = Path::new(env!("CARGO_MANIFEST_DIR")).join("../fixtures/scenarios/lockstep.toml");
+    let scenario =
+        Path::new(env!("CARGO_MANIFEST_DIR")).join("../fixtures/scenarios/lockstep.toml");
     let scenario = octant::scenario::Scenario::load(&scenario, &[]).unwrap();
     let method = octant::scenario::Method::Primary;
     let (_, core, _) = octant::run::method::configurations(&scenario, method, 1).unwrap();

@@ -44,7 +44,9 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         .filter(|limit| !limit.is_zero())
         .ok_or_else(|| {
             let found = arguments.time_limit;
-            Failure::input(format!("--time-limit is {found}, expected a positive number of seconds"))
+            Failure::input(format!(
+                "--time-limit is {found}, expected a positive number of seconds"
+            ))
         })?;
     let options = Options { start_limit: limit, time_limit: limit, ..Options::default() };
     let mut results = Vec::new();
@@ -65,9 +67,10 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     if !unreadable.is_empty() {
         return Err(Failure::input(unreadable.join("\n")));
     }
-    let errors = results.iter().flat_map(|(_, result)| result).any(|report| {
-        report.count(Severity::Error) > 0
-    });
+    let errors = results
+        .iter()
+        .flat_map(|(_, result)| result)
+        .any(|report| report.count(Severity::Error) > 0);
     Ok(if errors { Verdict::Fail } else { Verdict::Pass })
 }
 

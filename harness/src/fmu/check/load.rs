@@ -63,10 +63,11 @@ fn one(
     name: &str,
     step: bool,
 ) -> Result<(), Failure> {
-    let mut instance = open_archive(&mut checked.archive, options).map_err(|error| match error {
-        OpenError::Instance(error) => Failure::of(&error, &LOAD_INSTANTIATES),
-        error => Failure { rule: &LOAD_OPENS, found: error.to_string() },
-    })?;
+    let mut instance =
+        open_archive(&mut checked.archive, options).map_err(|error| match error {
+            OpenError::Instance(error) => Failure::of(&error, &LOAD_INSTANTIATES),
+            error => Failure { rule: &LOAD_OPENS, found: error.to_string() },
+        })?;
     if !step {
         return Ok(());
     }
@@ -103,7 +104,8 @@ fn other_starts(
 ) -> Result<Option<String>, InstanceError> {
     let is_exact = |variable: &&Variable| {
         let number = !matches!(variable.kind, Kind::String | Kind::Binary | Kind::Clock);
-        let exact = variable.initial == Some(Initial::Exact) || variable.causality == Causality::Input;
+        let exact =
+            variable.initial == Some(Initial::Exact) || variable.causality == Causality::Input;
         number && exact && !variable.start.is_empty() && variable.clocks.is_empty()
     };
     let variables: Vec<&Variable> =

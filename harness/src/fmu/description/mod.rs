@@ -23,8 +23,6 @@ pub(crate) mod xml;
 pub use read::{read, read_bytes};
 pub use text::decode;
 
-use serde::{Deserialize, Serialize};
-
 /// Why a model description can't be used.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{file}:{}{place}: {found}, expected {expected}", Line(*.line))]
