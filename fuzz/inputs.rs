@@ -3,6 +3,10 @@
 //! Nothing here may panic, run for long or take much memory, whatever the bytes are; and what is
 //! accepted has to keep its promises.
 
+use octant::fmu::archive::{Archive, Limits};
+use octant::fmu::check::{check_archive, check_description, show};
+use octant::fmu::description::units::{Conversion, known};
+use octant::fmu::description::{decode, read, read_bytes};
 use octant::recorder::reader;
 use octant::scenario::Scenario;
 use octant::scenario::resolve::{Draws, Seeded};
@@ -28,6 +32,65 @@ pub(crate) fn scenario(bytes: &[u8]) {
 /// A recording, read to its end.
 pub(crate) fn recording(bytes: &[u8]) {
     let _ = reader::read_bytes(bytes);
+}
+
+/// An FMU: refused, or every entry read as the archive says, unpacked where nothing speaks against it,
+/// and checked.
+pub(crate) fn fmu(bytes: &[u8]) {
+    let limits = Limits {
+        entries: 200,
+        directory_bytes: 64 << 10,
+        unpacked_bytes: 256 << 10,
+        ratio_free_bytes: 64 << 10,
+        read_bytes: 128 << 10,
+        ..Limits::DEFAULT
+    };
+    let open = || Archive::survey_bytes("input.fmu", bytes.to_vec(), limits);
+    let Ok(mut archive) = open() else { return };
+    for entry in archive.entries().to_vec() {
+        if let Ok(contents) = archive.read(&entry.name) {
+            assert!(contents.len() <= 128 << 10, "{} is read beyond the limit", entry.name);
+        }
+    }
+    // Not for each of a million inputs: it writes files.
+    if archive.entries().len() < 20
+        && let Ok(unpacked) = archive.unpack()
+    {
+        for entry in archive.entries() {
+            let path = unpacked.path().join(&entry.name);
+            let inside = path.canonicalize().expect("what was unpacked is there");
+            let folder = unpacked.path().canonicalize().expect("the folder is there");
+            assert!(inside.starts_with(folder), "{} is outside", entry.name);
+        }
+    }
+    if let Ok(archive) = open()
+        && let Ok(checked) = check_archive(archive)
+    {
+        let _ = show::text(&checked.report());
+    }
+}
+
+/// A model description: refused, or read the same from its decoded text; units converted and rules
+/// checked in any case.
+pub(crate) fn description(bytes: &[u8]) {
+    let found = read_bytes(bytes, "input.xml");
+    let Ok((text, _)) = decode(bytes, "input.xml") else { return };
+    let again = read(&text, "input.xml");
+    assert_eq!(found.is_ok(), again.is_ok());
+    if let Ok(description) = again {
+        for variable in &description.variables {
+            let _ = description.elements(variable);
+            for wanted in ["rad", "m/s", "K"] {
+                if let Ok(conversion) = Conversion::of(&description, variable, wanted) {
+                    assert!(conversion.factor.is_finite() && conversion.offset.is_finite());
+                }
+            }
+        }
+        for unit in &description.units {
+            let _ = known(&unit.name);
+        }
+    }
+    let _ = check_description(&text);
 }
 
 /// Columns of text, read to the end: stamps never go back.

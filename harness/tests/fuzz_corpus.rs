@@ -37,3 +37,13 @@ fn texts() {
 fn tables() {
     corpus("table", inputs::table);
 }
+
+#[test]
+fn fmus() {
+    corpus("fmu", inputs::fmu);
+}
+
+#[test]
+fn descriptions() {
+    corpus("description", inputs::description);
+}

@@ -5,6 +5,7 @@ use super::mode::Standard;
 use super::token::token;
 use crate::calibrator::Calibrator;
 use crate::component::Component;
+use crate::plant::Plant;
 use crate::table::Model;
 use crate::values::Values;
 use std::sync::OnceLock;
@@ -90,7 +91,7 @@ impl Maker {
 }
 
 /// All models.
-static MAKERS: [Maker; 1] = [Maker::of::<Calibrator>()];
+static MAKERS: [Maker; 2] = [Maker::of::<Calibrator>(), Maker::of::<Plant>()];
 
 /// The model with this token.
 pub(super) fn find(standard: Standard, token: &str) -> Option<&'static Maker> {

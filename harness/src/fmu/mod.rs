@@ -10,6 +10,7 @@
 //! | [`library`] | the shared library of an unpacked FMU |
 //! | [`mapping`] | which of its variables is what |
 //! | [`instance`] | an FMU that runs, of both standards and both kinds, behind one trait |
+//! | [`process`] | an FMU in a process of its own |
 //! | [`run`] | any FMU stepped with inputs from a file |
 //! | [`master`] | several FMUs together: system structures, order, loops, faults on connections |
 
@@ -22,6 +23,7 @@ pub mod instance;
 pub mod library;
 pub mod mapping;
 pub mod master;
+pub mod process;
 pub mod run;
 
 pub use instance::open::{OpenError, open, open_archive};

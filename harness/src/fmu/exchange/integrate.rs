@@ -71,6 +71,13 @@ impl<U: Continuous> Exchange<U> {
                             what: format!("{REPEATS_MAX} events at {last_event_s} s"),
                         });
                     }
+                    // The FMU compares its time with that of the event: it has to be that to the bit.
+                    if let Some(next_s) = self.own.next_event_s.filter(|_| due)
+                        && next_s > self.own.time_s
+                    {
+                        self.own.time_s = next_s;
+                        self.unit.set_time(next_s)?;
+                    }
                     self.enter_event_mode()?;
                     if self.settle()? {
                         return Ok(ended(self.own.time_s));

@@ -5,11 +5,11 @@ use super::message::{Log, status_name};
 use super::{InstanceError, Message};
 use octant_fmi::{fmi2, fmi3};
 use std::sync::Arc;
-use std::sync::atomic::{AtomicU32, Ordering};
+use std::sync::atomic::{AtomicU64, Ordering};
 
 /// A word that always holds the number of the function that runs, for who watches from outside.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Mark(pub(crate) Option<&'static AtomicU32>);
+pub(crate) struct Mark(pub(crate) Option<&'static AtomicU64>);
 
 /// No function runs.
 pub(crate) const NOWHERE: u32 = 0;
@@ -25,7 +25,7 @@ impl Mark {
     /// A function begins; [`NOWHERE`]: it has ended.
     pub(crate) fn set(self, function: u32) {
         if let Some(word) = self.0 {
-            word.store(function, Ordering::Relaxed);
+            word.store(u64::from(function), Ordering::Relaxed);
         }
     }
 }

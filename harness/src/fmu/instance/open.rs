@@ -4,6 +4,7 @@ use super::super::archive::{Archive, ArchiveError, Unpacked};
 use super::super::description::{self, Description, DescriptionError, Interface, Standard};
 use super::super::exchange::Exchange;
 use super::super::library::{self, Library};
+use super::super::process;
 use super::call::{LOADING, Mark, NOWHERE};
 use super::co_simulation::CoSimulation;
 use super::options::{InterfaceKind, Options, Place};
@@ -52,6 +53,7 @@ pub fn open_archive(
 }
 
 /// Opens the FMU in a folder that another process unpacked and keeps.
+#[cfg(target_os = "linux")]
 pub(crate) fn open_folder(
     name: &str,
     path: &Path,
@@ -87,11 +89,7 @@ pub fn open_unpacked(
     options: &Options,
 ) -> Result<Box<dyn Instance>, InstanceError> {
     match options.place {
-        Place::OwnProcess => Err(InstanceError::unsupported(
-            name,
-            "run in a process of its own",
-            "this is not part of this version",
-        )),
+        Place::OwnProcess => process::open(name, folder, description, options),
         Place::ThisProcess => {
             open_here(name, folder, Arc::new(description), options, Mark::default())
         }

@@ -1,0 +1,159 @@
+//! What the two processes say to each other: postcard, each message after its length. A message of
+//! no length only wakes the other.
+
+use super::super::instance::{Group, InstanceError, Message, Options, Stepped, Update};
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
+use std::io::{self, Read, Write};
+
+/// The version of this conversation: both are the same program, or they don't talk.
+pub(super) const VERSION: &str = concat!("octant ", env!("CARGO_PKG_VERSION"), " fmu 1");
+
+/// Bytes of a message.
+const LENGTH_MAX: u32 = 1 << 31;
+
+/// What this process asks for.
+#[derive(Debug, Serialize, Deserialize)]
+pub(super) enum Request {
+    /// The first: which FMU.
+    Open {
+        version: String,
+        name: String,
+        folder: Vec<u8>,
+        options: Box<Options>,
+    },
+    EnterInitialization {
+        start_s: f64,
+        stop_s: Option<f64>,
+        tolerance: Option<f64>,
+    },
+    ExitInitialization,
+    Set {
+        group: Group,
+        values: Vec<f64>,
+    },
+    Get {
+        group: Group,
+    },
+    SetStrings {
+        group: Group,
+        values: Vec<String>,
+    },
+    GetStrings {
+        group: Group,
+    },
+    SetBinaries {
+        group: Group,
+        values: Vec<Vec<u8>>,
+    },
+    GetBinaries {
+        group: Group,
+    },
+    Step {
+        time_s: f64,
+        step_s: f64,
+    },
+    /// An exchange with these groups gets a number, under which it goes through shared memory.
+    Plan {
+        set: Vec<Group>,
+        get: Vec<Group>,
+    },
+    HandleEvents,
+    EnterEventMode,
+    UpdateDiscreteStates,
+    LeaveEventMode,
+    KeepState,
+    RestoreState(u64),
+    ForgetState(u64),
+    StateToBytes(u64),
+    StateFromBytes(Vec<u8>),
+    Reset,
+    Terminate,
+    Messages,
+    /// The last: the FMU is freed.
+    Quit,
+}
+
+/// What the other process answers.
+#[derive(Debug, Serialize, Deserialize)]
+pub(super) enum Answer {
+    Done,
+    Truth(bool),
+    Number(u64),
+    Numbers(Vec<f64>),
+    Strings(Vec<String>),
+    Binaries(Vec<Vec<u8>>),
+    Bytes(Vec<u8>),
+    Stepped(Stepped),
+    Update(Update),
+    Messages(Vec<Message>),
+}
+
+/// An answer, or the FMU's error.
+pub(super) type Reply = Result<Answer, InstanceError>;
+
+/// Writes a message.
+pub(super) fn write(to: &mut impl Write, message: &impl Serialize) -> io::Result<()> {
+    let mut bytes = postcard::to_extend(message, vec![0; 4]).map_err(io::Error::other)?;
+    let length = u32::try_from(bytes.len() - 4)
+        .ok()
+        .filter(|length| *length <= LENGTH_MAX)
+        .ok_or_else(|| io::Error::other("the message is too long"))?;
+    bytes[..4].copy_from_slice(&length.to_le_bytes());
+    to.write_all(&bytes)
+}
+
+/// Wakes the other.
+pub(super) fn wake(to: &mut impl Write) -> io::Result<()> {
+    to.write_all(&[0; 4])
+}
+
+/// Reads a message; `None`: it only woke.
+pub(super) fn read<T: DeserializeOwned>(from: &mut impl Read) -> io::Result<Option<T>> {
+    let mut length = [0; 4];
+    from.read_exact(&mut length)?;
+    let length = u32::from_le_bytes(length);
+    if length == 0 {
+        return Ok(None);
+    }
+    if length > LENGTH_MAX {
+        return Err(io::Error::new(io::ErrorKind::InvalidData, "a message is too long"));
+    }
+    // As it comes, so that a length alone needs no memory.
+    let mut bytes = Vec::new();
+    from.take(u64::from(length)).read_to_end(&mut bytes)?;
+    if bytes.len() < length as usize {
+        return Err(io::ErrorKind::UnexpectedEof.into());
+    }
+    postcard::from_bytes(&bytes)
+        .map(Some)
+        .map_err(|e| io::Error::new(io::ErrorKind::InvalidData, e))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Reply, Request, read, wake, write};
+
+    #[test]
+    fn messages_come_back_with_their_bits() {
+        let mut bytes = Vec::new();
+        wake(&mut bytes).unwrap();
+        let value = f64::from_bits(0x7FF8_0000_0000_1234);
+        write(&mut bytes, &Request::Step { time_s: value, step_s: -0.0 }).unwrap();
+        let mut from = &bytes[..];
+        assert!(read::<Request>(&mut from).unwrap().is_none());
+        let Some(Request::Step { time_s, step_s }) = read(&mut from).unwrap() else {
+            panic!("another message");
+        };
+        assert_eq!((time_s.to_bits(), step_s.to_bits()), (value.to_bits(), 1 << 63));
+        assert!(from.is_empty());
+    }
+
+    #[test]
+    fn what_is_no_message_is_an_error() {
+        for bytes in [&b""[..], b"\x01", b"\x05\0\0\0\x01", b"\xff\xff\xff\xff", b"\x01\0\0\0\xff"]
+        {
+            assert!(read::<Reply>(&mut &bytes[..]).is_err(), "{bytes:?}");
+        }
+    }
+}

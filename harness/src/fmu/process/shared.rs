@@ -1,0 +1,176 @@
+//! Memory of both processes, through which an exchange goes. It is atomic numbers alone: whatever the
+//! other process writes there, and whenever, is a number.
+#![allow(unsafe_code, reason = "memory is mapped")]
+
+use rustix::fs::{MemfdFlags, SealFlags};
+use rustix::mm::{MapFlags, ProtFlags};
+use std::io;
+use std::ops::Deref;
+use std::os::fd::{AsFd, OwnedFd};
+use std::ptr::{self, NonNull};
+use std::sync::atomic::{AtomicU64, Ordering};
+
+/// Words before the numbers. What one side writes has cache lines of its own.
+const HEAD: usize = 32;
+
+/// In the first word: what memory this is.
+const MAGIC: u64 = u64::from_le_bytes(*b"octant1\0");
+
+/// Numbers each way, at least and at most.
+const NUMBERS_MIN: usize = 1 << 10;
+const NUMBERS_MAX: usize = 1 << 20;
+
+/// Mapped memory.
+pub(super) struct Shared {
+    words: NonNull<AtomicU64>,
+    count: usize,
+}
+
+// SAFETY: it is atomic numbers, mapped for as long as this lives.
+unsafe impl Send for Shared {}
+// SAFETY: as above.
+unsafe impl Sync for Shared {}
+
+/// The words of the head.
+#[derive(Clone, Copy)]
+pub(super) enum Word {
+    Magic = 0,
+    // The parent writes these.
+    Request = 8,
+    Plan,
+    Time,
+    Step,
+    ParentSleeps,
+    // The child writes these.
+    Answer = 16,
+    Outcome,
+    Reached,
+    ChildSleeps,
+    MessagesWait,
+    // And this at every call.
+    Function = 24,
+}
+
+impl Shared {
+    /// Memory for so many numbers each way, and its file. No one can change its size: it would end
+    /// this process.
+    pub(super) fn create(numbers: usize) -> io::Result<(Self, OwnedFd)> {
+        let numbers = numbers.clamp(NUMBERS_MIN, NUMBERS_MAX);
+        let count = HEAD + 2 * numbers;
+        let file = rustix::fs::memfd_create(
+            "octant-fmu",
+            MemfdFlags::CLOEXEC | MemfdFlags::ALLOW_SEALING,
+        )?;
+        rustix::fs::ftruncate(&file, 8 * count as u64)?;
+        rustix::fs::fcntl_add_seals(&file, SealFlags::SHRINK | SealFlags::GROW | SealFlags::SEAL)?;
+        let shared = Self::map(&file, count)?;
+        shared.word(Word::Magic).store(MAGIC, Ordering::Relaxed);
+        Ok((shared, file))
+    }
+
+    /// The memory of a file that [`Self::create`] made.
+    pub(super) fn open(file: impl AsFd) -> io::Result<Self> {
+        let bytes = rustix::fs::fstat(&file)?.st_size;
+        let count = usize::try_from(bytes).unwrap_or(0) / 8;
+        if !(HEAD..=HEAD + 2 * NUMBERS_MAX).contains(&count) {
+            return Err(io::Error::other("it has another size"));
+        }
+        let shared = Self::map(file, count)?;
+        if shared.word(Word::Magic).load(Ordering::Relaxed) != MAGIC {
+            return Err(io::Error::other("it has another content"));
+        }
+        Ok(shared)
+    }
+
+    fn map(file: impl AsFd, count: usize) -> io::Result<Self> {
+        // SAFETY: the kernel chooses the place, so it is nobody's; the file is as long as that.
+        let address = unsafe {
+            rustix::mm::mmap(
+                ptr::null_mut(),
+                8 * count,
+                ProtFlags::READ | ProtFlags::WRITE,
+                MapFlags::SHARED,
+                file,
+                0,
+            )?
+        };
+        let words = NonNull::new(address.cast()).ok_or_else(|| io::Error::other("at null"))?;
+        Ok(Self { words, count })
+    }
+
+    pub(super) fn word(&self, word: Word) -> &AtomicU64 {
+        &self[word as usize]
+    }
+
+    /// Numbers on their way to the FMU.
+    pub(super) fn inputs(&self) -> &[AtomicU64] {
+        let numbers = self[HEAD..].len() / 2;
+        &self[HEAD..HEAD + numbers]
+    }
+
+    /// Numbers on their way from the FMU.
+    pub(super) fn outputs(&self) -> &[AtomicU64] {
+        let numbers = self[HEAD..].len() / 2;
+        &self[HEAD + numbers..HEAD + 2 * numbers]
+    }
+}
+
+impl Deref for Shared {
+    type Target = [AtomicU64];
+
+    fn deref(&self) -> &[AtomicU64] {
+        // SAFETY: so many words are mapped, aligned to a page, and zero when they are made.
+        unsafe { std::slice::from_raw_parts(self.words.as_ptr(), self.count) }
+    }
+}
+
+impl Drop for Shared {
+    fn drop(&mut self) {
+        // SAFETY: it was mapped with this length, and nothing borrows it any more.
+        let _ = unsafe { rustix::mm::munmap(self.words.as_ptr().cast(), 8 * self.count) };
+    }
+}
+
+/// Writes numbers.
+pub(super) fn put(to: &[AtomicU64], numbers: &[f64]) {
+    for (word, number) in to.iter().zip(numbers) {
+        word.store(number.to_bits(), Ordering::Relaxed);
+    }
+}
+
+/// Reads numbers.
+pub(super) fn take(from: &[AtomicU64], numbers: &mut [f64]) {
+    for (word, number) in from.iter().zip(numbers) {
+        *number = f64::from_bits(word.load(Ordering::Relaxed));
+    }
+}
+
+/// Looks at a word until it isn't `old`, for as long as looking is cheaper than sleeping.
+pub(super) fn spin(word: &AtomicU64, old: u64) -> bool {
+    if !*SPINS {
+        return word.load(Ordering::Acquire) != old;
+    }
+    let mut until = None;
+    loop {
+        for _ in 0..64 {
+            if word.load(Ordering::Acquire) != old {
+                return true;
+            }
+            std::hint::spin_loop();
+        }
+        let now = std::time::Instant::now();
+        match until {
+            None => until = Some(now + SPIN),
+            Some(until) if now >= until => return false,
+            Some(_) => {}
+        }
+    }
+}
+
+/// How long a side looks before it sleeps: some times what sleeping and waking costs.
+const SPIN: std::time::Duration = std::time::Duration::from_micros(50);
+
+/// With one processor nothing changes while one looks.
+static SPINS: std::sync::LazyLock<bool> = std::sync::LazyLock::new(|| {
+    std::thread::available_parallelism().is_ok_and(|processors| processors.get() > 1)
+});
