@@ -21,23 +21,24 @@ pub(super) trait Type {
     /// The value of a cell.
     fn get(bits: u64, cell: Cell) -> Self::Value;
 
-    /// The cell for a value; `None`: it doesn't fit.
-    fn set(value: Self::Value, slot: &Slot) -> Option<u64>;
+    /// Whether a value fits.
+    fn fits(value: Self::Value, slot: &Slot) -> bool;
+
+    /// The cell for a value that fits.
+    fn set(value: Self::Value, cell: Cell) -> u64;
 }
 
 #[inline]
-fn real(value: f64, slot: &Slot) -> Option<u64> {
-    (slot.any || (value >= slot.min && value <= slot.max)).then_some(value.to_bits())
+fn real_fits(value: f64, slot: &Slot) -> bool {
+    (value >= slot.min && value <= slot.max) || slot.any
 }
 
 #[inline]
-fn integer(value: i32, slot: &Slot) -> Option<u64> {
-    let wide = f64::from(value);
-    let listed = match slot.enumeration {
-        None => true,
+fn integer_fits(value: i32, slot: &Slot) -> bool {
+    match slot.enumeration {
+        None => (slot.min..=slot.max).contains(&f64::from(value)),
         Some(of) => of.items.iter().any(|(item, ..)| *item == value),
-    };
-    (listed && wide >= slot.min && wide <= slot.max).then_some(i64::from(value) as u64)
+    }
 }
 
 /// FMI 2.0: Real. Counts are whole numbers.
@@ -58,13 +59,17 @@ impl Type for Real2 {
     }
 
     #[inline]
-    fn set(value: f64, slot: &Slot) -> Option<u64> {
+    fn fits(value: f64, slot: &Slot) -> bool {
         if slot.cell == Cell::Real {
-            return real(value, slot);
+            return real_fits(value, slot);
         }
         let (min, max) = (slot.min.max(0.0), slot.max.min(EXACT_MAX));
-        let whole = value as u64;
-        (value >= min && value <= max && whole as f64 == value).then_some(whole)
+        value >= min && value <= max && value as u64 as f64 == value
+    }
+
+    #[inline]
+    fn set(value: f64, cell: Cell) -> u64 {
+        if cell == Cell::Real { value.to_bits() } else { value as u64 }
     }
 }
 
@@ -86,8 +91,13 @@ impl Type for Float64 {
     }
 
     #[inline]
-    fn set(value: f64, slot: &Slot) -> Option<u64> {
-        real(value, slot)
+    fn fits(value: f64, slot: &Slot) -> bool {
+        real_fits(value, slot)
+    }
+
+    #[inline]
+    fn set(value: f64, _: Cell) -> u64 {
+        value.to_bits()
     }
 }
 
@@ -109,8 +119,13 @@ impl Type for Integer2 {
     }
 
     #[inline]
-    fn set(value: i32, slot: &Slot) -> Option<u64> {
-        integer(value, slot)
+    fn fits(value: i32, slot: &Slot) -> bool {
+        integer_fits(value, slot)
+    }
+
+    #[inline]
+    fn set(value: i32, _: Cell) -> u64 {
+        i64::from(value) as u64
     }
 }
 
@@ -132,8 +147,13 @@ impl Type for Int32 {
     }
 
     #[inline]
-    fn set(value: i32, slot: &Slot) -> Option<u64> {
-        integer(value, slot)
+    fn fits(value: i32, slot: &Slot) -> bool {
+        integer_fits(value, slot)
+    }
+
+    #[inline]
+    fn set(value: i32, _: Cell) -> u64 {
+        i64::from(value) as u64
     }
 }
 
@@ -155,8 +175,13 @@ impl Type for Int64 {
     }
 
     #[inline]
-    fn set(value: i64, slot: &Slot) -> Option<u64> {
-        integer(i32::try_from(value).ok()?, slot)
+    fn fits(value: i64, slot: &Slot) -> bool {
+        i32::try_from(value).is_ok_and(|value| integer_fits(value, slot))
+    }
+
+    #[inline]
+    fn set(value: i64, _: Cell) -> u64 {
+        value as u64
     }
 }
 
@@ -178,8 +203,13 @@ impl Type for UInt64 {
     }
 
     #[inline]
-    fn set(value: u64, slot: &Slot) -> Option<u64> {
-        (value as f64 >= slot.min && value as f64 <= slot.max).then_some(value)
+    fn fits(value: u64, slot: &Slot) -> bool {
+        (slot.min..=slot.max).contains(&(value as f64))
+    }
+
+    #[inline]
+    fn set(value: u64, _: Cell) -> u64 {
+        value
     }
 }
 
@@ -201,14 +231,13 @@ impl<T: Copy + From<bool> + PartialEq + core::fmt::Display> Type for Boolean<T> 
     }
 
     #[inline]
-    fn set(value: T, _: &Slot) -> Option<u64> {
-        if value == T::from(true) {
-            Some(1)
-        } else if value == T::from(false) {
-            Some(0)
-        } else {
-            None
-        }
+    fn fits(value: T, _: &Slot) -> bool {
+        value == T::from(true) || value == T::from(false)
+    }
+
+    #[inline]
+    fn set(value: T, _: Cell) -> u64 {
+        u64::from(value == T::from(true))
     }
 }
 
@@ -241,8 +270,12 @@ impl<T: Named> Type for Absent<T> {
         unreachable!("no cell is of this type")
     }
 
-    fn set(_: T, _: &Slot) -> Option<u64> {
-        None
+    fn fits(_: T, _: &Slot) -> bool {
+        false
+    }
+
+    fn set(_: T, _: Cell) -> u64 {
+        unreachable!("no cell is of this type")
     }
 }
 
@@ -342,7 +375,7 @@ impl Instance {
                 return Err(self.not_settable(reference));
             }
             for (k, slot) in slots[reference..reference + length].iter().enumerate() {
-                if T::set(value(next), slot).is_none() {
+                if !T::fits(value(next), slot) {
                     return Err(self.out_of_range(reference + k, value(next)));
                 }
                 next += 1;
@@ -355,11 +388,13 @@ impl Instance {
         let mut next = 0;
         for i in 0..arrays.count {
             let reference = arrays.reference(i);
-            let length = length::<T>(slots, reference, arrays.counting).unwrap_or(0);
-            for slot in reference..reference + length {
-                if let Some(bits) = T::set(value(next), &slots[slot]) {
-                    cells[slot] = bits;
-                }
+            let length = match arrays.counting {
+                Counting::Elements => 1,
+                Counting::Variables => usize::from(slots[reference].elements),
+            };
+            let end = reference + length;
+            for (slot, bits) in slots[reference..end].iter().zip(&mut cells[reference..end]) {
+                *bits = T::set(value(next), slot.cell);
                 next += 1;
             }
         }

@@ -172,3 +172,6 @@ pub(crate) fn said(instance: &mut dyn Instance) -> String {
     let messages = instance.messages();
     messages.last().map_or(String::new(), |message| format!(": {}", message.text.trim()))
 }
+
+#[cfg(test)]
+mod tests;
