@@ -6,9 +6,10 @@
 #[path = "common/foreign.rs"]
 mod foreign;
 
+use octant::fmu::build;
 use octant::fmu::check::load::load;
 use octant::fmu::check::rules::Severity;
-use octant::fmu::check::{Report, check};
+use octant::fmu::check::{Report, check, show};
 use octant::fmu::instance::Options;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
@@ -219,6 +220,21 @@ fn a_new_c_library_is_found() {
 fn foreign_fmus_are_loaded_and_stepped() {
     for name in foreign::NAMES {
         assert_eq!(stepped(&foreign::fmu(name)), [] as [&str; 0], "{name}");
+    }
+}
+
+#[test]
+fn our_own_fmus_have_no_finding() {
+    let folder = tempfile::tempdir().unwrap();
+    let options = build::Options { out: folder.path().to_owned(), ..build::Options::default() };
+    let files = build::build(&options).unwrap();
+    let fmus: Vec<PathBuf> =
+        files.into_iter().filter(|file| file.extension().is_some_and(|end| end == "fmu")).collect();
+    assert_eq!(fmus.len(), 4);
+    for fmu in fmus {
+        let report = check(&fmu).unwrap().report();
+        assert_eq!(report.findings, [], "{}", show::text(&report));
+        assert_eq!(stepped(&fmu), [] as [&str; 0], "{}", fmu.display());
     }
 }
 
