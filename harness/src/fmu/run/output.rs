@@ -236,7 +236,7 @@ impl Sink {
     pub fn event(&mut self, time_s: f64, event: &crate::recorder::Event) -> io::Result<()> {
         match self {
             Self::Mcap(mcap) => mcap.event(time_s, event),
-            Self::None | Self::Csv(_) | Self::Stdout(_) => Ok(()),
+            Self::None | Self::Csv(_) => Ok(()),
         }
     }
 
