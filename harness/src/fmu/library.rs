@@ -115,8 +115,12 @@ impl Library {
     ) -> Result<Self, InstanceError> {
         // SAFETY: loading runs code of the FMU, which is what an importer is for; who doesn't trust
         // it has a process of its own for it.
-        let library = unsafe { open(path) }
-            .map_err(|e| InstanceError::load(fmu, format!("{}: {e}", path.display())))?;
+        let library = unsafe { open(path) }.map_err(|error| {
+            // What the system says is the source: which symbol or library it is.
+            let said = std::error::Error::source(&error).map(ToString::to_string);
+            let said = said.unwrap_or_else(|| error.to_string());
+            InstanceError::load(fmu, format!("{}: {said}", path.display()))
+        })?;
         let find = |name: &str| {
             // SAFETY: nothing but the address is taken.
             let symbol = unsafe { library.get::<*const core::ffi::c_void>(name) };
