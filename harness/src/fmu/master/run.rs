@@ -219,7 +219,8 @@ impl Prepared {
     /// If the structure can't be read again.
     pub fn texts(&self) -> Result<Vec<(&'static str, String)>, SspError> {
         let structure = self.package.text_of(self.package.structure())?;
-        let faults = self.faults.iter().map(|faults| ("faults.toml", faults.text.clone()));
+        let faults =
+            self.faults.iter().map(|faults| ("faults.toml", faults.text.trim_start().to_owned()));
         Ok(std::iter::once(("SystemStructure.ssd", structure)).chain(faults).collect())
     }
 
