@@ -18,12 +18,14 @@
 //! | `terminals` | terminals and icons |
 //! | `files` | documentation, licence, sources |
 //! | [`binaries`] | shared libraries, read without being run |
+//! | `elf` | what only those of Linux have |
 //! | `functions` | which functions they have to export |
 //! | [`load`] | the library loaded, an instance made and stepped |
 //! | [`show`] | findings as text |
 
 pub mod binaries;
 mod clocks;
+mod elf;
 mod files;
 pub mod finding;
 mod functions;

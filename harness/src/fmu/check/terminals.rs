@@ -37,10 +37,10 @@ pub(super) fn check(
         };
         findings.add(&TERMINALS_VERSION, place, format!("version {version:?}"), expected);
     }
-    if root.child("GraphicalRepresentation").is_some_and(|graphic| graphic.child("Icon").is_some())
-    {
-        icon(place, "icon", has, findings);
-    } else if has("terminalsAndIcons/icon.svg") {
+    let graphic = root.child("GraphicalRepresentation");
+    let has_icon = graphic.is_some_and(|graphic| graphic.child("Icon").is_some());
+    // A drawing stands for a picture that has to be there as well.
+    if has_icon || has("terminalsAndIcons/icon.svg") {
         icon(place, "icon", has, findings);
     }
     if let Some(list) = root.child("Terminals") {
