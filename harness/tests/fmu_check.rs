@@ -97,10 +97,15 @@ fn foreign_fmus_have_no_finding_but_what_they_lack() {
         // Some name log categories, but can't be told which to log.
         let mut found = found(&report);
         found.retain(|found| !found.ends_with("SetDebugLogging"));
-        assert_eq!(found, [] as [&str; 0], "{name}");
+        let expected: &[&str] = match name {
+            // It has none of a Boolean and of clocks, which its tests don't ask it for.
+            "clocks_fmi3" => &["binary.symbols: no fmi3GetBoolean, fmi3GetClock"],
+            _ => &[],
+        };
+        assert_eq!(found, expected, "{name}");
         let [binary] = &report.binaries[..] else { panic!("{:?}", report.binaries) };
         assert_eq!((&binary.format[..], &binary.architecture[..]), ("Elf", "X86_64"));
-        assert!(binary.functions > 20, "{binary:?}");
+        assert!(binary.functions > 10, "{binary:?}");
         let known = [
             "files.documentation",
             "files.licence",

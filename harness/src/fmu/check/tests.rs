@@ -1135,6 +1135,15 @@ fn every_rule_that_a_description_can_break_has_a_case() {
 }
 
 #[test]
+fn units_that_fmi_has_no_exponents_for_are_no_finding() {
+    for name in ["rad/s^(3/2)", "deg/sqrt(h)", "kg/kg"] {
+        let unit = format!("<Unit name=\"{name}\"/><Unit name=\"m/s\">");
+        let (ids, findings) = broken(GOOD2, &[("<Unit name=\"m/s\">", &unit)]);
+        assert_eq!(ids, [] as [&str; 0], "{findings:?}");
+    }
+}
+
+#[test]
 fn many_findings_of_a_rule_are_counted() {
     let variables: String = (100..200)
         .map(|i| format!("<ScalarVariable name=\"v{i}\" valueReference=\"{i}\"><Real unit=\"x\"/></ScalarVariable>"))
