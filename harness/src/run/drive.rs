@@ -21,7 +21,7 @@ pub struct Control {
 
 impl Control {
     /// Tells how far the run is; true if somebody asked for its end.
-    pub(super) fn look(&self, epochs: u64) -> bool {
+    pub(crate) fn look(&self, epochs: u64) -> bool {
         self.epochs.store(epochs, Ordering::Relaxed);
         self.cancel.load(Ordering::Relaxed)
     }

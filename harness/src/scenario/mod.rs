@@ -24,6 +24,7 @@ mod write;
 pub use error::{Place, Problem, ScenarioError};
 pub(crate) use error::{nearest, suggestion};
 pub use keys::SCHEMA;
+pub(crate) use ports::setting_argument;
 pub use ports::{Code, Made, Port, Set, Setting, Written};
 pub(crate) use quantity::parse as quantity_of;
 pub use quantity::{Dimension, Quantity};
@@ -382,7 +383,8 @@ pub(crate) fn override_set(document: &mut document::Table, argument: &str) -> Re
         if names.peek().is_some() {
             if matches!(key.kind, keys::Kind::Settings) {
                 // What follows is the name of a variable.
-                break;
+                document.set_at(path, document::parse_argument(value, argument));
+                return Ok(());
             }
             section = key.kind.section().ok_or_else(|| {
                 problem(path, format!("{name} has no keys of its own; set it as a whole"))

@@ -5,7 +5,7 @@
 //! an array variable.
 
 use super::complete::{explain, join, number};
-use super::document::{Node, Table, Value};
+use super::document::{Node, Table, Value, parse_argument};
 use super::error::{Place, Problem, suggestion};
 use super::quantity;
 use crate::fmu::mapping::channel::{Channel, Class};
@@ -280,6 +280,28 @@ fn set(value: &Value, at: &Written) -> Result<Set, Problem> {
             "found {}, expected a finite number, true or false, a text, or an array of them",
             other.describe()
         ))),
+    }
+}
+
+/// Reads `NAME=VALUE` of a command line: a TOML value, or a text without its quotes.
+///
+/// # Errors
+/// If it has no `=`, or the value is none that can be set.
+pub(crate) fn setting_argument(argument: &str) -> Result<Setting, Problem> {
+    let place = Place::Argument(argument.to_owned());
+    let Some((name, value)) = argument.split_once('=') else {
+        let message = "expected NAME=VALUE, such as ship.mass=3.2e6".to_owned();
+        return Err(Problem { place, path: String::new(), message });
+    };
+    let mut table = Table::default();
+    table.set(name.trim(), parse_argument(value, argument));
+    let mut all = settings(&table, "")?;
+    match (all.pop(), all.is_empty()) {
+        (Some(setting), true) => Ok(setting),
+        _ => {
+            let message = format!("found a table, expected one value of {}", name.trim());
+            Err(Problem { place, path: String::new(), message })
+        }
     }
 }
 

@@ -4,6 +4,7 @@ mod build;
 mod check;
 mod host;
 mod run;
+mod run_source;
 
 use super::Failure;
 use crate::score::verdict::Verdict;

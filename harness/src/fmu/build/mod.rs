@@ -32,6 +32,7 @@ use documentation::{Standard, documentation};
 use library::Library;
 use octant_fmu::c::{CATEGORIES, token};
 use octant_fmu::calibrator::Calibrator;
+use octant_fmu::plant::Plant;
 use octant_fmu::table::Model;
 use reference::Reference;
 use std::path::PathBuf;
@@ -188,10 +189,10 @@ fn libraries(options: &Options) -> Result<Vec<Library>, BuildError> {
 }
 
 /// Our models, run with their start values.
-fn own() -> Result<Vec<Own>, BuildError> {
-    let references = reference::closed_loop::<Calibrator, Calibrator>();
-    let [reference, _] = references.map_err(|reason| BuildError::Model { reason })?;
-    Ok(vec![Own { model: reference.model(), reference }])
+fn own() -> Result<[Own; 2], BuildError> {
+    let references = reference::closed_loop::<Plant, Calibrator>();
+    let references = references.map_err(|reason| BuildError::Model { reason })?;
+    Ok(references.map(|reference| Own { model: reference.model(), reference }))
 }
 
 /// Builds everything; the files that were written.
@@ -226,9 +227,7 @@ pub fn build(options: &Options) -> Result<Vec<PathBuf>, BuildError> {
             }
         }
     }
-    if let [plant, calibrator] = own.as_slice() {
-        write("octant.ssp", system::archive_of([plant, calibrator], &second, &configured))?;
-    }
+    write("octant.ssp", system::archive_of(&own, &second, &configured))?;
     if options.scenario.is_some() {
         let path = options.out.clone();
         for (name, bytes) in configured.files(&own).map_err(failed(path))? {

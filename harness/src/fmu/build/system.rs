@@ -31,14 +31,15 @@ impl Configured {
         if !matches!(scenario.source, Source::Plant) {
             return Err(failed("its samples don't come from the plant".to_owned()));
         }
-        let (_, core, _) = configurations(scenario, Method::Primary, scenario.seed)
+        let (plant, core, _) = configurations(scenario, Method::Primary, scenario.seed)
             .map_err(|error| failed(error.to_string()))?;
+        let faults: Vec<_> = scenario.faults.iter().map(|fault| fault.spec.clone()).collect();
         let period_s = scenario.sample_period_ns as f64 * 1e-9;
         // One step more than there are samples: before the first step there is none.
         let steps = scenario.samples().unwrap_or(0).saturating_add(1);
         Ok(Self {
             name: name.to_owned(),
-            plant: Vec::new(),
+            plant: octant_fmu::plant::start_values(&plant, &faults).map_err(failed)?,
             calibrator: octant_fmu::calibrator::start_values(&core),
             stop_s: steps as f64 * period_s,
             step_s: period_s,
@@ -75,11 +76,11 @@ impl Configured {
 
 /// `octant.ssp`: both FMUs, with the bytes that they have as files.
 pub(super) fn archive_of(
-    own: [&Own; 2],
+    own: &[Own; 2],
     fmus: &[Vec<u8>],
     configured: &Configured,
 ) -> std::io::Result<Vec<u8>> {
-    let components = own.map(|own| ssp::Component {
+    let components = own.each_ref().map(|own| ssp::Component {
         model: own.model,
         source: format!("resources/{}_fmi2.fmu", own.model.stem),
         parameters: format!("resources/{}.ssv", own.model.stem),
@@ -87,8 +88,14 @@ pub(super) fn archive_of(
     let structure = ssp::structure(&components, configured.stop_s, configured.step_s);
     let mut files = vec![File::new("SystemStructure.ssd", structure.document()?)];
     for (component, bytes) in components.iter().zip(fmus) {
-        let values = configured.of(component.model);
-        let set = ssp::parameter_set(component.model, &configured.name, values).document()?;
+        let mut values = configured.of(component.model).clone();
+        // The plant is wired to it, and says number and stamp of each sample.
+        for (name, value) in &mut values {
+            if *name == "imu.external_stamps" {
+                *value = vec![1.0];
+            }
+        }
+        let set = ssp::parameter_set(component.model, &configured.name, &values).document()?;
         files.push(File::new(component.source.clone(), bytes.as_slice()));
         files.push(File::new(component.parameters.clone(), set));
     }

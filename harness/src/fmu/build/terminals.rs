@@ -11,7 +11,7 @@ struct Terminal {
     prefixes: &'static [&'static str],
 }
 
-const TERMINALS: [Terminal; 4] = [
+const TERMINALS: [Terminal; 5] = [
     Terminal {
         name: "imu",
         description: "Inertial samples with the gimbal angles at their ends",
@@ -32,6 +32,7 @@ const TERMINALS: [Terminal; 4] = [
         description: "Position, velocity and attitude",
         prefixes: &["navigation."],
     },
+    Terminal { name: "truth", description: "What is so, without errors", prefixes: &["truth."] },
 ];
 
 /// `terminalsAndIcons.xml`.

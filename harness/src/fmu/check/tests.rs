@@ -2,9 +2,13 @@
 
 use super::rules::{self, RULES, Rule};
 use super::*;
+use dll::dll;
 use std::collections::BTreeSet;
 use std::io::{Cursor, Write};
 use zip::write::{SimpleFileOptions, ZipWriter};
+
+#[path = "tests/dll.rs"]
+mod dll;
 
 const GOOD2: &str = include_str!("tests/good_fmi2.xml");
 const GOOD3: &str = include_str!("tests/good_fmi3.xml");
@@ -1173,4 +1177,60 @@ fn a_finding_says_where_and_why() {
             "clause": "FMI 2.0, 2.2.7",
         })
     );
+}
+
+/// Functions of both interfaces of the description of FMI 2.0.
+fn all_functions() -> Vec<&'static str> {
+    octant_fmi::fmi2::NAMES.to_vec()
+}
+
+#[test]
+fn a_library_for_windows_is_read() {
+    let check = |folder: &str, bytes: Vec<u8>, more: &[(&'static str, Vec<u8>)]| {
+        let name = format!("binaries/{folder}/good.dll");
+        let mut files: Vec<(&str, Vec<u8>)> = files(GOOD2);
+        files.push((&name, bytes));
+        files.extend_from_slice(more);
+        let report = survey(packed(&files));
+        let text: Vec<String> = report
+            .findings
+            .iter()
+            .filter(|finding| finding.rule.id != "binary.platform")
+            .map(|finding| format!("{}: {}", finding.rule.id, finding.found))
+            .collect();
+        (report.binaries, text)
+    };
+    let all = all_functions();
+    let (binaries, found) = check("win64", dll(&all, &["KERNEL32.dll"]), &[]);
+    assert_eq!(found, [] as [&str; 0]);
+    assert_eq!(
+        binaries,
+        [Binary {
+            entry: "binaries/win64/good.dll".into(),
+            format: "Pe".into(),
+            architecture: "X86_64".into(),
+            functions: all.len(),
+            libraries: vec!["KERNEL32.dll".into()],
+            glibc: None,
+        }]
+    );
+    let fewer: Vec<&str> =
+        all.iter().copied().filter(|name| !matches!(*name, "fmi2DoStep" | "fmi2SetTime")).collect();
+    let (_, found) = check("win64", dll(&fewer, &[]), &[]);
+    assert_eq!(found, ["binary.symbols: no fmi2SetTime, fmi2DoStep"]);
+    let prefixed: Vec<String> = all.iter().map(|name| format!("good_{name}")).collect();
+    let prefixed: Vec<&str> = prefixed.iter().map(String::as_str).collect();
+    let (_, found) = check("win64", dll(&prefixed, &[]), &[]);
+    let expected = "binary.symbols: good_fmi2GetTypesPlatform and others with a prefix, as in a static library";
+    assert_eq!(found, [expected]);
+    let fewer: Vec<&str> = all.iter().copied().filter(|name| *name != "fmi2CancelStep").collect();
+    let (_, found) = check("win64", dll(&fewer, &[]), &[]);
+    assert_eq!(found, ["binary.optional-symbols: no fmi2CancelStep"]);
+    let (_, found) = check("win32", dll(&all, &[]), &[]);
+    assert_eq!(found, ["binary.architecture: Pe for X86_64"]);
+    let (_, found) = check("win64", dll(&all, &["VCRUNTIME140.dll", "extra.dll"]), &[]);
+    assert_eq!(found, ["binary.libraries: it needs VCRUNTIME140.dll, extra.dll"]);
+    let beside = [("binaries/win64/Extra.dll", Vec::new())];
+    let (_, found) = check("win64", dll(&all, &["extra.dll"]), &beside);
+    assert_eq!(found, [] as [&str; 0]);
 }

@@ -45,8 +45,8 @@ pub struct Options {
     pub start_limit: Duration,
     /// Longest time for any other call.
     pub time_limit: Duration,
-    /// The program that holds an FMU in a process of its own; `None`: this program. It has to be
-    /// an `octant` of the same version.
+    /// The program that holds an FMU in a process of its own; `None`: this program, or the `octant`
+    /// beside it. It has to be an `octant` of the same version.
     pub program: Option<PathBuf>,
 }
 

@@ -8,6 +8,7 @@ use std::io;
 use std::os::fd::OwnedFd;
 use std::os::unix::net::UnixStream;
 use std::os::unix::process::{CommandExt, ExitStatusExt};
+use std::path::PathBuf;
 use std::process::{Child, Command, ExitStatus, Stdio};
 use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
@@ -34,8 +35,7 @@ impl Watch {
         let cannot = |what: String| InstanceError::Process { fmu: name.into(), what };
         let program = match &options.program {
             Some(program) => program.clone(),
-            None => std::env::current_exe()
-                .map_err(|e| cannot(format!("can't be started: this program isn't found: {e}")))?,
+            None => octant().map_err(|e| cannot(format!("can't be started: {e}")))?,
         };
         let child = Command::new(&program)
             .args(["fmu", "host"])
@@ -130,6 +130,20 @@ impl Watch {
         let place = function(shared).map_or(String::new(), |function| format!(" in {function}"));
         InstanceError::Process { fmu: self.name.clone(), what: format!("{how}{place}") }
     }
+}
+
+/// This program, or, where the library is used by another, the `octant` beside it: in its folder, or
+/// in the one above, where Cargo puts it for tests.
+fn octant() -> io::Result<PathBuf> {
+    let program = std::env::current_exe()?;
+    if program.file_name().is_some_and(|name| name == "octant") {
+        return Ok(program);
+    }
+    let folders = program.ancestors().skip(1).take(2);
+    let mut places = folders.map(|folder| folder.join("octant"));
+    places
+        .find(|place| place.is_file())
+        .ok_or_else(|| io::Error::other(format!("there is no octant beside {}", program.display())))
 }
 
 /// The function in which it is, or was when it ended.

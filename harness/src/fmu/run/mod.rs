@@ -8,9 +8,9 @@ pub mod output;
 
 use super::instance::{Instance, InstanceError, Outcome};
 use super::mapping::settings::Starts;
+use crate::run::Control;
 use input::Inputs;
 use output::{Outputs, Sink};
-use std::sync::atomic::{AtomicBool, Ordering};
 
 /// How long, and in what steps.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -102,7 +102,7 @@ pub fn simulate(
     outputs: &Outputs,
     span: &Span,
     sink: &mut Sink,
-    cancel: &AtomicBool,
+    control: &Control,
 ) -> Result<Finished, SimulateError> {
     starts.apply(instance)?;
     instance.enter_initialization(span.start_s, Some(span.stop_s), span.tolerance)?;
@@ -130,7 +130,7 @@ pub fn simulate(
     // A product has no error that grows.
     let time = |step: u64| (span.start_s + step as f64 * span.step_s).min(span.stop_s);
     for step in 0..steps {
-        if cancel.load(Ordering::Relaxed) {
+        if control.look(step) {
             finished.cancelled = true;
             break;
         }
@@ -172,3 +172,6 @@ pub(crate) fn said(instance: &mut dyn Instance) -> String {
     let messages = instance.messages();
     messages.last().map_or(String::new(), |message| format!(": {}", message.text.trim()))
 }
+
+#[cfg(test)]
+mod tests;

@@ -142,8 +142,6 @@ pub enum Sink {
     None,
     /// A CSV file, in the form that FMPy reads.
     Csv(BufWriter<File>),
-    /// A CSV file on standard output.
-    Stdout(BufWriter<io::Stdout>),
     /// An MCAP file with a JSON message a row.
     Mcap(Box<Mcap>),
 }
@@ -152,9 +150,14 @@ pub enum Sink {
 pub struct Mcap {
     writer: mcap::Writer<BufWriter<File>>,
     channel: u16,
+    /// Channel of events, once there was one.
+    events: Option<u16>,
     sequence: u32,
     text: Vec<u8>,
 }
+
+/// Schema of events.
+const EVENT: &str = "octant.Event";
 
 /// Topic of the rows in an MCAP file.
 pub const TOPIC: &str = "/fmu/outputs";
@@ -197,7 +200,6 @@ impl Sink {
         };
         match self {
             Self::Csv(out) => write(out),
-            Self::Stdout(out) => write(out),
             Self::None | Self::Mcap(_) => Ok(()),
         }
     }
@@ -223,8 +225,18 @@ impl Sink {
         match self {
             Self::None => Ok(()),
             Self::Csv(out) => csv(out, time_s, outputs, numbers),
-            Self::Stdout(out) => csv(out, time_s, outputs, numbers),
             Self::Mcap(mcap) => mcap.row(time_s, outputs, numbers),
+        }
+    }
+
+    /// Notes an event, where the file has a place for it.
+    ///
+    /// # Errors
+    /// If it can't be written.
+    pub fn event(&mut self, time_s: f64, event: &crate::recorder::Event) -> io::Result<()> {
+        match self {
+            Self::Mcap(mcap) => mcap.event(time_s, event),
+            Self::None | Self::Csv(_) => Ok(()),
         }
     }
 
@@ -236,7 +248,6 @@ impl Sink {
         match self {
             Self::None => Ok(()),
             Self::Csv(mut out) => out.flush(),
-            Self::Stdout(mut out) => out.flush(),
             Self::Mcap(mut mcap) => mcap.writer.finish().map(|_| ()).map_err(io::Error::other),
         }
     }
@@ -270,7 +281,7 @@ impl Mcap {
             serde_json::json!({ "title": model, "type": "object", "properties": properties });
         let schema = writer.add_schema(model, "jsonschema", schema.to_string().as_bytes())?;
         let channel = writer.add_channel(schema, TOPIC, "json", &BTreeMap::new())?;
-        Ok(Self { writer, channel, sequence: 0, text: Vec::new() })
+        Ok(Self { writer, channel, events: None, sequence: 0, text: Vec::new() })
     }
 
     fn row(&mut self, time_s: f64, outputs: &Outputs, numbers: &[f64]) -> io::Result<()> {
@@ -290,10 +301,36 @@ impl Mcap {
             }
         }
         text.extend_from_slice(b"}");
+        self.put(self.channel, time_s)
+    }
+
+    fn event(&mut self, time_s: f64, event: &crate::recorder::Event) -> io::Result<()> {
+        let channel = match self.events {
+            Some(channel) => channel,
+            None => {
+                let schema = serde_json::json!({
+                    "title": EVENT,
+                    "type": "object",
+                    "properties": { "kind": { "type": "string" }, "detail": {} },
+                });
+                let schema = schema.to_string();
+                let schema = self.writer.add_schema(EVENT, "jsonschema", schema.as_bytes());
+                let schema = schema.map_err(io::Error::other)?;
+                let channel = self.writer.add_channel(schema, "/event", "json", &BTreeMap::new());
+                *self.events.insert(channel.map_err(io::Error::other)?)
+            }
+        };
+        self.text.clear();
+        serde_json::to_writer(&mut self.text, event)?;
+        self.put(channel, time_s)
+    }
+
+    /// Writes the message in `self.text`.
+    fn put(&mut self, channel: u16, time_s: f64) -> io::Result<()> {
         let time_ns = (time_s.max(0.0) * 1e9).round() as u64;
         self.sequence = self.sequence.wrapping_add(1);
         let header = mcap::records::MessageHeader {
-            channel_id: self.channel,
+            channel_id: channel,
             sequence: self.sequence,
             log_time: time_ns,
             publish_time: time_ns,
