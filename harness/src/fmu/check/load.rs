@@ -26,7 +26,7 @@ pub fn load(checked: &mut Checked, options: &Options, step: bool) {
     ];
     for (kind, name, interface) in kinds {
         // What needs its tool isn't ours to judge without it.
-        if !interface.as_ref().is_some_and(|interface| !interface.needs_execution_tool) {
+        if interface.as_ref().is_none_or(|interface| interface.needs_execution_tool) {
             continue;
         }
         let options = Options { interface: kind, ..options.clone() };
