@@ -5,286 +5,7 @@
 use super::instance::Instance;
 use super::layout::{Cell, EXACT_MAX, Settable, Slot};
 use super::mode::{self, Mode, Refusal};
-use core::marker::PhantomData;
-
-/// A type of the interface, and what it does with cells.
-pub(super) trait Type {
-    /// What an element is in C.
-    type Value: Copy + PartialEq + core::fmt::Display;
-
-    /// Name of the type.
-    const NAME: &'static str;
-
-    /// Whether variables with such cells are of this type.
-    fn has(cell: Cell) -> bool;
-
-    /// The value of a cell.
-    fn get(bits: u64, cell: Cell) -> Self::Value;
-
-    /// Whether a value fits.
-    fn fits(value: Self::Value, slot: &Slot) -> bool;
-
-    /// The cell for a value that fits.
-    fn set(value: Self::Value, cell: Cell) -> u64;
-}
-
-#[inline]
-fn real_fits(value: f64, slot: &Slot) -> bool {
-    (value >= slot.min && value <= slot.max) || slot.any
-}
-
-#[inline]
-fn integer_fits(value: i32, slot: &Slot) -> bool {
-    match slot.enumeration {
-        None => (slot.min..=slot.max).contains(&f64::from(value)),
-        Some(of) => of.items.iter().any(|(item, ..)| *item == value),
-    }
-}
-
-/// FMI 2.0: Real. Counts are whole numbers.
-pub(super) struct Real2;
-
-impl Type for Real2 {
-    type Value = f64;
-    const NAME: &'static str = "Real";
-
-    #[inline]
-    fn has(cell: Cell) -> bool {
-        matches!(cell, Cell::Real | Cell::Count)
-    }
-
-    #[inline]
-    fn get(bits: u64, cell: Cell) -> f64 {
-        if cell == Cell::Real { f64::from_bits(bits) } else { bits as f64 }
-    }
-
-    #[inline]
-    fn fits(value: f64, slot: &Slot) -> bool {
-        if slot.cell == Cell::Real {
-            return real_fits(value, slot);
-        }
-        let (min, max) = (slot.min.max(0.0), slot.max.min(EXACT_MAX));
-        value >= min && value <= max && value as u64 as f64 == value
-    }
-
-    #[inline]
-    fn set(value: f64, cell: Cell) -> u64 {
-        if cell == Cell::Real { value.to_bits() } else { value as u64 }
-    }
-}
-
-/// FMI 3.0: Float64.
-pub(super) struct Float64;
-
-impl Type for Float64 {
-    type Value = f64;
-    const NAME: &'static str = "Float64";
-
-    #[inline]
-    fn has(cell: Cell) -> bool {
-        cell == Cell::Real
-    }
-
-    #[inline]
-    fn get(bits: u64, _: Cell) -> f64 {
-        f64::from_bits(bits)
-    }
-
-    #[inline]
-    fn fits(value: f64, slot: &Slot) -> bool {
-        real_fits(value, slot)
-    }
-
-    #[inline]
-    fn set(value: f64, _: Cell) -> u64 {
-        value.to_bits()
-    }
-}
-
-/// FMI 2.0: Integer, which enumerations are accessed by, too.
-pub(super) struct Integer2;
-
-impl Type for Integer2 {
-    type Value = i32;
-    const NAME: &'static str = "Integer or Enumeration";
-
-    #[inline]
-    fn has(cell: Cell) -> bool {
-        matches!(cell, Cell::Integer | Cell::Enumeration)
-    }
-
-    #[inline]
-    fn get(bits: u64, _: Cell) -> i32 {
-        bits as i32
-    }
-
-    #[inline]
-    fn fits(value: i32, slot: &Slot) -> bool {
-        integer_fits(value, slot)
-    }
-
-    #[inline]
-    fn set(value: i32, _: Cell) -> u64 {
-        i64::from(value) as u64
-    }
-}
-
-/// FMI 3.0: Int32.
-pub(super) struct Int32;
-
-impl Type for Int32 {
-    type Value = i32;
-    const NAME: &'static str = "Int32";
-
-    #[inline]
-    fn has(cell: Cell) -> bool {
-        cell == Cell::Integer
-    }
-
-    #[inline]
-    fn get(bits: u64, _: Cell) -> i32 {
-        bits as i32
-    }
-
-    #[inline]
-    fn fits(value: i32, slot: &Slot) -> bool {
-        integer_fits(value, slot)
-    }
-
-    #[inline]
-    fn set(value: i32, _: Cell) -> u64 {
-        i64::from(value) as u64
-    }
-}
-
-/// FMI 3.0: Enumeration, which is accessed as Int64.
-pub(super) struct Int64;
-
-impl Type for Int64 {
-    type Value = i64;
-    const NAME: &'static str = "Int64 or Enumeration";
-
-    #[inline]
-    fn has(cell: Cell) -> bool {
-        cell == Cell::Enumeration
-    }
-
-    #[inline]
-    fn get(bits: u64, _: Cell) -> i64 {
-        bits as i64
-    }
-
-    #[inline]
-    fn fits(value: i64, slot: &Slot) -> bool {
-        i32::try_from(value).is_ok_and(|value| integer_fits(value, slot))
-    }
-
-    #[inline]
-    fn set(value: i64, _: Cell) -> u64 {
-        value as u64
-    }
-}
-
-/// FMI 3.0: UInt64.
-pub(super) struct UInt64;
-
-impl Type for UInt64 {
-    type Value = u64;
-    const NAME: &'static str = "UInt64";
-
-    #[inline]
-    fn has(cell: Cell) -> bool {
-        cell == Cell::Count
-    }
-
-    #[inline]
-    fn get(bits: u64, _: Cell) -> u64 {
-        bits
-    }
-
-    #[inline]
-    fn fits(value: u64, slot: &Slot) -> bool {
-        (slot.min..=slot.max).contains(&(value as f64))
-    }
-
-    #[inline]
-    fn set(value: u64, _: Cell) -> u64 {
-        value
-    }
-}
-
-/// Boolean, of 32 bits in FMI 2.0 and of 8 in FMI 3.0.
-pub(super) struct Boolean<T>(PhantomData<T>);
-
-impl<T: Copy + From<bool> + PartialEq + core::fmt::Display> Type for Boolean<T> {
-    type Value = T;
-    const NAME: &'static str = "Boolean";
-
-    #[inline]
-    fn has(cell: Cell) -> bool {
-        cell == Cell::Boolean
-    }
-
-    #[inline]
-    fn get(bits: u64, _: Cell) -> T {
-        (bits != 0).into()
-    }
-
-    #[inline]
-    fn fits(value: T, _: &Slot) -> bool {
-        value == T::from(true) || value == T::from(false)
-    }
-
-    #[inline]
-    fn set(value: T, _: Cell) -> u64 {
-        u64::from(value == T::from(true))
-    }
-}
-
-/// A type of which there are no variables here.
-pub(super) struct Absent<T>(PhantomData<T>);
-
-/// Names of types that no variable has.
-pub(super) trait Named: Copy + PartialEq + core::fmt::Display {
-    const NAME: &'static str;
-}
-
-macro_rules! named {
-    ($($kind:ty: $name:literal),*) => {$(
-        impl Named for $kind {
-            const NAME: &'static str = $name;
-        }
-    )*};
-}
-named!(f32: "Float32", i8: "Int8", u8: "UInt8", i16: "Int16", u16: "UInt16", u32: "UInt32");
-
-impl<T: Named> Type for Absent<T> {
-    type Value = T;
-    const NAME: &'static str = T::NAME;
-
-    fn has(_: Cell) -> bool {
-        false
-    }
-
-    fn get(_: u64, _: Cell) -> T {
-        unreachable!("no cell is of this type")
-    }
-
-    fn fits(_: T, _: &Slot) -> bool {
-        false
-    }
-
-    fn set(_: T, _: Cell) -> u64 {
-        unreachable!("no cell is of this type")
-    }
-}
-
-/// How value references count: by element in FMI 2.0, by variable in FMI 3.0.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Counting {
-    Elements,
-    Variables,
-}
+use super::types::Type;
 
 /// Arrays of the importer: value references, and where the values are.
 pub(super) struct Arrays<V> {
@@ -293,7 +14,6 @@ pub(super) struct Arrays<V> {
     pub values: V,
     /// Length of the values in FMI 3.0; in FMI 2.0 there are as many as references.
     pub value_count: usize,
-    pub counting: Counting,
 }
 
 impl<V> Arrays<V> {
@@ -322,11 +42,15 @@ impl<V> Arrays<V> {
 }
 
 impl Instance {
-    /// Reads variables into the importer's array.
+    /// Reads variables into the importer's array. With `ARRAYS` a value reference is that of a
+    /// variable, as in FMI 3.0; without it is that of an element, as in FMI 2.0.
     ///
-    /// The arrays have to be as long as they say.
+    /// The importer's arrays have to be as long as they say.
     #[inline]
-    pub(super) fn get<T: Type>(&mut self, arrays: Arrays<*mut T::Value>) -> Result<(), Refusal> {
+    pub(super) fn get<T: Type, const ARRAYS: bool>(
+        &mut self,
+        arrays: Arrays<*mut T::Value>,
+    ) -> Result<(), Refusal> {
         self.require(mode::get(self.standard()))?;
         arrays.check(arrays.values.is_null(), self.slots().len())?;
         if self.outputs_are_stale() {
@@ -336,13 +60,14 @@ impl Instance {
         let mut next = 0;
         for i in 0..arrays.count {
             let reference = arrays.reference(i);
-            let length = length::<T>(slots, reference, arrays.counting)
-                .ok_or_else(|| self.unknown::<T>(reference))?;
-            if length > arrays.value_count - next {
+            let Some(slot) = found::<T, ARRAYS>(slots, reference) else {
+                return Err(self.unknown::<T>(reference));
+            };
+            let length = if ARRAYS { usize::from(slot.elements) } else { 1 };
+            if ARRAYS && length > arrays.value_count - next {
                 return Err(self.wrong_length(&arrays));
             }
-            let end = reference + length;
-            for (slot, bits) in slots[reference..end].iter().zip(&cells[reference..end]) {
+            for bits in &cells[reference..reference + length] {
                 // SAFETY: `next` is below the length of the importer's array.
                 unsafe { arrays.values.add(next).write_unaligned(T::get(*bits, slot.cell)) };
                 next += 1;
@@ -351,11 +76,15 @@ impl Instance {
         if next == arrays.value_count { Ok(()) } else { Err(self.wrong_length(&arrays)) }
     }
 
-    /// Sets variables from the importer's array: all of them, or none.
+    /// Sets variables from the importer's array: all of them, or none. `ARRAYS` as in
+    /// [`Self::get`].
     ///
-    /// The arrays have to be as long as they say.
+    /// The importer's arrays have to be as long as they say.
     #[inline]
-    pub(super) fn set<T: Type>(&mut self, arrays: Arrays<*const T::Value>) -> Result<(), Refusal> {
+    pub(super) fn set<T: Type, const ARRAYS: bool>(
+        &mut self,
+        arrays: Arrays<*const T::Value>,
+    ) -> Result<(), Refusal> {
         self.require(mode::SET)?;
         arrays.check(arrays.values.is_null(), self.slots().len())?;
         // SAFETY: it is asked for elements below the length of the importer's array.
@@ -365,16 +94,17 @@ impl Instance {
         let mut next = 0;
         for i in 0..arrays.count {
             let reference = arrays.reference(i);
-            let length = length::<T>(slots, reference, arrays.counting)
-                .ok_or_else(|| self.unknown::<T>(reference))?;
-            if length > arrays.value_count - next {
+            let Some(slot) = found::<T, ARRAYS>(slots, reference) else {
+                return Err(self.unknown::<T>(reference));
+            };
+            let length = if ARRAYS { usize::from(slot.elements) } else { 1 };
+            if ARRAYS && length > arrays.value_count - next {
                 return Err(self.wrong_length(&arrays));
             }
-            let settable = slots[reference].settable;
-            if !(settable == Settable::Always || before && settable == Settable::Fixed) {
+            if !(slot.settable == Settable::Always || before && slot.settable == Settable::Fixed) {
                 return Err(self.not_settable(reference));
             }
-            for (k, slot) in slots[reference..reference + length].iter().enumerate() {
+            for k in 0..length {
                 if !T::fits(value(next), slot) {
                     return Err(self.out_of_range(reference + k, value(next)));
                 }
@@ -388,12 +118,9 @@ impl Instance {
         let mut next = 0;
         for i in 0..arrays.count {
             let reference = arrays.reference(i);
-            let length = match arrays.counting {
-                Counting::Elements => 1,
-                Counting::Variables => usize::from(slots[reference].elements),
-            };
-            let end = reference + length;
-            for (slot, bits) in slots[reference..end].iter().zip(&mut cells[reference..end]) {
+            let slot = &slots[reference];
+            let length = if ARRAYS { usize::from(slot.elements) } else { 1 };
+            for bits in &mut cells[reference..reference + length] {
                 *bits = T::set(value(next), slot.cell);
                 next += 1;
             }
@@ -475,13 +202,9 @@ fn shown(end: f64, open: &str) -> String {
     if end.abs() == f64::MAX { open.to_owned() } else { end.to_string() }
 }
 
-/// Elements that a value reference stands for; `None`: it is of no variable of this type.
+/// The slot that a value reference is of; `None`: there is no variable of this type. All elements of
+/// a variable are alike.
 #[inline]
-fn length<T: Type>(slots: &[Slot], reference: usize, counting: Counting) -> Option<usize> {
-    let slot = slots.get(reference)?;
-    match counting {
-        _ if !T::has(slot.cell) => None,
-        Counting::Elements => Some(1),
-        Counting::Variables => (slot.elements > 0).then_some(slot.elements.into()),
-    }
+fn found<T: Type, const ARRAYS: bool>(slots: &[Slot], reference: usize) -> Option<&Slot> {
+    slots.get(reference).filter(|slot| T::has(slot.cell) && (!ARRAYS || slot.elements > 0))
 }
