@@ -11,6 +11,7 @@ use octant::fmu::check::load::load;
 use octant::fmu::check::rules::Severity;
 use octant::fmu::check::{Report, check, show};
 use octant::fmu::instance::Options;
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 use std::time::{Duration, Instant};
@@ -288,6 +289,58 @@ fn a_library_that_does_not_load_is_a_finding() {
     let step = "#undef fmi2DoStep\nint fmi2DoStep(void) { __builtin_trap(); }";
     let found = with(step, &["-Dfmi2DoStep=other_step"]);
     assert!(found[0].ends_with("was ended by SIGILL in fmi2DoStep"), "{found:?}");
+}
+
+#[test]
+fn what_needs_its_tool_is_not_loaded() {
+    let (folder, binaries) = gain();
+    compile(&binaries.join("gain_fmi2.so"), &[]);
+    edit(folder.path(), "<CoSimulation ", "<CoSimulation needsExecutionTool=\"true\" ");
+    assert_eq!(stepped(folder.path()), ["load.tool: it needs the tool that made it"]);
+}
+
+/// A library that leaves a mark when it is loaded, so that one can tell.
+#[test]
+fn nothing_of_a_hostile_fmu_is_run() {
+    let (folder, binaries) = gain();
+    let mark = folder.path().join("mark");
+    let source = folder.path().join("more.c");
+    let text = format!(
+        "#include <stdio.h>\n__attribute__((constructor)) static void f(void) \
+         {{ FILE *f = fopen({:?}, \"w\"); if (f) fclose(f); }}",
+        mark.display().to_string()
+    );
+    std::fs::write(&source, text).unwrap();
+    let library = binaries.join("gain_fmi2.so");
+    compile(&library, &[source.to_str().unwrap()]);
+    let packed = |name: &str, more: &[&str]| {
+        let path = folder.path().join(name);
+        let mut archive = zip::ZipWriter::new(std::fs::File::create(&path).unwrap());
+        let options = zip::write::SimpleFileOptions::default();
+        let description = folder.path().join("modelDescription.xml");
+        let files =
+            [("modelDescription.xml", &description), ("binaries/linux64/gain_fmi2.so", &library)];
+        for (name, file) in files {
+            archive.start_file(name, options).unwrap();
+            archive.write_all(&std::fs::read(file).unwrap()).unwrap();
+        }
+        for name in more {
+            archive.start_file(*name, options).unwrap();
+        }
+        archive.finish().unwrap();
+        path
+    };
+    let (output, out, err) = octant(&[], &[&packed("hostile.fmu", &["../evil"])]);
+    assert_eq!(output.status.code(), Some(1), "{out}{err}");
+    assert!(out.contains("../evil: leaves the folder") && out.contains("[archive.name;"), "{out}");
+    assert!(!mark.exists());
+    let plain = packed("plain.fmu", &[]);
+    let (output, out, err) = octant(&["--no-load"], &[&plain]);
+    assert_eq!(output.status.code(), Some(0), "{out}{err}");
+    assert!(!mark.exists());
+    let (output, out, err) = octant(&[], &[&plain]);
+    assert_eq!(output.status.code(), Some(0), "{out}{err}");
+    assert!(mark.exists());
 }
 
 #[test]

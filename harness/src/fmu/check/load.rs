@@ -5,7 +5,9 @@
 
 use super::Checked;
 use super::finding::Place;
-use super::rules::{LOAD_INSTANTIATES, LOAD_OPENS, LOAD_STARTS, LOAD_STEPS, LOAD_SURVIVES, Rule};
+use super::rules::{
+    LOAD_INSTANTIATES, LOAD_OPENS, LOAD_STARTS, LOAD_STEPS, LOAD_SURVIVES, LOAD_TOOL, Rule,
+};
 use crate::fmu::description::{Causality, Description, Initial, Kind, Variable};
 use crate::fmu::instance::open::{OpenError, open_archive};
 use crate::fmu::instance::{Instance, InstanceError, InterfaceKind, Options, Outcome, Plan};
@@ -25,13 +27,19 @@ pub fn load(checked: &mut Checked, options: &Options, step: bool) {
         (InterfaceKind::ModelExchange, "ModelExchange", &description.model_exchange),
     ];
     for (kind, name, interface) in kinds {
+        let Some(interface) = interface else { continue };
+        let place = Place { subject: name, ..Place::default() };
         // What needs its tool isn't ours to judge without it.
-        if interface.as_ref().is_none_or(|interface| interface.needs_execution_tool) {
+        if interface.needs_execution_tool {
+            let found = match &description.generation_tool[..] {
+                "" => "it needs the tool that made it".to_owned(),
+                tool => format!("it needs the tool that made it, {tool}"),
+            };
+            checked.findings.add(&LOAD_TOOL, place, found, "an FMU that stands alone");
             continue;
         }
         let options = Options { interface: kind, ..options.clone() };
         if let Err(failure) = one(checked, &description, &options, name, step) {
-            let place = Place { subject: name, ..Place::default() };
             checked.findings.add(failure.rule, place, failure.found, failure.rule.says);
         }
     }

@@ -305,6 +305,8 @@ rules! {
     BINARY_GLIBC "binary.glibc" Warning "Octant" "Octant"
         "A library for Linux needs no newer C library than this machine has.";
 
+    LOAD_TOOL "load.tool" Note "3.3.1, 4.3.1" "2.4.2"
+        "It runs without the tool that made it; else it isn't loaded here.";
     LOAD_OPENS "load.opens" Error "2.3" "2.5.1"
         "The library for this machine can be loaded, and says that it is of the standard.";
     LOAD_SURVIVES "load.survives" Error "2.1" "2.2"
