@@ -36,7 +36,15 @@ struct Bench {
 impl Bench {
     fn new(toys: Vec<(&'static str, Toy)>, connections: &[(&str, &str)]) -> Self {
         let connections = connections.iter().map(|(from, to)| connection(from, to, "")).collect();
-        Self { toys, connections, order: "jacobi", step_s: 0.01, steps: 100, faults: String::new() }
+        Self {
+            toys,
+            connections,
+            order: "jacobi",
+            step_s: 0.01,
+            steps: 100,
+            faults: String::new(),
+            fires: Vec::new(),
+        }
     }
 
     /// The system of the toys, their names and descriptions.
