@@ -170,21 +170,21 @@ pub trait Instance: Send {
         get: &[Group],
         outputs: &mut [f64],
     ) -> Result<Stepped, InstanceError> {
+        for (groups, count) in [(set, inputs.len()), (get, outputs.len())] {
+            if groups.iter().map(|group| group.elements).sum::<usize>() != count {
+                return Err(InstanceError::numbers(self.name(), groups, count));
+            }
+        }
         let mut rest = inputs;
         for group in set {
-            let Some((these, others)) = rest.split_at_checked(group.elements) else {
-                return Err(InstanceError::numbers(self.name(), set, inputs.len()));
-            };
+            let (these, others) = rest.split_at(group.elements);
             self.set(group, these)?;
             rest = others;
         }
         let stepped = self.advance(time_s, step_s)?;
-        let count = outputs.len();
         let mut rest = outputs;
         for group in get {
-            let Some((these, others)) = rest.split_at_mut_checked(group.elements) else {
-                return Err(InstanceError::numbers(self.name(), get, count));
-            };
+            let (these, others) = rest.split_at_mut(group.elements);
             self.get(group, these)?;
             rest = others;
         }

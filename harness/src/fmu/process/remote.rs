@@ -239,17 +239,17 @@ impl Instance for Remote {
     ) -> Result<Stepped, InstanceError> {
         self.watch.gone()?;
         let count = |groups: &[Group]| groups.iter().map(|group| group.elements).sum::<usize>();
-        if inputs.len() < count(set) {
+        if inputs.len() != count(set) {
             return Err(InstanceError::numbers(&self.name, set, inputs.len()));
         }
-        if outputs.len() < count(get) {
+        if outputs.len() != count(get) {
             return Err(InstanceError::numbers(&self.name, get, outputs.len()));
         }
         let Some(plan) = self.plan(set, get)? else {
             return by_parts(self, set, inputs, time_s, step_s, get, outputs);
         };
         let shared = &self.shared;
-        put(shared.inputs(), &inputs[..count(set)]);
+        put(shared.inputs(), inputs);
         shared.word(Word::Plan).store(plan as u64, Ordering::Relaxed);
         shared.word(Word::Time).store(time_s.to_bits(), Ordering::Relaxed);
         shared.word(Word::Step).store(step_s.to_bits(), Ordering::Relaxed);
@@ -269,7 +269,7 @@ impl Instance for Remote {
                 }
             }
         }
-        take(self.shared.outputs(), &mut outputs[..count(get)]);
+        take(self.shared.outputs(), outputs);
         let bits = self.shared.word(Word::Outcome).load(Ordering::Relaxed);
         Ok(Stepped {
             time_s: f64::from_bits(self.shared.word(Word::Reached).load(Ordering::Relaxed)),
