@@ -152,8 +152,12 @@ fn same(
         );
         let found: Vec<_> =
             unit.display.iter().map(|d| (d.name.as_str(), d.factor, d.offset, d.inverse)).collect();
-        let made: Vec<_> =
-            quantity.unit.display.iter().map(|(name, factor)| (*name, *factor, 0.0, false)).collect();
+        let made: Vec<_> = quantity
+            .unit
+            .display
+            .iter()
+            .map(|(name, factor)| (*name, *factor, 0.0, false))
+            .collect();
         assert_eq!(found, made);
     }
     if kind == Kind::Float64 {
