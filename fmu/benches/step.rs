@@ -242,8 +242,7 @@ impl Exchange {
             let (mut event, mut end, mut early, mut last_s) = (0, 0, 0, 0.0);
             let (h, t) = (self.handle, k as f64 * PERIOD_S);
             let do_step = fmi3DoStep;
-            let status =
-                do_step(h, t, PERIOD_S, 1, &mut event, &mut end, &mut early, &mut last_s);
+            let status = do_step(h, t, PERIOD_S, 1, &mut event, &mut end, &mut early, &mut last_s);
             assert_eq!(status, OK);
             black_box(last_s);
         }

@@ -111,7 +111,7 @@ fn every_answer_is_the_one_that_the_standard_asks_for() {
 
 /// Memory is used as it should be, and all of it is given back.
 #[test]
-#[ignore = "takes minutes; tests/rigs/fmu_abuse runs it"]
+#[ignore = "takes minutes; tests/rigs/fmu-abuse runs it"]
 fn valgrind_finds_nothing() {
     let folder = tempfile::tempdir().unwrap();
     let program = compile(folder.path()).expect("gcc");

@@ -51,7 +51,7 @@ fn exchange(group: &mut BenchmarkGroup<WallTime>, name: &str, path: &Path, place
             fmu.exchange(&inputs.groups, &values, time_s, 0.005, &outputs.groups, &mut got).unwrap()
         });
     });
-    println!("  {} inputs, {} outputs", inputs.elements, outputs.elements);
+    eprintln!("  {} inputs, {} outputs", inputs.elements, outputs.elements);
 }
 
 /// A sample that is valid: gravity and the Earth's rate, as far as a turned-off table shows them.

@@ -262,7 +262,7 @@ fn references_are_what_the_libraries_give() {
                     .unwrap();
                 assert_eq!(stepped.outcome, Outcome::Done);
             }
-            assert!(row.is_none() && compared == 101 * get.elements, "{}", path.display());
+            assert!(row.is_none() && compared == 701 * get.elements, "{}", path.display());
         }
     }
 }

@@ -583,3 +583,80 @@ fn what_cannot_be_loaded_is_said() {
         "gain_fmi2.fmu can't run by model exchange: it has co-simulation"
     );
 }
+
+#[test]
+fn clocks_tick_when_they_are_due() {
+    // Steps that divide no interval, one that is an interval, and one over many ticks.
+    for step_s in [0.07, 0.3, 2.5] {
+        let mut clocks = open("clocks_fmi3");
+        let clocks = &mut *clocks;
+        start(clocks);
+        let mut time_s = 0.0;
+        while time_s < 4.9 {
+            let stepped = clocks.step(time_s, step_s).unwrap();
+            assert_eq!(stepped.outcome, Outcome::Done);
+            time_s = stepped.time_s;
+            // From 0.1 s on, each 0.3 s.
+            let fixed = ((time_s + 1e-9 - 0.1) / 0.3).floor() + 1.0;
+            assert_eq!(get(clocks, "fixed_ticks"), [fixed.max(0.0)], "{time_s}");
+            // At 0, then after 0.1, 0.2, 0.3 … s: at 0.1 n (n + 1) / 2.
+            let changing = (0..).take_while(|n| 0.05 * f64::from(n * (n + 1)) <= time_s + 1e-9);
+            let changing = changing.count() as f64;
+            assert_eq!(get(clocks, "changing_ticks"), [changing], "{time_s}");
+            let last_s = get(clocks, "changing_last")[0];
+            assert!((last_s - 0.05 * changing * (changing - 1.0)).abs() < 1e-9, "{last_s}");
+        }
+        assert_eq!(get(clocks, "countdown_ticks"), [0.0]);
+        // A countdown begins at the event at which it is asked for.
+        set(clocks, "arm", &[1.0]).unwrap();
+        clocks.step(time_s, 0.24).unwrap();
+        assert_eq!(get(clocks, "countdown_ticks"), [0.0]);
+        clocks.step(time_s + 0.24, 1.0).unwrap();
+        assert_eq!(get(clocks, "countdown_ticks"), [1.0]);
+        let ticked_s = get(clocks, "countdown_last")[0];
+        assert!((ticked_s - time_s - 0.25).abs() < 1e-9, "{ticked_s} {time_s}");
+    }
+}
+
+#[test]
+fn clocks_are_kept_with_the_state() {
+    let mut clocks = open("clocks_fmi3");
+    let clocks = &mut *clocks;
+    start(clocks);
+    clocks.step(0.0, 0.35).unwrap();
+    set(clocks, "arm", &[1.0]).unwrap();
+    clocks.step(0.35, 0.1).unwrap();
+    let kept = clocks.keep_state().unwrap();
+    let to_the_end = |clocks: &mut dyn Instance| {
+        clocks.step(0.45, 2.0).unwrap();
+        let names = ["fixed_ticks", "changing_ticks", "countdown_ticks", "countdown_last"];
+        names.map(|name| get(clocks, name)[0])
+    };
+    let expected = to_the_end(clocks);
+    assert_eq!(expected[2], 1.0);
+    clocks.restore_state(kept).unwrap();
+    assert_eq!(to_the_end(clocks), expected);
+}
+
+#[test]
+fn clocks_need_event_mode() {
+    let error = open_with("clocks_fmi3", &Options { event_mode: false, ..here() });
+    let error = error.map(|_| ()).unwrap_err().to_string();
+    assert!(error.contains("has clocks"), "{error}");
+}
+
+#[test]
+fn what_runs_once_a_process_runs_once() {
+    let once = |text: &str| {
+        text.replace(
+            "<CoSimulation ",
+            "<CoSimulation canBeInstantiatedOnlyOncePerProcess=\"true\" ",
+        )
+    };
+    let folder = copy("gain_fmi2", once);
+    let first = octant::fmu::open(folder.path(), &here()).unwrap();
+    let error = refusal(folder.path());
+    assert!(error.ends_with("there is one already, and it can be there only once"), "{error}");
+    drop(first);
+    octant::fmu::open(folder.path(), &here()).unwrap();
+}

@@ -35,7 +35,8 @@ fn the_values_of_an_independent_program_come_out_of_the_scenario() {
     let config = scenario
         .core(Method::Primary, &draws, &scenario.mean_attitude(), &Vector3::zeros())
         .unwrap();
-    let passes = in_passes(&config, || Ok(source::open(&scenario)?.unwrap())).unwrap();
+    let plant = scenario.plant(scenario.seed, &draws);
+    let passes = in_passes(&config, || Ok(source::open(&scenario, &plant)?.unwrap())).unwrap();
     println!("{} passes, settled: {}", passes.passes, passes.settled);
     assert_eq!(passes.core.refusal(), None);
     assert!(passes.core.table().is_some(), "concluded at the end of the file");

@@ -5,253 +5,7 @@
 use super::instance::Instance;
 use super::layout::{Cell, EXACT_MAX, Settable, Slot};
 use super::mode::{self, Mode, Refusal};
-use core::marker::PhantomData;
-
-/// A type of the interface, and what it does with cells.
-pub(super) trait Type {
-    /// What an element is in C.
-    type Value: Copy + PartialEq + core::fmt::Display;
-
-    /// Name of the type.
-    const NAME: &'static str;
-
-    /// Whether variables with such cells are of this type.
-    fn has(cell: Cell) -> bool;
-
-    /// The value of a cell.
-    fn get(bits: u64, cell: Cell) -> Self::Value;
-
-    /// The cell for a value; `None`: it doesn't fit.
-    fn set(value: Self::Value, slot: &Slot) -> Option<u64>;
-}
-
-#[inline]
-fn real(value: f64, slot: &Slot) -> Option<u64> {
-    (slot.any || (value >= slot.min && value <= slot.max)).then_some(value.to_bits())
-}
-
-#[inline]
-fn integer(value: i32, slot: &Slot) -> Option<u64> {
-    let wide = f64::from(value);
-    let listed = match slot.enumeration {
-        None => true,
-        Some(of) => of.items.iter().any(|(item, ..)| *item == value),
-    };
-    (listed && wide >= slot.min && wide <= slot.max).then_some(i64::from(value) as u64)
-}
-
-/// FMI 2.0: Real. Counts are whole numbers.
-pub(super) struct Real2;
-
-impl Type for Real2 {
-    type Value = f64;
-    const NAME: &'static str = "Real";
-
-    #[inline]
-    fn has(cell: Cell) -> bool {
-        matches!(cell, Cell::Real | Cell::Count)
-    }
-
-    #[inline]
-    fn get(bits: u64, cell: Cell) -> f64 {
-        if cell == Cell::Real { f64::from_bits(bits) } else { bits as f64 }
-    }
-
-    #[inline]
-    fn set(value: f64, slot: &Slot) -> Option<u64> {
-        if slot.cell == Cell::Real {
-            return real(value, slot);
-        }
-        let (min, max) = (slot.min.max(0.0), slot.max.min(EXACT_MAX));
-        let whole = value as u64;
-        (value >= min && value <= max && whole as f64 == value).then_some(whole)
-    }
-}
-
-/// FMI 3.0: Float64.
-pub(super) struct Float64;
-
-impl Type for Float64 {
-    type Value = f64;
-    const NAME: &'static str = "Float64";
-
-    #[inline]
-    fn has(cell: Cell) -> bool {
-        cell == Cell::Real
-    }
-
-    #[inline]
-    fn get(bits: u64, _: Cell) -> f64 {
-        f64::from_bits(bits)
-    }
-
-    #[inline]
-    fn set(value: f64, slot: &Slot) -> Option<u64> {
-        real(value, slot)
-    }
-}
-
-/// FMI 2.0: Integer, which enumerations are accessed by, too.
-pub(super) struct Integer2;
-
-impl Type for Integer2 {
-    type Value = i32;
-    const NAME: &'static str = "Integer or Enumeration";
-
-    #[inline]
-    fn has(cell: Cell) -> bool {
-        matches!(cell, Cell::Integer | Cell::Enumeration)
-    }
-
-    #[inline]
-    fn get(bits: u64, _: Cell) -> i32 {
-        bits as i32
-    }
-
-    #[inline]
-    fn set(value: i32, slot: &Slot) -> Option<u64> {
-        integer(value, slot)
-    }
-}
-
-/// FMI 3.0: Int32.
-pub(super) struct Int32;
-
-impl Type for Int32 {
-    type Value = i32;
-    const NAME: &'static str = "Int32";
-
-    #[inline]
-    fn has(cell: Cell) -> bool {
-        cell == Cell::Integer
-    }
-
-    #[inline]
-    fn get(bits: u64, _: Cell) -> i32 {
-        bits as i32
-    }
-
-    #[inline]
-    fn set(value: i32, slot: &Slot) -> Option<u64> {
-        integer(value, slot)
-    }
-}
-
-/// FMI 3.0: Enumeration, which is accessed as Int64.
-pub(super) struct Int64;
-
-impl Type for Int64 {
-    type Value = i64;
-    const NAME: &'static str = "Int64 or Enumeration";
-
-    #[inline]
-    fn has(cell: Cell) -> bool {
-        cell == Cell::Enumeration
-    }
-
-    #[inline]
-    fn get(bits: u64, _: Cell) -> i64 {
-        bits as i64
-    }
-
-    #[inline]
-    fn set(value: i64, slot: &Slot) -> Option<u64> {
-        integer(i32::try_from(value).ok()?, slot)
-    }
-}
-
-/// FMI 3.0: UInt64.
-pub(super) struct UInt64;
-
-impl Type for UInt64 {
-    type Value = u64;
-    const NAME: &'static str = "UInt64";
-
-    #[inline]
-    fn has(cell: Cell) -> bool {
-        cell == Cell::Count
-    }
-
-    #[inline]
-    fn get(bits: u64, _: Cell) -> u64 {
-        bits
-    }
-
-    #[inline]
-    fn set(value: u64, slot: &Slot) -> Option<u64> {
-        (value as f64 >= slot.min && value as f64 <= slot.max).then_some(value)
-    }
-}
-
-/// Boolean, of 32 bits in FMI 2.0 and of 8 in FMI 3.0.
-pub(super) struct Boolean<T>(PhantomData<T>);
-
-impl<T: Copy + From<bool> + PartialEq + core::fmt::Display> Type for Boolean<T> {
-    type Value = T;
-    const NAME: &'static str = "Boolean";
-
-    #[inline]
-    fn has(cell: Cell) -> bool {
-        cell == Cell::Boolean
-    }
-
-    #[inline]
-    fn get(bits: u64, _: Cell) -> T {
-        (bits != 0).into()
-    }
-
-    #[inline]
-    fn set(value: T, _: &Slot) -> Option<u64> {
-        if value == T::from(true) {
-            Some(1)
-        } else if value == T::from(false) {
-            Some(0)
-        } else {
-            None
-        }
-    }
-}
-
-/// A type of which there are no variables here.
-pub(super) struct Absent<T>(PhantomData<T>);
-
-/// Names of types that no variable has.
-pub(super) trait Named: Copy + PartialEq + core::fmt::Display {
-    const NAME: &'static str;
-}
-
-macro_rules! named {
-    ($($kind:ty: $name:literal),*) => {$(
-        impl Named for $kind {
-            const NAME: &'static str = $name;
-        }
-    )*};
-}
-named!(f32: "Float32", i8: "Int8", u8: "UInt8", i16: "Int16", u16: "UInt16", u32: "UInt32");
-
-impl<T: Named> Type for Absent<T> {
-    type Value = T;
-    const NAME: &'static str = T::NAME;
-
-    fn has(_: Cell) -> bool {
-        false
-    }
-
-    fn get(_: u64, _: Cell) -> T {
-        unreachable!("no cell is of this type")
-    }
-
-    fn set(_: T, _: &Slot) -> Option<u64> {
-        None
-    }
-}
-
-/// How value references count: by element in FMI 2.0, by variable in FMI 3.0.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Counting {
-    Elements,
-    Variables,
-}
+use super::types::Type;
 
 /// Arrays of the importer: value references, and where the values are.
 pub(super) struct Arrays<V> {
@@ -260,7 +14,6 @@ pub(super) struct Arrays<V> {
     pub values: V,
     /// Length of the values in FMI 3.0; in FMI 2.0 there are as many as references.
     pub value_count: usize,
-    pub counting: Counting,
 }
 
 impl<V> Arrays<V> {
@@ -289,11 +42,15 @@ impl<V> Arrays<V> {
 }
 
 impl Instance {
-    /// Reads variables into the importer's array.
+    /// Reads variables into the importer's array. With `ARRAYS` a value reference is that of a
+    /// variable, as in FMI 3.0; without it is that of an element, as in FMI 2.0.
     ///
-    /// The arrays have to be as long as they say.
+    /// The importer's arrays have to be as long as they say.
     #[inline]
-    pub(super) fn get<T: Type>(&mut self, arrays: Arrays<*mut T::Value>) -> Result<(), Refusal> {
+    pub(super) fn get<T: Type, const ARRAYS: bool>(
+        &mut self,
+        arrays: Arrays<*mut T::Value>,
+    ) -> Result<(), Refusal> {
         self.require(mode::get(self.standard()))?;
         arrays.check(arrays.values.is_null(), self.slots().len())?;
         if self.outputs_are_stale() {
@@ -303,13 +60,14 @@ impl Instance {
         let mut next = 0;
         for i in 0..arrays.count {
             let reference = arrays.reference(i);
-            let length = length::<T>(slots, reference, arrays.counting)
-                .ok_or_else(|| self.unknown::<T>(reference))?;
-            if length > arrays.value_count - next {
+            let Some(slot) = found::<T, ARRAYS>(slots, reference) else {
+                return Err(self.unknown::<T>(reference));
+            };
+            let length = if ARRAYS { usize::from(slot.elements) } else { 1 };
+            if ARRAYS && length > arrays.value_count - next {
                 return Err(self.wrong_length(&arrays));
             }
-            let end = reference + length;
-            for (slot, bits) in slots[reference..end].iter().zip(&cells[reference..end]) {
+            for bits in &cells[reference..reference + length] {
                 // SAFETY: `next` is below the length of the importer's array.
                 unsafe { arrays.values.add(next).write_unaligned(T::get(*bits, slot.cell)) };
                 next += 1;
@@ -318,11 +76,15 @@ impl Instance {
         if next == arrays.value_count { Ok(()) } else { Err(self.wrong_length(&arrays)) }
     }
 
-    /// Sets variables from the importer's array: all of them, or none.
+    /// Sets variables from the importer's array: all of them, or none. `ARRAYS` as in
+    /// [`Self::get`].
     ///
-    /// The arrays have to be as long as they say.
+    /// The importer's arrays have to be as long as they say.
     #[inline]
-    pub(super) fn set<T: Type>(&mut self, arrays: Arrays<*const T::Value>) -> Result<(), Refusal> {
+    pub(super) fn set<T: Type, const ARRAYS: bool>(
+        &mut self,
+        arrays: Arrays<*const T::Value>,
+    ) -> Result<(), Refusal> {
         self.require(mode::SET)?;
         arrays.check(arrays.values.is_null(), self.slots().len())?;
         // SAFETY: it is asked for elements below the length of the importer's array.
@@ -332,17 +94,18 @@ impl Instance {
         let mut next = 0;
         for i in 0..arrays.count {
             let reference = arrays.reference(i);
-            let length = length::<T>(slots, reference, arrays.counting)
-                .ok_or_else(|| self.unknown::<T>(reference))?;
-            if length > arrays.value_count - next {
+            let Some(slot) = found::<T, ARRAYS>(slots, reference) else {
+                return Err(self.unknown::<T>(reference));
+            };
+            let length = if ARRAYS { usize::from(slot.elements) } else { 1 };
+            if ARRAYS && length > arrays.value_count - next {
                 return Err(self.wrong_length(&arrays));
             }
-            let settable = slots[reference].settable;
-            if !(settable == Settable::Always || before && settable == Settable::Fixed) {
+            if !(slot.settable == Settable::Always || before && slot.settable == Settable::Fixed) {
                 return Err(self.not_settable(reference));
             }
-            for (k, slot) in slots[reference..reference + length].iter().enumerate() {
-                if T::set(value(next), slot).is_none() {
+            for k in 0..length {
+                if !T::fits(value(next), slot) {
                     return Err(self.out_of_range(reference + k, value(next)));
                 }
                 next += 1;
@@ -355,11 +118,10 @@ impl Instance {
         let mut next = 0;
         for i in 0..arrays.count {
             let reference = arrays.reference(i);
-            let length = length::<T>(slots, reference, arrays.counting).unwrap_or(0);
-            for slot in reference..reference + length {
-                if let Some(bits) = T::set(value(next), &slots[slot]) {
-                    cells[slot] = bits;
-                }
+            let slot = &slots[reference];
+            let length = if ARRAYS { usize::from(slot.elements) } else { 1 };
+            for bits in &mut cells[reference..reference + length] {
+                *bits = T::set(value(next), slot.cell);
                 next += 1;
             }
         }
@@ -440,13 +202,9 @@ fn shown(end: f64, open: &str) -> String {
     if end.abs() == f64::MAX { open.to_owned() } else { end.to_string() }
 }
 
-/// Elements that a value reference stands for; `None`: it is of no variable of this type.
+/// The slot that a value reference is of; `None`: there is no variable of this type. All elements of
+/// a variable are alike.
 #[inline]
-fn length<T: Type>(slots: &[Slot], reference: usize, counting: Counting) -> Option<usize> {
-    let slot = slots.get(reference)?;
-    match counting {
-        _ if !T::has(slot.cell) => None,
-        Counting::Elements => Some(1),
-        Counting::Variables => (slot.elements > 0).then_some(slot.elements.into()),
-    }
+fn found<T: Type, const ARRAYS: bool>(slots: &[Slot], reference: usize) -> Option<&Slot> {
+    slots.get(reference).filter(|slot| T::has(slot.cell) && (!ARRAYS || slot.elements > 0))
 }

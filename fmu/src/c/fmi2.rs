@@ -3,11 +3,12 @@
 #![allow(unsafe_code, reason = "functions of a C interface")]
 #![allow(non_snake_case, reason = "names of the standard")]
 
-use super::access::{Arrays, Boolean as BooleanOf, Counting, Integer2, Real2, Type};
+use super::access::Arrays;
 use super::call::{call, free, instantiate, no_instance, ok, put};
 use super::instance::{Instance, Options};
 use super::log::{self, Callback, Outlet};
 use super::mode::{self, Modes, Refusal, Standard};
+use super::types::{Boolean as BooleanOf, Integer2, Real2, Type};
 use core::ffi::{CStr, c_void};
 use octant_fmi::fmi2::{
     Boolean, Byte, CO_SIMULATION, CallbackFunctions, Component, DISCARD, EventInfo, FALSE,
@@ -46,8 +47,7 @@ fn get<T: Type>(
     values: *mut T::Value,
 ) -> Status {
     enter(c, function, |instance| {
-        let counting = Counting::Elements;
-        ok(instance.get::<T>(Arrays { references, count, values, value_count: count, counting }))
+        ok(instance.get::<T, false>(Arrays { references, count, values, value_count: count }))
     })
 }
 
@@ -59,8 +59,7 @@ fn set<T: Type>(
     values: *const T::Value,
 ) -> Status {
     enter(c, function, |instance| {
-        let counting = Counting::Elements;
-        ok(instance.set::<T>(Arrays { references, count, values, value_count: count, counting }))
+        ok(instance.set::<T, false>(Arrays { references, count, values, value_count: count }))
     })
 }
 

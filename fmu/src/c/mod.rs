@@ -10,7 +10,7 @@
 //! | `registry` | instances by handle; a handle is looked up, never followed |
 //! | `mode` | the standards' state machines |
 //! | `instance` | one instance: its life |
-//! | `access`, `layout` | getting and setting variables |
+//! | `access`, `layout`, `types` | getting and setting variables |
 //! | `step` | communication steps |
 //! | `state` | FMU states, kept and as bytes |
 //! | `log` | messages to the importer |
@@ -50,6 +50,7 @@ mod step;
 #[allow(unsafe_code, reason = "C functions are called")]
 mod tests;
 mod token;
+mod types;
 
 pub use log::CATEGORIES;
 pub use mode::Standard;

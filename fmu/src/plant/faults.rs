@@ -8,7 +8,7 @@ use octant_faults::{Channels, Setup, Spec, Station, Value, kinds};
 use octant_plant::config::Config;
 
 /// The id of a fault, by its place from 0.
-pub(super) fn id(fault: usize) -> String {
+fn id(fault: usize) -> String {
     format!("fault[{}]", fault + 1)
 }
 

@@ -8,6 +8,8 @@ mod config;
 mod faults;
 mod outputs;
 pub mod table;
+#[cfg(test)]
+mod tests;
 
 pub use config::config;
 pub use faults::{Number, faults, numbers, setup};
@@ -64,6 +66,7 @@ pub struct Plant {
 struct Faults {
     station: Station,
     places: Vec<usize>,
+    ids: Vec<String>,
     /// They have begun an epoch.
     begun: bool,
     /// Hands that were on at the last step, by place.
@@ -106,14 +109,18 @@ const NO_OUTPUT: &Output = &Output {
 impl Faults {
     fn of(values: &Values, config: &Config) -> Result<Option<Self>, String> {
         let made = faults::station(values, config)?;
-        let with =
-            |(station, places)| Self { station, places, begun: false, hands: [false; FAULT_SLOTS] };
-        Ok(made.map(with))
+        Ok(made.map(|(station, places)| Self {
+            ids: station.ids().map(str::to_owned).collect(),
+            station,
+            places,
+            begun: false,
+            hands: [false; FAULT_SLOTS],
+        }))
     }
 
     /// Lets faults set in and end by hand.
     fn hands(&mut self, values: &Values) {
-        for place in &self.places {
+        for (place, id) in self.places.iter().zip(&self.ids) {
             let is_on = values.boolean(slot::FAULT_FIRE + place);
             if is_on == self.hands[*place] {
                 continue;
@@ -123,11 +130,10 @@ impl Faults {
             if !values.boolean(slot::FAULT_BY_HAND + base) {
                 continue;
             }
-            let id = faults::id(*place);
             if is_on {
-                self.station.fire(&id);
+                self.station.fire(id);
             } else if values.real(slot::FAULT_DURATION + base) == 0.0 {
-                self.station.end(&id);
+                self.station.end(id);
             }
         }
     }

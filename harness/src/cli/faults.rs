@@ -4,7 +4,8 @@ use super::{Failure, print, print_json, write};
 use crate::scenario::{fault_example, suggestion};
 use crate::score::verdict::Verdict;
 use clap::{Args, Subcommand};
-use octant_faults::catalogue::{Acts, Family, Kind, Lasts};
+use octant_faults::catalogue::{Acts, Family, Kind, Lasts, Parameter};
+use octant_faults::connection::kinds as connection;
 use octant_faults::kinds;
 use serde::Serialize;
 use std::path::PathBuf;
@@ -44,19 +45,36 @@ enum Command {
 pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     match &arguments.command {
         Command::List { json: true } => {
-            print_json(&List { kinds: kinds::all().map(Row::of).collect() })?
+            let on_connections = connection::KINDS.iter().map(|kind| Row::of_connection(kind));
+            print_json(&List { kinds: kinds::all().map(Row::of).chain(on_connections).collect() })?
         }
         Command::List { json: false } => print(&list())?,
         Command::Describe { kind: name, markdown, picture } => {
+            if let Some(kind) = connection::named(name) {
+                if *markdown || picture.is_some() {
+                    return Err(Failure::input(format!(
+                        "{name} is a fault on connections, which have neither a page of their own \
+                         nor a picture: see docs/co-simulation.md"
+                    )));
+                }
+                print(&describe(&Page::of_connection(kind)))?;
+                return Ok(Verdict::Pass);
+            }
             let Some(kind) = kinds::named(name) else {
-                let names: Vec<&str> = kinds::all().map(|kind| kind.name).collect();
+                let names = kinds::all().map(|kind| kind.name);
+                let names: Vec<&str> =
+                    names.chain(connection::KINDS.iter().map(|kind| kind.name)).collect();
                 let known = suggestion(name, names.into_iter(), "kinds");
                 return Err(Failure::input(format!("unknown kind of fault {name:?}, {known}")));
             };
             if let Some(file) = picture {
                 write(file, super::fault_page::picture(kind)?)?;
             }
-            print(&if *markdown { super::fault_page::markdown(kind) } else { describe(kind) })?;
+            print(&if *markdown {
+                super::fault_page::markdown(kind)
+            } else {
+                describe(&Page::of(kind))
+            })?;
         }
         Command::Sweep(arguments) => return super::sweep::command(arguments),
         Command::Minimise(arguments) => return super::minimise::command(arguments),
@@ -90,8 +108,16 @@ struct ParameterRow {
 
 impl Row {
     fn of(kind: &'static Kind) -> Self {
-        let takes = crate::scenario::fault_parameters(kind.name);
-        let parameter = |parameter: &'static octant_faults::catalogue::Parameter| ParameterRow {
+        Self::new(&Page::of(kind))
+    }
+
+    fn of_connection(kind: &'static connection::Kind) -> Self {
+        Self::new(&Page::of_connection(kind))
+    }
+
+    fn new(page: &Page) -> Self {
+        let takes = crate::scenario::fault_parameters(page.name);
+        let parameter = |parameter: &'static Parameter| ParameterRow {
             name: parameter.name,
             takes: takes
                 .iter()
@@ -101,22 +127,67 @@ impl Row {
             doc: parameter.doc,
         };
         Self {
-            name: kind.name,
-            family: kind.family.name(),
-            acts: acts(kind.acts),
-            lasts: match kind.lasts {
+            name: page.name,
+            family: page.family,
+            acts: page.acts,
+            lasts: match page.lasts {
                 Lasts::Span => "span",
                 Lasts::Fading => "fading",
                 Lasts::Instant => "instant",
             },
+            summary: page.summary,
+            parameters: page.parameters.iter().map(parameter).collect(),
+        }
+    }
+}
+
+/// What is told of a kind, of samples or of connections.
+struct Page {
+    name: &'static str,
+    family: &'static str,
+    acts: &'static str,
+    lasts: Lasts,
+    summary: &'static str,
+    model: &'static str,
+    parameters: &'static [Parameter],
+    /// Where its entry is written.
+    written_in: &'static str,
+}
+
+/// Family of the kinds of faults on connections.
+const CONNECTION: &str = "connection of FMUs";
+
+impl Page {
+    fn of(kind: &'static Kind) -> Self {
+        Self {
+            name: kind.name,
+            family: kind.family.name(),
+            acts: acts(kind.acts),
+            lasts: kind.lasts,
             summary: kind.summary,
-            parameters: kind.parameters.iter().map(parameter).collect(),
+            model: kind.model,
+            parameters: kind.parameters,
+            written_in: "In a scenario",
+        }
+    }
+
+    fn of_connection(kind: &'static connection::Kind) -> Self {
+        Self {
+            name: kind.name,
+            family: CONNECTION,
+            acts: "on a value on its way from one FMU to another",
+            lasts: kind.lasts,
+            summary: kind.summary,
+            model: kind.model,
+            parameters: kind.parameters,
+            written_in: "In the file of --faults, for a system of FMUs",
         }
     }
 }
 
 fn list() -> String {
     let width = kinds::all().map(|kind| kind.name.len()).max().unwrap_or_default();
+    let line = |name: &str, summary: &str| format!("  {name:width$}  {summary}\n");
     let mut out = String::new();
     for family in Family::ALL {
         let of: Vec<_> = kinds::all().filter(|kind| kind.family == family).collect();
@@ -128,8 +199,12 @@ fn list() -> String {
         }
         out += &format!("{}\n", family.name());
         for kind in of {
-            out += &format!("  {:width$}  {}\n", kind.name, kind.summary);
+            out += &line(kind.name, kind.summary);
         }
+    }
+    out += &format!("\n{CONNECTION}\n");
+    for kind in connection::KINDS {
+        out += &line(kind.name, kind.summary);
     }
     out
 }
@@ -157,23 +232,23 @@ pub(super) fn lasts(lasts: Lasts) -> &'static str {
     }
 }
 
-/// The page of a kind.
-fn describe(kind: &'static Kind) -> String {
-    let mut out = format!("{} ({})\n", kind.name, kind.family.name());
-    out += &format!("{}\n\n", wrapped(kind.summary, ""));
-    for paragraph in kind.model.split('\n') {
+/// The page of a page.
+fn describe(page: &Page) -> String {
+    let mut out = format!("{} ({})\n", page.name, page.family);
+    out += &format!("{}\n\n", wrapped(page.summary, ""));
+    for paragraph in page.model.split('\n') {
         // Equations stand on indented lines and are left as they are.
         let indented = paragraph.starts_with(' ');
         out += &if indented { paragraph.to_owned() } else { wrapped(paragraph, "") };
         out.push('\n');
     }
-    out += &format!("\n{}\n", wrapped(&format!("Acts {}.", acts(kind.acts)), ""));
-    out += &format!("{}\n\nParameters\n", wrapped(&format!("Lasts {}.", lasts(kind.lasts)), ""));
-    if kind.parameters.is_empty() {
+    out += &format!("\n{}\n", wrapped(&format!("Acts {}.", page.acts), ""));
+    out += &format!("{}\n\nParameters\n", wrapped(&format!("Lasts {}.", lasts(page.lasts)), ""));
+    if page.parameters.is_empty() {
         out += "  none\n";
     }
-    let takes = crate::scenario::fault_parameters(kind.name);
-    for parameter in kind.parameters {
+    let takes = crate::scenario::fault_parameters(page.name);
+    for parameter in page.parameters {
         out += &format!("  {}\n", parameter.name);
         out += &format!("{}\n", wrapped(parameter.doc, "      "));
         if let Some((_, takes)) = takes.iter().find(|(name, _)| *name == parameter.name) {
@@ -184,8 +259,8 @@ fn describe(kind: &'static Kind) -> String {
             None => out += "      Always given.\n",
         }
     }
-    let example = fault_example(kind.name).unwrap_or_default();
-    out += &format!("\nIn a scenario\n\n{}", indent(&example));
+    let example = fault_example(page.name).unwrap_or_default();
+    out += &format!("\n{}\n\n{}", page.written_in, indent(&example));
     out
 }
 

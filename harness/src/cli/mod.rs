@@ -13,6 +13,7 @@ mod progress;
 mod replay;
 mod report;
 mod run;
+mod run_system;
 mod score;
 mod sweep;
 
@@ -32,7 +33,7 @@ struct Cli {
 
 #[derive(Debug, Subcommand)]
 enum Command {
-    /// Run a scenario: calibrate, navigate, score, and write a folder of evidence.
+    /// Run a scenario: calibrate, navigate, score, and write a folder of evidence; or a system of FMUs.
     Run(run::Arguments),
     /// Compare two methods over many seeds, on the same instruments with the same noise.
     Compare(compare::Arguments),

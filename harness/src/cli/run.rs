@@ -47,9 +47,20 @@ pub(super) struct Arguments {
     /// Print summary.json on stdout, and nothing else.
     #[arg(long)]
     json: bool,
+    #[command(flatten)]
+    system: super::run_system::SystemArguments,
 }
 
 pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
+    if crate::fmu::master::ssp::package::is_system(&arguments.scenario.scenario) {
+        return system(arguments);
+    }
+    if let Some(option) = arguments.system.first_given() {
+        return Err(Failure::input(format!(
+            "{option} is for systems of FMUs, and {} is a scenario",
+            arguments.scenario.scenario.display()
+        )));
+    }
     if arguments.realtime {
         return Err(Failure::input(
             "--realtime is not part of this version: runs are in simulated time",
@@ -159,6 +170,39 @@ fn fmus(scenario: &Scenario, tasks: usize) -> Result<Vec<FmuFacts>, Failure> {
         ))),
         _ => Ok(fmus),
     }
+}
+
+/// Runs a system of FMUs.
+fn system(arguments: &Arguments) -> Result<Verdict, Failure> {
+    let path = &arguments.scenario.scenario;
+    let given = [
+        ("--source", arguments.source.is_some()),
+        ("--endpoint", arguments.endpoint.is_some()),
+        ("--realtime", arguments.realtime),
+        ("--no-twin", arguments.no_twin),
+    ];
+    if let Some((option, _)) = given.into_iter().find(|(_, given)| *given) {
+        return Err(Failure::input(format!(
+            "{option} is for scenarios, and {} is a system of FMUs",
+            path.display()
+        )));
+    }
+    let out = arguments.out.clone().unwrap_or_else(|| free_name(path));
+    let existing = if arguments.force { Existing::Replace } else { Existing::Refuse };
+    super::run_system::command(
+        &super::run_system::Shared {
+            path,
+            set: &arguments.scenario.set,
+            fire: &arguments.fire,
+            seed: arguments.seed,
+            json: arguments.json,
+        },
+        &arguments.system,
+        || {
+            RunFolder::create(&out, existing)
+                .map_err(|error| Failure::input(format!("failed to {}", in_the_way(&error))))
+        },
+    )
 }
 
 /// A source with its file made absolute: a name on the command line starts at the current folder,
@@ -356,6 +400,7 @@ pub(super) fn on_recording(
         realtime: false,
         no_twin: false,
         json,
+        system: super::run_system::SystemArguments::default(),
     })
 }
 

@@ -53,7 +53,7 @@ fn facts(scenario: &Scenario, role: &str, fmu: &Fmu) -> Result<FmuFacts, UseErro
 }
 
 /// SHA-256 of a file, hexadecimal.
-fn sha256(path: &Path) -> std::io::Result<String> {
+pub(crate) fn sha256(path: &Path) -> std::io::Result<String> {
     let mut hasher = Sha256::new();
     std::io::copy(&mut std::fs::File::open(path)?, &mut hasher)?;
     Ok(hasher.finalize().iter().map(|byte| format!("{byte:02x}")).collect())

@@ -86,7 +86,7 @@ pub struct FileHash {
 /// An FMU of a run.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct FmuFacts {
-    /// `source` or `endpoint`.
+    /// `source`, `endpoint`, or its name in a system.
     pub role: String,
     /// The file.
     pub file: String,

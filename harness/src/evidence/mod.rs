@@ -5,5 +5,6 @@ pub mod folder;
 pub mod manifest;
 
 pub use fmus::fmus;
+pub(crate) use fmus::sha256;
 pub use folder::{Existing, FolderError, RunFolder};
 pub use manifest::{FmuFacts, Manifest, ManifestError, RunFacts};

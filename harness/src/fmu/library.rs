@@ -4,6 +4,7 @@
 use super::archive::Unpacked;
 use super::description::Standard;
 use super::instance::InstanceError;
+use super::instance::open::Once;
 use octant_fmi::{fmi2, fmi3};
 use std::ffi::CStr;
 use std::path::{Path, PathBuf};
@@ -19,9 +20,9 @@ pub(super) enum Functions {
 /// A loaded library. Its functions may be called for as long as this is there.
 pub(super) struct Library {
     pub(super) functions: Functions,
-    /// Before the folder that its file is in.
+    /// Before the folder that its file is in, and the right to be there.
     _library: libloading::Library,
-    _folder: Unpacked,
+    _kept: (Unpacked, Option<Once>),
 }
 
 /// Names that folders of binaries for this platform have, the standard's first. Some tools use the
@@ -110,12 +111,16 @@ impl Library {
         fmu: &str,
         path: &Path,
         standard: Standard,
-        folder: Unpacked,
+        kept: (Unpacked, Option<Once>),
     ) -> Result<Self, InstanceError> {
         // SAFETY: loading runs code of the FMU, which is what an importer is for; who doesn't trust
         // it has a process of its own for it.
-        let library = unsafe { open(path) }
-            .map_err(|e| InstanceError::load(fmu, format!("{}: {e}", path.display())))?;
+        let library = unsafe { open(path) }.map_err(|error| {
+            // What the system says is the source: which symbol or library it is.
+            let said = std::error::Error::source(&error).map(ToString::to_string);
+            let said = said.unwrap_or_else(|| error.to_string());
+            InstanceError::load(fmu, format!("{}: {said}", path.display()))
+        })?;
         let find = |name: &str| {
             // SAFETY: nothing but the address is taken.
             let symbol = unsafe { library.get::<*const core::ffi::c_void>(name) };
@@ -129,7 +134,7 @@ impl Library {
                 Standard::Fmi3 => Functions::Fmi3(fmi3::Functions::load(find)),
             }
         };
-        let library = Self { functions, _library: library, _folder: folder };
+        let library = Self { functions, _library: library, _kept: kept };
         library.check(fmu, path)?;
         Ok(library)
     }

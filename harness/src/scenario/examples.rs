@@ -118,4 +118,8 @@ pub(super) const FAULTS: &[(&str, &str, &str)] = &[
     ("position-jump", "jump", r#"["0 m", "5 m", "0 m"]"#),
     ("aiding-noise", "sigma", r#""5 mm/s""#),
     ("aiding-noise", "duration", r#""10 s""#),
+    ("bias", "value", r#""0.01 arcsec""#),
+    ("scale", "factor", "1.01"),
+    ("noise", "sigma", r#""0.01 arcsec""#),
+    ("delay", "delay", r#""10 ms""#),
 ];

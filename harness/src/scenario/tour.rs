@@ -319,6 +319,11 @@ fn quantity_within(dimension: Dimension, bounds: Bounds) -> String {
     }
 }
 
+/// The keys of a kind of fault, of samples or of connections.
+fn section_of(kind: &str) -> Option<&'static Section> {
+    super::keys::kind_section(kind).or_else(|| super::keys::connection_section(kind))
+}
+
 /// What the parameters of a kind of fault take, with their bounds, in words.
 #[must_use]
 pub fn fault_parameters(kind: &str) -> Vec<(&'static str, String)> {
@@ -339,14 +344,14 @@ pub fn fault_parameters(kind: &str) -> Vec<(&'static str, String)> {
         };
         (key.name, format!("{}{bounds}{more}", expected(&key.kind)))
     };
-    let section = super::keys::kind_section(kind);
+    let section = section_of(kind);
     section.map_or_else(Vec::new, |section| section.keys.iter().map(takes).collect())
 }
 
 /// An entry of a scenario with a fault of a kind, as TOML; `None` for a kind that isn't there.
 #[must_use]
 pub fn fault_example(kind: &str) -> Option<String> {
-    let section = super::keys::kind_section(kind)?;
+    let section = section_of(kind)?;
     let mut out = String::from("[[faults]]\n");
     for key in section.keys {
         let own = examples::FAULTS.iter().find(|(of, name, _)| *of == kind && *name == key.name);
@@ -356,6 +361,7 @@ pub fn fault_example(kind: &str) -> Option<String> {
             (None, Default::Required) => match key.name {
                 "id" => format!("{:?}", format!("{kind}-1")),
                 "trigger" => r#"{ at = "100 s" }"#.to_owned(),
+                "connection" => r#""calibrator.gyro.delta_theta[1]""#.to_owned(),
                 _ => match &key.kind {
                     Kind::Quantity(dimensions, bounds) => {
                         format!("{:?}", quantity_within(dimensions[0], *bounds))

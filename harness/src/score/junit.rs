@@ -1,7 +1,7 @@
 //! `junit.xml`: the verdict for CI systems, in the flavour of nextest.
 
-use super::summary::Summary;
-use super::verdict::Verdict;
+use super::summary::{FaultResult, Summary};
+use super::verdict::{RequirementResult, Verdict};
 use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
 
 /// The run as JUnit XML: one suite named for the scenario, one case for each requirement with a
@@ -11,10 +11,30 @@ use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
 /// # Errors
 /// If the XML can't be written.
 pub fn junit(summary: &Summary) -> Result<String, quick_junit::SerializeError> {
-    let mut suite = TestSuite::new(summary.scenario.as_str());
-    suite.add_property(("seed", summary.seed.to_string().as_str()));
-    suite.add_property(("octant", summary.octant.as_str()));
-    for result in &summary.requirements {
+    junit_of(
+        &summary.scenario,
+        summary.seed,
+        &summary.requirements,
+        &summary.faults,
+        (summary.verdict, &summary.reasons),
+    )
+}
+
+/// As [`junit`], of the parts of a summary that it shows, and of other runs that have them.
+///
+/// # Errors
+/// If the XML can't be written.
+pub fn junit_of(
+    name: &str,
+    seed: u64,
+    requirements: &[RequirementResult],
+    faults: &[FaultResult],
+    (verdict, reasons): (Verdict, &[String]),
+) -> Result<String, quick_junit::SerializeError> {
+    let mut suite = TestSuite::new(name);
+    suite.add_property(("seed", seed.to_string().as_str()));
+    suite.add_property(("octant", env!("CARGO_PKG_VERSION")));
+    for result in requirements {
         let (value, limit) = result.figures();
         let sentence = format!("{} {} {limit}", result.measure, result.comparison.sign());
         let found = match (result.value, result.reason.as_ref()) {
@@ -24,18 +44,18 @@ pub fn junit(summary: &Summary) -> Result<String, quick_junit::SerializeError> {
         };
         let mut case =
             TestCase::new(format!("{}: {sentence}", result.id), status(result.verdict, &found));
-        case.set_classname(summary.scenario.as_str());
+        case.set_classname(name);
         case.add_property(("verifies", result.id.as_str()));
         suite.add_test_case(case);
     }
-    for fault in &summary.faults {
+    for fault in faults {
         let (verdict, found) = match fault.fired {
             true => (Verdict::Pass, String::new()),
             false => (Verdict::Inconclusive, format!("fault {} never fired", fault.id)),
         };
-        let name = format!("fault {} ({}) fired", fault.id, fault.kind);
-        let mut case = TestCase::new(name, status(verdict, &found));
-        case.set_classname(summary.scenario.as_str());
+        let case_name = format!("fault {} ({}) fired", fault.id, fault.kind);
+        let mut case = TestCase::new(case_name, status(verdict, &found));
+        case.set_classname(name);
         for (name, value) in [
             ("firings", Some(u64::from(fault.firings))),
             ("first_sample", fault.first_sample),
@@ -48,8 +68,8 @@ pub fn junit(summary: &Summary) -> Result<String, quick_junit::SerializeError> {
         }
         suite.add_test_case(case);
     }
-    let mut run = TestCase::new("run", status(summary.verdict, &summary.reasons.join("; ")));
-    run.set_classname(summary.scenario.as_str());
+    let mut run = TestCase::new("run", status(verdict, &reasons.join("; ")));
+    run.set_classname(name);
     suite.add_test_case(run);
     let mut report = Report::new("octant");
     report.add_test_suite(suite);

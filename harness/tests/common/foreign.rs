@@ -10,10 +10,11 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// Names of all of them.
-pub const NAMES: [&str; 10] = [
+pub const NAMES: [&str; 11] = [
     "gain_fmi2",
     "trouble_fmi2",
     "signals_fmi3",
+    "clocks_fmi3",
     "ball_fmi2",
     "ball_fmi3",
     "vanderpol_fmi2",

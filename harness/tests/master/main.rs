@@ -30,15 +30,25 @@ struct Bench {
     step_s: f64,
     steps: u64,
     faults: String,
+    fires: Vec<String>,
 }
 
 impl Bench {
     fn new(toys: Vec<(&'static str, Toy)>, connections: &[(&str, &str)]) -> Self {
         let connections = connections.iter().map(|(from, to)| connection(from, to, "")).collect();
-        Self { toys, connections, order: "jacobi", step_s: 0.01, steps: 100, faults: String::new() }
+        Self {
+            toys,
+            connections,
+            order: "jacobi",
+            step_s: 0.01,
+            steps: 100,
+            faults: String::new(),
+            fires: Vec::new(),
+        }
     }
 
-    fn run<T>(self, with: impl FnOnce(Result<Simulation<'_>, MasterError>) -> T) -> T {
+    /// The system of the toys, their names and descriptions.
+    fn system(&self) -> (Flat, Structure, Vec<Description>) {
         let folder = tempfile::tempdir().unwrap();
         let mut components = String::new();
         for (name, toy) in &self.toys {
@@ -66,19 +76,46 @@ impl Bench {
         let package = Package::open(folder.path()).unwrap();
         let structure = Structure::read(&package).unwrap_or_else(|error| panic!("{error}"));
         let flat = Flat::of(&structure).unwrap_or_else(|error| panic!("{error}"));
+        let descriptions = self.toys.iter().map(|(_, toy)| toy.description().clone()).collect();
+        (flat, structure, descriptions)
+    }
+
+    /// The system with its faults, or why there is none.
+    fn faulted(
+        &self,
+        flat: &Flat,
+        structure: &Structure,
+        descriptions: &[&Description],
+    ) -> Result<(System, Faulting), String> {
+        const FILE: &str = "faults.toml";
+        let text = format!("schema = 1\n{}", self.faults);
         let names: Vec<&str> = flat.components.iter().map(|c| c.name.as_str()).collect();
-        let descriptions: Vec<Description> =
-            self.toys.iter().map(|(_, toy)| toy.description().clone()).collect();
+        let faults = connection_faults(&text, FILE, self.step_s, self.steps, &self.fires)
+            .map_err(|error| error.to_string())?;
+        let looked = looked_at(&faults, FILE, &names).map_err(|error| error.to_string())?;
+        let system = System::new(structure, flat, descriptions, &looked)
+            .map_err(|error| error.to_string())?;
+        let faulting = Faulting::new(&faults, FILE, &system, descriptions, 1, self.step_s)
+            .map_err(|error| error.to_string())?;
+        Ok((system, faulting))
+    }
+
+    fn refusal(&self) -> String {
+        let (flat, structure, descriptions) = self.system();
         let descriptions: Vec<&Description> = descriptions.iter().collect();
-        let faults =
-            connection_faults(&self.faults_text(), "faults.toml", self.step_s, self.steps, &[])
-                .unwrap_or_else(|error| panic!("{error}"));
-        let looked = looked_at(&faults, "faults.toml", &names).unwrap();
-        let system = System::new(&structure, &flat, &descriptions, &looked)
+        match self.faulted(&flat, &structure, &descriptions) {
+            Ok(_) => panic!("nothing is wrong"),
+            Err(error) => error,
+        }
+    }
+
+    fn run<T>(self, with: impl FnOnce(Result<Simulation<'_>, MasterError>) -> T) -> T {
+        let (flat, structure, descriptions) = self.system();
+        let descriptions: Vec<&Description> = descriptions.iter().collect();
+        let names: Vec<&str> = flat.components.iter().map(|c| c.name.as_str()).collect();
+        let (system, faulting) = self
+            .faulted(&flat, &structure, &descriptions)
             .unwrap_or_else(|error| panic!("{error}"));
-        let faulting =
-            Faulting::new(&faults, "faults.toml", &system, &descriptions, 1, self.step_s)
-                .unwrap_or_else(|error| panic!("{error}"));
         let order: Order = self.order.parse().unwrap();
         let settings = Settings {
             order: order.of(&names).unwrap(),
@@ -100,10 +137,6 @@ impl Bench {
             Simulation::new(&system, &settings, instances, abilities, Some(faulting));
         let initialized = simulation.initialize().map(|_| ());
         with(initialized.map(|()| simulation))
-    }
-
-    fn faults_text(&self) -> String {
-        format!("schema = 1\n{}", self.faults)
     }
 
     /// Steps to the end; values of the outputs of all FMUs after each.
@@ -576,5 +609,98 @@ fn a_value_that_an_fmu_refuses_is_kept_out_where_a_fault_made_it() {
         let mut simulation = simulation.unwrap();
         let error = (0..5).find_map(|_| simulation.advance().err()).unwrap();
         assert_eq!(error.to_string(), "sink.u refused NaN at 4 s: not a number");
+    });
+}
+
+#[test]
+fn faults_that_can_not_be_are_refused_with_their_place() {
+    let bench = |faults: &str| {
+        let source =
+            describe("source", &["u"], &[("angle:deg", None), ("on/Boolean", None)], false);
+        let sink = describe("sink", &["angle:deg", "on/Boolean", "free"], &[("y", None)], false);
+        let idle = || Box::new(|_: &mut toy::Numbers, t: f64, h: f64| done(t, h));
+        let toys = vec![
+            ("source", Toy::new(source, &[], idle(), |_| {})),
+            ("sink", Toy::new(sink, &[], idle(), |_| {})),
+        ];
+        let wires = [("source.angle", "sink.angle"), ("source.on", "sink.on")];
+        let mut bench = Bench::new(toys, &wires);
+        bench.faults = faults.to_owned();
+        bench
+    };
+    let fault = |kind: &str, connection: &str, more: &str| {
+        format!(
+            "[[faults]]\nid = \"x\"\nkind = \"{kind}\"\nconnection = \"{connection}\"\n{more}\n"
+        )
+    };
+    let at = "trigger = { at = \"0 s\" }\n";
+    for (faults, expected) in [
+        (
+            fault("bias", "sink.angel", &format!("value = 1\n{at}")),
+            "faults.toml:5:14: faults[0].connection: found \"sink.angel\", which no connection leads \
+             to, did you mean \"sink.angle\"?",
+        ),
+        (fault("bias", "sink.free", &format!("value = 1\n{at}")), "which no connection leads to"),
+        (
+            fault("bias", "source.on -> sink.angle", &format!("value = 1\n{at}")),
+            "which is connected with \"source.angle\"",
+        ),
+        (
+            fault("bias", "sink.on", &format!("value = 1\n{at}")),
+            "faults[0].kind: bias can't act on sink.on, which is a Boolean",
+        ),
+        (fault("stuck", "sink.on", &format!("value = 1\n{at}")), "expected true or false"),
+        (
+            fault("bias", "sink.angle", &format!("value = \"1 m\"\n{at}")),
+            "found \"1 m\", expected a quantity in \"deg\" or another unit of the same",
+        ),
+        (fault("bias", "sink.angle", &format!("value = 0\n{at}")), "nothing would happen"),
+        (fault("noise", "sink.angle", &format!("sigma = -1\n{at}")), "expected a value above 0"),
+        (fault("scale", "sink.angle", &format!("factor = 1\n{at}")), "nothing would happen"),
+        (fault("delay", "sink.angle", &format!("delay = \"1 ms\"\n{at}")), "0 steps"),
+        (fault("drop", "sink.angle", &format!("probability = 2\n{at}")), "above 0, up to 1"),
+        (fault("stall", "sink.angle", at), "did you mean \"stuck\"?"),
+        (fault("drop", "sink.angle", "trigger = { at = \"2 s\" }"), "it can't fire"),
+        (
+            fault("drop", "sink.angle", "trigger = { position = 2 }"),
+            "exactly one of at, sample, when",
+        ),
+        (
+            fault("drop", "sink.angle", "trigger = { when = \"source.angle > 3\" }"),
+            "expected an output, above or below, and a value",
+        ),
+        (
+            fault("drop", "sink.angle", "trigger = { when = \"sauce.angle above 3 deg\" }"),
+            "\"sauce.angle\" is no output of an FMU; FMUs: source, sink",
+        ),
+        (
+            fault("drop", "sink.angle", "trigger = { when = \"source.angle above 3 kn\" }"),
+            "expected a quantity in \"deg\"",
+        ),
+        (fault("drop", "sink.angle", &format!("{at}recovery = \"1 s\"")), "doesn't fade"),
+        ("[[fault]]".to_owned(), "unknown key, did you mean \"faults\"?"),
+    ] {
+        let error = bench(&faults).refusal();
+        assert!(error.contains(expected), "{faults}: {error}");
+        assert!(error.starts_with("faults.toml:"), "{error}");
+    }
+    let fine = fault("stuck", "sink.angle", &format!("value = \"3.141592653589793 rad\"\n{at}"));
+    bench(&fine).run(|simulation| {
+        let mut simulation = simulation.unwrap();
+        simulation.advance().unwrap();
+        assert!((simulation.delivered()[0] - 180.0).abs() < 1e-12);
+    });
+    let mut by_hand =
+        bench(&fault("stuck", "sink.on", "value = true\ntrigger = { manual = true }"));
+    by_hand.fires = vec!["x=0.5 s".to_owned()];
+    by_hand.run(|simulation| {
+        let mut simulation = simulation.unwrap();
+        let on: Vec<f64> = (0..100)
+            .map(|_| {
+                simulation.advance().unwrap();
+                simulation.delivered()[1]
+            })
+            .collect();
+        assert_eq!(on.iter().position(|on| *on == 1.0), Some(50));
     });
 }

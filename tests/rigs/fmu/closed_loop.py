@@ -66,7 +66,7 @@ def fmpy(path, wanted, steps):
     every = ParameterSet(name="lockstep")
     for component in read_ssd(path).system.elements:
         for binding in component.parameterBindings:
-            for parameter in binding.parameterValues.parameters:
+            for parameter in [p for values in binding.parameterValues for p in values.parameters]:
                 parameter.name = f"{component.name}.{parameter.name}"
                 # Texts of Booleans are all true to it.
                 if parameter.type == "Boolean":

@@ -1,10 +1,9 @@
 //! Getting and setting, by type.
 
 use super::enter;
-use crate::c::access::{
-    Absent, Arrays, Boolean as BooleanOf, Counting, Float64, Int32, Int64, Type, UInt64,
-};
+use crate::c::access::Arrays;
 use crate::c::call::ok;
+use crate::c::types::{Absent, Boolean as BooleanOf, Float64, Int32, Int64, Type, UInt64};
 use octant_fmi::fmi3::{Boolean, Instance as Handle, Status, ValueReference, signature};
 
 fn get<T: Type>(
@@ -16,8 +15,7 @@ fn get<T: Type>(
     value_count: usize,
 ) -> Status {
     enter(i, function, |instance| {
-        let counting = Counting::Variables;
-        ok(instance.get::<T>(Arrays { references, count, values, value_count, counting }))
+        ok(instance.get::<T, true>(Arrays { references, count, values, value_count }))
     })
 }
 
@@ -30,8 +28,7 @@ fn set<T: Type>(
     value_count: usize,
 ) -> Status {
     enter(i, function, |instance| {
-        let counting = Counting::Variables;
-        ok(instance.set::<T>(Arrays { references, count, values, value_count, counting }))
+        ok(instance.set::<T, true>(Arrays { references, count, values, value_count }))
     })
 }
 

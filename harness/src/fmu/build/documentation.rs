@@ -133,9 +133,9 @@ fn reference(identifier: &str) -> Markup {
         }
         p {
             "Equal to the last bit is what the same library gives in any tool that sets the inputs "
-            "as they are. A tool that sets, steps and gets in the right order, and converts units on "
-            "the way, agrees to 1e-12 relative. Anything more is an order that differs by a sample, "
-            "or an input that was interpolated."
+            "as they are. A tool that converts units on the way stays within 1e-9 of the largest "
+            "value of each variable. Anything more is an order that differs by a sample, or an "
+            "input that was interpolated."
         }
     }
 }

@@ -84,6 +84,11 @@ pub(super) fn number(value: f64) -> String {
     }
 }
 
+/// A whole number, as integers are written.
+pub(super) fn whole(value: f64) -> String {
+    format!("{value:.0}")
+}
+
 /// Numbers in a list of XML.
 pub(super) fn list<T: ToString>(values: impl IntoIterator<Item = T>) -> String {
     values.into_iter().map(|value| value.to_string()).collect::<Vec<_>>().join(" ")

@@ -16,17 +16,20 @@ use octant_fmu::table::{Causality, Kind, Model, Variable};
 use octant_fmu::values::Values;
 use std::fmt::Write;
 
-/// Steps between two rows of a result: ten rows a second.
-const STEPS_PER_ROW: usize = 20;
+/// Whether a result has a row after so many steps: at the start, and ten times a second. What follows
+/// from a measurement at a whole second is seen one step later.
+fn has_row(step: usize) -> bool {
+    step == 0 || step % 20 == 1
+}
 
 /// What went into a model, and what came out.
 #[derive(Clone, Debug)]
 pub(super) struct Reference {
     model: &'static Model,
-    /// Cells of the values before each step.
-    inputs: Vec<Values>,
-    /// Cells after the initialization, and then after every [`STEPS_PER_ROW`] steps.
-    outputs: Vec<Values>,
+    /// Number of steps and values before the step that follows.
+    inputs: Vec<(usize, Values)>,
+    /// Number of steps and values after them, where [`has_row`].
+    outputs: Vec<(usize, Values)>,
 }
 
 impl Reference {
@@ -53,14 +56,14 @@ pub(super) fn closed_loop<A: Component, B: Component>() -> Result<[Reference; 2]
     let mut references = [Reference::new(A::MODEL), Reference::new(B::MODEL)];
     let steps = (STOP_S / STEP_S).round() as usize;
     for step in 0..=steps {
-        if step.is_multiple_of(STEPS_PER_ROW) {
-            references[0].outputs.push(a_values.clone());
-            references[1].outputs.push(b_values.clone());
+        if has_row(step) {
+            references[0].outputs.push((step, a_values.clone()));
+            references[1].outputs.push((step, b_values.clone()));
         }
         copy(&to_b, &a_values, &mut b_values);
         copy(&to_a, &b_values, &mut a_values);
-        references[0].inputs.push(a_values.clone());
-        references[1].inputs.push(b_values.clone());
+        references[0].inputs.push((step, a_values.clone()));
+        references[1].inputs.push((step, b_values.clone()));
         if step == steps {
             break;
         }
@@ -96,8 +99,8 @@ pub(super) fn files(reference: &Reference, standard: Standard) -> [File; 3] {
         File::new(format!("documentation/{identifier}_{suffix}"), text)
     };
     let model = reference.model;
-    let inputs = table(model, Causality::Input, standard, 1, &reference.inputs);
-    let outputs = table(model, Causality::Output, standard, STEPS_PER_ROW, &reference.outputs);
+    let inputs = table(model, Causality::Input, standard, &reference.inputs);
+    let outputs = table(model, Causality::Output, standard, &reference.outputs);
     let options = format!(
         "StartTime, 0\nStopTime, {}\nStepSize, {}\nRelTol, 1e-12\n",
         number(STOP_S),
@@ -112,8 +115,7 @@ fn table(
     model: &Model,
     causality: Causality,
     standard: Standard,
-    steps_per_row: usize,
-    rows: &[Values],
+    rows: &[(usize, Values)],
 ) -> String {
     let these: Vec<(usize, &Variable)> =
         model.with_slots().filter(|(_, v)| v.causality == causality).collect();
@@ -127,9 +129,9 @@ fn table(
         }
     }
     text.push('\n');
-    for (row, values) in rows.iter().enumerate() {
-        // Multiplied, not added up: the nearest number to the time that is meant.
-        text += &number((row * steps_per_row) as f64 * STEP_S);
+    for (step, values) in rows {
+        // Divided by 200, not multiplied by 0.005: the nearest number to the time that is meant.
+        text += &number(*step as f64 / (1.0 / STEP_S));
         for (slot, variable) in &these {
             let elements = (*slot..slot + variable.slots()).map(|s| cell(values, s, variable.kind));
             match standard {

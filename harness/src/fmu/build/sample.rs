@@ -49,7 +49,10 @@ pub(super) static SAMPLE: Model = Model {
             .described("With the gate")
             .tunable()
             .start(&[1.0]),
-        Variable::parameter("seed", Kind::Count).described("Seed").start(&[9007199254740992.0]),
+        Variable::parameter("seed", Kind::Count)
+            .within(0.0, 9007199254740992.0)
+            .described("Seed")
+            .start(&[9007199254740992.0]),
         Variable::parameter("colour", Kind::Enumeration(&COLOUR))
             .described("Its colour")
             .start(&[2.0]),

@@ -4,7 +4,7 @@ use super::finding::{Findings, Place};
 use super::model::Model;
 use super::rules::{
     BINARY_ARCHITECTURE, BINARY_FOLDER, BINARY_FORMAT, BINARY_GLIBC, BINARY_LIBRARIES, BINARY_NAME,
-    BINARY_PLATFORM, BINARY_RPATH, BINARY_STACK, BINARY_SYMBOLS,
+    BINARY_OPTIONAL_SYMBOLS, BINARY_PLATFORM, BINARY_RPATH, BINARY_STACK, BINARY_SYMBOLS,
 };
 use crate::fmu::archive::Archive;
 use crate::fmu::description::Standard;
@@ -274,88 +274,31 @@ fn symbols(
     let missing: Vec<&str> = all
         .iter()
         .copied()
-        .filter(|name| match interface_of(name) {
-            Some(Interface::ModelExchange) => description.model_exchange.is_some(),
-            Some(Interface::CoSimulation) => description.co_simulation.is_some(),
-            Some(Interface::ScheduledExecution) => description.scheduled_execution,
-            None => true,
-        })
+        .filter(|name| super::functions::is_of_interface(description, name))
         .filter(|name| !exported.contains(*name))
         .collect();
     let Some(first) = missing.first() else { return };
-    let prefixed = description
-        .co_simulation
-        .iter()
-        .chain(&description.model_exchange)
-        .any(|interface| exported.contains(&format!("{}_{first}", interface.model_identifier)));
-    let found = if prefixed {
-        format!(
-            "functions with the model identifier before their name, as static ones have: {}_{first}, …",
-            description
-                .co_simulation
-                .as_ref()
-                .or(description.model_exchange.as_ref())
-                .map_or("", |interface| &interface.model_identifier)
-        )
-    } else {
-        let mut names: Vec<String> =
-            missing.iter().take(NAMED).map(|&name| name.to_owned()).collect();
-        if missing.len() > NAMED {
-            names.push(format!("{} more", missing.len() - NAMED));
+    // Static libraries have the model identifier before every name.
+    let interfaces = description.co_simulation.iter().chain(&description.model_exchange);
+    let prefixed = interfaces
+        .map(|interface| format!("{}_{first}", interface.model_identifier))
+        .find(|name| exported.contains(name));
+    if let Some(name) = prefixed {
+        let found = format!("{name} and others with a prefix, as in a static library");
+        findings.add(&BINARY_SYMBOLS, place, found, format!("{first}, without"));
+        return;
+    }
+    let (needed, optional): (Vec<&str>, Vec<&str>) =
+        missing.iter().partition(|name| super::functions::is_needed(description, name));
+    for (rule, names) in [(&BINARY_SYMBOLS, needed), (&BINARY_OPTIONAL_SYMBOLS, optional)] {
+        let mut list: Vec<String> = names.iter().take(NAMED).map(|&name| name.to_owned()).collect();
+        if names.len() > NAMED {
+            list.push(format!("{} more", names.len() - NAMED));
         }
-        format!("no {}", names.join(", "))
-    };
-    findings.add(&BINARY_SYMBOLS, place, found, "all functions of its interfaces");
-}
-
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Interface {
-    ModelExchange,
-    CoSimulation,
-    ScheduledExecution,
-}
-
-/// The interface that a function belongs to; none: all of them.
-fn interface_of(function: &str) -> Option<Interface> {
-    match function {
-        "fmi2EnterEventMode"
-        | "fmi2NewDiscreteStates"
-        | "fmi2EnterContinuousTimeMode"
-        | "fmi2CompletedIntegratorStep"
-        | "fmi2SetTime"
-        | "fmi2SetContinuousStates"
-        | "fmi2GetDerivatives"
-        | "fmi2GetEventIndicators"
-        | "fmi2GetContinuousStates"
-        | "fmi2GetNominalsOfContinuousStates"
-        | "fmi3InstantiateModelExchange"
-        | "fmi3EnterContinuousTimeMode"
-        | "fmi3CompletedIntegratorStep"
-        | "fmi3SetTime"
-        | "fmi3SetContinuousStates"
-        | "fmi3GetContinuousStateDerivatives"
-        | "fmi3GetEventIndicators"
-        | "fmi3GetContinuousStates"
-        | "fmi3GetNominalsOfContinuousStates"
-        | "fmi3GetNumberOfEventIndicators"
-        | "fmi3GetNumberOfContinuousStates" => Some(Interface::ModelExchange),
-        "fmi2SetRealInputDerivatives"
-        | "fmi2GetRealOutputDerivatives"
-        | "fmi2DoStep"
-        | "fmi2CancelStep"
-        | "fmi2GetStatus"
-        | "fmi2GetRealStatus"
-        | "fmi2GetIntegerStatus"
-        | "fmi2GetBooleanStatus"
-        | "fmi2GetStringStatus"
-        | "fmi3InstantiateCoSimulation"
-        | "fmi3EnterStepMode"
-        | "fmi3GetOutputDerivatives"
-        | "fmi3DoStep" => Some(Interface::CoSimulation),
-        "fmi3InstantiateScheduledExecution" | "fmi3ActivateModelPartition" => {
-            Some(Interface::ScheduledExecution)
+        if !list.is_empty() {
+            let found = format!("no {}", list.join(", "));
+            findings.add(rule, place, found, "all functions of its interfaces");
         }
-        _ => None,
     }
 }
 
@@ -569,16 +512,6 @@ mod tests {
             assert_eq!(name(folder, Standard::Fmi2), fmi2, "{folder}");
             assert_eq!(name(folder, Standard::Fmi3), fmi3, "{folder}");
         }
-    }
-
-    #[test]
-    fn every_function_of_one_interface_is_a_function() {
-        let names = octant_fmi::fmi2::NAMES.iter().chain(octant_fmi::fmi3::NAMES);
-        let of =
-            |interface| names.clone().filter(|name| interface_of(name) == Some(interface)).count();
-        assert_eq!(of(Interface::ModelExchange), 10 + 11);
-        assert_eq!(of(Interface::CoSimulation), 9 + 4);
-        assert_eq!(of(Interface::ScheduledExecution), 2);
     }
 
     #[test]

@@ -93,7 +93,7 @@ impl Findings {
     /// All of them: worst first, each kind in the order of the file; and how many of each rule
     /// weren't kept.
     pub(super) fn finish(mut self) -> (Vec<Finding>, BTreeMap<&'static str, usize>) {
-        self.kept.sort_by(|a, b| b.rule.severity.cmp(&a.rule.severity));
+        self.kept.sort_by_key(|finding| std::cmp::Reverse(finding.rule.severity));
         let more = self
             .counts
             .into_iter()

@@ -26,7 +26,7 @@ pub fn load(checked: &mut Checked, options: &Options, step: bool) {
     ];
     for (kind, name, interface) in kinds {
         // What needs its tool isn't ours to judge without it.
-        if !interface.as_ref().is_some_and(|interface| !interface.needs_execution_tool) {
+        if interface.as_ref().is_none_or(|interface| interface.needs_execution_tool) {
             continue;
         }
         let options = Options { interface: kind, ..options.clone() };
@@ -111,16 +111,27 @@ fn other_starts(
     let variables: Vec<&Variable> =
         description.variables.iter().filter(is_exact).take(STARTS_MAX).collect();
     let plan = Plan::new(description, &variables)?;
-    let mut values = vec![0.0; plan.elements];
+    // What can't be got is no start value that differs; that the function is missing is said there.
+    let mut values = vec![None; plan.elements];
     let mut first = 0;
     for group in &plan.groups {
-        instance.get(group, &mut values[first..first + group.elements])?;
+        let mut numbers = vec![0.0; group.elements];
+        match instance.get(group, &mut numbers) {
+            Ok(()) => {
+                for (value, number) in values[first..].iter_mut().zip(numbers) {
+                    *value = Some(number);
+                }
+            }
+            Err(InstanceError::Unsupported { .. }) => {}
+            Err(error) => return Err(error),
+        }
         first += group.elements;
     }
     for (variable, place) in variables.iter().zip(&plan.places) {
         for (element, value) in values[place.clone()].iter().enumerate() {
             let text = variable.start.get(element).or(variable.start.first());
-            let Some(start) = text.and_then(|text| start(variable.kind, text)) else { continue };
+            let start = text.and_then(|text| start(variable.kind, text));
+            let (Some(start), Some(value)) = (start, value) else { continue };
             // A start value may be NaN.
             if value.to_bits() != start.to_bits() && *value != start {
                 let name = &variable.name;

@@ -18,6 +18,7 @@
 //! | `terminals` | terminals and icons |
 //! | `files` | documentation, licence, sources |
 //! | [`binaries`] | shared libraries, read without being run |
+//! | `functions` | which functions they have to export |
 //! | [`load`] | the library loaded, an instance made and stepped |
 //! | [`show`] | findings as text |
 
@@ -25,6 +26,7 @@ pub mod binaries;
 mod clocks;
 mod files;
 pub mod finding;
+mod functions;
 mod head;
 pub mod load;
 mod model;

@@ -292,8 +292,10 @@ rules! {
         "A library is a shared library.";
     BINARY_ARCHITECTURE "binary.architecture" Error "2.3" "2.5.1"
         "A library is for the machine and system that its folder says.";
-    BINARY_SYMBOLS "binary.symbols" Error "2.1.1" "2.2.1"
-        "A library exports all functions of its interfaces.";
+    BINARY_SYMBOLS "binary.symbols" Error "2.1.1" "2.5"
+        "A library exports the functions of its interfaces, of its capabilities and of the types of its variables.";
+    BINARY_OPTIONAL_SYMBOLS "binary.optional-symbols" Warning "2.1.1" "2.5"
+        "A library exports the functions of what it can't do as well.";
     BINARY_LIBRARIES "binary.libraries" Warning "2.3" "2.5.1"
         "A library needs no other libraries but those of every system and those beside it.";
     BINARY_RPATH "binary.rpath" Warning "2.3" "2.5.1"

@@ -37,10 +37,8 @@ pub(super) fn check(
         };
         findings.add(&TERMINALS_VERSION, place, format!("version {version:?}"), expected);
     }
-    if root.child("GraphicalRepresentation").is_some_and(|graphic| graphic.child("Icon").is_some())
-    {
-        icon(place, "icon", has, findings);
-    } else if has("terminalsAndIcons/icon.svg") {
+    let told = root.child("GraphicalRepresentation").and_then(|graphic| graphic.child("Icon"));
+    if told.is_some() || has("terminalsAndIcons/icon.svg") {
         icon(place, "icon", has, findings);
     }
     if let Some(list) = root.child("Terminals") {

@@ -33,9 +33,10 @@ fn definitions(model: &Model<'_, '_>, findings: &mut Findings) {
             findings.add(&UNIT_UNIQUE, place, "the unit is there twice", "one of each name");
             continue;
         }
-        // A number without dimension needs none.
+        // A number without dimension needs none, and half exponents aren't to be had.
         let plain = known(name).first().is_some_and(|unit| unit.exponents == [0; 8]);
-        if unit.child("BaseUnit").is_none() && !plain {
+        let fraction = name.contains("sqrt(") || name.contains("/2)");
+        if unit.child("BaseUnit").is_none() && !plain && !fraction {
             findings.add(&UNIT_BASE, place, "a unit without BaseUnit", "what it is in SI");
         } else if let Some(base) = model.description.unit(name).and_then(|unit| unit.base) {
             meaning(model, unit, name, &base, findings);

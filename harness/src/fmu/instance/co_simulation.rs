@@ -2,9 +2,12 @@
 
 use super::super::description::Description;
 use super::call::Condition;
+use super::clocks::Clocks;
 use super::states::States;
 use super::unit::Steps;
-use super::{Access, Group, Instance, InstanceError, Message, REPEATS_MAX, Stepped, Update};
+use super::{
+    Access, Group, Instance, InstanceError, Message, Outcome, REPEATS_MAX, Stepped, Update,
+};
 use serde::{Deserialize, Serialize};
 
 /// Where in its life an instance is.
@@ -38,20 +41,34 @@ impl Phase {
 /// A co-simulation FMU.
 pub(super) struct CoSimulation<U: Steps> {
     unit: U,
+    own: Own,
+    states: States<Own>,
+}
+
+/// What belongs to a kept state beside the FMU's.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+struct Own {
     phase: Phase,
-    states: States<Phase>,
+    time_s: f64,
+    clocks: Clocks,
 }
 
 impl<U: Steps> CoSimulation<U> {
     pub(super) fn new(unit: U) -> Self {
-        Self { unit, phase: Phase::New, states: States::new() }
+        let clocks = if unit.has_event_mode() {
+            Clocks::of(&unit.base().description)
+        } else {
+            Clocks::default()
+        };
+        let own = Own { phase: Phase::New, time_s: 0.0, clocks };
+        Self { unit, own, states: States::new() }
     }
 
     fn expect(&self, what: &str, phases: &[Phase]) -> Result<(), InstanceError> {
-        if phases.contains(&self.phase) {
+        if phases.contains(&self.own.phase) {
             Ok(())
         } else {
-            Err(self.unit.base().order(what, self.phase.words()))
+            Err(self.unit.base().order(what, self.own.phase.words()))
         }
     }
 
@@ -61,9 +78,12 @@ impl<U: Steps> CoSimulation<U> {
         for _ in 0..REPEATS_MAX {
             let update = self.unit.update_discrete_states()?;
             terminate |= update.terminate;
+            if !self.own.clocks.is_empty() {
+                self.own.clocks.ask(&mut self.unit, self.own.time_s)?;
+            }
             if terminate || !update.again {
                 self.unit.enter_step_mode()?;
-                self.phase = Phase::Step;
+                self.own.phase = Phase::Step;
                 return Ok(terminate);
             }
         }
@@ -73,6 +93,51 @@ impl<U: Steps> CoSimulation<U> {
         })
     }
 
+    /// A step that stops where clocks are due, and lets them tick.
+    fn step_with_clocks(&mut self, time_s: f64, step_s: f64) -> Result<Stepped, InstanceError> {
+        let end_s = time_s + step_s;
+        let close_s = 1e-9 * step_s;
+        let mut stepped =
+            Stepped { time_s, outcome: Outcome::Done, event: false, terminate: false };
+        let mut ticks = 0;
+        loop {
+            self.own.time_s = stepped.time_s;
+            let next_s = self.own.clocks.next_s().unwrap_or(f64::INFINITY);
+            if next_s <= stepped.time_s + close_s {
+                ticks += 1;
+                if ticks > REPEATS_MAX {
+                    return Err(InstanceError::Endless {
+                        fmu: self.name().into(),
+                        what: format!("{REPEATS_MAX} ticks of clocks at {} s", stepped.time_s),
+                    });
+                }
+                self.enter_event_mode()?;
+                self.own.clocks.tick(&mut self.unit, stepped.time_s + close_s)?;
+                if self.settle()? {
+                    return Ok(Stepped { outcome: Outcome::Early, terminate: true, ..stepped });
+                }
+                continue;
+            }
+            if stepped.time_s >= end_s - close_s {
+                return Ok(Stepped { time_s: end_s, ..stepped });
+            }
+            ticks = 0;
+            let target_s = if next_s < end_s - close_s { next_s } else { end_s };
+            stepped = self.unit.do_step(stepped.time_s, target_s - stepped.time_s)?;
+            if stepped.outcome == Outcome::Done {
+                stepped.time_s = target_s;
+            }
+            // Its own events and ends are for who steps it; before the end that is an early return.
+            if stepped.outcome != Outcome::Done || stepped.event || stepped.terminate {
+                self.own.time_s = stepped.time_s;
+                if stepped.outcome == Outcome::Done && target_s < end_s {
+                    stepped.outcome = Outcome::Early;
+                }
+                return Ok(stepped);
+            }
+        }
+    }
+
     /// Brings the FMU where a group can be set, sets it, and leaves configuration mode again.
     fn with_access(
         &mut self,
@@ -80,9 +145,9 @@ impl<U: Steps> CoSimulation<U> {
         set: impl FnOnce(&mut U) -> Result<(), InstanceError>,
     ) -> Result<(), InstanceError> {
         match group.access {
-            Access::Event if self.phase == Phase::Step && self.unit.has_event_mode() => {
+            Access::Event if self.own.phase == Phase::Step && self.unit.has_event_mode() => {
                 self.unit.enter_event_mode()?;
-                self.phase = Phase::Event;
+                self.own.phase = Phase::Event;
             }
             Access::Configuration => {
                 self.unit.enter_configuration_mode()?;
@@ -112,7 +177,8 @@ impl<U: Steps> Instance for CoSimulation<U> {
     ) -> Result<(), InstanceError> {
         self.expect("the initialization", &[Phase::New])?;
         self.unit.enter_initialization(start_s, stop_s, tolerance)?;
-        self.phase = Phase::Initialization;
+        self.own.time_s = start_s;
+        self.own.phase = Phase::Initialization;
         Ok(())
     }
 
@@ -120,10 +186,14 @@ impl<U: Steps> Instance for CoSimulation<U> {
         self.expect("the end of the initialization", &[Phase::Initialization])?;
         self.unit.exit_initialization()?;
         if self.unit.has_event_mode() {
-            self.phase = Phase::Event;
+            self.own.phase = Phase::Event;
+            if !self.own.clocks.is_empty() {
+                self.own.clocks.start(&mut self.unit, self.own.time_s)?;
+                self.own.clocks.tick(&mut self.unit, self.own.time_s)?;
+            }
             return self.settle();
         }
-        self.phase = Phase::Step;
+        self.own.phase = Phase::Step;
         Ok(false)
     }
 
@@ -160,20 +230,20 @@ impl<U: Steps> Instance for CoSimulation<U> {
                 "a step has a positive length",
             ));
         }
-        let mut ended = false;
-        if self.phase == Phase::Event {
-            ended = self.settle()?;
-        }
+        self.own.time_s = time_s;
+        let ended = self.own.phase == Phase::Event && self.settle()?;
         self.expect("a step", &[Phase::Step])?;
         if ended {
-            let outcome = super::Outcome::Early;
-            return Ok(Stepped { time_s, outcome, event: false, terminate: true });
+            return Ok(Stepped { time_s, outcome: Outcome::Early, event: false, terminate: true });
         }
-        self.unit.do_step(time_s, step_s)
+        if self.own.clocks.is_empty() {
+            return self.unit.do_step(time_s, step_s);
+        }
+        self.step_with_clocks(time_s, step_s)
     }
 
     fn handle_events(&mut self) -> Result<bool, InstanceError> {
-        match self.phase {
+        match self.own.phase {
             Phase::Step if !self.unit.has_event_mode() => return Ok(false),
             Phase::Step => self.enter_event_mode()?,
             _ => self.expect("the handling of events", &[Phase::Event])?,
@@ -191,28 +261,32 @@ impl<U: Steps> Instance for CoSimulation<U> {
             ));
         }
         self.unit.enter_event_mode()?;
-        self.phase = Phase::Event;
+        self.own.phase = Phase::Event;
         Ok(())
     }
 
     fn update_discrete_states(&mut self) -> Result<Update, InstanceError> {
         self.expect("an update of the discrete states", &[Phase::Event])?;
-        self.unit.update_discrete_states()
+        let update = self.unit.update_discrete_states()?;
+        if !self.own.clocks.is_empty() {
+            self.own.clocks.ask(&mut self.unit, self.own.time_s)?;
+        }
+        Ok(update)
     }
 
     fn leave_event_mode(&mut self) -> Result<(), InstanceError> {
         self.expect("the end of event mode", &[Phase::Event])?;
         self.unit.enter_step_mode()?;
-        self.phase = Phase::Step;
+        self.own.phase = Phase::Step;
         Ok(())
     }
 
     fn keep_state(&mut self) -> Result<u64, InstanceError> {
-        self.states.keep(&mut self.unit, self.phase)
+        self.states.keep(&mut self.unit, self.own.clone())
     }
 
     fn restore_state(&mut self, state: u64) -> Result<(), InstanceError> {
-        self.phase = self.states.restore(&mut self.unit, state)?;
+        self.own = self.states.restore(&mut self.unit, state)?;
         Ok(())
     }
 
@@ -230,14 +304,14 @@ impl<U: Steps> Instance for CoSimulation<U> {
 
     fn reset(&mut self) -> Result<(), InstanceError> {
         self.unit.reset()?;
-        self.phase = Phase::New;
+        self.own.phase = Phase::New;
         Ok(())
     }
 
     fn terminate(&mut self) -> Result<(), InstanceError> {
         self.expect("the end", &[Phase::Step, Phase::Event])?;
         self.unit.terminate()?;
-        self.phase = Phase::End;
+        self.own.phase = Phase::End;
         Ok(())
     }
 
@@ -248,7 +322,7 @@ impl<U: Steps> Instance for CoSimulation<U> {
 
 impl<U: Steps> Drop for CoSimulation<U> {
     fn drop(&mut self) {
-        let runs = matches!(self.phase, Phase::Step | Phase::Event);
+        let runs = matches!(self.own.phase, Phase::Step | Phase::Event);
         if runs && self.unit.base().condition == Condition::Sound {
             // It goes in any case; what it answers changes nothing.
             let _ = self.unit.terminate();

@@ -7,7 +7,7 @@ use super::call::{Answer, Base, Condition, NOWHERE, call, function_number};
 use super::message::{Log, callbacks, text};
 use super::number::Truth;
 use super::setup::{Setup, c_text};
-use super::unit::{RawState, Steps, Unit};
+use super::unit::{Interval, RawState, Steps, Unit};
 use super::{Group, InstanceError, Outcome, Stepped, Update, group};
 use octant_fmi::fmi2;
 use std::ffi::{CString, c_char, c_void};
@@ -393,6 +393,14 @@ impl Steps for Component {
             event: false,
             terminate: false,
         })
+    }
+
+    fn interval(&mut self, _: u32) -> Result<Interval, InstanceError> {
+        Ok(Interval::Unknown)
+    }
+
+    fn activate(&mut self, _: u32) -> Result<(), InstanceError> {
+        Err(InstanceError::unsupported(&self.base.name, "tick", "FMI 2.0 has no clocks"))
     }
 }
 

@@ -7,7 +7,7 @@ use super::call::{Answer, Base, Condition, LOADING, NOWHERE, call, function_numb
 use super::message::{Log, log_message, text};
 use super::number::Truth;
 use super::setup::{Setup, c_text};
-use super::unit::{RawState, Steps, Unit};
+use super::unit::{Interval, RawState, Steps, Unit};
 use super::{Group, InstanceError, Outcome, Stepped, Update, group};
 use octant_fmi::fmi3;
 use std::ffi::{CString, c_char, c_void};
@@ -469,6 +469,23 @@ impl Steps for Component {
             _ => time_s,
         };
         Ok(Stepped { time_s, outcome, event: event && self.event_mode, terminate })
+    }
+
+    fn interval(&mut self, clock: u32) -> Result<Interval, InstanceError> {
+        let (mut interval_s, mut qualifier) = (0.0, fmi3::INTERVAL_NOT_YET_KNOWN);
+        let status = call!(self.get_interval_decimal "fmi3GetIntervalDecimal"(
+            &clock, 1, &mut interval_s, &mut qualifier));
+        self.base.check("fmi3GetIntervalDecimal", status)?;
+        Ok(match qualifier {
+            fmi3::INTERVAL_CHANGED => Interval::Changed(interval_s),
+            fmi3::INTERVAL_UNCHANGED => Interval::Unchanged(interval_s),
+            _ => Interval::Unknown,
+        })
+    }
+
+    fn activate(&mut self, clock: u32) -> Result<(), InstanceError> {
+        let status = call!(self.set_clock "fmi3SetClock"(&clock, 1, &1));
+        self.base.check("fmi3SetClock", status)
     }
 }
 

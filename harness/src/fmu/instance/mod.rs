@@ -13,9 +13,11 @@
 //! | `unit` | what the functions of both standards do, in one form |
 //! | `fmi2`, `fmi3` | the functions of each standard |
 //! | `states` | kept states, and states as bytes |
+//! | `clocks` | when clocks tick in time |
 //! | `co_simulation` | co-simulation in the order that the standards ask for |
 
 pub(super) mod call;
+mod clocks;
 pub(super) mod co_simulation;
 pub mod error;
 pub(super) mod fmi2;
@@ -144,7 +146,8 @@ pub trait Instance: Send {
     /// If the FMU fails.
     fn get_binaries(&mut self, group: &Group) -> Result<Vec<Vec<u8>>, InstanceError>;
 
-    /// One communication step. Model exchange is integrated over it, with its events.
+    /// One communication step. Model exchange is integrated over it, with its events; clocks of
+    /// co-simulation that are due tick on the way and at its end.
     ///
     /// # Errors
     /// If the FMU fails.

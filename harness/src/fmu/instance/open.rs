@@ -1,17 +1,19 @@
 //! Opening an FMU: its archive, its description, its library, an instance.
 
 use super::super::archive::{Archive, ArchiveError, Unpacked};
-use super::super::description::{self, Description, DescriptionError, Interface, Standard};
+use super::super::description::{self, Description, DescriptionError, Interface, Kind, Standard};
 use super::super::exchange::Exchange;
 use super::super::library::{self, Library};
 use super::super::process;
 use super::call::{LOADING, Mark, NOWHERE};
+use super::clocks::Clocks;
 use super::co_simulation::CoSimulation;
 use super::options::{InterfaceKind, Options, Place};
 use super::setup::Setup;
 use super::{Instance, InstanceError, fmi2, fmi3};
+use std::collections::BTreeSet;
 use std::path::Path;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// Why an FMU can't be opened.
 #[derive(Debug, thiserror::Error)]
@@ -112,11 +114,31 @@ pub(crate) fn open_here(
             format!("it needs the tool that made it, {}", description.generation_tool),
         ));
     }
+    let clocks = description.variables.iter().any(|variable| variable.kind == Kind::Clock);
+    if !exchange && clocks && !(options.event_mode && interface.event_mode) {
+        return Err(InstanceError::unsupported(
+            name,
+            "run without event mode",
+            "it has clocks, which tick at events",
+        ));
+    }
+    if exchange && !Clocks::of(&description).is_empty() {
+        return Err(InstanceError::unsupported(
+            name,
+            "run by model exchange",
+            "it has clocks that tick in time, which tick in co-simulation alone",
+        ));
+    }
+    let once = if interface.only_once_per_process {
+        Some(Once::take(name, &description.token)?)
+    } else {
+        None
+    };
     let absolute = std::path::absolute(folder.path())
         .map_err(|e| InstanceError::load(name, format!("{}: {e}", folder.path().display())))?;
     let path = library::binary(name, &absolute, description.standard, &interface.model_identifier)?;
     mark.set(LOADING);
-    let library = Arc::new(Library::load(name, &path, description.standard, folder)?);
+    let library = Arc::new(Library::load(name, &path, description.standard, (folder, once))?);
     mark.set(NOWHERE);
     let setup = Setup {
         name: name.into(),
@@ -183,4 +205,30 @@ fn interface(
         let has = if has.is_empty() { "no interface".into() } else { has.join(" and ") };
         InstanceError::unsupported(name, format!("run by {wanted}"), format!("it has {has}"))
     })
+}
+
+/// The tokens of FMUs in this process that can be there only once.
+static ONCE: Mutex<BTreeSet<String>> = Mutex::new(BTreeSet::new());
+
+/// The right to be there; it goes with the library.
+pub(crate) struct Once(String);
+
+impl Once {
+    fn take(name: &str, token: &str) -> Result<Self, InstanceError> {
+        let mut once = ONCE.lock().unwrap_or_else(PoisonError::into_inner);
+        if once.insert(token.into()) {
+            return Ok(Self(token.into()));
+        }
+        Err(InstanceError::unsupported(
+            name,
+            "run in this process",
+            "there is one already, and it can be there only once",
+        ))
+    }
+}
+
+impl Drop for Once {
+    fn drop(&mut self) {
+        ONCE.lock().unwrap_or_else(PoisonError::into_inner).remove(&self.0);
+    }
 }

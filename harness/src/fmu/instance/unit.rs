@@ -48,6 +48,21 @@ pub(crate) trait Steps: Unit {
     fn has_event_mode(&self) -> bool;
     fn enter_step_mode(&mut self) -> Result<(), InstanceError>;
     fn do_step(&mut self, time_s: f64, step_s: f64) -> Result<Stepped, InstanceError>;
+    /// The interval of a clock.
+    fn interval(&mut self, clock: u32) -> Result<Interval, InstanceError>;
+    /// Lets a clock tick.
+    fn activate(&mut self, clock: u32) -> Result<(), InstanceError>;
+}
+
+/// What an FMU says of a clock's interval.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Interval {
+    /// It isn't known yet.
+    Unknown,
+    /// It is as it was, s.
+    Unchanged(f64),
+    /// It is new, s.
+    Changed(f64),
 }
 
 /// Model exchange. Where a value can't be computed (the FMU discards the call), that is no failure

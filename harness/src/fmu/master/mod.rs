@@ -13,13 +13,18 @@
 
 pub mod convert;
 pub mod error;
+pub mod experiment;
 pub mod faults;
 pub mod flat;
 pub mod graph;
 pub mod initialize;
 pub mod order;
+pub mod parameters;
+pub mod record;
+pub mod run;
 pub mod simulation;
 pub mod solve;
 pub mod ssp;
+pub mod summary;
 pub mod system;
 pub mod values;

@@ -150,9 +150,14 @@ pub enum Sink {
 pub struct Mcap {
     writer: mcap::Writer<BufWriter<File>>,
     channel: u16,
+    /// Channel of events, once there was one.
+    events: Option<u16>,
     sequence: u32,
     text: Vec<u8>,
 }
+
+/// Schema of events.
+const EVENT: &str = "octant.Event";
 
 /// Topic of the rows in an MCAP file.
 pub const TOPIC: &str = "/fmu/outputs";
@@ -224,6 +229,17 @@ impl Sink {
         }
     }
 
+    /// Notes an event, where the file has a place for it.
+    ///
+    /// # Errors
+    /// If it can't be written.
+    pub fn event(&mut self, time_s: f64, event: &crate::recorder::Event) -> io::Result<()> {
+        match self {
+            Self::Mcap(mcap) => mcap.event(time_s, event),
+            Self::None | Self::Csv(_) => Ok(()),
+        }
+    }
+
     /// Writes what is left.
     ///
     /// # Errors
@@ -265,7 +281,7 @@ impl Mcap {
             serde_json::json!({ "title": model, "type": "object", "properties": properties });
         let schema = writer.add_schema(model, "jsonschema", schema.to_string().as_bytes())?;
         let channel = writer.add_channel(schema, TOPIC, "json", &BTreeMap::new())?;
-        Ok(Self { writer, channel, sequence: 0, text: Vec::new() })
+        Ok(Self { writer, channel, events: None, sequence: 0, text: Vec::new() })
     }
 
     fn row(&mut self, time_s: f64, outputs: &Outputs, numbers: &[f64]) -> io::Result<()> {
@@ -285,10 +301,36 @@ impl Mcap {
             }
         }
         text.extend_from_slice(b"}");
+        self.put(self.channel, time_s)
+    }
+
+    fn event(&mut self, time_s: f64, event: &crate::recorder::Event) -> io::Result<()> {
+        let channel = match self.events {
+            Some(channel) => channel,
+            None => {
+                let schema = serde_json::json!({
+                    "title": EVENT,
+                    "type": "object",
+                    "properties": { "kind": { "type": "string" }, "detail": {} },
+                });
+                let schema = schema.to_string();
+                let schema = self.writer.add_schema(EVENT, "jsonschema", schema.as_bytes());
+                let schema = schema.map_err(io::Error::other)?;
+                let channel = self.writer.add_channel(schema, "/event", "json", &BTreeMap::new());
+                *self.events.insert(channel.map_err(io::Error::other)?)
+            }
+        };
+        self.text.clear();
+        serde_json::to_writer(&mut self.text, event)?;
+        self.put(channel, time_s)
+    }
+
+    /// Writes the message in `self.text`.
+    fn put(&mut self, channel: u16, time_s: f64) -> io::Result<()> {
         let time_ns = (time_s.max(0.0) * 1e9).round() as u64;
         self.sequence = self.sequence.wrapping_add(1);
         let header = mcap::records::MessageHeader {
-            channel_id: self.channel,
+            channel_id: channel,
             sequence: self.sequence,
             log_time: time_ns,
             publish_time: time_ns,

@@ -24,6 +24,11 @@ static FAULT: Variants = Variants { tag: Tag::Value("kind"), forms: || &FORMS };
 static FORMS: LazyLock<Vec<(&'static str, &'static Section)>> =
     LazyLock::new(|| KINDS.iter().map(|kind| (kind.name, leak(fault(kind)))).collect());
 
+/// The keys of a kind.
+pub(crate) fn connection_section(kind: &str) -> Option<&'static Section> {
+    FORMS.iter().find(|(name, _)| *name == kind).map(|(_, section)| *section)
+}
+
 fn fault(kind: &'static kinds::Kind) -> Section {
     let mut keys: Vec<Key> = vec![
         key("id", Kind::Text, Default::Required, "Name of the fault, unique in the system."),

@@ -14,7 +14,7 @@ mod suite;
 use super::quantity::Dimension;
 use crate::fmu::mapping::channel::Channel;
 
-pub(crate) use connection::CONNECTIONS;
+pub(crate) use connection::{CONNECTIONS, connection_section};
 pub(crate) use faults::{dimension, kind_section};
 pub(crate) use fmu::{ENDPOINT_FMU, ENDPOINT_MAP, SOURCE_FMU, SOURCE_MAP};
 pub(crate) use run::{POSITIONS, SCENARIO};

@@ -179,6 +179,12 @@ impl Station {
             .is_some_and(|stage| stage.clock.fire(next))
     }
 
+    /// Id and kind of a fault by its number.
+    #[must_use]
+    pub fn name(&self, fault: usize) -> Option<(&str, &'static str)> {
+        self.stages.get(fault).map(|stage| (stage.id.as_str(), stage.kind.name))
+    }
+
     /// Receipts of all faults, in order. Samples in them are epochs; checksums are over the 64 bits
     /// of the altered values, little-endian, in the order of the transfers.
     #[must_use]

@@ -6,6 +6,7 @@
 #[path = "../common/mod.rs"]
 mod common;
 mod draw;
+mod plain;
 mod state;
 
 use common::{Log, clean, setup};

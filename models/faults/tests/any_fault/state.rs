@@ -2,7 +2,8 @@
 //! way; other bytes are refused.
 
 use crate::common::{Log, setup};
-use crate::draw::{plain, spec};
+use crate::draw::spec;
+use crate::plain::plain;
 use crate::{EPOCHS, answer, bytes, source};
 use octant_faults::disturbance::Disturbance;
 use octant_faults::rule::UnitEvent;

@@ -1,6 +1,6 @@
 //! FMI 2.0: every element of an array is a scalar variable.
 
-use super::super::element::{Element, list, number};
+use super::super::element::{Element, list, number, whole};
 use super::types::{quantities, unit_definitions, with_quantity};
 use super::{
     causality, default_experiment, has_start, index_of, initial_knowns, initial_unknowns,
@@ -93,15 +93,15 @@ fn typed(variable: &Variable, element: usize) -> Element {
                 .with_some("start", start.map(number))
         }
         Kind::Integer => Element::new("Integer")
-            .with_some("min", variable.min.map(number))
-            .with_some("max", variable.max.map(number))
-            .with_some("start", start.map(number)),
+            .with_some("min", variable.min.map(whole))
+            .with_some("max", variable.max.map(whole))
+            .with_some("start", start.map(whole)),
         Kind::Enumeration(enumeration) => {
             let values = || enumeration.items.iter().map(|(value, ..)| *value);
             Element::new("Integer")
                 .with_some("min", values().min().map(|value| value.to_string()))
                 .with_some("max", values().max().map(|value| value.to_string()))
-                .with_some("start", start.map(number))
+                .with_some("start", start.map(whole))
         }
         Kind::Boolean => Element::new("Boolean")
             .with_some("start", start.map(|start| if start == 0.0 { "false" } else { "true" })),

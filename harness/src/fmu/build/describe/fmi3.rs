@@ -1,6 +1,6 @@
 //! FMI 3.0: arrays as they are.
 
-use super::super::element::{Element, list, number};
+use super::super::element::{Element, list, number, whole};
 use super::types::{enumerations, items, quantities, unit_definitions, with_quantity};
 use super::{
     STEP_S, causality, default_experiment, first_slots, has_start, index_of, initial_knowns,
@@ -88,21 +88,21 @@ fn variable(variable: &Variable, slot: usize) -> Element {
         .with("variability", variability(variable))
         .with("initial", if has_start(variable) { "exact" } else { "calculated" })
         .with_some("declaredType", declared);
-    if !matches!(variable.kind, Kind::Boolean | Kind::Enumeration(_)) {
-        element = element
-            .with_some("min", variable.min.map(number))
-            .with_some("max", variable.max.map(number));
-    }
-    if variable.kind == Kind::Real {
-        element = element.with_some("nominal", variable.nominal.map(number));
-    }
+    let limits = |element: Element, write: fn(f64) -> String| {
+        element.with_some("min", variable.min.map(write)).with_some("max", variable.max.map(write))
+    };
+    element = match variable.kind {
+        Kind::Real => limits(element, number).with_some("nominal", variable.nominal.map(number)),
+        Kind::Integer | Kind::Count => limits(element, whole),
+        Kind::Boolean | Kind::Enumeration(_) => element,
+    };
     if has_start(variable) {
         let starts = (0..variable.slots()).map(|index| {
             let start = start(variable, index);
             match variable.kind {
                 Kind::Boolean => (start != 0.0).to_string(),
-                Kind::Count => (start as u64).to_string(),
-                _ => number(start),
+                Kind::Real => number(start),
+                _ => whole(start),
             }
         });
         element = element.with("start", list(starts));

@@ -14,8 +14,9 @@ use octant_fmu::table::{Causality, Model, Variability, Variable};
 /// Name and version of what made the file.
 pub(super) const TOOL: &str = concat!("Octant ", env!("CARGO_PKG_VERSION"));
 
-/// `defaultExperiment`: the case of the reference result.
-pub(super) const STOP_S: f64 = 10.0;
+/// End of the default experiment, s, which is the case of the reference result: the alignment of the
+/// start values takes a minute, and ten measurements follow.
+pub(super) const STOP_S: f64 = 70.0;
 /// Its step, s: the sample period of the start values.
 pub(super) const STEP_S: f64 = 0.005;
 
@@ -102,4 +103,34 @@ fn index_of(model: &Model, name: &str) -> Option<usize> {
 /// First slot of each variable.
 pub(super) fn first_slots(model: &Model) -> Vec<usize> {
     model.with_slots().map(|(slot, _)| slot).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "tests")]
+
+    use super::super::sample::SAMPLE;
+    use super::*;
+
+    #[test]
+    fn integers_are_written_as_integers() {
+        for description in [fmi2(&SAMPLE, "{token}"), fmi3(&SAMPLE, "{token}")] {
+            let text = String::from_utf8(description.document().unwrap()).unwrap();
+            let file = roxmltree::Document::parse(&text).unwrap();
+            let mut seen = 0;
+            for node in file.descendants() {
+                if !matches!(node.tag_name().name(), "Integer" | "Int32" | "UInt64" | "Enumeration")
+                {
+                    continue;
+                }
+                for name in ["min", "max", "start"] {
+                    for number in node.attribute(name).unwrap_or_default().split(' ') {
+                        assert!(number.is_empty() || number.parse::<i64>().is_ok(), "{number}");
+                        seen += usize::from(!number.is_empty());
+                    }
+                }
+            }
+            assert!(seen >= 5, "{seen}");
+        }
+    }
 }

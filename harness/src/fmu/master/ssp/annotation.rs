@@ -79,6 +79,22 @@ fn co_simulation(element: &Element<'_>, package: &Package) -> Result<CoSimulatio
     Ok(CoSimulation { step_s, order: order.map_err(|e: String| element.error(e))?, seed, faults })
 }
 
+/// The step in the annotation of the Open Simulation Platform, which libcosim and others read, s.
+pub(super) fn osp_step_s(experiment: &Element<'_>) -> Result<Option<f64>, SspError> {
+    const TYPE: &str = "com.opensimulationplatform";
+    const NAMESPACE: &str = "http://opensimulationplatform.com/SSP/OSPAnnotations";
+    let lists = experiment.children().filter(|child| child.is(SSD, "Annotations"));
+    let ours = |annotation: &Element<'_>| annotation.optional("type") == Some(TYPE);
+    for annotation in lists.flat_map(|list| list.children()).filter(ours) {
+        for algorithm in annotation.children().filter(|child| child.is(NAMESPACE, "Algorithm")) {
+            if let Some(fixed) = algorithm.child(NAMESPACE, "FixedStepAlgorithm")? {
+                return fixed.finite("baseStepSize");
+            }
+        }
+    }
+    Ok(None)
+}
+
 /// A communication step as the user writes it, s.
 pub(crate) fn step(text: &str) -> Result<f64, String> {
     let expected = "expected a time above 0 such as \"5 ms\"";

@@ -32,6 +32,8 @@ pub struct Structure {
     pub stop_s: Option<f64>,
     /// What it says to this program alone.
     pub co_simulation: CoSimulation,
+    /// The step that it says to programs of the Open Simulation Platform, s.
+    pub osp_step_s: Option<f64>,
 }
 
 /// A system: elements, and how they are connected.
@@ -255,11 +257,12 @@ impl Structure {
             Some(enumerations) => parameters::enumerations(&enumerations)?,
             None => Vec::new(),
         };
-        let (mut start_s, mut stop_s) = (None, None);
+        let (mut start_s, mut stop_s, mut osp_step_s) = (None, None, None);
         if let Some(experiment) = root.child(SSD, "DefaultExperiment")? {
             experiment.only(&["startTime", "stopTime"], &[])?;
             start_s = experiment.finite("startTime")?;
             stop_s = experiment.finite("stopTime")?;
+            osp_step_s = annotation::osp_step_s(&experiment)?;
         }
         let reader = Reader { package };
         Ok(Self {
@@ -270,6 +273,7 @@ impl Structure {
             start_s,
             stop_s,
             co_simulation: annotation::of(&root, package)?,
+            osp_step_s,
             file: file.clone(),
         })
     }

@@ -276,7 +276,7 @@ fn what_is_wrong_is_told_with_file_line_and_element() {
             "put the system into this file",
         ),
         (
-            two("<Annotations/>").replace("</System>", "</System>")
+            two("<Annotations/>")
                 + r#"<Annotations><ssc:Annotation type="octant.co-simulation">
                      <CoSimulation xmlns="urn:octant:co-simulation:1" step="5"/>
                      </ssc:Annotation></Annotations>"#,

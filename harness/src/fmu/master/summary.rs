@@ -1,0 +1,183 @@
+//! `summary.json` of a run of a system: what it was, what happened, and what it comes to.
+//!
+//! Nothing of host or clock is in it: the same system and settings give the same bytes.
+
+use super::initialize::Loop;
+use crate::score::summary::FaultResult;
+use crate::score::verdict::Verdict;
+use serde::Serialize;
+
+/// Version of the form of this summary.
+pub const SCHEMA: u32 = 1;
+
+/// The summary.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Summary {
+    /// Version of this form: [`SCHEMA`].
+    pub schema: u32,
+    /// Version of the program that made the run.
+    pub octant: String,
+    /// Name of the system.
+    pub system: String,
+    /// Seed of the faults' random streams.
+    pub seed: u64,
+    /// The worst of everything below.
+    pub verdict: Verdict,
+    /// Why the verdict is what it is, in plain words.
+    pub reasons: Vec<String>,
+    /// Order of the FMUs: `jacobi`, `gauss-seidel=plant,calibrator`.
+    pub order: String,
+    /// Start, s.
+    pub start_s: f64,
+    /// End that was asked for, s.
+    pub stop_s: f64,
+    /// Communication step, s.
+    pub step_s: f64,
+    /// Steps done.
+    pub steps: u64,
+    /// Steps, or parts of steps, that were made anew because an FMU discarded them.
+    pub rejected: u64,
+    /// How it ended.
+    pub ended: Ended,
+    /// Variables that depend on themselves when the system is initialized, and how they were solved.
+    pub loops: Vec<LoopResult>,
+    /// Faults that were injected; samples are steps.
+    pub faults: Vec<FaultResult>,
+    /// The FMUs.
+    pub fmus: Vec<FmuResult>,
+    /// Connected numbers.
+    pub connections: usize,
+    /// Every so many steps a row was recorded.
+    pub recorded_every: u64,
+    /// What is worth telling, though it is no error.
+    pub warnings: Vec<String>,
+    /// BLAKE3 over what went over the connections: see [`super::record::ConnectionHash`].
+    pub stream_hash: String,
+}
+
+/// How a run ended.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(tag = "how", rename_all = "kebab-case")]
+pub enum Ended {
+    /// At its end.
+    AtStop,
+    /// An FMU wanted it.
+    AskedByFmu {
+        /// Its name in the system.
+        fmu: String,
+        /// When, s.
+        at_s: f64,
+    },
+    /// Somebody interrupted it.
+    Interrupted {
+        /// When, s.
+        at_s: f64,
+    },
+    /// It could not go on.
+    Failed {
+        /// When, s.
+        at_s: f64,
+        /// Why.
+        reason: String,
+    },
+}
+
+/// A loop of variables.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct LoopResult {
+    /// The variables on the way around.
+    pub variables: Vec<String>,
+    /// Iterations that it took.
+    pub iterations: u32,
+    /// What is left of the equations, over the size of the values.
+    pub residual: f64,
+    /// It only looked like one: the values settled to the last bit.
+    pub settled: bool,
+}
+
+impl From<&Loop> for LoopResult {
+    fn from(found: &Loop) -> Self {
+        Self {
+            variables: found.variables.clone(),
+            iterations: found.solved.iterations,
+            residual: found.solved.residual,
+            settled: found.solved.exact,
+        }
+    }
+}
+
+/// An FMU of the system.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct FmuResult {
+    /// Its name in the system.
+    pub name: String,
+    /// The file, as the structure names it.
+    pub source: String,
+    /// SHA-256 of the file, hexadecimal; null of a folder.
+    pub sha256: Option<String>,
+    /// `modelName`.
+    pub model: String,
+    /// `guid` or `instantiationToken`.
+    pub token: String,
+    /// `fmiVersion`.
+    pub fmi: String,
+    /// `co-simulation` or `model-exchange`.
+    pub interface: &'static str,
+    /// `generationTool`.
+    pub generation_tool: String,
+    /// What its description does not do as the standard says.
+    pub tolerated: Vec<String>,
+    /// Steps that it discarded.
+    pub discarded: u64,
+    /// Values that it refused; faults had made them.
+    pub refused: u64,
+    /// Messages that it logged.
+    pub messages: usize,
+}
+
+impl Summary {
+    /// The bytes of `summary.json`: pretty JSON with a final newline.
+    ///
+    /// # Errors
+    /// If it can't be written as JSON.
+    pub fn to_json(&self) -> Result<String, serde_json::Error> {
+        Ok(serde_json::to_string_pretty(self)? + "\n")
+    }
+
+    /// What is printed of it.
+    #[must_use]
+    pub fn text(&self) -> String {
+        let mut text = format!("{}: {}\n", self.system, self.verdict.name());
+        for reason in &self.reasons {
+            text += &format!("  {reason}\n");
+        }
+        let names: Vec<&str> = self.fmus.iter().map(|fmu| fmu.name.as_str()).collect();
+        let end_s = self.start_s + self.steps as f64 * self.step_s;
+        text += &format!(
+            "{}, {}, {} steps of {} s to {end_s} s\n",
+            names.join(" and "),
+            self.order,
+            self.steps,
+            self.step_s
+        );
+        if let Ended::AskedByFmu { fmu, at_s } = &self.ended {
+            text += &format!("  {fmu} wanted it to end at {at_s} s\n");
+        }
+        if self.rejected > 0 {
+            text += &format!("  {} discarded steps were made in parts\n", self.rejected);
+        }
+        for one in &self.loops {
+            let how = if one.settled { "settled" } else { "solved" };
+            let around = one.variables.join(" -> ");
+            text += &format!("  loop {around}: {how} in {} iterations\n", one.iterations);
+        }
+        for fault in &self.faults {
+            text += &format!("  {}\n", fault.sentence());
+        }
+        for fmu in self.fmus.iter().filter(|fmu| fmu.refused > 0) {
+            text +=
+                &format!("  {} refused {} values that faults had made\n", fmu.name, fmu.refused);
+        }
+        text + &format!("stream hash {}\n", self.stream_hash)
+    }
+}
