@@ -2,6 +2,7 @@
 
 use super::{Failure, print, print_json};
 use crate::recorder::reader::Recording;
+use crate::scenario::resolve::{Draws, Seeded};
 use crate::scenario::{Method, Scenario};
 use crate::score::parameters::{nees, score, worst_normalized_error};
 use crate::score::summary::{HeightChannel, Navigation, ParameterScore};
@@ -70,8 +71,7 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         ),
         None => None,
     };
-    let (_, _, draws) = crate::run::method::configurations(&scenario, method, seed)
-        .map_err(|error| Failure::input(format!("failed to {error}")))?;
+    let draws = Draws::of(&scenario, &Seeded(seed));
     let truth = true_parameters(path, &scenario)?.then_some(draws.parameters);
     let parameters = watcher
         .last_parameters

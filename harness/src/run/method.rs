@@ -166,15 +166,19 @@ pub fn configurations(
 ) -> Result<(octant_plant::config::Config, core::Config, Draws), SetupError> {
     let draws = Draws::of(scenario, &Seeded(seed));
     let plant = scenario.plant(seed, &draws);
-    let (q_nb, velocity) = match &scenario.source {
-        // On a ship the attitude at the start depends on the phases that were drawn.
-        SourceKind::Plant => {
-            let truth = Plant::new(&plant)?.truth();
+    // On a ship the attitude at the start depends on the phases that were drawn, or on the ship.
+    let truth = match &scenario.source {
+        SourceKind::Plant => Some(Plant::new(&plant)?.truth()),
+        SourceKind::Fmu(fmu) => crate::source::fmu::truth_at_start(scenario, fmu, &plant)?,
+        SourceKind::Replay { .. } | SourceKind::Text(_) => None,
+    };
+    let (q_nb, velocity) = match truth {
+        Some(truth) => {
             let [w, x, y, z] = truth.q_nb;
             let q_nb = UnitQuaternion::new_unchecked(Quaternion::new(w, x, y, z));
             (q_nb, Vector3::from(truth.velocity_mps))
         }
-        _ => (scenario.mean_attitude(), Vector3::zeros()),
+        None => (scenario.mean_attitude(), Vector3::zeros()),
     };
     let core = scenario.core(method, &draws, &q_nb, &velocity).ok_or(SetupError::NoBaseline)?;
     Ok((plant, core, draws))

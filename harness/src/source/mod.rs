@@ -2,7 +2,7 @@
 
 mod counting;
 mod fields;
-mod fmu;
+pub(crate) mod fmu;
 mod foreign;
 mod from_scenario;
 mod plant;

@@ -6,6 +6,7 @@
 //! `f = C_cn (v̇ + (2 ω_ie + ω_en) × v − g)` (Titterton and Weston, 2004, sec. 3.5).
 
 use crate::config::{self, CaseAttitude, Dockside, Site};
+use crate::course::Course;
 use crate::disturbed::Motion;
 use crate::sway::{SixDof, Sway};
 use crate::trig::{Near, rx_t, ry_t, rz_t};
@@ -204,6 +205,20 @@ impl Case {
                 ship.whereabouts(&with(SixDof::default(), motion))
             }
             Kind::Static { .. } => self.whereabouts(time_s),
+        }
+    }
+
+    /// A motion from outside, beside the sway; false: the case is fixed to the ground.
+    pub(crate) fn follow(&mut self, course: &Course) -> bool {
+        match &mut self.kind {
+            Kind::Static { .. } => false,
+            Kind::Ship(ship) => {
+                match &mut ship.sway.course {
+                    Some(present) => **present = *course,
+                    none => *none = Some(Box::new(*course)),
+                }
+                true
+            }
         }
     }
 

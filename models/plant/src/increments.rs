@@ -243,7 +243,7 @@ impl Body {
     }
 
     /// The size effect needs the rate at the start.
-    fn begin(&mut self, start_s: f64) {
+    pub(crate) fn begin(&mut self, start_s: f64) {
         if self.lever_arm.is_some() {
             let mut before = self.clone();
             before.case.enter(start_s);

@@ -15,6 +15,7 @@
 
 mod case;
 pub mod config;
+pub mod course;
 mod disturbed;
 pub mod draw;
 mod encoder;

@@ -3,6 +3,7 @@
 mod state;
 
 use crate::config::{Config, Temperature};
+use crate::course::Course;
 use crate::disturbed::Motion;
 use crate::encoder::ErrorCurve;
 use crate::imu::{Reading, Sensors};
@@ -94,6 +95,33 @@ impl Plant {
     #[must_use]
     pub fn config(&self) -> &Config {
         &self.config
+    }
+
+    /// The case of a moored ship moves on a course, beside its sway, in the interval that comes. It
+    /// is given before every interval that it holds for, and is no part of [`Self::save`].
+    ///
+    /// # Errors
+    /// If the motion isn't that of a ship, the instrument lags its stamps (what it felt before the
+    /// start isn't known), or the course isn't made of numbers.
+    pub fn follow(&mut self, course: &Course) -> Result<(), ConfigError> {
+        let problem = |field: &str, found: String, expected: &str| {
+            let (field, expected) = (field.to_owned(), expected.to_owned());
+            Err(ConfigError { field, found, expected })
+        };
+        if !course.is_sound() {
+            return problem("course", format!("{course:?}"), "finite numbers");
+        }
+        let skew_s = self.config.imu.extensions.time_skew_s;
+        if skew_s > 0.0 {
+            return problem("imu.extensions.time_skew_s", skew_s.to_string(), "0 on a course");
+        }
+        if !self.body.case.follow(course) {
+            return problem("motion", "static".to_owned(), "a ship that can follow a course");
+        }
+        if self.sequence == 0 {
+            self.body.begin(0.0);
+        }
+        Ok(())
     }
 
     /// The next sample.

@@ -2,6 +2,7 @@
 //! each phasor instead of a sine and cosine.
 
 use crate::config::{Dockside, Sinusoid};
+use crate::course::Course;
 
 /// Value, rate and acceleration of one degree of freedom.
 #[derive(Clone, Copy, Debug, Default)]
@@ -69,10 +70,16 @@ pub(crate) struct Sway {
     to_node: Vec<(f64, f64)>,
     period_s: f64,
     until_reset: u32,
+    /// Start of the present interval, s.
+    start_s: f64,
+    /// Regular nodes, s from the start of an interval.
+    nodes_s: Vec<f64>,
+    /// A motion from outside; who gives it gives it before every interval.
+    pub(crate) course: Option<Box<Course>>,
 }
 
 octant_state::state! {
-    Sway { values: until_reset; parts: components; kept: ends, to_node, period_s }
+    Sway { values: until_reset; parts: components; kept: ends, to_node, period_s, start_s, nodes_s, course }
 }
 
 impl Sway {
@@ -109,11 +116,21 @@ impl Sway {
                 to_node.push(libm::sincos(component.omega * (node - 0.5 * period_s)));
             }
         }
-        Self { components, ends, to_node, period_s, until_reset: 0 }
+        Self {
+            components,
+            ends,
+            to_node,
+            period_s,
+            until_reset: 0,
+            start_s: 0.0,
+            nodes_s: nodes_s.to_vec(),
+            course: None,
+        }
     }
 
     /// Goes to the interval that starts at `start_s`; intervals follow each other.
     pub(crate) fn enter(&mut self, start_s: f64) {
+        self.start_s = start_s;
         if self.until_reset == 0 {
             self.until_reset = RESET_SAMPLES;
             for component in &mut self.components {
@@ -148,19 +165,39 @@ impl Sway {
     pub(crate) fn at_node(&self, node: usize) -> SixDof {
         let n = self.components.len();
         let to_node = &self.to_node[node * n..(node + 1) * n];
-        self.sum(|i, component| component.turned(to_node[i]))
+        let six = self.sum(|i, component| component.turned(to_node[i]));
+        match &self.course {
+            None => six,
+            Some(course) => on(course, six, self.start_s + self.nodes_s[node]),
+        }
     }
 
     /// At `offset_s` after the start of the present interval.
     pub(crate) fn at_offset(&self, offset_s: f64) -> SixDof {
         let from_middle_s = offset_s - 0.5 * self.period_s;
-        self.sum(|_, component| component.turned(libm::sincos(component.omega * from_middle_s)))
+        let six = self
+            .sum(|_, component| component.turned(libm::sincos(component.omega * from_middle_s)));
+        match &self.course {
+            None => six,
+            Some(course) => on(course, six, self.start_s + offset_s),
+        }
     }
 
     /// At any time, s since the start.
     pub(crate) fn at_time(&self, time_s: f64) -> SixDof {
-        self.sum(|_, component| component.phase_at(time_s))
+        let six = self.sum(|_, component| component.phase_at(time_s));
+        match &self.course {
+            None => six,
+            Some(course) => on(course, six, time_s),
+        }
     }
+}
+
+/// A sway on a course.
+#[inline(never)]
+fn on(course: &Course, mut six: SixDof, time_s: f64) -> SixDof {
+    course.add_to(&mut six, time_s);
+    six
 }
 
 /// Shortest period of all sinusoids, s.

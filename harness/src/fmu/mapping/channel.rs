@@ -208,14 +208,14 @@ pub mod truth {
     );
     /// True gimbal angle.
     pub static AZIMUTH: Channel = quantity(
-        "truth.gimbal_azimuth",
+        "truth.gimbal.azimuth",
         Dimension::ANGLE,
         1,
         "True angle of the inner gimbal, without encoder error.",
     );
     /// True gimbal angle.
     pub static ROLL: Channel = quantity(
-        "truth.gimbal_roll",
+        "truth.gimbal.roll",
         Dimension::ANGLE,
         1,
         "True angle of the outer gimbal, without encoder error.",

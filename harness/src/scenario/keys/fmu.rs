@@ -168,9 +168,11 @@ static TRUTH: Section = section(&[
     port("height", &truth::HEIGHT),
     port("velocity", &truth::VELOCITY),
     port("attitude", &truth::ATTITUDE),
-    port("gimbal_azimuth", &truth::AZIMUTH),
-    port("gimbal_roll", &truth::ROLL),
+    group("gimbal", &TRUE_GIMBAL, "True angles of the gimbals; left out: those of the encoders."),
 ]);
+
+static TRUE_GIMBAL: Section =
+    section(&[port("azimuth", &truth::AZIMUTH), port("roll", &truth::ROLL)]);
 
 static CASE: Section = section(&[
     port("heading", &case::HEADING),

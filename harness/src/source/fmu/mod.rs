@@ -1,8 +1,11 @@
 //! FMUs as a source: our own plant, another's instrument, or the ship under our plant.
 
 mod instrument;
+mod motion;
 
 use instrument::{FmuSource, Instrument, Timing};
+use motion::{MovedPlant, Moving};
+use octant_plant::Truth;
 
 use super::{Source, SourceError};
 use crate::fmu::mapping::open::{self, Kept};
@@ -30,7 +33,14 @@ fn of_instance(
     Kept { instance, uri }: Kept,
 ) -> Result<Box<dyn Source>, SourceError> {
     let description = instance.description().clone();
-    let own = open::own_plant(&description, plant);
+    if fmu.is_motion() {
+        let moving = moving(scenario, fmu, plant, Kept { instance, uri })?;
+        let samples = scenario.samples().unwrap_or(u64::MAX);
+        let samples_a_piece = fmu.step_ns / scenario.sample_period_ns;
+        return Ok(Box::new(MovedPlant::new(moving, plant, samples, samples_a_piece)?));
+    }
+    let own = open::own_plant(&description, plant)
+        .map_err(|reason| UseError::Open { uri: uri.clone(), reason })?;
     let starts = open::starts(scenario, fmu, &uri, &description, own.as_deref())?;
     let instrument = Instrument::bind(&description, fmu)
         .map_err(|error| UseError::binding(&scenario.file, &uri, error))?;
@@ -43,6 +53,44 @@ fn of_instance(
         position: matches!(scenario.aiding.kind, plant::AidingKind::DockPosition { .. }),
     };
     Ok(Box::new(FmuSource::new(stepper, instrument, timing, fmu.step_ns, own.is_some())))
+}
+
+/// The motion of the case that an FMU gives, at its start.
+fn moving(
+    scenario: &Scenario,
+    fmu: &Fmu,
+    plant: &plant::Config,
+    Kept { instance, uri }: Kept,
+) -> Result<Moving, SourceError> {
+    let description = instance.description().clone();
+    let starts = open::starts(scenario, fmu, &uri, &description, None)?;
+    let bindings = motion::bind(&description, fmu)
+        .map_err(|error| UseError::binding(&scenario.file, &uri, error))?;
+    let stepper = Stepper::start(instance, &uri, starts, fmu.tolerance, fmu.step_ns)?;
+    Moving::new(stepper, bindings, plant, fmu.step_ns as f64 * 1e-9)
+}
+
+/// Truth at the start of a run whose case an FMU moves, or of one with our Plant FMU; `None` where
+/// nobody knows.
+///
+/// # Errors
+/// If the FMU can't be used.
+pub(crate) fn truth_at_start(
+    scenario: &Scenario,
+    fmu: &Fmu,
+    plant: &plant::Config,
+) -> Result<Option<Truth>, SourceError> {
+    if fmu.is_motion() {
+        return Ok(open(scenario, fmu, plant)?.truth());
+    }
+    if !open::is_own_plant(scenario, fmu) {
+        return Ok(None);
+    }
+    let plant = octant_plant::Plant::new(plant).map_err(|error| UseError::Open {
+        uri: format!("fmu:{}", fmu.file.0),
+        reason: error.to_string(),
+    })?;
+    Ok(Some(plant.truth()))
 }
 
 #[cfg(test)]

@@ -288,3 +288,161 @@ fn parameters_are_set_in_their_units() {
     .unwrap();
     assert!(source.next(&GimbalCommand::default(), &mut Epoch::default()).unwrap());
 }
+
+/// The sway of a scenario, as a ship that tells where it is.
+fn ship(geodetic: bool) -> Description {
+    let output = |name: &str, reference, unit: &str| {
+        variable(name, reference, Kind::Float64, Causality::Output).in_unit(unit)
+    };
+    let mut variables =
+        vec![output("psi", 1, "deg"), output("theta", 2, "rad"), output("phi", 3, "mrad")];
+    if geodetic {
+        variables.extend([output("lat", 4, "rad"), output("lon", 5, "rad"), output("h", 6, "m")]);
+    } else {
+        variables.extend([output("n", 4, "m"), output("e", 5, "m"), output("d", 6, "cm")]);
+    }
+    description("ship", variables)
+}
+
+const SHIP: &str = "[motion]\nkind = \"dockside\"\nheading = \"175 deg\"\npitch = \"2 deg\"\n\
+    [motion.ship]\n\
+    roll = [{ amplitude = \"3 deg\", period = \"8 s\", phase = \"20 deg\" }]\n\
+    pitch = [{ amplitude = \"1.5 deg\", period = \"6 s\", phase = \"50 deg\" }]\n\
+    yaw = [{ amplitude = \"10 deg\", period = \"10 s\", phase = \"0 deg\" }]\n\
+    surge = [{ amplitude = \"0.2 m\", period = \"6 s\", phase = \"80 deg\" }]\n\
+    sway = [{ amplitude = \"0.3 m\", period = \"7 s\", phase = \"10 deg\" }]\n\
+    heave = [{ amplitude = \"0.2 m\", period = \"8 s\", phase = \"30 deg\" }]\n";
+
+fn swaying(map: &str, step: &str) -> Scenario {
+    let text = format!(
+        "schema = 1\n[procedure.calibration]\nduration = \"4 min\"\n{SHIP}\
+         [source]\nuri = \"fmu:ship.fmu\"\n[source.fmu]\nstep = \"{step}\"\n[source.fmu.map]\n{map}"
+    );
+    Scenario::parse(&text, "ship.toml", Path::new(""), &[]).unwrap_or_else(|e| panic!("{e}"))
+}
+
+/// What the sway is at a time: heading (deg, wrapped), pitch (rad), roll (mrad), north, east, down.
+fn sway_at(time_s: f64) -> [f64; 6] {
+    let sine = |amplitude: f64, period_s: f64, phase_deg: f64| {
+        amplitude
+            * libm::sin(2.0 * std::f64::consts::PI * time_s / period_s + phase_deg.to_radians())
+    };
+    let heading = 175.0 + sine(10.0, 10.0, 0.0);
+    let (surge, sway) = (sine(0.2, 6.0, 80.0), sine(0.3, 7.0, 10.0));
+    let (s, c) = libm::sincos(175f64.to_radians());
+    [
+        if heading > 180.0 { heading - 360.0 } else { heading },
+        (2.0 + sine(1.5, 6.0, 50.0)).to_radians(),
+        1e3 * sine(3.0, 8.0, 20.0).to_radians(),
+        c * surge - s * sway,
+        s * surge + c * sway,
+        sine(0.2, 8.0, 30.0),
+    ]
+}
+
+const METRES: &str = "case.heading = \"psi\"\ncase.pitch = \"theta\"\ncase.roll = \"phi\"\n\
+    case.north = \"n\"\ncase.east = \"e\"\ncase.down = \"d\"\n";
+const GEODETIC: &str = "case.heading = \"psi\"\ncase.pitch = \"theta\"\ncase.roll = \"phi\"\n\
+    case.latitude = \"lat\"\ncase.longitude = \"lon\"\ncase.height = \"h\"\n";
+
+/// A ship that sways as the plant's own gives the counts of the plant's own, with the same noise.
+///
+/// With a step of H the rate at a point is off by H⁴/30 of the fifth derivative, and between points
+/// the acceleration by 0.19 H³ of it. The fifth derivatives here are 0.040 rad/s⁵ and 0.31 m/s⁵, all
+/// axes together: with 50 ms 8.3e-9 rad/s and 7.4e-6 m/s², or 3 and 40 counts in a sample; with 5 ms
+/// nothing. At the first point, which has neighbours on one side alone, they are H⁴/5 and 5H³/6: 17
+/// and 173 counts. One count is for rounding. Positions in radians of latitude have a last digit of
+/// 7e-10 m, whose second difference over 5 ms is 1e-4 m/s² at most, 540 counts.
+#[test]
+fn a_ship_that_sways_as_the_plants_own_gives_the_same_counts() {
+    use octant_earth::ellipsoid::Ellipsoid;
+    let own = {
+        let text = format!("schema = 1\n[procedure.calibration]\nduration = \"4 min\"\n{SHIP}");
+        Scenario::parse(&text, "own.toml", Path::new(""), &[]).unwrap()
+    };
+    let (config, ..) = configurations(&own, Method::Primary, 1).unwrap();
+    let earth = Ellipsoid::at(config.site.latitude_rad, config.site.height_m);
+    let site = config.site;
+    for (geodetic, period, later, at_start) in [
+        (false, "5 ms", [1, 1], [1, 1]),
+        (true, "5 ms", [1, 540], [1, 540]),
+        (false, "50 ms", [4, 41], [18, 174]),
+    ] {
+        let map = if geodetic { GEODETIC } else { METRES };
+        let scenario = swaying(map, period);
+        let scenario::Source::Fmu(fmu) = &scenario.source else { panic!("an FMU") };
+        let give = move |cells: &mut [f64], time_s: f64| {
+            let [heading, pitch, roll, north, east, down] = sway_at(time_s);
+            cells[1..4].copy_from_slice(&[heading, pitch, roll]);
+            if geodetic {
+                let parallel_m = earth.transverse_radius_m * earth.cos_latitude;
+                cells[4] = site.latitude_rad + north / earth.meridian_radius_m;
+                cells[5] = site.longitude_rad + east / parallel_m;
+                cells[6] = site.height_m - down;
+            } else {
+                cells[4..7].copy_from_slice(&[north, east, 100.0 * down]);
+            }
+        };
+        let mut instance = Scripted::boxed(ship(geodetic), move |cells, time_s| {
+            give(cells, time_s);
+            Ok(true)
+        });
+        // What it is at the start.
+        let mut cells = [0.0; 64];
+        give(&mut cells, 0.0);
+        for variable in ship(geodetic).variables {
+            let group = crate::fmu::instance::Group::of(&ship(geodetic), &variable).unwrap();
+            instance.set(&group, &[cells[variable.reference as usize]]).unwrap();
+        }
+        let kept = Kept { instance, uri: "fmu:ship.fmu".to_owned() };
+        let mut source = of_instance(&scenario, fmu, &config, kept).unwrap();
+        let mut plant = octant_plant::Plant::new(&config).unwrap();
+        let command = GimbalCommand { target: GimbalAngles { azimuth: 1 << 27, roll: -1 << 26 } };
+        let mut epoch = Epoch::default();
+        for k in 0..4000 {
+            let mut worst = [0; 2];
+            let step = plant.step(&command);
+            assert!(source.next(&command, &mut epoch).unwrap());
+            assert_eq!(epoch.sample.gimbal, step.sample.gimbal);
+            assert_eq!(epoch.aiding, step.aiding, "the dock's position, with its noise");
+            for axis in 0..3 {
+                let apart = |a: i32, b: i32| (i64::from(a) - i64::from(b)).abs();
+                let theta = apart(epoch.sample.delta_theta[axis], step.sample.delta_theta[axis]);
+                let velocity =
+                    apart(epoch.sample.delta_velocity[axis], step.sample.delta_velocity[axis]);
+                worst = [worst[0].max(theta), worst[1].max(velocity)];
+            }
+            let [theta, velocity] = if k < 20 { at_start } else { later };
+            assert!(worst[0] <= theta && worst[1] <= velocity, "{period} {k}: {worst:?}");
+        }
+        let (found, truth) = (source.truth().unwrap(), plant.truth());
+        let north_m = (found.latitude_rad - truth.latitude_rad) * 6.4e6;
+        assert!(north_m.abs() < 1e-8 && (found.height_m - truth.height_m).abs() < 1e-8);
+        for axis in 0..3 {
+            assert!((found.velocity_mps[axis] - truth.velocity_mps[axis]).abs() < 1e-6);
+        }
+        let dot: f64 = (0..4).map(|i| found.q_nb[i] * truth.q_nb[i]).sum();
+        assert!((dot.abs() - 1.0).abs() < 1e-15, "{dot}");
+        assert!(source.has_true_parameters() && source.disturbed().is_some());
+    }
+}
+
+#[test]
+fn what_doesnt_fit_a_motion_is_told() {
+    for (map, expected) in [
+        ("case.heading = \"n\"\n", "n is in m, a length, and case.heading is an angle"),
+        ("case.north = \"n\"\ncase.height = \"d\"\n", "found beside case.north"),
+        ("case.latitude = { constant = \"30 deg\" }\n", "case.longitude is mapped to nothing"),
+    ] {
+        let scenario = swaying(map, "5 ms");
+        let scenario::Source::Fmu(fmu) = &scenario.source else { panic!("an FMU") };
+        let own = format!("schema = 1\n[procedure.calibration]\nduration = \"4 min\"\n{SHIP}");
+        let own = Scenario::parse(&own, "own.toml", Path::new(""), &[]).unwrap();
+        let (config, ..) = configurations(&own, Method::Primary, 1).unwrap();
+        let instance = Scripted::boxed(ship(false), |_, _| Ok(true));
+        let kept = Kept { instance, uri: "fmu:ship.fmu".to_owned() };
+        let error = of_instance(&scenario, fmu, &config, kept).err();
+        let error = error.map(|error| error.to_string()).unwrap_or_default();
+        assert!(error.contains(expected), "{map}:\n  {error}\n  {expected}");
+    }
+}
