@@ -25,6 +25,7 @@ pub fn starts(
     let mut all: Vec<Settings<'_>> =
         descriptions.iter().map(|description| Settings::new(description)).collect();
     for (number, component) in flat.components.iter().enumerate() {
+        let mut arrays: Vec<Array<'_>> = Vec::new();
         for parameter in &component.parameters {
             let wrong = |message: String| SspError {
                 file: parameter.file.clone(),
@@ -34,14 +35,27 @@ pub fn starts(
             };
             let description = descriptions[number];
             match values(structure, description, parameter).map_err(&wrong)? {
-                Some(values) => {
-                    all[number].set(&parameter.name, &values).map_err(&wrong)?;
-                }
+                Some(values) => match element(description, &parameter.name).map_err(&wrong)? {
+                    Some((variable, element)) => {
+                        put(&mut arrays, description, variable, element, values, parameter);
+                    }
+                    None => all[number].set(&parameter.name, &values).map_err(&wrong)?,
+                },
                 None => warnings.push(format!(
                     "{}:{}: {} has no variable {:?}, which is not used",
                     parameter.file, parameter.line, component.source, parameter.name
                 )),
             }
+        }
+        for array in arrays {
+            let values =
+                array.whole().and_then(|values| all[number].set(&array.variable.name, &values));
+            values.map_err(|message| SspError {
+                file: array.last.file.clone(),
+                line: Some(array.last.line),
+                element: format!("Parameter {:?} of {}", array.last.name, component.name),
+                message,
+            })?;
         }
     }
     for argument in set {
@@ -60,6 +74,63 @@ pub fn starts(
         })?);
     }
     Ok(starts)
+}
+
+/// An array whose elements are given one by one.
+struct Array<'a> {
+    variable: &'a Variable,
+    values: Vec<Option<Set>>,
+    /// What gave the last of them.
+    last: &'a FlatParameter,
+}
+
+impl Array<'_> {
+    /// All values; where one isn't given, the start value of the description.
+    fn whole(&self) -> Result<Vec<Set>, String> {
+        let start = |element: usize| {
+            let start = &self.variable.start;
+            let text = if start.len() == 1 { start.first() } else { start.get(element) };
+            text.map(|text| one(text))
+        };
+        let value = |(element, value): (usize, &Option<Set>)| {
+            value.clone().or_else(|| start(element)).ok_or_else(|| {
+                format!("the other elements of {} have no values", self.variable.name)
+            })
+        };
+        self.values.iter().enumerate().map(value).collect()
+    }
+}
+
+/// The array and the element that a name means; `None`: a variable of its own.
+fn element<'a>(
+    description: &'a Description,
+    name: &str,
+) -> Result<Option<(&'a Variable, usize)>, String> {
+    if description.variable(name).is_some() {
+        return Ok(None);
+    }
+    super::system::element(description, name).map(Some)
+}
+
+fn put<'a>(
+    arrays: &mut Vec<Array<'a>>,
+    description: &'a Description,
+    variable: &'a Variable,
+    element: usize,
+    values: Vec<Set>,
+    last: &'a FlatParameter,
+) {
+    let at = arrays.iter().position(|array| std::ptr::eq(array.variable, variable));
+    let at = at.unwrap_or_else(|| {
+        let count = description.elements(variable).unwrap_or(0);
+        arrays.push(Array { variable, values: vec![None; count], last });
+        arrays.len() - 1
+    });
+    arrays[at].last = last;
+    // More values than one are those of the elements from there on.
+    for (value, into) in values.into_iter().zip(arrays[at].values.iter_mut().skip(element)) {
+        *into = Some(value);
+    }
 }
 
 /// The values of a parameter in the unit and type of its variable; `None`: there is no such variable.

@@ -230,6 +230,19 @@ impl Prepared {
     /// If the system can't be initialized, or a file can't be made. What happens after that is in
     /// the summary.
     pub fn run(self, paths: &[&Path], control: &Control) -> Result<Results, PrepareError> {
+        self.run_watched(paths, control, |_, _| Ok(()))
+    }
+
+    /// As [`Self::run`], with a look at every communication point.
+    ///
+    /// # Errors
+    /// As [`Self::run`].
+    pub fn run_watched(
+        self,
+        paths: &[&Path],
+        control: &Control,
+        mut watch: impl FnMut(&mut Simulation<'_>, &System) -> Result<(), MasterError>,
+    ) -> Result<Results, PrepareError> {
         let Self { system, settings, instances, starts, abilities, faulting, .. } = self;
         let described: Vec<&Description> = self.descriptions.iter().collect();
         let every = self.request.every.unwrap_or(settings.steps.div_ceil(ROWS_MAX)).max(1);
@@ -246,8 +259,8 @@ impl Prepared {
         let mut recorder =
             Recorder::new(&system, &described, name, paths, every).map_err(PrepareError::Usage)?;
         let mut hash = ConnectionHash::default();
-        let ended =
-            drive(&mut simulation, &system, &mut recorder, &mut hash, &settings, ended_by, control);
+        let kept = Kept { recorder: &mut recorder, hash: &mut hash, watch: &mut watch };
+        let ended = drive(&mut simulation, &system, &settings, kept, ended_by, control);
         let mut messages: Vec<(String, String)> = Vec::new();
         let mut fmus = Vec::with_capacity(system.nodes.len());
         let ended = match (ended, simulation.terminate()) {
@@ -333,35 +346,43 @@ pub struct Results {
     pub messages: Vec<(String, String)>,
 }
 
+/// Who sees every communication point.
+struct Kept<'a, W> {
+    recorder: &'a mut Recorder,
+    hash: &'a mut ConnectionHash,
+    watch: &'a mut W,
+}
+
 /// Steps to the end.
-fn drive(
+fn drive<W>(
     simulation: &mut Simulation<'_>,
     system: &System,
-    recorder: &mut Recorder,
-    hash: &mut ConnectionHash,
     settings: &Settings,
+    kept: Kept<'_, W>,
     mut ended_by: Option<usize>,
     control: &Control,
-) -> Result<Ended, RecordError> {
-    hash.add(simulation);
-    recorder.row(simulation, system, false)?;
+) -> Result<Ended, RecordError>
+where
+    W: FnMut(&mut Simulation<'_>, &System) -> Result<(), MasterError>,
+{
+    let Kept { recorder, hash, watch } = kept;
     loop {
         let at_s = simulation.time_s(simulation.steps());
+        let last = ended_by.is_some() || simulation.steps() == settings.steps;
+        hash.add(simulation);
+        watch(simulation, system)?;
+        recorder.row(simulation, system, last)?;
         if let Some(node) = ended_by {
-            recorder.row(simulation, system, true)?;
             return Ok(Ended::AskedByFmu { fmu: system.nodes[node].name.clone(), at_s });
         }
-        if simulation.steps() == settings.steps {
+        if last {
             return Ok(Ended::AtStop);
         }
         if control.look(simulation.steps()) {
             return Ok(Ended::Interrupted { at_s });
         }
         ended_by = simulation.advance()?;
-        let last = simulation.steps() == settings.steps;
         tell_faults(simulation, recorder, at_s)?;
-        hash.add(simulation);
-        recorder.row(simulation, system, last)?;
     }
 }
 

@@ -422,6 +422,17 @@ fn find<'a>(description: &'a Description, name: &str) -> Result<Found<'a>, Strin
     })
 }
 
+/// The variable of a name and the element that it means; of a whole array the first.
+///
+/// # Errors
+/// If there is none.
+pub(super) fn element<'a>(
+    description: &'a Description,
+    name: &str,
+) -> Result<(&'a Variable, usize), String> {
+    find(description, name).map(|found| (found.variable, found.first))
+}
+
 /// Sizes of the dimensions of a variable.
 fn sizes(description: &Description, variable: &Variable) -> Vec<usize> {
     let size = |dimension| {
