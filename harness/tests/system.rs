@@ -350,13 +350,13 @@ fn what_is_set_reaches_the_fmus_and_what_is_wrong_is_told() {
         Prepared::new(request).map(|prepared| prepared.run(&[], &Control::default()))
     };
     let plain = with(&[]).unwrap().unwrap().summary.stream_hash;
-    let other = with(&["plant.seed=2"]).unwrap().unwrap().summary.stream_hash;
+    let other = with(&["plant.random.seed_low=2"]).unwrap().unwrap().summary.stream_hash;
     assert_ne!(plain, other);
     for (set, expected) in [
-        ("plant.sead=2", "the FMU has no variable \"sead\"; nearest are \"seed\""),
-        ("plan.seed=2", "\"plan\" is no FMU of the system, did you mean \"plant\"?"),
-        ("plant.seed", "expected FMU.VARIABLE=VALUE"),
-        ("plant.seed=many", "--set plant.seed=many: found \"many\""),
+        ("plant.random.sead_low=2", "the FMU has no variable \"random.sead_low\""),
+        ("plan.random.seed_low=2", "\"plan\" is no FMU of the system, did you mean \"plant\"?"),
+        ("plant.random.seed_low", "expected FMU.VARIABLE=VALUE"),
+        ("plant.random.seed_low=many", "--set plant.random.seed_low=many: found \"many\""),
     ] {
         let error = with(&[set]).map(|_| ()).unwrap_err().to_string();
         assert!(error.contains(expected), "{error}");

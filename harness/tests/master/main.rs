@@ -659,7 +659,7 @@ fn faults_that_can_not_be_are_refused_with_their_place() {
         (fault("scale", "sink.angle", &format!("factor = 1\n{at}")), "nothing would happen"),
         (fault("delay", "sink.angle", &format!("delay = \"1 ms\"\n{at}")), "0 steps"),
         (fault("drop", "sink.angle", &format!("probability = 2\n{at}")), "above 0, up to 1"),
-        (fault("stall", "sink.angle", at), "did you mean \"stuck\"?"),
+        (fault("stall", "sink.angle", at), "possible: stuck, bias, scale"),
         (fault("drop", "sink.angle", "trigger = { at = \"2 s\" }"), "it can't fire"),
         (
             fault("drop", "sink.angle", "trigger = { position = 2 }"),

@@ -175,6 +175,12 @@ fn payload(bytes: &[u8]) -> &[u8] {
 
 #[test]
 fn a_state_is_read_back_and_gives_the_same_bytes() {
+    // Cores by value, of 100 kB and more each, are much for the 2 MB stack of a test.
+    let roomy = std::thread::Builder::new().stack_size(16 << 20);
+    roomy.spawn(every_state_is_read_back).unwrap().join().unwrap();
+}
+
+fn every_state_is_read_back() {
     for (name, core) in cores() {
         let saved = bytes(&core);
         println!("{name}: {} bytes", saved.len());
