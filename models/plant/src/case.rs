@@ -238,6 +238,7 @@ impl Case {
     pub(crate) fn motion(&mut self, node: Node) -> CaseMotion {
         match &mut self.kind {
             Kind::Static { motion, .. } => *motion,
+            Kind::Ship(ship) if ship.sway.course.is_some() => ship.motion_on_course(node),
             Kind::Ship(ship) => {
                 let six = match node {
                     Node::Regular(index) => ship.sway.at_node(index),
@@ -333,6 +334,16 @@ impl Ship {
             self.site.latitude_rad + (offset_north + north) * self.per_north_m,
             self.site.height_m - offset_down - six[5].value,
         )
+    }
+
+    /// Motion at a node, with what comes from outside. Out of the way of a ship that has none of it.
+    #[inline(never)]
+    fn motion_on_course(&mut self, node: Node) -> CaseMotion {
+        let six = match node {
+            Node::Regular(index) => self.sway.at_node_on_course(index),
+            Node::Offset(offset_s) => self.sway.at_offset_on_course(offset_s),
+        };
+        self.motion::<true>(&six)
     }
 
     /// `DISTURBED` changes nothing: it makes a copy of its own for who is disturbed, so that the

@@ -7,7 +7,7 @@
 use crate::sway::{Dof, SixDof};
 
 /// One piece of a motion.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Course {
     /// Start, s since the start of the run.
     pub start_s: f64,

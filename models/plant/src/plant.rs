@@ -98,7 +98,7 @@ impl Plant {
     }
 
     /// The case of a moored ship moves on a course, beside its sway, in the interval that comes. It
-    /// is given before every interval that it holds for, and is no part of [`Self::save`].
+    /// is given before every interval that it holds for.
     ///
     /// # Errors
     /// If the motion isn't that of a ship, the instrument lags its stamps (what it felt before the

@@ -79,7 +79,21 @@ pub(crate) struct Sway {
 }
 
 octant_state::state! {
-    Sway { values: until_reset; parts: components; kept: ends, to_node, period_s, start_s, nodes_s, course }
+    Sway {
+        values: until_reset, start_s, course;
+        parts: components;
+        kept: ends, to_node, period_s, nodes_s;
+        check: Self::check_course
+    }
+}
+
+impl Sway {
+    fn check_course(&self) -> Result<(), octant_state::StateError> {
+        if self.course.as_ref().is_none_or(|course| course.is_sound()) {
+            return Ok(());
+        }
+        Err(octant_state::StateError::value("course", "it isn't made of finite numbers"))
+    }
 }
 
 impl Sway {
@@ -129,6 +143,7 @@ impl Sway {
     }
 
     /// Goes to the interval that starts at `start_s`; intervals follow each other.
+    #[inline]
     pub(crate) fn enter(&mut self, start_s: f64) {
         self.start_s = start_s;
         if self.until_reset == 0 {
@@ -161,43 +176,40 @@ impl Sway {
     }
 
     /// At a regular node of the present interval.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn at_node(&self, node: usize) -> SixDof {
         let n = self.components.len();
         let to_node = &self.to_node[node * n..(node + 1) * n];
-        let six = self.sum(|i, component| component.turned(to_node[i]));
-        match &self.course {
-            None => six,
-            Some(course) => on(course, six, self.start_s + self.nodes_s[node]),
-        }
+        self.sum(|i, component| component.turned(to_node[i]))
     }
 
     /// At `offset_s` after the start of the present interval.
     pub(crate) fn at_offset(&self, offset_s: f64) -> SixDof {
         let from_middle_s = offset_s - 0.5 * self.period_s;
-        let six = self
-            .sum(|_, component| component.turned(libm::sincos(component.omega * from_middle_s)));
-        match &self.course {
-            None => six,
-            Some(course) => on(course, six, self.start_s + offset_s),
-        }
+        self.sum(|_, component| component.turned(libm::sincos(component.omega * from_middle_s)))
     }
 
-    /// At any time, s since the start.
+    /// With the motion from outside, where there is one: at a regular node.
+    pub(crate) fn at_node_on_course(&self, node: usize) -> SixDof {
+        self.on_course(self.at_node(node), self.start_s + self.nodes_s[node])
+    }
+
+    /// With the motion from outside: at `offset_s` after the start of the present interval.
+    pub(crate) fn at_offset_on_course(&self, offset_s: f64) -> SixDof {
+        self.on_course(self.at_offset(offset_s), self.start_s + offset_s)
+    }
+
+    fn on_course(&self, mut six: SixDof, time_s: f64) -> SixDof {
+        if let Some(course) = &self.course {
+            course.add_to(&mut six, time_s);
+        }
+        six
+    }
+
+    /// At any time, s since the start, with the motion from outside.
     pub(crate) fn at_time(&self, time_s: f64) -> SixDof {
-        let six = self.sum(|_, component| component.phase_at(time_s));
-        match &self.course {
-            None => six,
-            Some(course) => on(course, six, time_s),
-        }
+        self.on_course(self.sum(|_, component| component.phase_at(time_s)), time_s)
     }
-}
-
-/// A sway on a course.
-#[inline(never)]
-fn on(course: &Course, mut six: SixDof, time_s: f64) -> SixDof {
-    course.add_to(&mut six, time_s);
-    six
 }
 
 /// Shortest period of all sinusoids, s.

@@ -8,6 +8,7 @@ use common::*;
 use octant_earth::units::{ARCSEC, DEG, DEG_PER_HOUR, MICRO_G, PPM};
 use octant_faults::disturbance::*;
 use octant_plant::config::*;
+use octant_plant::course::{Course, Point};
 use octant_plant::{Plant, STATE_FORMAT, draw, motion};
 use octant_sample::GimbalCommand;
 use octant_state::{StateError, Writer, assert_layout, outline_of};
@@ -204,6 +205,39 @@ fn a_command_before_a_sample_is_the_step_in_the_other_order() {
         other.sample_into(&mut sample, &mut aiding);
         step = one.step(&target(k));
     }
+}
+
+#[test]
+fn a_course_is_a_part_of_the_state() {
+    let point = |k: u64| {
+        let t = k as f64;
+        core::array::from_fn(|dof| Point {
+            value: 1e-3 * t * (1.0 + dof as f64),
+            rate: 0.2 * (1.0 + dof as f64),
+            acceleration: 1e-2 * t,
+        })
+    };
+    let course = |k: u64| Course::between(k as f64 * DT, DT, &point(k), &point(k + 1));
+    let mut plant = Plant::new(&everything(ship(), 0.0)).unwrap();
+    let mut copies: Vec<Plant> = Vec::new();
+    for k in 0..400 {
+        let steps: Vec<String> = copies
+            .iter_mut()
+            .chain([&mut plant])
+            .map(|one| {
+                one.follow(&course(k)).unwrap();
+                let step = one.step(&target(k));
+                format!("{step:?} {:?}", one.truth())
+            })
+            .collect();
+        assert!(steps.iter().all(|step| *step == steps[0]), "{k}");
+        if [3, 150, 270].contains(&k) {
+            let loaded = Plant::load(&saved(&plant)).unwrap();
+            assert_eq!(format!("{:?}", loaded.truth()), format!("{:?}", plant.truth()));
+            copies.push(loaded);
+        }
+    }
+    assert_eq!(copies.len(), 3);
 }
 
 fn under_way(motion: Motion, skew: f64, these: &[Disturbance], samples: u64) -> Plant {
