@@ -181,14 +181,20 @@ fn spans_that_contradict_themselves_are_refused() {
 
 #[test]
 fn an_fmu_that_ends_or_fails_leaves_its_rows() {
-    for (behaviour, steps, failed) in [(Ok(false), 3, false), (Err("was killed".to_owned()), 0, true)] {
+    for (behaviour, steps, failed) in
+        [(Ok(false), 3, false), (Err("was killed".to_owned()), 0, true)]
+    {
         let outputs = Outputs::choose(&model(), &["y".to_owned()]).unwrap();
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("out.csv");
         let mut sink = Sink::file(&path, &outputs, "gain").unwrap();
-        let mut instance = Scripted::boxed(model(), move |_, time_s| {
-            if time_s > 0.25 { behaviour.clone() } else { Ok(true) }
-        });
+        let mut instance =
+            Scripted::boxed(
+                model(),
+                move |_, time_s| {
+                    if time_s > 0.25 { behaviour.clone() } else { Ok(true) }
+                },
+            );
         let span = Span { start_s: 0.0, stop_s: 1.0, step_s: 0.1, tolerance: None };
         let control = Control::default();
         let starts = Starts::default();
