@@ -81,6 +81,8 @@ pub(super) struct Instance {
     pub(super) log: Log,
     pub(super) run: Run,
     pub(super) snapshots: Snapshots,
+    /// Outputs before a step, where it is looked whether they change: room that is used again.
+    pub(super) before: Vec<u64>,
 }
 
 impl Instance {
@@ -93,7 +95,8 @@ impl Instance {
     ) -> Self {
         let log = Log::new(standard, logging, outlet.callback.is_some());
         let (layout, run) = (maker.layout(), Run::new(maker.model));
-        Self { standard, maker, layout, options, outlet, log, run, snapshots: Snapshots::default() }
+        let (snapshots, before) = (Snapshots::default(), Vec::with_capacity(layout.outputs.len()));
+        Self { standard, maker, layout, options, outlet, log, run, snapshots, before }
     }
 
     #[inline]

@@ -42,15 +42,14 @@ impl Instance {
         self.require(mode::STEP)?;
         let period_s = self.period_s();
         let (least, most) = self.model().periods_per_step;
-        let found = step_s / period_s;
-        let periods = found + 0.5;
-        // NaN, infinity and what is beyond any number of periods end up here, too.
         if !(step_s > 0.0 && step_s.is_finite()) {
             return Err(Refusal::error(format!(
                 "the communication step is {step_s} s, a positive number is expected"
             )));
         }
-        let periods = periods as u64;
+        let found = step_s / period_s;
+        // What is beyond any number of periods saturates, and is far from it.
+        let periods = (found + 0.5) as u64;
         if !((found - periods as f64).abs() <= STEP_TOLERANCE && (least..=most).contains(&periods))
         {
             return Err(self.wrong_step(step_s));
@@ -98,11 +97,15 @@ impl Instance {
     /// A period after which it is known whether outputs have changed.
     fn step_watched(&mut self) -> Result<bool, Refusal> {
         let outputs = &self.layout().outputs;
-        let before: Vec<u64> =
-            outputs.iter().map(|slot| self.run.values.cells()[*slot as usize]).collect();
-        self.advance()?;
+        let mut before = core::mem::take(&mut self.before);
+        before.clear();
+        before.extend(outputs.iter().map(|slot| self.run.values.cells()[*slot as usize]));
+        let advanced = self.advance();
         let cells = self.run.values.cells();
-        Ok(outputs.iter().zip(before).any(|(slot, before)| cells[*slot as usize] != before))
+        let changed =
+            outputs.iter().zip(&before).any(|(slot, before)| cells[*slot as usize] != *before);
+        self.before = before;
+        advanced.map(|()| changed)
     }
 
     #[inline]
