@@ -160,6 +160,8 @@ pub enum Oddity {
     Descriptor,
     /// Its name isn't ASCII, nor marked as UTF-8: others read it as code page 437.
     Unmarked,
+    /// Windows can't hold its name: there it isn't unpacked.
+    Windows(String),
     /// The headers before the entries say something else than the directory at the end.
     Headers(String),
 }

@@ -52,9 +52,6 @@ pub fn check(raw: &[u8]) -> Result<&str, NameProblem> {
     if bytes.len() >= 2 && bytes[0].is_ascii_alphabetic() && bytes[1] == b':' {
         return problem("has a drive letter".into(), "a path relative to the archive");
     }
-    if let Some(c) = name.chars().find(|c| matches!(c, ':' | '*' | '?' | '"' | '<' | '>' | '|')) {
-        return problem(format!("has the character {c:?}"), "a name that Windows can hold as well");
-    }
     let parts: Vec<&str> = name.strip_suffix('/').unwrap_or(name).split('/').collect();
     if parts.len() > DEPTH_MAX {
         return problem(format!("is {} folders deep", parts.len()), "at most 64");
@@ -72,6 +69,22 @@ pub fn check(raw: &[u8]) -> Result<&str, NameProblem> {
         if part.len() > PART_BYTES_MAX {
             return problem(format!("has a part of {} bytes", part.len()), "at most 255 bytes");
         }
+    }
+    Ok(name)
+}
+
+/// What Windows can't hold of a name that [`check`] has passed; other systems can.
+///
+/// # Errors
+/// If there is something.
+pub fn check_for_windows(name: &str) -> Result<(), NameProblem> {
+    let problem = |found: String, expected| {
+        Err(NameProblem { name: printable(name.as_bytes()), found, expected })
+    };
+    if let Some(c) = name.chars().find(|c| matches!(c, ':' | '*' | '?' | '"' | '<' | '>' | '|')) {
+        return problem(format!("has the character {c:?}"), "a name that Windows can hold as well");
+    }
+    for part in name.split('/') {
         if part.ends_with(['.', ' ']) {
             return problem(
                 format!("has the part {part:?}, whose end Windows drops"),
@@ -85,7 +98,7 @@ pub fn check(raw: &[u8]) -> Result<&str, NameProblem> {
             );
         }
     }
-    Ok(name)
+    Ok(())
 }
 
 /// Names that open a device on Windows, with any ending.
@@ -208,7 +221,6 @@ mod tests {
             (b"..\\x", "backslash"),
             (b"C:/x", "drive letter"),
             (b"c:x", "drive letter"),
-            (b"a/b:stream", "character ':'"),
             (b"a//b", "part \"\""),
             (b"./a", "part \".\""),
             (b"", "empty"),
@@ -216,16 +228,31 @@ mod tests {
             (b"a\0b", "U+0000"),
             (b"a\nb", "U+000A"),
             (b"a\xff", "UTF-8"),
-            (b"a./b", "Windows drops"),
-            (b"a /b", "Windows drops"),
-            (b"x/nul", "device"),
-            (b"x/Com1.txt", "device"),
-            (b"AUX", "device"),
             (long.as_bytes(), "66 folders deep"),
             (part.as_bytes(), "256 bytes"),
             (name.as_bytes(), "1080 bytes"),
         ] {
             let problem = check(name).expect_err("a hostile name passes");
+            assert!(problem.found.contains(found), "{problem:?}, expected {found}");
+        }
+    }
+
+    #[test]
+    fn what_windows_can_not_hold_is_named() {
+        for name in ["binaries/", "binaries/x86_64-linux/model.so", "a/com0.txt", "a/.b", "nulls"] {
+            assert_eq!(check_for_windows(name), Ok(()), "{name}");
+        }
+        for (name, found) in [
+            ("a/b:stream", "character ':'"),
+            ("a?", "character '?'"),
+            ("a./b", "Windows drops"),
+            ("a /b", "Windows drops"),
+            ("x/nul", "device"),
+            ("x/Com1.txt", "device"),
+            ("AUX", "device"),
+        ] {
+            assert_eq!(check(name.as_bytes()), Ok(name));
+            let problem = check_for_windows(name).expect_err("Windows can't hold it");
             assert!(problem.found.contains(found), "{problem:?}, expected {found}");
         }
     }

@@ -125,6 +125,14 @@ impl Zipped {
                 Ok(Err(problem)) => problems.push(problem),
                 Ok(Ok(None)) => {}
                 Ok(Ok(Some((entry, is_program)))) => {
+                    if let Err(problem) = names::check_for_windows(&entry.name) {
+                        if cfg!(windows) {
+                            problems.push(problem);
+                            continue;
+                        }
+                        let what = Oddity::Windows(problem.found);
+                        oddities.push(Odd { entry: problem.name, what });
+                    }
                     places.insert(entry.name.clone(), (index, is_program));
                     entries.push(entry);
                 }

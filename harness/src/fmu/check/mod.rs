@@ -287,6 +287,9 @@ fn archive_findings(archive: &Archive, findings: &mut Findings) {
                 "a name beyond ASCII without the mark of UTF-8".to_owned(),
                 "bit 11 of the flags",
             ),
+            Oddity::Windows(ref found) => {
+                (&rules::ARCHIVE_WINDOWS, found.clone(), "a name that every system can hold")
+            }
             Oddity::Headers(ref reason) => {
                 (&rules::ARCHIVE_HEADERS, reason.clone(), "the same as in the directory")
             }

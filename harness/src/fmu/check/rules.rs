@@ -62,7 +62,9 @@ macro_rules! rules {
 // importers need.
 rules! {
     ARCHIVE_NAME "archive.name" Error "2.3" "2.5"
-        "Every entry has a name that stays inside the folder on every platform, and is a plain file.";
+        "Every entry has a name of its own that stays inside the folder, and is a plain file.";
+    ARCHIVE_WINDOWS "archive.name-windows" Warning "2.3" "2.5"
+        "Windows can hold the names: no colons, no device names, no dots or blanks at an end.";
     ARCHIVE_EXTENSION "archive.extension" Warning "2.3" "2.5"
         "The name of the file ends in .fmu.";
     ARCHIVE_VERSION "archive.version-needed" Warning "2.3" "2.5"

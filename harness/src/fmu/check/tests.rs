@@ -266,6 +266,8 @@ fn what_is_wrong_with_an_archive_is_found_and_the_rest_is_checked() {
     let mut version = good.clone();
     version[at + 6] = 45;
     assert_eq!(finding(version), ["archive.version-needed"]);
+    let device = patched(good.clone(), b"resources/data.txt", b"resources/nul::txt");
+    assert_eq!(finding(device), ["archive.name-windows"]);
     let unmarked = patched(good.clone(), b"resources/data.txt", "resources/dät.txt".as_bytes());
     assert_eq!(finding(unmarked), ["archive.name-encoding"]);
     // A reader that goes by the headers before the entries sees another file.

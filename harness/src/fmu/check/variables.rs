@@ -244,7 +244,14 @@ fn limits(model: &Model<'_, '_>, declared: &Declared<'_, '_>, findings: &mut Fin
 
 fn derivative(model: &Model<'_, '_>, declared: &Declared<'_, '_>, findings: &mut Findings) {
     let variable = declared.variable;
-    let Some(reference) = variable.derivative_of else { return };
+    let Some(reference) = variable.derivative_of else {
+        if let Some(index) = declared.value.text("derivative") {
+            let expected = format!("1 to {}", model.variables.len());
+            let found = format!("derivative of index {index}");
+            model.broken(findings, &VARIABLE_DERIVATIVE, declared, found, expected);
+        }
+        return;
+    };
     let Some(&index) = model.by_reference.get(&reference) else {
         let found = format!("derivative of value reference {reference}, which no variable has");
         model.broken(findings, &VARIABLE_DERIVATIVE, declared, found, "one of a variable");

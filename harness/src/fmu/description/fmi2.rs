@@ -54,12 +54,20 @@ pub(super) fn read<'a, 't: 'a>(
             }
             description.variables.push(variable);
         }
-        for (place, state, element) in derivatives {
-            let state = by_index(description, state).ok_or_else(|| {
+        for (place, index, element) in derivatives {
+            let state = by_index(description, index);
+            if state.is_none() {
+                let found = format!("index {index}");
                 let expected = format!("1 to {}", description.variables.len());
-                element.error(Some("derivative"), format!("index {state}"), expected)
-            })?;
-            description.variables[place].derivative_of = Some(state);
+                // Without a state there is nothing to integrate.
+                if description.model_exchange.is_some() {
+                    return Err(element.error(Some("derivative"), found, expected));
+                }
+                element.tolerate("index out of range", || {
+                    format!("derivative of {found} is left out, expected {expected}")
+                });
+            }
+            description.variables[place].derivative_of = state;
         }
     } else {
         root.tolerate("missing element", || "ModelVariables is missing".into());

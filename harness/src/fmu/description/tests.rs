@@ -299,6 +299,7 @@ fn what_vendors_write_is_tolerated_and_listed() {
             "factor 0 and offset 0 convert nothing",
         ),
         (fmi2("", "", &(real("") + &real("")), ""), "name \"v\" is there twice"),
+        (fmi2("", "", &scalar("", "Real derivative=\"0\""), ""), "derivative of index 0"),
         (
             fmi2("", "", &real(""), "<Outputs><Unknown index=\"0\"/></Outputs>"),
             "index 0 of Outputs",
@@ -458,10 +459,6 @@ fn what_has_no_meaning_is_an_error_with_its_place() {
             "m.xml:4: Real, min: \"1,5\", expected a number, INF, -INF or NaN",
         ),
         (
-            real("").replace("<Real/>", "<Real derivative=\"2\"/>"),
-            "m.xml:4: ScalarVariable \"v\", derivative: index 2, expected 1 to 1",
-        ),
-        (
             fmi3("", "<Clock name=\"c\" valueReference=\"1\"/>", ""),
             "m.xml:4: Clock \"c\", intervalVariability: the attribute is missing, expected a word",
         ),
@@ -487,6 +484,11 @@ fn what_has_no_meaning_is_an_error_with_its_place() {
         "<ModelStructure><Derivatives><Unknown index=\"2\"/></Derivatives>",
     );
     assert_eq!(error(&text), "m.xml:6: Unknown, index: index 2, expected 1 to 1");
+    let text = real("")
+        .replace("<CoSimulation", "<ModelExchange")
+        .replace("<Real/>", "<Real derivative=\"2\"/>");
+    let expected = "m.xml:4: ScalarVariable \"v\", derivative: index 2, expected 1 to 1";
+    assert_eq!(error(&text), expected);
 }
 
 #[test]

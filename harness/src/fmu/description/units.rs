@@ -200,12 +200,14 @@ pub(crate) fn candidates(description: &Description, name: &str) -> Vec<BaseUnit>
     known
 }
 
-/// The known unit that a definition means: one of the same dimension, but for a radian that tools
-/// leave out, and with a factor that is the same as far as its digits go. Else what it defines.
+/// The known unit of angles that a definition means: one of the same dimension, but for a radian that
+/// tools leave out, and with a factor that is the same as far as its digits of π go. Else what it
+/// defines: no other factor needs digits that don't end.
 pub(crate) fn meant(defined: &BaseUnit, known: &[BaseUnit]) -> BaseUnit {
     let close = |a: f64, b: f64| (a - b).abs() <= SAME_FACTOR * b.abs();
     let is_meant = |known: &&BaseUnit| {
-        defined.exponents[..7] == known.exponents[..7]
+        known.exponents[7] != 0
+            && defined.exponents[..7] == known.exponents[..7]
             && (defined.exponents[7] == known.exponents[7] || defined.exponents[7] == 0)
             && close(defined.factor, known.factor)
             && close(defined.offset, known.offset)

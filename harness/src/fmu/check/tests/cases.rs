@@ -105,6 +105,7 @@ pub(super) fn cases() -> Vec<Case> {
         (&VARIABLE_DERIVATIVE, GOOD3, vec![(r#"derivative="3" unit="m/s"><Dimension start="2"/>"#, r#"derivative="3" unit="m/s"><Dimension start="3"/>"#)], "other dimensions"),
         (&VARIABLE_DERIVATIVE, GOOD3, vec![(r#"<Float64 name="z""#, r#"<Float64 derivative="16" name="z""#)], "the derivative of itself"),
         (&VARIABLE_DERIVATIVE, GOOD3, vec![(r#"<Float64 name="z""#, r#"<Float64 derivative="99" name="z""#)], "value reference 99"),
+        (&VARIABLE_DERIVATIVE, GOOD2, vec![(r#"<ModelExchange modelIdentifier="good"/>"#, ""), (r#" numberOfEventIndicators="1""#, ""), (r#" reinit="true""#, ""), (r#"<Real unit="deg"/>"#, r#"<Real unit="deg" derivative="0"/>"#)], "derivative of index 0"),
         (&VARIABLE_REINIT, GOOD2, vec![(r#"<Real unit="deg"/>"#, r#"<Real unit="deg" reinit="true"/>"#)], "no state"),
         (&VARIABLE_MULTIPLE_SET, GOOD2, vec![(r#"name="q""#, r#"name="q" canHandleMultipleSetPerTimeInstant="false""#)], "no input"),
         (&VARIABLE_INTERMEDIATE, GOOD3, vec![(r#"<Float64 name="p""#, r#"<Float64 intermediateUpdate="true" name="p""#)], "of a parameter"),

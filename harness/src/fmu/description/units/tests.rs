@@ -119,6 +119,10 @@ fn definitions_count_before_names() {
     assert_eq!(factor("deg/h", "rad/s"), 0.5);
     assert_eq!(factor("rad", "rad"), 1.0);
     assert!((factor("Strich", "deg") - 360.0 / 6400.0).abs() < 1e-15);
+    // A mile of surveyors is 3 mm longer, and stays so.
+    let survey = description(r#"<Unit name="mi"><BaseUnit m="1" factor="1609.3472"/></Unit>"#, "");
+    let mile = Conversion::between(&survey, "mi", "m").expect("converts");
+    assert_eq!(mile.factor, 1609.3472);
     // A number of turns isn't an angle, even where a tool leaves the radian out of "rad".
     assert!(Conversion::between(&tool, "Umin", "rad/s").is_err());
 }
