@@ -157,15 +157,8 @@ def main():
     finally:
         shutil.rmtree(folder, ignore_errors=True)
 
-    failed = False
-    wanted = variables.grouped(description, expected)
-    for want, got in zip(wanted, get_groups):
-        for at, label in enumerate(want.labels):
-            rows = np.arange(arguments.first, last)
-            if label.startswith(("parameters.", "sigma.")) and not label.endswith("revision"):
-                # Recorded where they change alone.
-                rows = rows[known[arguments.first:last]]
-            failed |= variables.differences(label, want.values[rows, at], got.values[rows, at], rows)
+    failed = variables.compare(variables.grouped(description, expected), get_groups,
+                               np.arange(arguments.first, last), known)
     steps = last - arguments.first
     outputs = sum(group.width for group in get_groups)
     print(f"  {steps} steps, {outputs} outputs each: "

@@ -83,14 +83,30 @@ def bits(values):
     return values.view(np.uint64) if values.dtype == np.float64 else values
 
 
-def differences(label, expected, found, rows=None):
+def differences(label, expected, found, rows):
     """Compares two columns bit for bit; prints the first difference. True if there is one."""
     expected, found = bits(expected), bits(found)
     unequal = np.flatnonzero(expected != found)
     if len(unequal) == 0:
         return False
     at = unequal[0]
-    row = at if rows is None else rows[at]
+    row = rows[at]
     print(f"  {label}: {len(unequal)} of {len(expected)} differ, first in step {row}: "
           f"expected {int(expected[at]):#x}, found {int(found[at]):#x}")
     return True
+
+
+def is_estimate(name):
+    """Whether it is an estimated parameter or its σ."""
+    return name.startswith(("parameters.", "sigma.")) and not name.endswith("revision")
+
+
+def compare(wanted, found, rows, known):
+    """Compares groups in these rows; estimates and their σ in those where they are known. True if
+    there is a difference."""
+    failed = False
+    for want, got in zip(wanted, found):
+        for at, label in enumerate(want.labels):
+            these = rows[known[rows]] if is_estimate(label) else rows
+            failed |= differences(label, want.values[these, at], got.values[these, at], these)
+    return failed
