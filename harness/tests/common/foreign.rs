@@ -10,9 +10,11 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// Names of all of them.
-pub const NAMES: [&str; 11] = [
+pub const NAMES: [&str; 13] = [
     "gain_fmi2",
     "trouble_fmi2",
+    "imu_fmi2",
+    "core_fmi2",
     "signals_fmi3",
     "clocks_fmi3",
     "ball_fmi2",
