@@ -293,7 +293,8 @@ impl Endpoint for FmuEndpoint {
         self.stepper.restart(starts).map_err(fail)?;
         self.taken = 0;
         self.estimate = NOTHING;
-        Ok(())
+        // What it starts from, which a core that was running announces as new.
+        if self.own.is_some() { self.refresh(0) } else { Ok(()) }
     }
 
     fn parameters(&self) -> ParameterEstimate {
