@@ -377,7 +377,7 @@ fn what_is_wrong_with_an_fmu_is_said_before_anything_is_written() {
             "modes.calibrating is \"turning\", and phase has standing, turned, sailing",
         ),
         (
-            core("") + "[baseline]\npositions = \"six\"\nduration = \"4 min\"\n",
+            core("") + "[baseline]\nstops = [{}, { azimuth = \"90 deg\" }]\n",
             "a second method can be set in Octant's Calibrator alone",
         ),
     ] {

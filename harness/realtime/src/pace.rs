@@ -57,6 +57,11 @@ impl FrameClock {
         }
     }
 
+    /// Lets frame 0 be due now. Nothing may have been waited for.
+    pub fn restart(&mut self) {
+        self.start = now();
+    }
+
     /// When the next frame is due. From the start and the number of the frame, so that nothing
     /// adds up.
     #[must_use]

@@ -85,6 +85,11 @@ pub fn apply(wish: &Wish) -> Granted {
     }
 }
 
+/// Takes from the calling thread what it was granted, but for the memory: that is the process's.
+pub fn release(granted: &Granted) {
+    system::release(granted);
+}
+
 #[cfg(target_os = "linux")]
 mod system {
     use super::Outcome;
@@ -95,8 +100,8 @@ mod system {
     };
     use std::num::NonZeroU64;
     use thread_priority::{
-        Error, RealtimeThreadSchedulePolicy, ThreadPriority, ThreadSchedulePolicy,
-        set_thread_priority_and_policy, thread_native_id,
+        Error, NormalThreadSchedulePolicy, RealtimeThreadSchedulePolicy, ThreadPriority,
+        ThreadSchedulePolicy, set_thread_priority_and_policy, thread_native_id,
     };
 
     /// A thread without a real-time priority is woken up to 50 µs late on purpose, so that wakings
@@ -130,6 +135,20 @@ mod system {
             },
         };
         Outcome::Refused { what, why }
+    }
+
+    pub(super) fn release(granted: &super::Granted) {
+        if granted.scheduling.is_granted() {
+            let policy = ThreadSchedulePolicy::Normal(NormalThreadSchedulePolicy::Other);
+            // From a real-time policy back is always permitted.
+            let _ = set_thread_priority_and_policy(thread_native_id(), ThreadPriority::Min, policy);
+        }
+        if granted.cpu.is_granted() {
+            let mut all = CpuSet::new();
+            (0..CpuSet::MAX_CPU).for_each(|cpu| all.set(cpu));
+            // The kernel leaves out those that there are not, or that aren't for this process.
+            let _ = sched_setaffinity(None, &all);
+        }
     }
 
     pub(super) fn lock_memory() -> Outcome {
@@ -176,6 +195,8 @@ mod system {
     use super::Outcome;
 
     pub(super) fn prepare() {}
+
+    pub(super) fn release(_granted: &super::Granted) {}
 
     fn not_here(what: String) -> Outcome {
         Outcome::Refused { what, why: "Octant does this on Linux only".to_owned() }
@@ -250,6 +271,16 @@ mod tests {
                     std::fs::read_to_string("/proc/thread-self/status").unwrap_or_default();
                 assert!(status.contains("Cpus_allowed_list:\t0\n"), "{status}");
             }
+            release(&granted);
+            let status = std::fs::read_to_string("/proc/thread-self/stat").unwrap_or_default();
+            let fields: Vec<&str> = status.rsplit(") ").next().unwrap_or("").split(' ').collect();
+            assert_eq!((fields[37], fields[38]), ("0", "0"), "{status}");
+            let status = std::fs::read_to_string("/proc/thread-self/status").unwrap_or_default();
+            let of_all = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+            let list = |text: &str| {
+                text.lines().find(|l| l.starts_with("Cpus_allowed_list")).map(str::to_owned)
+            };
+            assert_eq!(list(&status), list(&of_all));
         })
         .join()
         .unwrap_or_else(|_| panic!("the thread panicked"));

@@ -269,6 +269,10 @@ impl Endpoint for FmuEndpoint {
         self.take(epoch, output)
     }
 
+    fn uri(&self) -> String {
+        self.stepper.uri().to_owned()
+    }
+
     fn restart(&mut self, offset: Option<&Parameters>) -> Result<(), EndpointError> {
         let uri = self.stepper.uri().to_owned();
         let fail = |reason: String| EndpointError::Restart { uri: uri.clone(), reason };
