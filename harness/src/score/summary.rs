@@ -410,6 +410,9 @@ pub struct Pacing {
     pub period_us: f64,
     /// How late they began.
     pub lateness_us: Lateness,
+    /// Histogram of that: an upper edge, ns, and how many were at most as late and later than the
+    /// edge before.
+    pub lateness_histogram_ns: Vec<[u64; 2]>,
     /// Lateness from which on a frame is an overrun, µs.
     pub overrun_us: f64,
     /// Overruns.

@@ -33,23 +33,25 @@ const ENTRIES: usize = 8192;
 pub struct Kept {
     /// For the summary.
     pub pacing: Pacing,
-    /// Lateness of the frames: upper edges, ns, and how many.
-    pub histogram: Vec<(u64, u64)>,
     /// What the host granted the thread.
     pub granted: Granted,
 }
 
 /// Parts of a run that the frames go through.
-pub(super) struct Line<'a, S: ?Sized, E: ?Sized> {
-    pub(super) source: &'a mut S,
-    pub(super) faulted: Option<&'a mut Faulted>,
-    pub(super) endpoint: &'a mut E,
+#[derive(Debug)]
+pub struct Line<'a, S: ?Sized, E: ?Sized> {
+    /// Where samples come from.
+    pub source: &'a mut S,
+    /// What is done to them.
+    pub faulted: Option<&'a mut Faulted>,
+    /// Where the core is.
+    pub endpoint: &'a mut E,
 }
 
 /// Drives as [`drive`](super::drive()) and [`drive_faulted`](super::drive_faulted) do, by the
 /// clock, on the thread that calls: it has what the host granted until the run has ended. How time
 /// was kept is told whatever the end was.
-pub(super) fn drive_by_clock<S, E>(
+pub fn drive_by_clock<S, E>(
     settings: &Realtime,
     period_ns: u64,
     line: Line<'_, S, E>,
@@ -88,11 +90,7 @@ where
         schedule::release(&granted);
         let kept = keeper.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic));
         let last = receipts.then(|| faulted.map(|f| f.station.receipts())).flatten();
-        let time = Kept {
-            pacing: pacing(settings, &found),
-            histogram: found.clock.lateness().rows(),
-            granted,
-        };
+        let time = Kept { pacing: pacing(settings, &found), granted };
         (ended, kept.map(|()| last), time)
     });
     let ended = match kept {
@@ -121,6 +119,9 @@ fn pacing(settings: &Realtime, found: &frames::Found) -> Pacing {
         frames: report.frames,
         period_us: report.period_us,
         lateness_us: of(report.lateness),
+        lateness_histogram_ns: (found.clock.lateness().rows().iter())
+            .map(|(edge_ns, count)| [*edge_ns, *count])
+            .collect(),
         overrun_us: settings.overrun_ns as f64 / 1e3,
         overruns: report.overruns,
         overruns_in_a_row: report.longest_row_of_overruns,
