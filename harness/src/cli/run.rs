@@ -8,7 +8,7 @@ use crate::run::assemble::{parameter_text, text};
 use crate::run::method::{MethodError, SetupError, configurations, run_as_far_as_it_goes};
 use crate::run::raw_counts;
 use crate::run::{Control, Ended, MethodRun, Recording, Run, assemble};
-use crate::scenario::{Method, Scenario};
+use crate::scenario::{Endpoint, Method, Scenario};
 use crate::score::junit::junit;
 use crate::score::verdict::Verdict;
 use clap::Args;
@@ -149,7 +149,10 @@ fn set_up(scenario: &Scenario, method: Method, seed: u64) -> Result<(), Failure>
     let (plant, core, _) = configurations(scenario, method, seed).map_err(failure)?;
     octant_calibration::Core::new(&core).map_err(|error| failure(error.into()))?;
     crate::source::open(scenario, &plant).map_err(|error| failure(error.into()))?;
-    crate::endpoint::open(scenario, &core).map_err(|error| failure(error.into()))?;
+    // A device is greeted once, when the run begins: some restart when their port is opened.
+    if !matches!(scenario.endpoint, Endpoint::Live(_)) {
+        crate::endpoint::open(scenario, &core).map_err(|error| failure(error.into()))?;
+    }
     Ok(())
 }
 

@@ -2,9 +2,13 @@
 
 mod fmu;
 mod in_process;
+mod live;
+mod served;
 
 pub use fmu::FmuEndpoint;
 pub use in_process::InProcess;
+pub use live::{LiveEndpoint, configuration};
+pub use served::ServedCore;
 
 use crate::fmu::mapping::stepper::UseError;
 use crate::scenario::{self, Scenario};
@@ -12,6 +16,7 @@ use crate::source::Epoch;
 use octant_calibration::Config;
 use octant_calibration::state_machine::ConfigError;
 use octant_calibration::table::CalibrationTable;
+use octant_link::harness::SessionError;
 use octant_sample::parameters::PARAMETER_COUNT;
 use octant_sample::{Output, Parameters};
 
@@ -105,6 +110,18 @@ pub enum OpenError {
     /// An FMU can't be used.
     #[error(transparent)]
     Use(#[from] UseError),
+    /// A device can't be used.
+    #[error("begin a session with the device: {0}")]
+    Live(#[from] SessionError),
+    /// A device has one core, with one configuration.
+    #[error(
+        "the core is at {uri}, and the scenario has a [baseline]: a second method can be set in \
+         Octant's own core alone"
+    )]
+    OneMethod {
+        /// The port.
+        uri: String,
+    },
 }
 
 /// Opens the endpoint of a scenario with the core of `config`; `None` where it is the core in this
@@ -117,6 +134,9 @@ pub fn open(scenario: &Scenario, config: &Config) -> Result<Option<Box<dyn Endpo
         scenario::Endpoint::InProcess => Ok(None),
         scenario::Endpoint::Fmu(fmu) => {
             Ok(Some(Box::new(FmuEndpoint::open(scenario, fmu, config)?)))
+        }
+        scenario::Endpoint::Live(live) => {
+            Ok(Some(Box::new(LiveEndpoint::open(scenario, live, config)?)))
         }
     }
 }
@@ -138,6 +158,9 @@ pub enum EndpointError {
         /// What happened.
         reason: String,
     },
+    /// The session with the device can't go on.
+    #[error("endpoint {0}")]
+    Live(#[from] SessionError),
     /// The core behind the endpoint can't be started anew.
     #[error("restart the core at {uri}: {reason}")]
     Restart {

@@ -168,8 +168,12 @@ pub fn facts(scenario: &Scenario) -> Vec<(String, String)> {
         }
         Source::Fmu(fmu) => facts.push(("source".to_owned(), format!("FMU {}", fmu.file.0))),
     }
-    if let Endpoint::Fmu(fmu) = &scenario.endpoint {
-        facts.push(("core".to_owned(), format!("FMU {}", fmu.file.0)));
+    match &scenario.endpoint {
+        Endpoint::InProcess => {}
+        Endpoint::Fmu(fmu) => facts.push(("core".to_owned(), format!("FMU {}", fmu.file.0))),
+        Endpoint::Live(live) => {
+            facts.push(("core".to_owned(), format!("device at {}, in lock-step", live.uri)));
+        }
     }
     facts
 }

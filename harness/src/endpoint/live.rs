@@ -1,0 +1,149 @@
+//! A core at the other end of a wire: a device on a serial line, a CAN bus or UDP, in lock-step.
+//!
+//! Each sample is sent, and its answer waited for and asked for again until it is there: so the outputs
+//! are those of the device's core to the last bit, however bad the line is.
+
+use super::{Endpoint, EndpointError, OpenError, ParameterEstimate};
+use crate::scenario::{Live, Scenario};
+use crate::source::Epoch;
+use octant_calibration::Config;
+use octant_link::harness::{Harness, Options, Patience, SessionError};
+use octant_link::{PortError, Uri, Wire, load, port};
+use octant_sample::parameters::PARAMETER_COUNT;
+use octant_sample::{Output, Parameters};
+use octant_wire::message::{Gathered, Reason, Role};
+use std::time::{Duration, Instant};
+
+/// A device.
+#[derive(Debug)]
+pub struct LiveEndpoint {
+    harness: Harness,
+    uri: Uri,
+    /// How long a port that went away is waited for.
+    reconnect: Duration,
+    estimate: ParameterEstimate,
+}
+
+impl LiveEndpoint {
+    /// Begins a session with the device of a scenario, in lock-step.
+    ///
+    /// # Errors
+    /// If nobody answers there, or what answers doesn't fit.
+    pub fn open(scenario: &Scenario, live: &Live, config: &Config) -> Result<Self, OpenError> {
+        if scenario.baseline.is_some() {
+            let uri = live.uri.to_string();
+            return Err(OpenError::OneMethod { uri });
+        }
+        let options = Options {
+            configuration: configuration(config),
+            patience: Patience {
+                hello: Duration::from_secs_f64(live.hello_s),
+                answer: Duration::from_secs_f64(live.answer_s),
+                repeat: Duration::from_secs_f64(live.repeat_s),
+            },
+            ..Options::lock_step(config.sample_period_ns)
+        };
+        let mut wire = Wire::open(&live.uri, Role::Harness).map_err(SessionError::from)?;
+        if let Some(bus) = load::bus(&live.uri) {
+            wire.set_bus(bus);
+        }
+        let harness = Harness::open(wire, options)?;
+        Ok(Self {
+            harness,
+            uri: live.uri.clone(),
+            reconnect: Duration::from_secs_f64(live.reconnect_s),
+            estimate: NOTHING,
+        })
+    }
+
+    /// The session, for what it counted.
+    #[must_use]
+    pub fn harness(&self) -> &Harness {
+        &self.harness
+    }
+
+    /// The port went away in the middle of a step: waits for it, and asks for the answer again.
+    #[cold]
+    fn back(&mut self, error: SessionError, output: &mut Output) -> Result<(), EndpointError> {
+        let SessionError::Port(PortError::Gone { .. }) = error else { return Err(error.into()) };
+        let begun = Instant::now();
+        loop {
+            if begun.elapsed() >= self.reconnect {
+                return Err(error.into());
+            }
+            std::thread::sleep(Duration::from_millis(50));
+            let Ok(port) = port::open(&self.uri, Role::Harness) else { continue };
+            self.harness.reconnect(port, begun.elapsed())?;
+            match self.harness.step_again(output) {
+                Ok(_) => return Ok(()),
+                Err(SessionError::Port(PortError::Gone { .. })) => {}
+                Err(error) => return Err(error.into()),
+            }
+        }
+    }
+
+    fn take_parameters(&mut self) {
+        if let Some(Gathered { revision, parameters, sigma, .. }) = self.harness.parameters()
+            && (*revision != self.estimate.revision || self.estimate.sigma[0].is_nan())
+        {
+            self.estimate =
+                ParameterEstimate { revision: *revision, parameters: *parameters, sigma: *sigma };
+        }
+    }
+}
+
+const NOTHING: ParameterEstimate = ParameterEstimate {
+    revision: 0,
+    parameters: Parameters {
+        gyro_bias: [0.0; 3],
+        gyro_scale: [0.0; 3],
+        gyro_misalignment: [0.0; 6],
+        g_dependent: [0.0; 9],
+        accel_bias: [0.0; 3],
+        accel_scale: [0.0; 3],
+        accel_misalignment: [0.0; 3],
+    },
+    sigma: [f64::NAN; PARAMETER_COUNT],
+};
+
+impl Endpoint for LiveEndpoint {
+    fn step(&mut self, epoch: &Epoch, output: &mut Output) -> Result<(), EndpointError> {
+        let answer = self.harness.step(&epoch.sample, epoch.aiding.as_ref(), output);
+        if let Err(error) = answer {
+            self.back(error, output)?;
+        }
+        if output.parameters_revision != self.estimate.revision || self.estimate.sigma[0].is_nan() {
+            self.take_parameters();
+        }
+        Ok(())
+    }
+
+    fn restart(&mut self, offset: Option<&Parameters>) -> Result<(), EndpointError> {
+        self.estimate = NOTHING;
+        Ok(self.harness.restart(offset)?)
+    }
+
+    fn parameters(&self) -> ParameterEstimate {
+        self.estimate
+    }
+
+    fn end_of_stream(&mut self) -> Result<Option<Output>, EndpointError> {
+        let output = self.harness.end()?;
+        self.take_parameters();
+        Ok(output)
+    }
+}
+
+impl Drop for LiveEndpoint {
+    fn drop(&mut self) {
+        self.harness.bye(Reason::DONE, "the run is over");
+    }
+}
+
+/// What both ends compare in their hello: a hash of all that the core is configured with; zeros where
+/// there is none.
+#[must_use]
+pub fn configuration(config: &Config) -> [u8; 32] {
+    // All of it are numbers and names, which are written as their bits.
+    postcard::to_stdvec(config).map_or([0; 32], |bytes| blake3::hash(&bytes).into())
+}
