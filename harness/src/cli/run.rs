@@ -2,6 +2,7 @@
 
 use super::progress::with_progress;
 use super::{Failure, ScenarioArguments, load_fired, print, write};
+use crate::endpoint::LiveEndpoint;
 use crate::evidence::{self, Existing, FmuFacts, FolderError, Manifest, RunFacts, RunFolder};
 use crate::report;
 use crate::run::assemble::{parameter_text, text};
@@ -14,6 +15,7 @@ use crate::score::verdict::Verdict;
 use clap::Args;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::thread::ScopedJoinHandle;
 use std::time::SystemTime;
 
 #[derive(Debug, Args)]
@@ -150,9 +152,11 @@ fn set_up(scenario: &Scenario, method: Method, seed: u64) -> Result<(), Failure>
     octant_calibration::Core::new(&core).map_err(|error| failure(error.into()))?;
     crate::source::open(scenario, &plant).map_err(|error| failure(error.into()))?;
     // A device is greeted once, when the run begins: some restart when their port is opened.
-    if !matches!(scenario.endpoint, Endpoint::Live(_)) {
-        crate::endpoint::open(scenario, &core).map_err(|error| failure(error.into()))?;
+    match &scenario.endpoint {
+        Endpoint::Live(live) => LiveEndpoint::check(scenario, live),
+        _ => crate::endpoint::open(scenario, &core).map(|_| ()),
     }
+    .map_err(|error| failure(error.into()))?;
     Ok(())
 }
 
@@ -265,7 +269,7 @@ fn execute(
     let sample_s = scenario.sample_period_ns as f64 * 1e-9;
     let results = with_progress(&controls, epochs, sample_s, || {
         std::thread::scope(|scope| {
-            let threads: Vec<_> = tasks
+            let threads = tasks
                 .iter()
                 .zip(&controls)
                 .map(|((method, clean), control)| {
@@ -284,15 +288,19 @@ fn execute(
                             run_as_far_as_it_goes(clean, *method, seed, recording, control)
                         }
                     })
-                })
-                .collect();
-            threads
-                .into_iter()
-                .map(|thread| match thread.join() {
+                });
+            let join = |thread: ScopedJoinHandle<'_, Result<MethodRun, MethodError>>| {
+                match thread.join() {
                     Ok(result) => result.map_err(Failure::from),
                     Err(_) => Err(Failure::bench("failed to run a method: its thread panicked")),
-                })
-                .collect::<Vec<_>>()
+                }
+            };
+            if matches!(scenario.endpoint, Endpoint::Live(_)) {
+                // A device does one thing after the other.
+                threads.map(join).collect::<Vec<_>>()
+            } else {
+                threads.collect::<Vec<_>>().into_iter().map(join).collect()
+            }
         })
     });
     let runs: Vec<MethodRun> =

@@ -25,15 +25,23 @@ pub struct LiveEndpoint {
 }
 
 impl LiveEndpoint {
+    /// Looks whether a device can do what a scenario asks for, before one is looked for.
+    ///
+    /// # Errors
+    /// If it can't.
+    pub fn check(scenario: &Scenario, live: &Live) -> Result<(), OpenError> {
+        match scenario.baseline {
+            Some(_) => Err(OpenError::OneMethod { uri: live.uri.to_string() }),
+            None => Ok(()),
+        }
+    }
+
     /// Begins a session with the device of a scenario, in lock-step.
     ///
     /// # Errors
     /// If nobody answers there, or what answers doesn't fit.
     pub fn open(scenario: &Scenario, live: &Live, config: &Config) -> Result<Self, OpenError> {
-        if scenario.baseline.is_some() {
-            let uri = live.uri.to_string();
-            return Err(OpenError::OneMethod { uri });
-        }
+        Self::check(scenario, live)?;
         let options = Options {
             configuration: configuration(config),
             patience: Patience {

@@ -115,8 +115,8 @@ pub enum OpenError {
     Live(#[from] SessionError),
     /// A device has one core, with one configuration.
     #[error(
-        "the core is at {uri}, and the scenario has a [baseline]: a second method can be set in \
-         Octant's own core alone"
+        "set the core at {uri} to a second method, which the scenario's [baseline] asks for: that can \
+         be done with Octant's own core alone"
     )]
     OneMethod {
         /// The port.
