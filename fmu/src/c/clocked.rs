@@ -2,8 +2,8 @@
 //!
 //! A clock ticks when the importer says so in event mode, and until the event ends. A binary input is
 //! set while its clock ticks and handed to the model when the event ends; a binary output is taken
-//! from the model when it is asked for while its clock ticks, and is empty otherwise, so that nothing
-//! is handed on twice.
+//! from the model while its clock ticks, when it is asked for or at the latest when the event ends,
+//! and is empty otherwise, so that nothing is handed on twice.
 
 #![allow(unsafe_code, reason = "the importer's arrays are read and written")]
 
@@ -335,14 +335,19 @@ impl Instance {
         let time_s = self.time_s();
         let layout = self.layout();
         let run = &mut self.run;
-        for (binary, bytes) in layout.binaries.iter().zip(&mut run.clocked.binaries) {
+        let binaries = layout.binaries.iter().zip(&mut run.clocked.binaries);
+        for (place, (binary, bytes)) in binaries.enumerate() {
             if run.clocked.ticking & 1 << binary.clock == 0 {
                 continue;
             }
             let bytes = core::mem::take(bytes);
             let network = run.component.as_mut().and_then(|component| component.network());
-            if let (true, Some(network)) = (binary.is_input, network) {
+            let Some(network) = network else { continue };
+            if binary.is_input {
                 network.receive(&bytes, time_s, &mut run.values);
+            } else if run.clocked.taken & 1 << place == 0 {
+                // It was sent, and nobody looked.
+                network.send(time_s, binary.max_bytes, &mut run.values);
             }
         }
         let counts_down = |(place, clock): (usize, &super::layout::Clock)| {

@@ -460,6 +460,17 @@ fn parameters_that_contradict_each_other_are_refused() {
     }
 }
 
+/// What is sent at a tick is sent, whether somebody looks or not.
+#[test]
+fn a_tick_without_a_look_is_a_tick() {
+    let mut node = Node::new(&[]);
+    // SAFETY: one reference, one value.
+    unsafe { assert_eq!(fmi3SetClock(node.handle, &slot("can.Tx_Clock"), 1, &1), OK) };
+    node.end_event();
+    assert_eq!(node.interval().1, 0, "nothing is left to be sent");
+    assert_eq!(node.count("can.waiting"), 0);
+}
+
 /// Steps of any length, and the same answers.
 #[test]
 fn time_goes_on_in_steps_of_any_length() {
