@@ -89,6 +89,9 @@ impl Instance {
             )));
         }
         let end_s = time_s + step_s;
+        if !end_s.is_finite() {
+            return Err(Refusal::discard(format!("the step ends at {end_s} s")));
+        }
         if let Some(stop_s) = self.run.experiment.stop_s
             && end_s > stop_s + tolerance_s
         {

@@ -39,9 +39,12 @@ pub struct CalibratorCan {
     remark: Option<String>,
 }
 
+/// Longest time on the bus, ns, some seventy years: what is added to it is still a count.
+const TIME_MAX_NS: u64 = 1 << 61;
+
 /// Time on the bus, ns; before zero it is zero.
 fn ns(time_s: f64) -> u64 {
-    (time_s * 1e9).round() as u64
+    ((time_s * 1e9).round() as u64).min(TIME_MAX_NS)
 }
 
 /// Copies the cells of variables that both tables have, of one causality.
