@@ -13,8 +13,8 @@ use core::fmt::Debug;
 pub enum Extent {
     /// No frame begins so.
     None,
-    /// More bytes are needed to tell.
-    Open,
+    /// At least so many more bytes are needed to tell.
+    Open(usize),
     /// So many bytes, if it is one.
     Bytes(usize),
 }
@@ -71,8 +71,8 @@ pub trait Framing {
     fn begins(byte: u8) -> bool;
 
     /// How long the frame is that begins with these bytes, of which the first one passed
-    /// [`Framing::begins`]. Never longer than the room, and never [`Extent::Open`] for as many bytes
-    /// as the room has. More bytes don't change an answer that isn't [`Extent::Open`].
+    /// [`Framing::begins`]. Never longer than the room, and never more than
+    /// the room with [`Extent::Open`]. More bytes don't change an answer that isn't [`Extent::Open`].
     fn extent(bytes: &[u8]) -> Extent;
 
     /// What a frame of that length says; `None`: it is intact and holds no reading.
@@ -225,11 +225,9 @@ impl<P: Framing> Decoder<P> {
                     self.counters.bytes_lost += 1;
                     self.take(bytes, 1);
                 }
-                Extent::Bytes(_) | Extent::Open => {
+                Extent::Bytes(_) | Extent::Open(_) => {
                     // Fewer bytes than the frame has, which fits the room.
-                    self.held.as_mut()[..all].copy_from_slice(bytes);
-                    self.length = all;
-                    self.take(bytes, all);
+                    self.hold(bytes, all);
                     return None;
                 }
             }
@@ -256,17 +254,17 @@ impl<P: Framing> Decoder<P> {
                 self.drop_held(1);
                 Step::Go
             }
-            Extent::Open => {
-                let Some(byte) = bytes.first() else { return Step::Wait };
-                match self.held.as_mut().get_mut(self.length) {
-                    Some(room) => {
-                        *room = *byte;
-                        self.length += 1;
-                        self.take(bytes, 1);
-                    }
-                    // Excluded by the contract of `extent`: nothing is stuck if it is broken.
-                    None => self.drop_held(1),
+            Extent::Open(more) => {
+                if bytes.is_empty() {
+                    return Step::Wait;
                 }
+                let room = self.held.as_ref().len() - self.length;
+                let more = more.max(1).min(bytes.len()).min(room);
+                if more == 0 {
+                    // Excluded by the contract of `extent`: nothing is stuck if it is broken.
+                    self.drop_held(1);
+                }
+                self.hold(bytes, more);
                 Step::Go
             }
             Extent::Bytes(length) => {
@@ -287,6 +285,14 @@ impl<P: Framing> Decoder<P> {
                 self.event(outcome, length).map_or(Step::Go, Step::Said)
             }
         }
+    }
+
+    /// Holds more bytes, for which there is room.
+    fn hold(&mut self, bytes: &mut &[u8], count: usize) {
+        let room = &mut self.held.as_mut()[self.length..self.length + count];
+        room.copy_from_slice(&bytes[..count]);
+        self.length += count;
+        self.take(bytes, count);
     }
 
     fn take(&mut self, bytes: &mut &[u8], count: usize) {

@@ -72,11 +72,13 @@ impl Framing for Sbg {
     #[inline]
     fn extent(bytes: &[u8]) -> Extent {
         match bytes.get(1) {
-            None => return Extent::Open,
+            None => return Extent::Open(1),
             Some(second) if *second != SYNC[1] => return Extent::None,
             Some(_) => {}
         }
-        let Some(length) = bytes.get(4..HEADER_BYTES) else { return Extent::Open };
+        let Some(length) = bytes.get(4..HEADER_BYTES) else {
+            return Extent::Open(HEADER_BYTES - bytes.len());
+        };
         let length = usize::from(u16::from_le_bytes([length[0], length[1]]));
         if length > MAX_DATA_BYTES {
             return Extent::None;

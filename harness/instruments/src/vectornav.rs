@@ -84,10 +84,15 @@ struct Header {
 
 /// The header that bytes begin with.
 fn header(bytes: &[u8]) -> Result<Header, Extent> {
-    let groups = *bytes.get(1).ok_or(Extent::Open)?;
+    let groups = *bytes.get(1).ok_or(Extent::Open(1))?;
     // Bit 7 continues the groups with a second byte, which no unit has.
     if groups == 0 || groups & 0x80 != 0 {
         return Err(Extent::None);
+    }
+    // The masks are there, or nothing can be said.
+    let header_bytes = 2 + 2 * groups.count_ones() as usize;
+    if bytes.len() < header_bytes {
+        return Err(Extent::Open(header_bytes - bytes.len()));
     }
     let mut masks = [0; 7];
     let mut at = 2;
@@ -95,7 +100,7 @@ fn header(bytes: &[u8]) -> Result<Header, Extent> {
         if groups & (1 << group) == 0 {
             continue;
         }
-        let found = bytes.get(at..).and_then(|rest| rest.first_chunk::<2>()).ok_or(Extent::Open)?;
+        let found = bytes.get(at..).and_then(|rest| rest.first_chunk::<2>()).ok_or(Extent::None)?;
         *mask = u16::from_le_bytes(*found);
         // A group without a field, or with another word of fields.
         if *mask == 0 || *mask & 0x8000 != 0 {

@@ -113,9 +113,9 @@ impl Framing for Xsens {
             return Extent::None;
         }
         match bytes.get(3) {
-            None => Extent::Open,
+            None => Extent::Open(4 - bytes.len()),
             Some(0xFF) => match bytes.get(4..6) {
-                None => Extent::Open,
+                None => Extent::Open(6 - bytes.len()),
                 Some(long) => {
                     let length = usize::from(u16::from_be_bytes([long[0], long[1]]));
                     if length > MAX_DATA_BYTES {

@@ -25,7 +25,8 @@ pub(super) fn extent(bytes: &[u8], most: usize) -> Extent {
         }
         Some(_) => Extent::None,
         None if bytes.len() + TAIL_BYTES >= most => Extent::None,
-        None => Extent::Open,
+        // The mark at least, and what follows it.
+        None => Extent::Open(1 + TAIL_BYTES),
     }
 }
 

@@ -88,7 +88,7 @@ impl Framing for NovAtel {
             return Extent::None;
         }
         match bytes.get(3) {
-            None => Extent::Open,
+            None => Extent::Open(4 - bytes.len()),
             Some(length) => Extent::Bytes(HEADER_BYTES + usize::from(*length) + CRC_BYTES),
         }
     }
