@@ -15,10 +15,16 @@
 //! that a unit at rest with z down shows −g on z. Where a protocol sends another order or sign (NovAtel:
 //! z, −y, x) the codec has undone it. How the unit is mounted is said to the [`Sampler`] ([`Axes`]).
 //!
-//! Nothing here allocates, waits or knows a port.
+//! Nothing here allocates, waits or knows a port, but for `dbc`: with the feature of that name
+//! any CAN database is read on a host, through a mapping of its signals.
 #![no_std]
 
+#[cfg(feature = "dbc")]
+extern crate std;
+
 pub mod any;
+#[cfg(feature = "dbc")]
+pub mod dbc;
 pub mod framing;
 pub mod novatel;
 pub mod own;

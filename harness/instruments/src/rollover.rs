@@ -1,29 +1,35 @@
 //! Counters that begin anew.
 
-/// Continues a counter of `BITS` bits that rolls over.
+/// Continues a counter that rolls over.
 ///
 /// A step of less than half of its range is forward. A longer one is backward: what came again, or a
 /// unit that was switched on anew. Nobody can tell a gap of more than half of the range.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Rollover<const BITS: u32> {
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Rollover {
+    /// The greatest value.
+    mask: u64,
     last: Option<u64>,
 }
 
-impl<const BITS: u32> Rollover<BITS> {
+impl Rollover {
+    /// A counter of so many bits, 1 to 64.
+    pub(crate) const fn new(bits: u32) -> Self {
+        let unused = 64u32.saturating_sub(bits);
+        Self { mask: u64::MAX >> unused, last: None }
+    }
+
     /// The continued counter.
     #[inline]
-    pub(crate) fn continued(&mut self, counter: u32) -> u64 {
-        let raw = u64::from(counter);
+    pub(crate) fn continued(&mut self, counter: u64) -> u64 {
         let next = match self.last {
-            None => raw,
+            None => counter,
             Some(last) => {
-                let mask = (1 << BITS) - 1;
-                let ahead = raw.wrapping_sub(last) & mask;
-                if ahead <= mask / 2 {
-                    last + ahead
+                let ahead = counter.wrapping_sub(last) & self.mask;
+                if ahead <= self.mask / 2 {
+                    last.saturating_add(ahead)
                 } else {
                     // Before its beginning there is nothing: it began anew.
-                    last.checked_sub(mask + 1 - ahead).unwrap_or(raw)
+                    last.checked_sub((self.mask - ahead).saturating_add(1)).unwrap_or(counter)
                 }
             }
         };
@@ -38,15 +44,19 @@ mod tests {
 
     #[test]
     fn a_counter_is_continued_across_its_end_and_goes_back_when_it_does() {
-        let mut counter = Rollover::<16>::default();
+        let mut counter = Rollover::new(16);
         let raw = [65_534, 65_535, 0, 1, 1, 0, 40_000, 65_000, 3];
         let continued = raw.map(|raw| counter.continued(raw));
         assert_eq!(
             continued,
             [65_534, 65_535, 65_536, 65_537, 65_537, 65_536, 40_000, 65_000, 65_539]
         );
-        let mut anew = Rollover::<32>::default();
+        let mut anew = Rollover::new(32);
         assert_eq!(anew.continued(5), 5);
-        assert_eq!(anew.continued(u32::MAX), u64::from(u32::MAX));
+        assert_eq!(anew.continued(u32::MAX.into()), u64::from(u32::MAX));
+        let mut whole = Rollover::new(64);
+        for counter in [3, 1 << 62, 7] {
+            assert_eq!(whole.continued(counter), counter);
+        }
     }
 }

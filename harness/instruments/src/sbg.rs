@@ -52,9 +52,15 @@ const GYROS_USE_HIGH_SCALE: u16 = 1 << 10;
 const USABLE: u16 = COM_OK | STATUS_OK | ACCELEROMETERS_OK | GYROS_OK;
 
 /// The protocol, with where its clock stands.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 pub struct Sbg {
-    clock: Rollover<32>,
+    clock: Rollover,
+}
+
+impl Default for Sbg {
+    fn default() -> Self {
+        Self { clock: Rollover::new(32) }
+    }
 }
 
 /// Finds readings in a stream of bytes.
@@ -133,7 +139,7 @@ impl Framing for Sbg {
             }
             _ => return Ok(None),
         };
-        let ns = self.clock.continued(micros).saturating_mul(1000);
+        let ns = self.clock.continued(micros.into()).saturating_mul(1000);
         reading.stamp = Some(Stamp { ns, clock: Clock::Startup });
         reading.status_word = Some(status.into());
         let out = |bit: u16| status & bit == 0;

@@ -47,10 +47,16 @@ const CLIPPED_ACCELEROMETER: u32 = 0b111 << 8;
 const CLIPPED_GYRO: u32 = 0b111 << 11;
 
 /// The protocol, with where its counters stand.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 pub struct Xsens {
-    counter: Rollover<16>,
-    fine: Rollover<32>,
+    counter: Rollover,
+    fine: Rollover,
+}
+
+impl Default for Xsens {
+    fn default() -> Self {
+        Self { counter: Rollover::new(16), fine: Rollover::new(32) }
+    }
 }
 
 /// Finds readings in a stream of bytes.
@@ -149,7 +155,7 @@ impl Framing for Xsens {
         }
         reading.sequence = found.counter.map(|counter| self.counter.continued(counter.into()));
         reading.stamp = found.fine.map(|fine| Stamp {
-            ns: self.fine.continued(fine).saturating_mul(FINE_NS),
+            ns: self.fine.continued(fine.into()).saturating_mul(FINE_NS),
             clock: Clock::Startup,
         });
         if let Some(word) = found.status_word {
