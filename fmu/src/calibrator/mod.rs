@@ -161,7 +161,9 @@ impl Component for Calibrator {
 
     fn terminate(&mut self, values: &mut Values) {
         self.output = self.core.end_of_stream();
-        self.mode = self.output.mode;
+        if self.output.mode != self.mode {
+            (self.mode, self.mode_changed) = (self.output.mode, true);
+        }
         outputs::put(&self.output, values);
         outputs::put_parameters(&self.core, values);
     }

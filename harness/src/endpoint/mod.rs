@@ -12,6 +12,7 @@ use crate::source::Epoch;
 use octant_calibration::Config;
 use octant_calibration::state_machine::ConfigError;
 use octant_calibration::table::CalibrationTable;
+use octant_realtime::clock::HostTime;
 use octant_sample::parameters::PARAMETER_COUNT;
 use octant_sample::{Output, Parameters};
 
@@ -34,6 +35,28 @@ pub trait Endpoint {
     /// # Errors
     /// If the endpoint failed as a bench part: device gone, process died.
     fn step(&mut self, epoch: &Epoch, output: &mut Output) -> Result<(), EndpointError>;
+
+    /// Name of the endpoint in messages: its URI.
+    fn uri(&self) -> String;
+
+    /// Hands over one epoch without waiting for the answer; true where the answer is in `output`
+    /// already. Answers come in the order of their epochs, from here or from [`Self::answer`].
+    ///
+    /// # Errors
+    /// As [`Self::step`].
+    fn send(&mut self, epoch: &Epoch, output: &mut Output) -> Result<bool, EndpointError> {
+        self.step(epoch, output)?;
+        Ok(true)
+    }
+
+    /// Waits for the answer to the oldest epoch that was sent and not answered, until a time of the
+    /// host; false where it didn't come, and then `output` is as it was.
+    ///
+    /// # Errors
+    /// As [`Self::step`].
+    fn answer(&mut self, _until: HostTime, _output: &mut Output) -> Result<bool, EndpointError> {
+        Ok(false)
+    }
 
     /// The core starts anew, as at power on: it forgets everything and waits for its first sample.
     /// With an offset its stored parameters are by so much (SI) away from those that it was
@@ -64,6 +87,18 @@ pub trait Endpoint {
 impl<E: Endpoint + ?Sized> Endpoint for Box<E> {
     fn step(&mut self, epoch: &Epoch, output: &mut Output) -> Result<(), EndpointError> {
         (**self).step(epoch, output)
+    }
+
+    fn uri(&self) -> String {
+        (**self).uri()
+    }
+
+    fn send(&mut self, epoch: &Epoch, output: &mut Output) -> Result<bool, EndpointError> {
+        (**self).send(epoch, output)
+    }
+
+    fn answer(&mut self, until: HostTime, output: &mut Output) -> Result<bool, EndpointError> {
+        (**self).answer(until, output)
     }
 
     fn restart(&mut self, offset: Option<&Parameters>) -> Result<(), EndpointError> {

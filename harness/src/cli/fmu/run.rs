@@ -38,10 +38,10 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "TIME", allow_hyphen_values = true)]
     start: Option<String>,
     /// End; by default that of the default experiment, else the last row of the inputs.
-    #[arg(long, value_name = "TIME")]
+    #[arg(long, value_name = "TIME", allow_hyphen_values = true)]
     stop: Option<String>,
     /// Communication step; by default that of the default experiment, else a 500th of the whole.
-    #[arg(long, value_name = "TIME")]
+    #[arg(long, value_name = "TIME", allow_hyphen_values = true)]
     step: Option<String>,
     /// Relative tolerance of the solver; by default that of the default experiment.
     #[arg(long, value_name = "NUMBER")]
