@@ -1,7 +1,7 @@
 //! Runs by the clock: what is computed is the same, what was late is told, and the thread of the
 //! samples allocates nothing.
 
-use octant::endpoint::{Endpoint, EndpointError, InProcess, ParameterEstimate};
+use octant::endpoint::{Endpoint, EndpointError, InProcess, ParameterEstimate, Sent};
 use octant::recorder::{Recorder, RecorderOptions};
 use octant::run::method::configurations;
 use octant::run::realtime::{Line, drive_by_clock};
@@ -158,7 +158,7 @@ impl Endpoint for Slow {
         "slow".to_owned()
     }
 
-    fn send(&mut self, epoch: &Epoch, _output: &mut Output) -> Result<bool, EndpointError> {
+    fn send(&mut self, epoch: &Epoch, _output: &mut Output) -> Result<Sent, EndpointError> {
         self.number += 1;
         if let Some((from, to)) = self.watched {
             if self.number == from {
@@ -172,18 +172,22 @@ impl Endpoint for Slow {
         let mut answer = Output::default();
         self.inside.step(epoch, &mut answer)?;
         self.waiting.push_back(((self.held)(self.number), answer));
-        Ok(false)
+        Ok(Sent::Underway)
     }
 
-    fn answer(&mut self, until: HostTime, output: &mut Output) -> Result<bool, EndpointError> {
+    fn answer(
+        &mut self,
+        until: HostTime,
+        output: &mut Output,
+    ) -> Result<Option<usize>, EndpointError> {
         if self.waiting.front().is_some_and(|(frames, _)| *frames == 0)
             && let Some((_, answer)) = self.waiting.pop_front()
         {
             *output = answer;
-            return Ok(true);
+            return Ok(Some(0));
         }
         octant_realtime::clock::sleep_until(until);
-        Ok(false)
+        Ok(None)
     }
 
     fn restart(&mut self, offset: Option<&Parameters>) -> Result<(), EndpointError> {
@@ -258,7 +262,7 @@ fn an_endpoint_that_falls_silent_ends_the_run() {
 
 #[test]
 fn the_thread_of_the_samples_allocates_nothing() {
-    let held = |number| if number % 16 == 0 { 2 } else { 0 };
+    let held = |number| if number % 16 == 3 { 2 } else { 0 };
     let (ended, _, _, counted) = drive(held, "", Some((10, 390)));
     assert_eq!(ended, Ok(Ended::Done));
     assert_eq!(counted, Some(0));

@@ -347,7 +347,7 @@ mod tests {
         controller.arbitration_lost(7, 10);
         // 47 bits of 2 us.
         assert_eq!(controller.due_ns(10), Some(94_010));
-        assert_eq!(sent(&controller.send(94_009, 1000)), []);
+        assert!(sent(&controller.send(94_009, 1000)).is_empty());
         assert_eq!(sent(&controller.send(94_010, 1000)), [7]);
         controller.bus_error(&error(ErrorCause::Other, false, true), 100_000);
         assert_eq!(controller.errors(), (8, 0));

@@ -16,6 +16,7 @@ mod report;
 mod run;
 mod run_system;
 mod score;
+mod serve;
 mod sweep;
 
 use crate::scenario::{Dimension, quantity_of};
@@ -41,6 +42,8 @@ enum Command {
     Compare(compare::Arguments),
     /// Put a recorded stream through the core again.
     Replay(replay::Arguments),
+    /// Serve the core as a device, that a harness drives over a port.
+    Serve(serve::Arguments),
     /// Score a recording.
     Score(score::Arguments),
     /// Tell what a sequence can observe and reach, before anything is run.
@@ -60,7 +63,7 @@ enum Command {
 }
 
 /// Commands that belong to the plan of the program and are not in this version.
-const LATER: [&str; 6] = ["campaign", "serve", "nightly", "selftest", "watch", "verify"];
+const LATER: [&str; 5] = ["campaign", "nightly", "selftest", "watch", "verify"];
 
 /// A command that isn't there.
 fn other(words: &[OsString]) -> Failure {
@@ -118,11 +121,20 @@ impl From<crate::run::method::MethodError> for Failure {
         use crate::run::RunError;
         use crate::run::method::{MethodError, SetupError};
         use crate::source::SourceError;
+        use octant_link::harness::SessionError;
         match &error {
             MethodError::Setup(
                 SetupError::Recorder(_)
                 | SetupError::Source(SourceError::Use(UseError::Gone { .. }))
-                | SetupError::Endpoint(OpenError::Use(UseError::Gone { .. })),
+                | SetupError::Endpoint(
+                    OpenError::Use(UseError::Gone { .. })
+                    | OpenError::Live(
+                        SessionError::Port(_)
+                        | SessionError::NoAnswer { .. }
+                        | SessionError::Bye { .. }
+                        | SessionError::StartedAnew { .. },
+                    ),
+                ),
             ) => Self::bench(error),
             // A file that can't be read to its end is bad input, not a bench that failed.
             MethodError::Setup(_)
@@ -153,6 +165,7 @@ pub fn main() -> ExitCode {
         Command::Run(arguments) => run::command(&arguments),
         Command::Compare(arguments) => compare::command(&arguments),
         Command::Replay(arguments) => replay::command(&arguments),
+        Command::Serve(arguments) => serve::command(&arguments),
         Command::Score(arguments) => score::command(&arguments),
         Command::Observe(arguments) => observe::command(&arguments),
         Command::Report(arguments) => report::command(&arguments),

@@ -27,6 +27,15 @@ pub(super) fn pacing(summary: &Summary) -> Markup {
                 " followed each other"
             } ". " (pacing.late_answers) " periods ended without their answer, "
             (pacing.dropped_records) " steps were not recorded."
+            @if pacing.missed_answers + pacing.not_sent > 0 {
+                " " (pacing.missed_answers) " samples were never answered, " (pacing.not_sent)
+                " could not be sent."
+            }
+            @if let Some(clock) = &pacing.device_clock {
+                " The device's clock was " (us(clock.offset_us)) " µs ahead of the host's, within "
+                (us(clock.bound_us)) " µs"
+                @if let Some(skew) = clock.skew_ppm { ", and goes " (us(skew)) " ppm faster" } "."
+            }
         }
         table {
             thead { tr {

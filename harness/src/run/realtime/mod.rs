@@ -15,10 +15,10 @@ mod keep;
 use super::drive::{Control, Ended, RunError};
 use super::faulted::{Faulted, receipts_event};
 use super::watch::Watcher;
-use crate::endpoint::Endpoint;
+use crate::endpoint::{Endpoint, RemoteClock};
 use crate::recorder::Recorder;
 use crate::scenario::Realtime;
-use crate::score::summary::{Lateness, Pacing};
+use crate::score::summary::{DeviceClock, Lateness, Pacing};
 use crate::source::Source;
 use octant_realtime::lateness::Figures;
 use octant_realtime::pace::FrameClock;
@@ -90,7 +90,7 @@ where
         schedule::release(&granted);
         let kept = keeper.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic));
         let last = receipts.then(|| faulted.map(|f| f.station.receipts())).flatten();
-        let time = Kept { pacing: pacing(settings, &found), granted };
+        let time = Kept { pacing: pacing(settings, &found, endpoint.remote_clock()), granted };
         (ended, kept.map(|()| last), time)
     });
     let ended = match kept {
@@ -107,7 +107,7 @@ where
 }
 
 /// Figures of a run for its summary.
-fn pacing(settings: &Realtime, found: &frames::Found) -> Pacing {
+fn pacing(settings: &Realtime, found: &frames::Found, clock: Option<RemoteClock>) -> Pacing {
     let report = found.clock.report();
     let of = |figures: Figures| Lateness {
         p50: figures.p50_us,
@@ -129,6 +129,14 @@ fn pacing(settings: &Realtime, found: &frames::Found) -> Pacing {
         slack_p1_us: report.slack_p1_us,
         answer_us: of(found.answers.figures()),
         late_answers: found.late_answers,
+        missed_answers: found.missed_answers,
+        not_sent: found.not_sent,
+        device_clock: clock.map(|clock| DeviceClock {
+            offset_us: clock.offset_ns / 1e3,
+            bound_us: clock.bound_ns / 1e3,
+            skew_ppm: clock.skew.map(|skew| skew * 1e6),
+            exchanges: clock.exchanges,
+        }),
         dropped_records: found.dropped,
     }
 }
