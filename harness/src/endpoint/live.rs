@@ -80,8 +80,9 @@ impl LiveEndpoint {
                 return Err(error.into());
             }
             std::thread::sleep(Duration::from_millis(50));
-            let Ok(port) = port::open(&self.uri, Role::Harness) else { continue };
-            self.harness.reconnect(port, begun.elapsed())?;
+            if self.harness.reopen(begun.elapsed()).is_err() {
+                continue;
+            }
             match self.harness.step_again(output) {
                 Ok(_) => return Ok(()),
                 Err(SessionError::Port(PortError::Gone { .. })) => {}
