@@ -269,31 +269,28 @@ fn execute(
     let sample_s = scenario.sample_period_ns as f64 * 1e-9;
     let results = with_progress(&controls, epochs, sample_s, || {
         std::thread::scope(|scope| {
-            let threads = tasks
-                .iter()
-                .zip(&controls)
-                .map(|((method, clean), control)| {
-                    let name = match method {
-                        Method::Primary => "recording.mcap",
-                        Method::Baseline => "baseline.mcap",
-                    };
-                    let path = folder.join(name);
-                    scope.spawn(move || match clean {
-                        None => {
-                            let recording = Recording::File(&path);
-                            run_as_far_as_it_goes(scenario, *method, seed, recording, control)
-                        }
-                        Some(clean) => {
-                            let recording = Recording::Hash;
-                            run_as_far_as_it_goes(clean, *method, seed, recording, control)
-                        }
-                    })
-                });
-            let join = |thread: ScopedJoinHandle<'_, Result<MethodRun, MethodError>>| {
-                match thread.join() {
-                    Ok(result) => result.map_err(Failure::from),
-                    Err(_) => Err(Failure::bench("failed to run a method: its thread panicked")),
-                }
+            let threads = tasks.iter().zip(&controls).map(|((method, clean), control)| {
+                let name = match method {
+                    Method::Primary => "recording.mcap",
+                    Method::Baseline => "baseline.mcap",
+                };
+                let path = folder.join(name);
+                scope.spawn(move || match clean {
+                    None => {
+                        let recording = Recording::File(&path);
+                        run_as_far_as_it_goes(scenario, *method, seed, recording, control)
+                    }
+                    Some(clean) => {
+                        let recording = Recording::Hash;
+                        run_as_far_as_it_goes(clean, *method, seed, recording, control)
+                    }
+                })
+            });
+            let join = |thread: ScopedJoinHandle<'_, Result<MethodRun, MethodError>>| match thread
+                .join()
+            {
+                Ok(result) => result.map_err(Failure::from),
+                Err(_) => Err(Failure::bench("failed to run a method: its thread panicked")),
             };
             if matches!(scenario.endpoint, Endpoint::Live(_)) {
                 // A device does one thing after the other.

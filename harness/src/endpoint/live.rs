@@ -3,10 +3,13 @@
 //! Each sample is sent, and its answer waited for and asked for again until it is there: so the outputs
 //! are those of the device's core to the last bit, however bad the line is.
 
-use super::{Endpoint, EndpointError, OpenError, ParameterEstimate};
+use super::{Conclusion, Endpoint, EndpointError, OpenError, ParameterEstimate};
+use crate::recorder::Event;
 use crate::scenario::{Live, Scenario};
 use crate::source::Epoch;
 use octant_calibration::Config;
+use octant_faults::catalogue::Acts;
+use octant_faults::wire::Wired;
 use octant_link::harness::{Harness, Options, Patience, SessionError};
 use octant_link::{PortError, Uri, Wire, load, port};
 use octant_sample::parameters::PARAMETER_COUNT;
@@ -22,6 +25,7 @@ pub struct LiveEndpoint {
     /// How long a port that went away is waited for.
     reconnect: Duration,
     estimate: ParameterEstimate,
+    begun: Instant,
 }
 
 impl LiveEndpoint {
@@ -51,7 +55,11 @@ impl LiveEndpoint {
             },
             ..Options::lock_step(config.sample_period_ns)
         };
-        let mut wire = Wire::open(&live.uri, Role::Harness).map_err(SessionError::from)?;
+        let mut port = port::open(&live.uri, Role::Harness).map_err(SessionError::from)?;
+        if scenario.faults.iter().any(|fault| fault.spec.kind.acts == Acts::Wire) {
+            port = octant_link::fault::around(port);
+        }
+        let mut wire = Wire::new(live.uri.to_string(), port, Role::Harness);
         if let Some(bus) = load::bus(&live.uri) {
             wire.set_bus(bus);
         }
@@ -61,6 +69,7 @@ impl LiveEndpoint {
             uri: live.uri.clone(),
             reconnect: Duration::from_secs_f64(live.reconnect_s),
             estimate: NOTHING,
+            begun: Instant::now(),
         })
     }
 
@@ -140,6 +149,44 @@ impl Endpoint for LiveEndpoint {
         let output = self.harness.end()?;
         self.take_parameters();
         Ok(output)
+    }
+
+    fn wired(&mut self) -> Option<&mut dyn Wired> {
+        self.harness.wire().wired()
+    }
+
+    fn conclusion(&mut self) -> Conclusion {
+        let (counts, effort) = (self.harness.counts(), self.harness.effort());
+        let theirs = self.harness.theirs();
+        let wall_s = self.begun.elapsed().as_secs_f64();
+        let detail = serde_json::json!({
+            "port": self.uri.to_string(),
+            "device": theirs.name.as_str(),
+            "firmware": theirs.firmware.as_str(),
+            "pacing": theirs.pacing.name(),
+            "configuration_compared": self.harness.agreement().configuration_compared,
+            "wall_s": wall_s,
+            "sent": counts.sent,
+            "not_sent": counts.not_sent,
+            "received": counts.received,
+            "repeated": effort.repeated,
+            "doubled": effort.doubled,
+            "lost": counts.lost,
+            "damaged": counts.damaged,
+            "missing": counts.missing,
+            "out_of_order": counts.out_of_order,
+            "unreadable": counts.unreadable,
+            "reconnected": effort.reconnected,
+            "away_s": effort.away.as_secs_f64(),
+            "bus_load": (counts.bus_s > 0.0).then(|| counts.bus_s / wall_s),
+            "error_frames": counts.error_frames,
+            "error_passive": counts.error_passive,
+            "bus_off": counts.bus_off,
+            "restarted": counts.restarted,
+            "arbitration_lost": counts.arbitration_lost,
+        });
+        let event = Event { kind: "link".to_owned(), detail };
+        Conclusion { events: vec![event], ..Conclusion::default() }
     }
 }
 
