@@ -67,12 +67,12 @@ impl FaultyBytes {
                     entry.altered(&frame, came);
                 }
             }
+            // Of what was cut to nothing there is nothing left to act on.
+            self.landed.retain(|(frame, _)| !frame.is_empty());
             std::mem::swap(&mut self.flight, &mut self.landed);
         }
         for (frame, after) in self.flight.drain(..) {
-            if !frame.is_empty() {
-                lane.push(frame, now, after);
-            }
+            lane.push(frame, now, after);
         }
     }
 
@@ -191,7 +191,7 @@ fn act(
             one(changed);
             one(frame.to_vec());
         }
-        WireAction::Lose => one(Vec::new()),
+        WireAction::Lose => {}
         WireAction::Delay { by_s, jitter_s } => {
             landed.push((changed, after + seconds(by_s + jitter_s * c)));
         }
