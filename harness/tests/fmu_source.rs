@@ -348,7 +348,7 @@ fn what_is_wrong_with_an_fmu_is_said_before_anything_is_written() {
     for (scenario, expected) in [
         (
             imu("").replace("\"imu.w\"", "\"imu.ww\""),
-            "s.toml:13:13: source.fmu.map.gyro.rate: the FMU has no variable \"imu.ww\"; nearest are \"imu.w[1]\"",
+            "s.toml:14:13: source.fmu.map.gyro.rate: the FMU has no variable \"imu.ww\"; nearest are \"imu.w[1]\"",
         ),
         (
             imu("").replace("\"-imu.fy\", unit = \"g\"", "\"-imu.fy\", unit = \"m\""),
@@ -377,7 +377,7 @@ fn what_is_wrong_with_an_fmu_is_said_before_anything_is_written() {
             "modes.calibrating is \"turning\", and phase has standing, turned, sailing",
         ),
         (
-            core("") + "[baseline]\npositions = \"six\"\n",
+            core("") + "[baseline]\nstops = [{}, { azimuth = \"90 deg\" }]\n",
             "a second method can be set in Octant's Calibrator alone",
         ),
     ] {

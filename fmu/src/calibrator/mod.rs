@@ -15,6 +15,12 @@ use octant_sample::{Aiding, DeviceTime, GimbalAngles, Mode, Output, Reference, S
 use octant_state::{Format, StateError, check_count};
 use table::slot;
 
+/// Everything that the core shows, as the values of the Calibrator's outputs.
+pub(crate) fn put_outputs(output: &Output, core: &Core, values: &mut Values) {
+    outputs::put(output, values);
+    outputs::put_parameters(core, values);
+}
+
 /// The core, and what turns the variables into its samples.
 #[derive(Clone, Debug)]
 pub struct Calibrator {
@@ -161,7 +167,9 @@ impl Component for Calibrator {
 
     fn terminate(&mut self, values: &mut Values) {
         self.output = self.core.end_of_stream();
-        self.mode = self.output.mode;
+        if self.output.mode != self.mode {
+            (self.mode, self.mode_changed) = (self.output.mode, true);
+        }
         outputs::put(&self.output, values);
         outputs::put_parameters(&self.core, values);
     }

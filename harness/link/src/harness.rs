@@ -516,6 +516,12 @@ impl Harness {
         Ok(answer)
     }
 
+    /// That the device has no session any more.
+    #[must_use]
+    pub fn started_anew(&self) -> SessionError {
+        SessionError::StartedAnew { port: self.wire.name().to_owned() }
+    }
+
     fn needs(&self, what: Capabilities, name: &'static str) -> Result<(), SessionError> {
         if self.theirs.capabilities.contains(what) {
             return Ok(());
@@ -596,7 +602,7 @@ impl Harness {
                 // again on its way does not.
                 anew += u32::from(event == Event::Anew);
                 if anew >= ANEW {
-                    return Err(SessionError::StartedAnew { port: self.wire.name().to_owned() });
+                    return Err(self.started_anew());
                 }
             }
             if asked_at.elapsed() < patience.repeat {
@@ -700,7 +706,7 @@ impl Drop for Harness {
 }
 
 /// Hellos without a session after which a device has none.
-const ANEW: u32 = 2;
+pub const ANEW: u32 = 2;
 
 /// A number of a session, not 0, that no other has had lately.
 fn draw_session() -> u32 {

@@ -7,7 +7,7 @@
 mod common;
 
 use common::{Served, drive, facts, options};
-use octant_faults::wire::{WireAction, WireFault, Ways};
+use octant_faults::wire::{Ways, WireAction, WireFault};
 use octant_link::fault::around;
 use octant_link::harness::{Harness, Options, Patience};
 use octant_link::{Uri, Wire, port};

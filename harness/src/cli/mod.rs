@@ -4,6 +4,7 @@
 #![allow(clippy::print_stdout, reason = "results go to stdout")]
 
 mod compare;
+mod doctor;
 mod fault_page;
 mod faults;
 mod fmu;
@@ -18,6 +19,7 @@ mod score;
 mod serve;
 mod sweep;
 
+use crate::scenario::{Dimension, quantity_of};
 use crate::score::verdict::Verdict;
 use clap::{Args, Parser, Subcommand};
 use std::ffi::OsString;
@@ -52,6 +54,8 @@ enum Command {
     Faults(faults::Arguments),
     /// Make, check and step FMUs.
     Fmu(fmu::Arguments),
+    /// Tell what this host can do for runs by the clock, and what to change.
+    Doctor(doctor::Arguments),
     /// Print the JSON Schema of scenarios, for completion in editors.
     Schema,
     #[command(external_subcommand)]
@@ -59,7 +63,7 @@ enum Command {
 }
 
 /// Commands that belong to the plan of the program and are not in this version.
-const LATER: [&str; 6] = ["campaign", "nightly", "selftest", "watch", "doctor", "verify"];
+const LATER: [&str; 5] = ["campaign", "nightly", "selftest", "watch", "verify"];
 
 /// A command that isn't there.
 fn other(words: &[OsString]) -> Failure {
@@ -166,6 +170,7 @@ pub fn main() -> ExitCode {
         Command::Observe(arguments) => observe::command(&arguments),
         Command::Report(arguments) => report::command(&arguments),
         Command::Faults(arguments) => faults::command(&arguments),
+        Command::Doctor(arguments) => doctor::command(&arguments),
         Command::Fmu(arguments) => fmu::command(&arguments),
         Command::Other(words) => Err(other(&words)),
         Command::Schema => {
@@ -179,6 +184,15 @@ pub fn main() -> ExitCode {
             ExitCode::from(failure.status)
         }
     }
+}
+
+/// A time of the command line: a number of seconds, or a quantity.
+fn seconds(name: &str, text: &str) -> Result<f64, Failure> {
+    let number = text.trim().parse::<f64>().ok().filter(|number| number.is_finite());
+    let quantity = || quantity_of(text).ok().filter(|quantity| quantity.is(Dimension::TIME));
+    number.or_else(|| quantity().map(|quantity| quantity.si)).ok_or_else(|| {
+        Failure::input(format!("{name}: found {text:?}, expected a time such as 10 or \"10 s\""))
+    })
 }
 
 /// Writes a result to stdout. A reader that has gone (`| head`) is no failure.

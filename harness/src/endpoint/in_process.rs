@@ -38,6 +38,10 @@ impl Endpoint for InProcess {
         Ok(())
     }
 
+    fn uri(&self) -> String {
+        "in-process".to_owned()
+    }
+
     fn restart(&mut self, offset: Option<&Parameters>) -> Result<(), EndpointError> {
         let mut config = Config::clone(&self.config);
         if let Some(offset) = offset {

@@ -1,20 +1,24 @@
-//! A core at the other end of a wire: a device on a serial line, a CAN bus or UDP, in lock-step.
+//! A core at the other end of a wire: a device on a serial line, a CAN bus or UDP.
 //!
-//! Each sample is sent, and its answer waited for and asked for again until it is there: so the outputs
-//! are those of the device's core to the last bit, however bad the line is.
+//! In lock-step each sample is sent, and its answer waited for and asked for again until it is there:
+//! so the outputs are those of the device's core to the last bit, however bad the line is. By the
+//! clock a sample is sent once, and what comes of it is taken when it comes.
 
-use super::{Conclusion, Endpoint, EndpointError, OpenError, ParameterEstimate};
-use crate::recorder::Event;
+use super::{Conclusion, Endpoint, EndpointError, OpenError, ParameterEstimate, RemoteClock, Sent};
+use crate::recorder;
 use crate::scenario::{Live, Scenario};
 use crate::source::Epoch;
 use octant_calibration::Config;
 use octant_faults::catalogue::Acts;
 use octant_faults::wire::Wired;
-use octant_link::harness::{Harness, Options, Patience, SessionError};
+use octant_link::clock::ClockEstimator;
+use octant_link::harness::{ANEW, Event, Harness, Options, Patience, Sending, SessionError};
 use octant_link::{PortError, Uri, Wire, load, port};
+use octant_realtime::clock::{HostTime, now};
 use octant_sample::parameters::PARAMETER_COUNT;
 use octant_sample::{Output, Parameters};
-use octant_wire::message::{Gathered, Reason, Role};
+use octant_wire::message::{Gathered, OutputMessage, Pacing, Reason, Role, Step};
+use std::collections::VecDeque;
 use std::time::{Duration, Instant};
 
 /// A device.
@@ -26,7 +30,31 @@ pub struct LiveEndpoint {
     reconnect: Duration,
     estimate: ParameterEstimate,
     begun: Instant,
+    underway: Underway,
 }
+
+/// By the clock: what was sent and not answered.
+#[derive(Debug)]
+struct Underway {
+    steps: VecDeque<Step>,
+    /// An answer whose parameters aren't there yet.
+    held: Option<Held>,
+    clock: ClockEstimator,
+    /// When the time was asked for last.
+    asked: HostTime,
+    /// Hellos without a session since the last answer.
+    anew: u32,
+}
+
+/// An answer, and whether parameters come after it.
+#[derive(Debug)]
+struct Held {
+    message: OutputMessage,
+    waits: bool,
+}
+
+/// From one exchange of the time to the next, ns.
+const TIME_EXCHANGE_NS: u64 = 1_000_000_000;
 
 impl LiveEndpoint {
     /// Looks whether a device can do what a scenario asks for, before one is looked for.
@@ -55,6 +83,12 @@ impl LiveEndpoint {
             },
             ..Options::lock_step(config.sample_period_ns)
         };
+        let pacing = if scenario.realtime.by_clock { Pacing::RealTime } else { Pacing::LockStep };
+        let options = Options { pacing, ..options };
+        if scenario.realtime.by_clock {
+            let rate_hz = 1e9 / config.sample_period_ns as f64;
+            load::real_time(&live.uri, rate_hz, load::bus(&live.uri))?;
+        }
         let mut port = port::open(&live.uri, Role::Harness).map_err(SessionError::from)?;
         if scenario.faults.iter().any(|fault| fault.spec.kind.acts == Acts::Wire) {
             port = octant_link::fault::around(port);
@@ -70,7 +104,27 @@ impl LiveEndpoint {
             reconnect: Duration::from_secs_f64(live.reconnect_s),
             estimate: NOTHING,
             begun: Instant::now(),
+            underway: Underway {
+                // As many as a step number can tell apart.
+                steps: VecDeque::with_capacity(1 << 14),
+                held: None,
+                clock: ClockEstimator::new(10.0),
+                asked: HostTime::default(),
+                anew: 0,
+            },
         })
+    }
+
+    /// The answer that is held, now that its parameters are there or won't come any more; with how
+    /// many samples before it will have none.
+    fn release(&mut self, output: &mut Output) -> Option<usize> {
+        let held = self.underway.held.take()?;
+        let position = self.underway.steps.iter().position(|step| *step == held.message.step)?;
+        self.underway.steps.drain(..=position);
+        *output = held.message.output;
+        // Parameters that were lost on the way: their revision is not announced.
+        output.parameters_revision = self.estimate.revision;
+        Some(position)
     }
 
     /// The session, for what it counted.
@@ -136,8 +190,89 @@ impl Endpoint for LiveEndpoint {
         Ok(())
     }
 
+    fn uri(&self) -> String {
+        self.uri.to_string()
+    }
+
+    fn send(&mut self, epoch: &Epoch, _output: &mut Output) -> Result<Sent, EndpointError> {
+        let time = now();
+        if time.since(self.underway.asked) >= TIME_EXCHANGE_NS {
+            self.underway.asked = time;
+            self.harness.request_time()?;
+        }
+        Ok(match self.harness.send_sample(&epoch.sample, epoch.aiding.as_ref())? {
+            Sending::Sent(step) => {
+                self.underway.steps.push_back(step);
+                Sent::Underway
+            }
+            Sending::NotTaken(_) | Sending::WindowFull => Sent::NotSent,
+        })
+    }
+
+    fn answer(
+        &mut self,
+        until: HostTime,
+        output: &mut Output,
+    ) -> Result<Option<usize>, EndpointError> {
+        loop {
+            if self.underway.held.as_ref().is_some_and(|held| !held.waits)
+                && let Some(skipped) = self.release(output)
+            {
+                return Ok(Some(skipped));
+            }
+            let wait = Duration::from_nanos(until.since(now()));
+            let Some(event) = self.harness.poll(wait)? else {
+                // The port may have waited a little less than it was told to.
+                if now() >= until {
+                    return Ok(None);
+                }
+                continue;
+            };
+            match event {
+                Event::Output(message) => {
+                    self.underway.anew = 0;
+                    // One that still waits waits in vain: what comes is in order.
+                    let before = self.release(output);
+                    let waits = message.parameters_follow
+                        && message.output.parameters_revision != self.estimate.revision;
+                    self.underway.held = Some(Held { message, waits });
+                    if before.is_some() {
+                        return Ok(before);
+                    }
+                }
+                Event::Parameters(_) => {
+                    self.take_parameters();
+                    if let Some(held) = &mut self.underway.held {
+                        held.waits &=
+                            held.message.output.parameters_revision != self.estimate.revision;
+                    }
+                }
+                Event::Time(stamps) => self.underway.clock.add(&stamps),
+                Event::Anew => {
+                    self.underway.anew += 1;
+                    if self.underway.anew >= ANEW {
+                        return Err(self.harness.started_anew().into());
+                    }
+                }
+                _ => {}
+            }
+        }
+    }
+
+    fn remote_clock(&self) -> Option<RemoteClock> {
+        let estimate = self.underway.clock.estimate()?;
+        Some(RemoteClock {
+            offset_ns: estimate.offset_ns,
+            bound_ns: estimate.bound_ns,
+            skew: estimate.skew,
+            exchanges: estimate.exchanges,
+        })
+    }
+
     fn restart(&mut self, offset: Option<&Parameters>) -> Result<(), EndpointError> {
         self.estimate = NOTHING;
+        self.underway.steps.clear();
+        self.underway.held = None;
         Ok(self.harness.restart(offset)?)
     }
 
@@ -185,7 +320,7 @@ impl Endpoint for LiveEndpoint {
             "restarted": counts.restarted,
             "arbitration_lost": counts.arbitration_lost,
         });
-        let event = Event { kind: "link".to_owned(), detail };
+        let event = recorder::Event { kind: "link".to_owned(), detail };
         Conclusion { events: vec![event], ..Conclusion::default() }
     }
 }

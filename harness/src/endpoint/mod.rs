@@ -19,6 +19,7 @@ use octant_calibration::state_machine::ConfigError;
 use octant_calibration::table::CalibrationTable;
 use octant_faults::wire::Wired;
 use octant_link::harness::SessionError;
+use octant_realtime::clock::HostTime;
 use octant_sample::parameters::PARAMETER_COUNT;
 use octant_sample::{Output, Parameters};
 
@@ -41,6 +42,37 @@ pub trait Endpoint {
     /// # Errors
     /// If the endpoint failed as a bench part: device gone, process died.
     fn step(&mut self, epoch: &Epoch, output: &mut Output) -> Result<(), EndpointError>;
+
+    /// Name of the endpoint in messages: its URI.
+    fn uri(&self) -> String;
+
+    /// Hands over one epoch without waiting for the answer.
+    ///
+    /// # Errors
+    /// As [`Self::step`].
+    fn send(&mut self, epoch: &Epoch, output: &mut Output) -> Result<Sent, EndpointError> {
+        self.step(epoch, output)?;
+        Ok(Sent::Answered)
+    }
+
+    /// Waits for an answer until a time of the host. Answers come in the order of their epochs;
+    /// `Some` tells how many epochs before the one answered will have none. `None`: none came, and
+    /// `output` is as it was.
+    ///
+    /// # Errors
+    /// As [`Self::step`].
+    fn answer(
+        &mut self,
+        _until: HostTime,
+        _output: &mut Output,
+    ) -> Result<Option<usize>, EndpointError> {
+        Ok(None)
+    }
+
+    /// How the endpoint's own clock goes against the host's, where it has one that is compared.
+    fn remote_clock(&self) -> Option<RemoteClock> {
+        None
+    }
 
     /// The core starts anew, as at power on: it forgets everything and waits for its first sample.
     /// With an offset its stored parameters are by so much (SI) away from those that it was
@@ -76,6 +108,26 @@ pub trait Endpoint {
 impl<E: Endpoint + ?Sized> Endpoint for Box<E> {
     fn step(&mut self, epoch: &Epoch, output: &mut Output) -> Result<(), EndpointError> {
         (**self).step(epoch, output)
+    }
+
+    fn uri(&self) -> String {
+        (**self).uri()
+    }
+
+    fn send(&mut self, epoch: &Epoch, output: &mut Output) -> Result<Sent, EndpointError> {
+        (**self).send(epoch, output)
+    }
+
+    fn answer(
+        &mut self,
+        until: HostTime,
+        output: &mut Output,
+    ) -> Result<Option<usize>, EndpointError> {
+        (**self).answer(until, output)
+    }
+
+    fn remote_clock(&self) -> Option<RemoteClock> {
+        (**self).remote_clock()
     }
 
     fn restart(&mut self, offset: Option<&Parameters>) -> Result<(), EndpointError> {
@@ -114,6 +166,30 @@ pub struct Conclusion {
     pub events: Vec<Event>,
 }
 
+/// What became of an epoch that was handed over without waiting.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Sent {
+    /// Its answer is there already.
+    Answered,
+    /// It is on its way, and [`Endpoint::answer`] has its answer when it comes.
+    Underway,
+    /// It could not be sent: too many are underway, or the port didn't take it.
+    NotSent,
+}
+
+/// An endpoint's clock against the host's.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RemoteClock {
+    /// How far it is ahead, ns, at the last exchange.
+    pub offset_ns: f64,
+    /// By how much that may be wrong, ns.
+    pub bound_ns: f64,
+    /// By how much it goes faster; `None`: not known yet.
+    pub skew: Option<f64>,
+    /// Exchanges of the time.
+    pub exchanges: u64,
+}
+
 /// Why the endpoint of a scenario can't be opened.
 #[derive(Debug, thiserror::Error)]
 pub enum OpenError {
@@ -126,6 +202,9 @@ pub enum OpenError {
     /// A device can't be used.
     #[error("begin a session with the device: {0}")]
     Live(#[from] SessionError),
+    /// The line or bus is too slow for the clock.
+    #[error(transparent)]
+    Load(#[from] octant_link::load::LoadError),
     /// A device has one core, with one configuration.
     #[error(
         "set the core at {uri} to a second method, which the scenario's [baseline] asks for: that can \

@@ -1,5 +1,6 @@
 //! `manifest.json`: who made a run, with what, and the hashes of everything in its folder.
 
+use octant_realtime::schedule::Granted;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use std::collections::BTreeSet;
@@ -40,6 +41,9 @@ pub struct Manifest {
     /// FMUs that took part; left out where none did.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub fmus: Vec<FmuFacts>,
+    /// What the host granted a run by the clock; left out of others.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub realtime: Option<Granted>,
     /// Every other file of the folder, by path.
     pub files: Vec<FileHash>,
     /// Runs are not signed in this version: always `null`.
@@ -120,6 +124,8 @@ pub struct RunFacts {
     pub command_line: Vec<String>,
     /// FMUs that took part.
     pub fmus: Vec<FmuFacts>,
+    /// What the host granted a run by the clock.
+    pub realtime: Option<Granted>,
 }
 
 /// Why a manifest could not be written or read.
@@ -174,6 +180,7 @@ impl Manifest {
             rerun: shell_line(&facts.command_line),
             command_line: facts.command_line.clone(),
             fmus: facts.fmus.clone(),
+            realtime: facts.realtime.clone(),
             files: Vec::new(),
             signature: None,
         }
@@ -202,6 +209,14 @@ impl Manifest {
             );
             (format!("FMU as {}", fmu.role), text)
         });
+        let realtime = self.realtime.iter().flat_map(|granted| {
+            [
+                ("real-time scheduling", granted.scheduling.text()),
+                ("locked memory", granted.memory.text()),
+                ("processor", granted.cpu.text()),
+            ]
+            .map(|(name, value)| (name.to_owned(), value))
+        });
         [
             ("octant", self.octant.clone()),
             ("source revision", git),
@@ -214,6 +229,7 @@ impl Manifest {
         .map(|(name, value)| (name.to_owned(), value))
         .into_iter()
         .chain(fmus)
+        .chain(realtime)
         .collect()
     }
 
@@ -380,6 +396,7 @@ mod tests {
                 .map(String::from)
                 .to_vec(),
             fmus: Vec::new(),
+            realtime: None,
         }
     }
 
@@ -407,7 +424,7 @@ mod tests {
         let text = std::fs::read_to_string(folder.path().join(FILE_NAME)).unwrap();
         assert!(text.contains("\"signature\": null"));
 
-        assert_eq!(manifest.verify(folder.path()).unwrap(), []);
+        assert!(manifest.verify(folder.path()).unwrap().is_empty());
         std::fs::write(folder.path().join("a.txt"), "abd").unwrap();
         std::fs::remove_file(folder.path().join("sub/b.txt")).unwrap();
         std::fs::write(folder.path().join("c.txt"), "").unwrap();

@@ -5,10 +5,10 @@ use super::method::MethodRun;
 use super::twin::difference;
 use crate::report::counterfactual::in_words;
 use crate::report::{Provenance, ReportData, number};
-use crate::scenario::{Endpoint, Motion, Scenario, Source};
+use crate::scenario::{Endpoint, Motion, Realtime, Scenario, Source};
 use crate::score::reference::{ReferenceInput, reference};
 use crate::score::summary::{
-    AlteredStreams, Baseline, FaultResult, ParameterScore, SCHEMA, Summary,
+    AlteredStreams, Baseline, FaultResult, Pacing, ParameterScore, SCHEMA, Summary,
 };
 use crate::score::verdict::{Finding, Verdict, judge};
 use octant_earth::units::{DEG, DEG_PER_SQRT_HOUR, MICRO_G};
@@ -48,7 +48,7 @@ pub fn assemble(
         estimated_g_zz: g_zz(&primary),
         baseline_estimated_g_zz: baseline.as_ref().and_then(g_zz),
     });
-    let findings = findings(&primary, baseline.as_ref());
+    let findings = findings(scenario, &primary, baseline.as_ref());
     let counterfactual = difference(scenario, &primary);
     let baseline_counterfactual = baseline.as_ref().and_then(|run| difference(scenario, run));
     let mut summary = Summary {
@@ -74,7 +74,7 @@ pub fn assemble(
         }),
         reference: Some(references),
         counterfactual,
-        pacing: None,
+        pacing: primary.kept.as_ref().map(|kept| kept.pacing.clone()),
         stream_hash: primary.recorder.stream_hash.clone(),
     };
     let requirements: Vec<_> = scenario.requirements.iter().map(|r| r.check.clone()).collect();
@@ -93,10 +93,14 @@ pub fn assemble(
 }
 
 /// What besides requirements bears on the verdict.
-fn findings(run: &MethodRun, baseline: Option<&MethodRun>) -> Vec<Finding> {
+fn findings(scenario: &Scenario, run: &MethodRun, baseline: Option<&MethodRun>) -> Vec<Finding> {
     let mut findings = broken(run, "");
     if let Some(baseline) = baseline {
         findings.extend(broken(baseline, &format!(" in {}", baseline.label)));
+    }
+    for run in std::iter::once(run).chain(baseline) {
+        let late = run.kept.as_ref().map(|kept| too_late(&scenario.realtime, &kept.pacing));
+        findings.extend(late.unwrap_or_default());
     }
     let mut inconclusive =
         |reason: String| findings.push(Finding { verdict: Verdict::Inconclusive, reason });
@@ -108,6 +112,49 @@ fn findings(run: &MethodRun, baseline: Option<&MethodRun>) -> Vec<Finding> {
         inconclusive(format!("{unlisted} reports of the core found no place in the list"));
     }
     findings
+}
+
+/// What makes a run by the clock prove nothing.
+fn too_late(limits: &Realtime, pacing: &Pacing) -> Vec<Finding> {
+    let mut reasons = Vec::new();
+    if pacing.overruns > limits.overruns {
+        reasons.push(format!(
+            "the bench was late: {} of {} samples left more than {} us late, {} may; the latest {} us",
+            pacing.overruns,
+            pacing.frames,
+            number::plain(pacing.overrun_us, 5),
+            limits.overruns,
+            number::plain(pacing.lateness_us.max, 5),
+        ));
+    }
+    if let Some(limit_ns) = limits.lateness_p99_ns
+        && pacing.lateness_us.p99 * 1e3 > limit_ns as f64
+    {
+        reasons.push(format!(
+            "the bench was late: the lateness of 99 % of the samples is {} us, {} us are allowed",
+            number::plain(pacing.lateness_us.p99, 5),
+            number::plain(limit_ns as f64 / 1e3, 5),
+        ));
+    }
+    if pacing.late_answers > limits.late_answers {
+        reasons.push(format!(
+            "{} of {} periods ended without an answer, {} may",
+            pacing.late_answers, pacing.frames, limits.late_answers
+        ));
+    }
+    if pacing.missed_answers + pacing.not_sent > 0 {
+        reasons.push(format!(
+            "{} samples were never answered, {} could not be sent",
+            pacing.missed_answers, pacing.not_sent
+        ));
+    }
+    if pacing.dropped_records > 0 {
+        reasons.push(format!(
+            "{} steps found no room on their way to the recorder: the recording is not complete",
+            pacing.dropped_records
+        ));
+    }
+    reasons.into_iter().map(|reason| Finding { verdict: Verdict::Inconclusive, reason }).collect()
 }
 
 /// What went away in a run or its twin.

@@ -26,7 +26,7 @@ pub struct Faulted {
 }
 
 /// Source and endpoint as the station's world.
-struct Behind<'a, S: ?Sized, E: ?Sized>(&'a mut S, &'a mut E);
+pub(super) struct Behind<'a, S: ?Sized, E: ?Sized>(pub(super) &'a mut S, pub(super) &'a mut E);
 
 impl<S: Source + ?Sized, E: Endpoint + ?Sized> World for Behind<'_, S, E> {
     fn disturbed(&mut self) -> Option<&mut dyn Disturbed> {
@@ -60,7 +60,7 @@ where
     E: Endpoint + ?Sized,
 {
     let ended = pass(source, faulted, endpoint, recorder, watcher, control);
-    recorder.event(receipts(&faulted.station.receipts()));
+    recorder.event(receipts_event(&faulted.station.receipts()));
     ended
 }
 
@@ -194,20 +194,20 @@ impl<E: Endpoint + ?Sized> Loop<'_, E> {
 fn tell(station: &Station, recorder: &mut Recorder) {
     for occurrence in station.occurrences() {
         let Some((id, kind)) = station.names().nth(occurrence.fault) else { continue };
-        recorder.event(Event {
-            kind: "fault".to_owned(),
-            detail: serde_json::json!({
-                "id": id,
-                "kind": kind,
-                "begins": occurrence.begins,
-                "sample": occurrence.epoch,
-            }),
-        });
+        recorder.event(occurrence_event(id, kind, occurrence.begins, occurrence.epoch));
+    }
+}
+
+/// A fault that sets in or ends, as an event.
+pub(super) fn occurrence_event(id: &str, kind: &str, begins: bool, sample: u64) -> Event {
+    Event {
+        kind: "fault".to_owned(),
+        detail: serde_json::json!({ "id": id, "kind": kind, "begins": begins, "sample": sample }),
     }
 }
 
 /// The receipts of a run as an event.
-fn receipts(receipts: &[Receipt]) -> Event {
+pub(super) fn receipts_event(receipts: &[Receipt]) -> Event {
     let one = |receipt: &Receipt| {
         serde_json::to_value(crate::score::summary::FaultResult::from(receipt))
             .unwrap_or(serde_json::Value::Null)

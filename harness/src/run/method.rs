@@ -3,6 +3,7 @@
 use super::concluded;
 use super::drive::{Control, Ended, RunError, drive};
 use super::faulted::{Faulted, drive_faulted};
+use super::realtime::{Kept, Line, drive_by_clock};
 use super::watch::Watcher;
 use crate::calibrate::{PassError, in_passes};
 use crate::endpoint::{Conclusion, Endpoint, InProcess, ParameterEstimate};
@@ -10,7 +11,7 @@ use crate::recorder::{
     Event, Policy, Recorder, RecorderError, RecorderOptions, RecorderSummary, Samples,
 };
 use crate::scenario::resolve::{Draws, Seeded};
-use crate::scenario::{Method, Scenario, Source as SourceKind};
+use crate::scenario::{Method, Realtime, Scenario, Source as SourceKind};
 use crate::score::parameters::{nees, score, worst_normalized_error};
 use crate::score::summary::{Calibration, HeightChannel, Navigation};
 use crate::score::trace::Trace;
@@ -130,6 +131,8 @@ pub struct MethodRun {
     pub twin: Option<Arc<MethodRun>>,
     /// What went away in the middle, and ended it.
     pub broken: Option<RunError>,
+    /// How it kept time, where it went by the clock.
+    pub kept: Option<Kept>,
 }
 
 /// Name of a method, for people.
@@ -250,13 +253,16 @@ pub fn run_as_far_as_it_goes(
     }
     let mut faulted = faulted(scenario, seed)?;
     let samples = scenario.samples().unwrap_or(u64::MAX);
+    let realtime =
+        scenario.realtime.by_clock.then_some((&scenario.realtime, scenario.sample_period_ns));
     let closed = match (opened, elsewhere) {
         // Statically dispatched: this loop passes ten million samples a second.
         (None, None) => {
             let mut source = PlantSource::new(&plant, samples).map_err(SetupError::Plant)?;
             let mut endpoint = InProcess::new(&core).map_err(SetupError::Core)?;
             let faulted = faulted.as_mut();
-            to_the_end(&mut source, faulted, &mut endpoint, &mut recorder, &mut watcher, control)?
+            let line = Line { source: &mut source, faulted, endpoint: &mut endpoint };
+            to_the_end(realtime, line, &mut recorder, &mut watcher, control)?
         }
         (opened, elsewhere) => {
             let mut source: Box<dyn Source> = match opened {
@@ -268,7 +274,8 @@ pub fn run_as_far_as_it_goes(
                 None => Box::new(InProcess::new(&core).map_err(SetupError::Core)?),
             };
             let faulted = faulted.as_mut();
-            to_the_end(&mut source, faulted, &mut endpoint, &mut recorder, &mut watcher, control)?
+            let line = Line { source: &mut source, faulted, endpoint: &mut endpoint };
+            to_the_end(realtime, line, &mut recorder, &mut watcher, control)?
         }
     };
     let receipts = faulted.map_or_else(Vec::new, |faulted| faulted.station.receipts());
@@ -285,20 +292,31 @@ struct Closed {
     last: Option<Output>,
     conclusion: Conclusion,
     estimate: ParameterEstimate,
+    kept: Option<Kept>,
 }
 
 /// Drives until the end, whatever it is, and asks the core for its last words.
 fn to_the_end<S: Source, E: Endpoint>(
-    source: &mut S,
-    faulted: Option<&mut Faulted>,
-    endpoint: &mut E,
+    realtime: Option<(&Realtime, u64)>,
+    line: Line<'_, S, E>,
     recorder: &mut Recorder,
     watcher: &mut Watcher,
     control: &Control,
 ) -> Result<Closed, RunError> {
-    let driven = match faulted {
-        None => drive(source, endpoint, recorder, watcher, control),
-        Some(faulted) => drive_faulted(source, faulted, endpoint, recorder, watcher, control),
+    let Line { source, faulted, endpoint } = line;
+    let mut kept = None;
+    let driven = match (realtime, faulted) {
+        (None, None) => drive(source, endpoint, recorder, watcher, control),
+        (None, Some(faulted)) => {
+            drive_faulted(source, faulted, endpoint, recorder, watcher, control)
+        }
+        (Some((settings, period_ns)), faulted) => {
+            let line = Line { source, faulted, endpoint: &mut *endpoint };
+            let (driven, time) =
+                drive_by_clock(settings, period_ns, line, recorder, watcher, control);
+            kept = Some(time);
+            driven
+        }
     };
     let driven = driven.and_then(|ended| match ended {
         Ended::SourceEnded => Ok((ended, endpoint.end_of_stream()?)),
@@ -317,7 +335,7 @@ fn to_the_end<S: Source, E: Endpoint>(
     };
     let mut conclusion = endpoint.conclusion();
     conclusion.events.drain(..).for_each(|event| recorder.event(event));
-    Ok(Closed { ended, broken, last, conclusion, estimate: endpoint.parameters() })
+    Ok(Closed { ended, broken, last, conclusion, estimate: endpoint.parameters(), kept })
 }
 
 /// The station of a scenario; `None` without faults.
@@ -404,7 +422,7 @@ fn finish(
     mut watcher: Watcher,
     truth: Option<Parameters>,
 ) -> Result<MethodRun, MethodError> {
-    let Closed { ended, broken, last, conclusion, estimate, .. } = closed;
+    let Closed { ended, broken, last, conclusion, estimate, kept } = closed;
     if let Some(output) = last {
         watcher.last_parameters = Some(estimate);
         // No sample goes with this output: the recording keeps the parameters as an event.
@@ -463,6 +481,7 @@ fn finish(
         receipts: Vec::new(),
         twin: None,
         broken,
+        kept,
     })
 }
 

@@ -1,6 +1,6 @@
 //! A run: epochs driven from source to endpoint to recorder, watched on the way, then scored.
 //!
-//! [`drive()`] is the loop, [`faulted`] the one with faults between source and endpoint; [`watch`] what is noticed while it runs; [`method`] one method from its
+//! [`drive()`] is the loop, [`faulted`] the one with faults between source and endpoint, [`realtime`] the one that goes by the clock; [`watch`] what is noticed while it runs; [`method`] one method from its
 //! scenario to its scores; [`concluded`] what the end of a stream concludes; [`assemble()`] the summary and report of a run of one or two methods.
 
 pub mod assemble;
@@ -11,6 +11,7 @@ pub mod method;
 pub mod minimise;
 pub mod paired;
 pub mod raw_counts;
+pub mod realtime;
 pub mod side_by_side;
 pub mod sweep;
 pub mod twin;

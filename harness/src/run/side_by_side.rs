@@ -121,6 +121,10 @@ impl Endpoint for WatchedEndpoint {
         Ok(())
     }
 
+    fn uri(&self) -> String {
+        self.endpoint.uri()
+    }
+
     fn restart(&mut self, offset: Option<&Parameters>) -> Result<(), EndpointError> {
         self.endpoint.restart(offset)
     }

@@ -85,6 +85,8 @@ pub struct Scenario {
     pub source: Source,
     /// Where the core runs.
     pub endpoint: Endpoint,
+    /// Whether and how the run goes by the clock.
+    pub realtime: Realtime,
     /// Name of the scenario's file, for messages.
     pub file: String,
     /// The scenario's own folder, from which relative file names start.
@@ -229,6 +231,31 @@ pub struct Record {
     pub full_samples: bool,
     /// Shortest time between two records of the parameters, ns.
     pub parameters_period_ns: u64,
+}
+
+/// Whether and how a run goes by the clock, and what makes it too late.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Realtime {
+    /// It does.
+    pub by_clock: bool,
+    /// Lateness from which on a sample is an overrun, ns.
+    pub overrun_ns: u64,
+    /// Overruns that are allowed.
+    pub overruns: u64,
+    /// Limit of the lateness of 99 % of the samples, ns.
+    pub lateness_p99_ns: Option<u64>,
+    /// Periods that may end without their answer.
+    pub late_answers: u64,
+    /// Time after which an endpoint that owes an answer is gone, ns.
+    pub silence_ns: u64,
+    /// Priority of SCHED_FIFO that is asked for.
+    pub priority: Option<u8>,
+    /// The only processor of the thread.
+    pub cpu: Option<u16>,
+    /// All memory stays in place.
+    pub lock_memory: bool,
+    /// Part of each wait that is spent looking at the clock, ns.
+    pub spin_ns: u64,
 }
 
 impl Scenario {

@@ -401,13 +401,64 @@ pub struct Baseline {
     pub faults: Vec<FaultResult>,
 }
 
-/// Pacing of a run against a real clock.
+/// How a run kept time against the host's clock.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Pacing {
-    /// Epochs that were late.
+    /// Frames that began.
+    pub frames: u64,
+    /// From one to the next, µs.
+    pub period_us: f64,
+    /// How late they began.
+    pub lateness_us: Lateness,
+    /// Histogram of that: an upper edge, ns, and how many were at most as late and later than the
+    /// edge before.
+    pub lateness_histogram_ns: Vec<[u64; 2]>,
+    /// Lateness from which on a frame is an overrun, µs.
+    pub overrun_us: f64,
+    /// Overruns.
     pub overruns: u64,
-    /// Largest lateness, s.
-    pub latest_s: f64,
-    /// Records that the recorder dropped.
+    /// Most of them in a row.
+    pub overruns_in_a_row: u64,
+    /// Number of the first one, from 1.
+    pub first_overrun: Option<u64>,
+    /// 99 % of the frames left at least so much of their period unused, µs.
+    pub slack_p1_us: f64,
+    /// From sending a sample to having its answer.
+    pub answer_us: Lateness,
+    /// Frames that ended without their answer.
+    pub late_answers: u64,
+    /// Samples whose answer never came, while later ones were answered.
+    pub missed_answers: u64,
+    /// Samples that could not be sent: the device had too many already, or the port was full.
+    pub not_sent: u64,
+    /// The device's clock against the host's; null where it has none that was compared.
+    pub device_clock: Option<DeviceClock>,
+    /// Steps that found no room on their way to the recorder.
     pub dropped_records: u64,
+}
+
+/// A device's clock against the host's.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct DeviceClock {
+    /// How far it was ahead at the last exchange, µs.
+    pub offset_us: f64,
+    /// By how much that may be wrong, µs.
+    pub bound_us: f64,
+    /// By how much it goes faster; null where there were too few exchanges.
+    pub skew_ppm: Option<f64>,
+    /// Exchanges of the time.
+    pub exchanges: u64,
+}
+
+/// Quantiles of a duration, µs.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Lateness {
+    /// Median.
+    pub p50: f64,
+    /// 99 %.
+    pub p99: f64,
+    /// 99.9 %.
+    pub p999: f64,
+    /// The largest.
+    pub max: f64,
 }

@@ -406,6 +406,13 @@ impl Gimbal {
         self.take(drive, now_ns);
     }
 
+    /// Goes to a set point with a rate of its own, also to the one that it had.
+    pub(crate) fn aim(&mut self, target: i32, rate_radps: f64, now_ns: u64) {
+        self.rate = rate_radps;
+        self.target = target;
+        self.go(now_ns);
+    }
+
     /// Turns on with a rate, 0: brakes and stands.
     pub(crate) fn run_on(&mut self, rate_radps: f64, now_ns: u64) {
         let now = self.drive.at(self.drive.seconds(now_ns));

@@ -28,6 +28,7 @@ mod processes;
 mod reference;
 pub mod sea;
 mod sway;
+pub mod table;
 mod trig;
 mod validate;
 mod vibration;

@@ -269,6 +269,10 @@ impl Endpoint for FmuEndpoint {
         self.take(epoch, output)
     }
 
+    fn uri(&self) -> String {
+        self.stepper.uri().to_owned()
+    }
+
     fn restart(&mut self, offset: Option<&Parameters>) -> Result<(), EndpointError> {
         let uri = self.stepper.uri().to_owned();
         let fail = |reason: String| EndpointError::Restart { uri: uri.clone(), reason };
@@ -293,7 +297,8 @@ impl Endpoint for FmuEndpoint {
         self.stepper.restart(starts).map_err(fail)?;
         self.taken = 0;
         self.estimate = NOTHING;
-        Ok(())
+        // What it starts from, which a core that was running announces as new.
+        if self.own.is_some() { self.refresh(0) } else { Ok(()) }
     }
 
     fn parameters(&self) -> ParameterEstimate {

@@ -84,6 +84,8 @@ pub(super) fn beside_program() -> Result<PathBuf, BuildError> {
     let name = file_name();
     // A test program is itself in `deps`, an example in `examples`.
     let places = [folder.to_owned(), folder.join("deps"), folder.join("../deps")];
-    let found = places.iter().map(|place| place.join(&name)).find(|path| path.is_file());
-    found.ok_or(BuildError::NoLibrary { name, folder: folder.to_owned() })
+    let found = places.iter().map(|place| place.join(&name)).filter(|path| path.is_file());
+    // `cargo test` renews the one in `deps` alone.
+    let newest = found.max_by_key(|path| path.metadata().and_then(|facts| facts.modified()).ok());
+    newest.ok_or(BuildError::NoLibrary { name, folder: folder.to_owned() })
 }

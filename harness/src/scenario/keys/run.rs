@@ -63,6 +63,12 @@ pub(crate) static SCENARIO: Section = section(&[
     key("record", Kind::Table(&RECORD), Default::Section, "What is recorded, and how often."),
     key("source", Kind::Table(&source::SOURCE), Default::Section, "Where the samples come from."),
     key("endpoint", Kind::Table(&ENDPOINT), Default::Section, "Where the core runs."),
+    key(
+        "realtime",
+        Kind::Table(&REALTIME),
+        Default::Section,
+        "Whether the run goes by the clock, how, and what makes it too late.",
+    ),
 ]);
 
 static SITE: Section = section(&[
@@ -317,6 +323,73 @@ static RECORD: Section = section(&[
         Kind::Quantity(&[Dimension::TIME], Bounds::Positive),
         Default::Value("10 s"),
         "Shortest time between two records of the estimated parameters.",
+    ),
+]);
+
+static REALTIME: Section = section(&[
+    key(
+        "pace",
+        Kind::Choice(&[
+            ("free", "as fast as it goes"),
+            ("clock", "a sample leaves when its time has come; `octant run --realtime`"),
+        ]),
+        Default::Value("free"),
+        "What a run goes by. What is computed is the same.",
+    ),
+    key(
+        "overrun",
+        Kind::Quantity(&[Dimension::TIME], Bounds::Positive),
+        Default::Value("1 ms"),
+        "A sample that leaves later than this is an overrun.",
+    ),
+    key(
+        "overruns",
+        Kind::Integer(0, i64::MAX),
+        Default::Value("0"),
+        "Overruns that are allowed; beyond, the run is inconclusive.",
+    ),
+    key(
+        "lateness_p99",
+        Kind::Quantity(&[Dimension::TIME], Bounds::Positive),
+        Default::Absent("no limit"),
+        "Largest lateness of 99 % of the samples; beyond, the run is inconclusive.",
+    ),
+    key(
+        "late_answers",
+        Kind::Integer(0, i64::MAX),
+        Default::Value("0"),
+        "Periods that may end without their answer; beyond, the run is inconclusive.",
+    ),
+    key(
+        "silence",
+        Kind::Quantity(&[Dimension::TIME], Bounds::Positive),
+        Default::Value("1 s"),
+        "An endpoint that owes an answer for longer is gone, which ends the run.",
+    ),
+    key(
+        "priority",
+        Kind::Integer(0, 99),
+        Default::Value("80"),
+        "Priority of SCHED_FIFO that the thread of the samples asks for; 0: none.",
+    ),
+    key(
+        "cpu",
+        Kind::Integer(0, 1023),
+        Default::Absent("any"),
+        "The only processor that the thread of the samples runs on.",
+    ),
+    key(
+        "lock_memory",
+        Kind::Boolean,
+        Default::Value("true"),
+        "All memory of the program stays in place.",
+    ),
+    key(
+        "spin",
+        Kind::Quantity(&[Dimension::TIME], Bounds::NotNegative),
+        Default::Value("0 s"),
+        "The last part of each wait that is spent looking at the clock, where a real-time priority \
+         was granted.",
     ),
 ]);
 

@@ -15,7 +15,7 @@ pub(super) use procedure::case_attitude;
 use super::complete::{join, number};
 use super::document::{Node, Table, Value};
 use super::error::{Place, Problem};
-use super::{Record, Scenario, quantity};
+use super::{Realtime, Record, Scenario, quantity};
 use octant_plant::config as plant;
 use std::path::Path;
 
@@ -219,6 +219,7 @@ pub(super) fn scenario(document: Table, folder: &Path) -> Result<Scenario, Probl
         record: record(&root.table("record")?, sample_period_ns)?,
         source,
         endpoint,
+        realtime: realtime(&root.table("realtime")?)?,
         motion,
         file: String::new(),
         folder: folder.to_owned(),
@@ -259,6 +260,23 @@ fn record(record: &Reader<'_>, sample_period_ns: u64) -> Result<Record, Problem>
         every_samples: every_samples as u64,
         full_samples: record.text("samples")? == "full",
         parameters_period_ns: (record.si("parameters")? * 1e9).round() as u64,
+    })
+}
+
+fn realtime(realtime: &Reader<'_>) -> Result<Realtime, Problem> {
+    let ns = |key: &str| realtime.si(key).map(|s| (s * 1e9).round() as u64);
+    let priority: u8 = realtime.integer("priority")?;
+    Ok(Realtime {
+        by_clock: realtime.text("pace")? == "clock",
+        overrun_ns: ns("overrun")?,
+        overruns: realtime.integer("overruns")?,
+        lateness_p99_ns: realtime.optional_si("lateness_p99").map(|s| (s * 1e9).round() as u64),
+        late_answers: realtime.integer("late_answers")?,
+        silence_ns: ns("silence")?,
+        priority: (priority > 0).then_some(priority),
+        cpu: if realtime.node("cpu").is_some() { Some(realtime.integer("cpu")?) } else { None },
+        lock_memory: realtime.boolean("lock_memory")?,
+        spin_ns: ns("spin")?,
     })
 }
 

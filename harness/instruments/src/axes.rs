@@ -1,0 +1,126 @@
+//! How a unit is mounted.
+
+/// Which axes of the unit the axes of the body are.
+///
+/// A signed permutation, so that a count stays a count: a unit that is mounted a little askew has
+/// misalignments, which are for the calibration to find.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Axes {
+    /// Axis of the unit, and whether it points the other way, for each axis of the body.
+    from: [(usize, bool); 3],
+}
+
+/// Why a text says no mounting.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum AxesError {
+    /// Not three words.
+    #[error("axes are {found} words, expected are three of x, y, z, -x, -y, -z")]
+    Count {
+        /// How many words there are.
+        found: usize,
+    },
+    /// A word is no axis.
+    #[error("axis {number} is none of x, y, z, -x, -y, -z")]
+    Word {
+        /// Which word, from 1.
+        number: usize,
+    },
+    /// An axis occurs twice.
+    #[error("an axis of the unit occurs twice")]
+    Twice,
+    /// A mirror image.
+    #[error("the axes are left-handed: change a sign, or two axes")]
+    LeftHanded,
+}
+
+impl Axes {
+    /// The axes of the unit are those of the body.
+    pub const SAME: Self = Self { from: [(0, false), (1, false), (2, false)] };
+
+    /// From a text like `"x -y -z"`: body x is the unit's x, body y the opposite of the unit's y, body z
+    /// the opposite of the unit's z.
+    ///
+    /// # Errors
+    /// If it is none, or not right-handed.
+    pub fn parse(text: &str) -> Result<Self, AxesError> {
+        let found = text.split_whitespace().count();
+        if found != 3 {
+            return Err(AxesError::Count { found });
+        }
+        let mut from = [(0, false); 3];
+        for (index, (word, axis)) in text.split_whitespace().zip(&mut from).enumerate() {
+            let (bare, opposite) = match word.strip_prefix('-') {
+                Some(bare) => (bare, true),
+                None => (word, false),
+            };
+            let unit = match bare {
+                "x" => 0,
+                "y" => 1,
+                "z" => 2,
+                _ => return Err(AxesError::Word { number: index + 1 }),
+            };
+            *axis = (unit, opposite);
+        }
+        let [a, b, c] = from;
+        if a.0 == b.0 || b.0 == c.0 || a.0 == c.0 {
+            return Err(AxesError::Twice);
+        }
+        // Even permutations, or odd ones with an odd number of signs.
+        let even = (a.0 + 1) % 3 == b.0;
+        let opposites = from.iter().filter(|axis| axis.1).count();
+        if even == (opposites % 2 == 1) {
+            return Err(AxesError::LeftHanded);
+        }
+        Ok(Self { from })
+    }
+
+    /// A vector in axes of the unit, in those of the body.
+    #[must_use]
+    #[inline]
+    pub fn to_body(&self, unit: [f64; 3]) -> [f64; 3] {
+        self.from.map(|(axis, opposite)| if opposite { -unit[axis] } else { unit[axis] })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_twenty_four_mountings_and_no_other() {
+        let words = ["x", "y", "z", "-x", "-y", "-z"];
+        let mut right = 0;
+        for a in words {
+            for b in words {
+                for c in words {
+                    let mut text = [0u8; 16];
+                    let mut length = 0;
+                    for byte in [a, " ", b, " ", c].iter().flat_map(|word| word.bytes()) {
+                        text[length] = byte;
+                        length += 1;
+                    }
+                    let text = core::str::from_utf8(&text[..length]).unwrap();
+                    let Ok(axes) = Axes::parse(text) else { continue };
+                    right += 1;
+                    // The cross product stays one: that is what right-handed means.
+                    let columns =
+                        [[1., 0., 0.], [0., 1., 0.], [0., 0., 1.]].map(|unit| axes.to_body(unit));
+                    let [u, v, w] = columns;
+                    let cross = [
+                        u[1] * v[2] - u[2] * v[1],
+                        u[2] * v[0] - u[0] * v[2],
+                        u[0] * v[1] - u[1] * v[0],
+                    ];
+                    assert_eq!(cross, w, "{text}");
+                }
+            }
+        }
+        assert_eq!(right, 24);
+        assert_eq!(Axes::parse("x -y -z").unwrap().to_body([1.0, 2.0, 3.0]), [1.0, -2.0, -3.0]);
+        assert_eq!(Axes::parse("x y z"), Ok(Axes::SAME));
+        assert_eq!(Axes::parse("x y"), Err(AxesError::Count { found: 2 }));
+        assert_eq!(Axes::parse("x up z"), Err(AxesError::Word { number: 2 }));
+        assert_eq!(Axes::parse("x x z"), Err(AxesError::Twice));
+        assert_eq!(Axes::parse("x y -z"), Err(AxesError::LeftHanded));
+    }
+}

@@ -1,0 +1,98 @@
+//! Which signals are which channels.
+
+use super::Problem;
+use std::string::{String, ToString};
+use std::vec::Vec;
+
+/// Three signals.
+#[derive(Clone, Debug, PartialEq, serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Three {
+    /// Signal of the unit's x axis, `Message.signal`, with a minus where it points the other way.
+    pub x: String,
+    /// Signal of y.
+    pub y: String,
+    /// Signal of z.
+    pub z: String,
+    /// Unit, where the database has none.
+    pub unit: Option<String>,
+    /// What the values are multiplied with beside their unit.
+    pub scale: Option<f64>,
+}
+
+/// Two signals with angles of the gimbals.
+#[derive(Clone, Debug, PartialEq, serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Gimbal {
+    /// Signal of the inner gimbal.
+    pub azimuth: String,
+    /// Signal of the outer gimbal.
+    pub roll: String,
+    /// Unit, where the database has none.
+    pub unit: Option<String>,
+}
+
+/// One signal.
+#[derive(Clone, Debug, PartialEq, serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct One {
+    /// The signal.
+    pub signal: String,
+    /// Unit, where the database has none.
+    pub unit: Option<String>,
+}
+
+/// A signal that says whether a reading can be used.
+#[derive(Clone, Debug, PartialEq, serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Valid {
+    /// The signal.
+    pub signal: String,
+    /// What it is when the reading can be used.
+    pub equals: u64,
+}
+
+/// Which signals are which channels.
+#[derive(Clone, Debug, PartialEq, serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Mapping {
+    /// Name of its file, for messages.
+    #[serde(skip)]
+    pub file: String,
+    /// Rotation: increments or rates.
+    pub rotation: Three,
+    /// Velocity increments or specific force.
+    pub velocity: Three,
+    /// Angles of the gimbals.
+    pub gimbal: Option<Gimbal>,
+    /// A counter of the readings; it may roll over.
+    pub sequence: Option<One>,
+    /// Time of the unit at the end of the interval; it may roll over.
+    pub stamp: Option<One>,
+    /// Length of the interval.
+    pub interval: Option<One>,
+    /// Temperature of the unit.
+    pub temperature: Option<One>,
+    /// Whether the reading can be used.
+    pub valid: Option<Valid>,
+    /// Order in which the messages of a reading come; without it that of their identifiers.
+    pub order: Option<Vec<String>>,
+    /// Signals that are equal in all messages of a reading.
+    #[serde(default)]
+    pub counters: Vec<String>,
+}
+
+impl Mapping {
+    /// Reads a mapping; `file` is its name, for messages.
+    ///
+    /// # Errors
+    /// If it is none: with file, line and key.
+    pub fn parse(file: &str, text: &str) -> Result<Self, Problem> {
+        let mapping: Self = toml::from_str(text).map_err(|error| {
+            let line = error.span().map(|span| 1 + text[..span.start].matches('\n').count());
+            let place = line.map_or_else(|| file.into(), |line| std::format!("{file}:{line}"));
+            Problem { place, what: error.message().trim().to_string() }
+        })?;
+        Ok(Self { file: file.into(), ..mapping })
+    }
+}

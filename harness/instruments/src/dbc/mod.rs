@@ -1,0 +1,41 @@
+//! Any inertial unit on a CAN bus, by its database (DBC) and a mapping.
+//!
+//! A [`Database`] is the maker's DBC file. A [`Mapping`] says which of its signals are which channels, in
+//! TOML:
+//!
+//! ```toml
+//! rotation = { x = "Gyro.rate_x", y = "Gyro.rate_y", z = "-Gyro.rate_z", unit = "deg/s" }
+//! velocity = { x = "Accel.a_x", y = "Accel.a_y", z = "-Accel.a_z" }
+//! sequence = { signal = "Gyro.counter" }
+//! stamp = { signal = "Gyro.time", unit = "us" }
+//! counters = ["Gyro.counter", "Accel.counter"]
+//! ```
+//!
+//! A signal is `Message.signal`; a minus before it turns the axis. A unit is needed where the database has
+//! none, and may not contradict it. Angles and velocities are increments, rates and accelerations means.
+//!
+//! A reading is complete when each of its messages came, once and in order: that of `order`, or of their
+//! identifiers, which is how a bus delivers what is queued together. A message that is missing costs
+//! the reading, and where all have a counter (`counters`) no reading mixes two samples.
+
+mod database;
+mod gather;
+mod mapping;
+mod signal;
+mod units;
+
+pub use database::Database;
+pub use gather::{CanCounters, CanFrame, Gatherer};
+pub use mapping::{Gimbal, Mapping, One, Three, Valid};
+
+use std::string::String;
+
+/// What is wrong with a database or a mapping.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{place}: {what}")]
+pub struct Problem {
+    /// File with line, or key of the mapping.
+    pub place: String,
+    /// What is wrong, and what was expected.
+    pub what: String,
+}

@@ -1,0 +1,55 @@
+//! Units that signals have.
+
+/// What a unit measures.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Quantity {
+    Angle,
+    AngularRate,
+    Velocity,
+    Acceleration,
+    Time,
+    Temperature,
+}
+
+/// A unit: what it measures, and what one is in SI units (°C for temperatures).
+pub(super) type Unit = (Quantity, f64);
+
+const DEGREE_RAD: f64 = core::f64::consts::PI / 180.0;
+const G_MPS2: f64 = 9.806_65;
+
+/// Units with their spellings.
+const UNITS: [(&[&str], Unit); 21] = [
+    (&["rad"], (Quantity::Angle, 1.0)),
+    (&["mrad"], (Quantity::Angle, 1e-3)),
+    (&["urad", "µrad"], (Quantity::Angle, 1e-6)),
+    (&["deg", "°", "degree", "degrees"], (Quantity::Angle, DEGREE_RAD)),
+    (&["arcsec"], (Quantity::Angle, DEGREE_RAD / 3600.0)),
+    (&["rad/s", "rad/sec"], (Quantity::AngularRate, 1.0)),
+    (&["mrad/s"], (Quantity::AngularRate, 1e-3)),
+    (&["deg/s", "°/s", "deg/sec", "dps"], (Quantity::AngularRate, DEGREE_RAD)),
+    (&["deg/h", "°/h"], (Quantity::AngularRate, DEGREE_RAD / 3600.0)),
+    (&["m/s"], (Quantity::Velocity, 1.0)),
+    (&["mm/s"], (Quantity::Velocity, 1e-3)),
+    (&["m/s2", "m/s^2", "m/s²", "m/s/s"], (Quantity::Acceleration, 1.0)),
+    (&["mm/s2", "mm/s^2", "mm/s²"], (Quantity::Acceleration, 1e-3)),
+    (&["g"], (Quantity::Acceleration, G_MPS2)),
+    (&["mg"], (Quantity::Acceleration, G_MPS2 * 1e-3)),
+    (&["ug", "µg"], (Quantity::Acceleration, G_MPS2 * 1e-6)),
+    (&["s", "sec"], (Quantity::Time, 1.0)),
+    (&["ms"], (Quantity::Time, 1e-3)),
+    (&["us", "µs"], (Quantity::Time, 1e-6)),
+    (&["ns"], (Quantity::Time, 1e-9)),
+    (&["degC", "°C", "C"], (Quantity::Temperature, 1.0)),
+];
+
+/// The unit of a text.
+pub(super) fn unit(text: &str) -> Option<Unit> {
+    UNITS.iter().find(|(names, _)| names.contains(&text)).map(|(_, unit)| *unit)
+}
+
+/// What units of some quantities are called.
+pub(super) fn names(quantities: &[Quantity]) -> std::string::String {
+    let of = UNITS.iter().filter(|(_, (quantity, _))| quantities.contains(quantity));
+    let names: std::vec::Vec<&str> = of.map(|(names, _)| names[0]).collect();
+    names.join(", ")
+}

@@ -1,0 +1,55 @@
+//! What encoders have in common.
+
+use crate::{Kind, Measured};
+
+/// A reading has not what a frame needs, or more than it can hold.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("a frame of {protocol} needs {what}")]
+pub struct CannotCarry {
+    /// Name of the protocol.
+    pub protocol: &'static str,
+    /// What it needs.
+    pub what: &'static str,
+}
+
+/// What is demanded of a reading on the way into a frame.
+#[derive(Clone, Copy)]
+pub(crate) struct Needs(pub(crate) &'static str);
+
+impl Needs {
+    pub(crate) fn some<T>(self, value: Option<T>, what: &'static str) -> Result<T, CannotCarry> {
+        value.ok_or(CannotCarry { protocol: self.0, what })
+    }
+
+    /// Increments, also made from means when the interval is known.
+    pub(crate) fn increments(
+        self,
+        measured: Option<Measured>,
+        interval_s: Option<f64>,
+        what: &'static str,
+    ) -> Result<[f64; 3], CannotCarry> {
+        let measured = self.some(measured, what)?;
+        match (measured.kind, interval_s) {
+            (Kind::Increment, _) => Ok(measured.value),
+            (Kind::Mean, Some(interval_s)) => Ok(measured.over(interval_s)),
+            (Kind::Mean, None) => Err(CannotCarry { protocol: self.0, what }),
+        }
+    }
+
+    /// Means, also made from increments when the interval is known.
+    pub(crate) fn means(
+        self,
+        measured: Option<Measured>,
+        interval_s: Option<f64>,
+        what: &'static str,
+    ) -> Result<[f64; 3], CannotCarry> {
+        let measured = self.some(measured, what)?;
+        match (measured.kind, interval_s) {
+            (Kind::Mean, _) => Ok(measured.value),
+            (Kind::Increment, Some(interval_s)) if interval_s > 0.0 => {
+                Ok(measured.value.map(|value| value / interval_s))
+            }
+            _ => Err(CannotCarry { protocol: self.0, what }),
+        }
+    }
+}

@@ -1,0 +1,92 @@
+//! The log as a line of text.
+
+use super::RawImu;
+use crate::checksum;
+use crate::framing::{Cause, Extent};
+use core::fmt::{self, Write};
+
+/// A line with the short header begins with it.
+pub(super) const BEGIN: u8 = b'%';
+/// Then comes the CRC.
+const MARK: u8 = b'*';
+const CRC_DIGITS: usize = 8;
+/// With the end of the line.
+const TAIL_BYTES: usize = CRC_DIGITS + END.len();
+const END: &str = "\r\n";
+const NAME: &str = "RAWIMUSXA";
+
+/// From `%` to the CRC: printable characters, the mark, eight digits, end of the line.
+pub(super) fn extent(bytes: &[u8], most: usize) -> Extent {
+    let printable = |byte: &u8| (0x20..0x7F).contains(byte);
+    let text = bytes.iter().position(|byte| *byte == MARK || !printable(byte));
+    match text {
+        Some(at) if bytes[at] == MARK && at + 1 + TAIL_BYTES <= most => {
+            Extent::Bytes(at + 1 + TAIL_BYTES)
+        }
+        Some(_) => Extent::None,
+        None if bytes.len() + TAIL_BYTES >= most => Extent::None,
+        // The mark at least, and what follows it.
+        None => Extent::Open(1 + TAIL_BYTES),
+    }
+}
+
+/// The log in a line.
+pub(super) fn read(frame: &[u8]) -> Result<Option<RawImu>, Cause> {
+    let text = core::str::from_utf8(frame).map_err(|_| Cause::Malformed)?;
+    let text = text.strip_prefix(char::from(BEGIN)).ok_or(Cause::Malformed)?;
+    let text = text.strip_suffix(END).ok_or(Cause::Malformed)?;
+    let (text, digits) = text.split_once('*').ok_or(Cause::Malformed)?;
+    // A sign is no digit, though it is parsed as one.
+    if !digits.bytes().all(|digit| digit.is_ascii_hexdigit()) {
+        return Err(Cause::Malformed);
+    }
+    let found = u32::from_str_radix(digits, 16).map_err(|_| Cause::Malformed)?;
+    let computed = checksum::novatel(text.as_bytes());
+    if found != computed {
+        return Err(Cause::Checksum { found, computed });
+    }
+    let Some((head, data)) = text.split_once(';') else { return Ok(None) };
+    if head.split(',').next() != Some(NAME) {
+        return Ok(None);
+    }
+    let fields = &mut data.split(',');
+    macro_rules! next {
+        ($field:literal, $parse:expr) => {
+            fields.next().and_then($parse).ok_or(Cause::NoNumber { field: $field })?
+        };
+    }
+    let raw = RawImu {
+        info: next!("IMU info", |t| u8::from_str_radix(t, 16).ok()),
+        kind: next!("IMU type", |t| t.parse().ok()),
+        week: next!("week", |t| t.parse().ok()),
+        seconds: next!("seconds", |t| t.parse().ok()),
+        status: next!("IMU status", |t| u32::from_str_radix(t, 16).ok()),
+        velocity: [
+            next!("z velocity", |t| t.parse().ok()),
+            next!("-y velocity", |t| t.parse().ok()),
+            next!("x velocity", |t| t.parse().ok()),
+        ],
+        rotation: [
+            next!("z rotation", |t| t.parse().ok()),
+            next!("-y rotation", |t| t.parse().ok()),
+            next!("x rotation", |t| t.parse().ok()),
+        ],
+    };
+    if fields.next().is_some() {
+        return Err(Cause::NoNumber { field: "number of fields" });
+    }
+    Ok(Some(raw))
+}
+
+/// Writes a line up to its CRC.
+///
+/// # Errors
+/// If `to` has no room.
+pub fn write_line(raw: &RawImu, to: &mut impl Write) -> fmt::Result {
+    let RawImu { info, kind, week, seconds, status, velocity, rotation } = raw;
+    write!(to, "%{NAME},{week},{seconds:.3};{info:02x},{kind},{week},{seconds:.9},{status:08x}")?;
+    for count in velocity.iter().chain(rotation) {
+        write!(to, ",{count}")?;
+    }
+    Ok(())
+}

@@ -1,0 +1,239 @@
+//! NovAtel SPAN: the log `RAWIMUSX`, binary and ASCII.
+//!
+//! The binary form has the short header: `0xAA 0x44 0x13`, length of the data, message, week and
+//! milliseconds of GPS time; then the data and a CRC-32, all little-endian. The ASCII form is a line
+//! from `%` to `*`, with the same CRC as eight hexadecimal digits, and ends with CR and LF. Both say the kind of unit that is
+//! connected, and raw increments as integers, whose worth depends on that kind ([`scale_of`]): z, −y, x
+//! of velocity and of rotation, in the axes of the unit. Stamps are GPS week and seconds. There is no
+//! number of the reading, and no interval.
+//!
+//! Other logs with the short header pass as frames without a reading. Logs with the long one
+//! (`0xAA 0x44 0x12`) are not looked at: their bytes count as lost.
+
+mod ascii;
+mod scale;
+
+pub use ascii::write_line;
+pub use scale::{Scale, scale_of};
+
+use crate::bytes::{Frame, Reader};
+use crate::carry::Carry;
+use crate::checksum;
+use crate::encoding::{CannotCarry, Needs};
+use crate::framing::{Cause, Extent, Framing};
+use crate::{Clock, Kind, Measured, Reading, Stamp};
+use octant_sample::Status;
+
+const SYNC: [u8; 3] = [0xAA, 0x44, 0x13];
+/// Sync, length, message, week, milliseconds.
+const HEADER_BYTES: usize = 12;
+const CRC_BYTES: usize = 4;
+/// The length of the data has one byte. Lines are shorter.
+const MAX_BYTES: usize = HEADER_BYTES + 255 + CRC_BYTES;
+const RAWIMUSX: u16 = 1462;
+const RAWIMUSX_BYTES: usize = 40;
+
+// Bits of the IMU info.
+const ERROR: u8 = 1 << 0;
+const ENCRYPTED: u8 = 1 << 1;
+
+/// Nanoseconds of a week.
+const WEEK_NS: u64 = 604_800_000_000_000;
+
+/// The protocol.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct NovAtel {
+    /// What a count is worth, where the kind of unit doesn't say it. `None`: by the kind.
+    pub scale: Option<Scale>,
+}
+
+/// Finds readings in a stream of bytes.
+pub type Decoder = crate::framing::Decoder<NovAtel>;
+
+/// The fields of `RAWIMUSX`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RawImu {
+    /// IMU info: bit 0 error, bit 1 encrypted.
+    pub info: u8,
+    /// Kind of unit.
+    pub kind: u8,
+    /// GPS week.
+    pub week: u16,
+    /// Seconds into the week.
+    pub seconds: f64,
+    /// Status of the unit; its bits depend on the kind.
+    pub status: u32,
+    /// Velocity increments: z, −y, x, counts.
+    pub velocity: [i32; 3],
+    /// Rotation increments: z, −y, x, counts.
+    pub rotation: [i32; 3],
+}
+
+impl Framing for NovAtel {
+    type Room = [u8; MAX_BYTES];
+    const EMPTY: Self::Room = [0; MAX_BYTES];
+
+    #[inline]
+    fn begins(byte: u8) -> bool {
+        byte == SYNC[0] || byte == ascii::BEGIN
+    }
+
+    #[inline]
+    fn extent(bytes: &[u8]) -> Extent {
+        if bytes.first() == Some(&ascii::BEGIN) {
+            return ascii::extent(bytes, MAX_BYTES);
+        }
+        let known = bytes.len().min(3);
+        if bytes[..known] != SYNC[..known] {
+            return Extent::None;
+        }
+        match bytes.get(3) {
+            None => Extent::Open(4 - bytes.len()),
+            Some(length) => Extent::Bytes(HEADER_BYTES + usize::from(*length) + CRC_BYTES),
+        }
+    }
+
+    #[inline]
+    fn read(&mut self, frame: &[u8]) -> Result<Option<Reading>, Cause> {
+        let raw =
+            if frame.first() == Some(&ascii::BEGIN) { ascii::read(frame)? } else { binary(frame)? };
+        raw.map(|raw| self.reading(&raw)).transpose()
+    }
+}
+
+/// The log in a binary frame.
+fn binary(frame: &[u8]) -> Result<Option<RawImu>, Cause> {
+    let (bare, crc) = frame.split_last_chunk::<CRC_BYTES>().ok_or(Cause::Malformed)?;
+    let (found, computed) = (u32::from_le_bytes(*crc), checksum::novatel(bare));
+    if found != computed {
+        return Err(Cause::Checksum { found, computed });
+    }
+    let data = bare.get(HEADER_BYTES..).ok_or(Cause::Malformed)?;
+    if u16::from_le_bytes([bare[4], bare[5]]) != RAWIMUSX {
+        return Ok(None);
+    }
+    if data.len() != RAWIMUSX_BYTES {
+        let found = data.len() as u32;
+        return Err(Cause::Unknown { field: "length of RAWIMUSX", found });
+    }
+    let data = &mut Reader::new(data);
+    Ok(Some(RawImu {
+        info: data.u8_le(),
+        kind: data.u8_le(),
+        week: data.u16_le(),
+        seconds: data.f64_le(),
+        status: data.u32_le(),
+        velocity: data.three(Reader::i32_le),
+        rotation: data.three(Reader::i32_le),
+    }))
+}
+
+/// From z, −y, x to x, y, z.
+fn xyz([z, minus_y, x]: [i32; 3]) -> [i32; 3] {
+    [x, minus_y.saturating_neg(), z]
+}
+
+impl NovAtel {
+    fn reading(&self, raw: &RawImu) -> Result<Reading, Cause> {
+        let scale = self
+            .scale
+            .or_else(|| scale_of(raw.kind))
+            .ok_or(Cause::Unknown { field: "IMU type", found: raw.kind.into() })?;
+        if !(0.0..=604_800.0).contains(&raw.seconds) {
+            return Err(Cause::Unknown { field: "second of the week", found: raw.seconds as u32 });
+        }
+        let counts = |counts, lsb| Some(Measured::counts(Kind::Increment, xyz(counts), lsb));
+        let ns = u64::from(raw.week) * WEEK_NS + libm::rint(raw.seconds * 1e9) as u64;
+        let mut status = Status::empty();
+        status.set(Status::INERTIAL_INVALID, raw.info & (ERROR | ENCRYPTED) != 0);
+        Ok(Reading {
+            rotation: counts(raw.rotation, scale.rotation_rad),
+            velocity: counts(raw.velocity, scale.velocity_mps),
+            stamp: Some(Stamp { ns, clock: Clock::Gps }),
+            status,
+            status_word: Some(raw.status),
+            ..Reading::NOTHING
+        })
+    }
+}
+
+/// Makes binary frames of `RAWIMUSX`, or lines.
+#[derive(Clone, Debug)]
+pub struct Encoder {
+    kind: u8,
+    scale: Scale,
+    frame: Frame<MAX_BYTES>,
+    rotation: Carry,
+    velocity: Carry,
+}
+
+impl Encoder {
+    /// For a kind of unit and what its counts are worth ([`scale_of`]).
+    #[must_use]
+    pub const fn new(kind: u8, scale: Scale) -> Self {
+        let (rotation, velocity) = (Carry::new(), Carry::new());
+        Self { kind, scale, frame: Frame::new(), rotation, velocity }
+    }
+
+    /// The binary frame of a reading. What the counts leave over is carried to the next one. A stamp
+    /// that isn't GPS time is sent as if it were.
+    ///
+    /// # Errors
+    /// If the reading lacks rotation, velocity or stamp, has means without an interval, or a stamp
+    /// after the last week.
+    pub fn encode(&mut self, reading: &Reading) -> Result<&[u8], CannotCarry> {
+        let raw = self.raw(reading)?;
+        let frame = &mut self.frame;
+        frame.clear();
+        frame.put(&SYNC);
+        frame.put(&[RAWIMUSX_BYTES as u8]);
+        frame.put(&RAWIMUSX.to_le_bytes());
+        frame.put(&raw.week.to_le_bytes());
+        frame.put(&(libm::rint(raw.seconds * 1e3) as u32).to_le_bytes());
+        frame.put(&[raw.info, raw.kind]);
+        frame.put(&raw.week.to_le_bytes());
+        frame.put(&raw.seconds.to_le_bytes());
+        frame.put(&raw.status.to_le_bytes());
+        for count in raw.velocity.into_iter().chain(raw.rotation) {
+            frame.put(&count.to_le_bytes());
+        }
+        let crc = checksum::novatel(frame.bytes());
+        frame.put(&crc.to_le_bytes());
+        Ok(frame.bytes())
+    }
+
+    /// The line of a reading, as [`Encoder::encode`]; nanoseconds are cut.
+    ///
+    /// # Errors
+    /// As [`Encoder::encode`].
+    pub fn encode_line(&mut self, reading: &Reading) -> Result<&[u8], CannotCarry> {
+        let raw = self.raw(reading)?;
+        self.frame.clear();
+        // The room is that of the longest line.
+        let _ = write_line(&raw, &mut self.frame);
+        let crc = checksum::novatel(&self.frame.bytes()[1..]);
+        let _ = core::fmt::write(&mut self.frame, format_args!("*{crc:08x}\r\n"));
+        Ok(self.frame.bytes())
+    }
+
+    fn raw(&mut self, reading: &Reading) -> Result<RawImu, CannotCarry> {
+        let needs = Needs("NovAtel");
+        let ns = needs.some(reading.stamp, "a stamp")?.ns;
+        let week = u16::try_from(ns / WEEK_NS).ok();
+        let week = needs.some(week, "a stamp before week 65536")?;
+        let interval_s = reading.interval_s;
+        let rotation = needs.increments(reading.rotation, interval_s, "rotation")?;
+        let velocity = needs.increments(reading.velocity, interval_s, "velocity")?;
+        let sent = |[x, y, z]: [i32; 3]| [z, y.saturating_neg(), x];
+        let invalid = reading.status.contains(Status::INERTIAL_INVALID);
+        Ok(RawImu {
+            info: if invalid { ERROR } else { 0 },
+            kind: self.kind,
+            week,
+            seconds: (ns % WEEK_NS) as f64 * 1e-9,
+            status: reading.status_word.unwrap_or(0),
+            velocity: sent(self.velocity.counts(velocity, self.scale.velocity_mps)),
+            rotation: sent(self.rotation.counts(rotation, self.scale.rotation_rad)),
+        })
+    }
+}

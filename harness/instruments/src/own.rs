@@ -1,0 +1,154 @@
+//! The wire of this project: frames of `octant-wire` with samples in them.
+//!
+//! Byte for byte what `harness/wire/README.md` describes. Of its messages an instrument's samples are
+//! readings; the others pass. Increments are the counts of [`octant_sample::counts`] and lose nothing.
+
+use crate::encoding::{CannotCarry, Needs};
+use crate::framing::{Cause, Counters, Event, Lost};
+use crate::{Measured, Reading};
+use octant_sample::counts::{Accumulator, DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS};
+use octant_sample::{DeviceTime, Sample, Status};
+use octant_wire::message::{ClockTime, SampleMessage, Step};
+use octant_wire::{Message, serial};
+
+/// Finds readings in a stream of bytes.
+#[derive(Clone, Debug, Default)]
+pub struct Decoder {
+    line: serial::Decoder,
+    last_sequence: Option<u64>,
+    counters: Counters,
+}
+
+impl Decoder {
+    /// Nothing received yet.
+    #[must_use]
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// What came so far. A zero is part of a frame, and so is what hasn't come whole yet.
+    #[must_use]
+    pub fn counters(&self) -> &Counters {
+        &self.counters
+    }
+
+    /// Takes bytes up to the end of the next frame that says something, and says what it was. `None`
+    /// when all bytes are taken: call it until then.
+    #[inline]
+    pub fn next(&mut self, bytes: &mut &[u8]) -> Option<Event> {
+        loop {
+            let event = self.line.next(bytes);
+            self.count_bytes();
+            if let Some(event) = self.event(event?) {
+                return Some(event);
+            }
+        }
+    }
+
+    /// Nothing more comes.
+    pub fn end(&mut self) -> Option<Event> {
+        let event = self.line.end();
+        self.count_bytes();
+        self.event(event?)
+    }
+
+    fn count_bytes(&mut self) {
+        let line = self.line.counters();
+        self.counters.bytes = line.bytes;
+        self.counters.bytes_lost = line.bytes_lost;
+        self.counters.bytes_framed = line.bytes - line.bytes_lost;
+    }
+
+    fn event(&mut self, event: serial::Event) -> Option<Event> {
+        let counters = &mut self.counters;
+        match event {
+            serial::Event::Received(received) => match received.message {
+                Message::Sample(SampleMessage { sample, .. }) => {
+                    let reading = Reading::of_sample(&sample);
+                    counters.readings += 1;
+                    counters.in_sequence(&mut self.last_sequence, reading.sequence);
+                    Some(Event::Reading(reading))
+                }
+                _ => {
+                    counters.other += 1;
+                    None
+                }
+            },
+            serial::Event::Lost(lost) => {
+                let cause = match lost.cause {
+                    serial::Cause::Long | serial::Cause::Malformed => Cause::Malformed,
+                    serial::Cause::Checksum { found, computed } => {
+                        Cause::Checksum { found, computed }
+                    }
+                    serial::Cause::Unreadable(unreadable) => Cause::Unreadable(unreadable),
+                };
+                counters.cause(cause);
+                let bytes = usize::try_from(lost.bytes).unwrap_or(usize::MAX);
+                Some(Event::Lost(Lost { cause, bytes }))
+            }
+        }
+    }
+}
+
+/// Makes frames with a sample in each.
+#[derive(Clone, Debug, Default)]
+pub struct Encoder {
+    line: serial::Encoder,
+    rotation: [Accumulator; 3],
+    velocity: [Accumulator; 3],
+}
+
+impl Encoder {
+    /// Nothing sent yet.
+    #[must_use]
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// The frame of a reading. What the counts leave over is carried to the next one.
+    ///
+    /// # Errors
+    /// If the reading lacks rotation, velocity, sequence or stamp, or has means without an interval.
+    pub fn encode(&mut self, reading: &Reading) -> Result<&[u8], CannotCarry> {
+        let needs = Needs("octant");
+        let sequence = needs.some(reading.sequence, "a sequence number")?;
+        let ns = needs.some(reading.stamp, "a stamp")?.ns;
+        let mut status = reading.status;
+        let mut counts = |measured: Option<Measured>,
+                          accumulators: &mut [Accumulator; 3],
+                          lsb: f64,
+                          saturated: Status,
+                          what| {
+            let increments = needs.increments(measured, reading.interval_s, what)?;
+            Ok(core::array::from_fn(|axis| {
+                let count = accumulators[axis].count(increments[axis] / lsb);
+                status.set(saturated, status.contains(saturated) | count.saturated);
+                count.value
+            }))
+        };
+        let rotation = &mut self.rotation;
+        let flag = Status::GYRO_SATURATED;
+        let delta_theta =
+            counts(reading.rotation, rotation, DELTA_THETA_LSB_RAD, flag, "rotation")?;
+        let velocity = &mut self.velocity;
+        let flag = Status::ACCELEROMETER_SATURATED;
+        let delta_velocity =
+            counts(reading.velocity, velocity, DELTA_VELOCITY_LSB_MPS, flag, "velocity")?;
+        status.set(
+            Status::GIMBAL_INVALID,
+            status.contains(Status::GIMBAL_INVALID) | reading.gimbal.is_none(),
+        );
+        let sample = Sample {
+            sequence,
+            device_time: DeviceTime { ns },
+            delta_theta,
+            delta_velocity,
+            gimbal: reading.gimbal.unwrap_or_default(),
+            status,
+        };
+        // The step has 15 bits, and begins with the first sample at 0.
+        let step = Step::new((sequence.wrapping_sub(1) & 0x7FFF) as u16);
+        let message = Message::Sample(SampleMessage { step, aided: false, sample });
+        Ok(self.line.encode(&message, ClockTime { ns }))
+    }
+}

@@ -1,0 +1,287 @@
+//! VectorNav's binary output: VN-100, VN-200, VN-300 and what speaks like them.
+//!
+//! A frame is `0xFA`, a byte of groups, a 16-bit mask of fields for each group, the fields, and a
+//! CRC-16 with its high byte first; everything else is little-endian. What fields there are is
+//! configured in the unit (registers 75 to 77): any choice is read, as long as the common, time, IMU,
+//! GNSS, attitude and INS groups are asked for without the fields of variable length (satellites).
+//!
+//! Used are, in this order: `DeltaTheta` (interval, rotation in degrees, velocity) of the common group;
+//! `DeltaTheta` and `DeltaVel` of the IMU group; `Imu` of the common group; `UncompAccel` and
+//! `UncompGyro` of the IMU group. `AngularRate` and `Accel` are not: the unit's own filter has taken its
+//! estimate of the biases out of them, and a calibration would look for what is gone. For the same reason
+//! register 82 has to leave `DeltaTheta` uncompensated, in the body frame.
+//!
+//! Stamps are `TimeStartup`, else `TimeGps`. There is no number of the reading: a loss shows in the
+//! stamps alone.
+
+use crate::bytes::{Frame, Reader};
+use crate::carry::Carry;
+use crate::checksum;
+use crate::encoding::{CannotCarry, Needs};
+use crate::framing::{Cause, Extent, Framing};
+use crate::{Clock, Measured, Reading, Stamp};
+use octant_sample::Status;
+
+const SYNC: u8 = 0xFA;
+
+/// Bytes of each field of each group; zero: there is none, or its length varies.
+const FIELD_BYTES: [[u8; 15]; 7] = [
+    // Common.
+    [8, 8, 8, 12, 16, 12, 24, 12, 12, 24, 20, 28, 2, 4, 8],
+    // Time.
+    [8, 8, 8, 2, 8, 8, 8, 4, 4, 1, 0, 0, 0, 0, 0],
+    // IMU.
+    [2, 12, 12, 12, 4, 4, 16, 12, 12, 12, 12, 2, 40, 0, 0],
+    // GNSS 1.
+    [8, 8, 2, 1, 1, 24, 24, 12, 12, 12, 4, 4, 2, 28, 0],
+    // Attitude.
+    [2, 12, 16, 36, 12, 12, 12, 12, 12, 12, 28, 24, 0, 0, 0],
+    // INS.
+    [2, 24, 24, 12, 12, 12, 12, 12, 12, 4, 4, 68, 64, 0, 0],
+    // GNSS 2.
+    [8, 8, 2, 1, 1, 24, 24, 12, 12, 12, 4, 4, 2, 28, 0],
+];
+
+/// All fields of all groups, the header and the CRC.
+const MAX_BYTES: usize = 1280;
+
+/// The longest header: every group.
+const MAX_HEADER_BYTES: usize = 2 + 2 * FIELD_BYTES.len();
+
+const DEGREE_RAD: f64 = core::f64::consts::PI / 180.0;
+
+// Fields, as group and bit.
+const COMMON: usize = 0;
+const TIME: usize = 1;
+const IMU: usize = 2;
+const TIME_STARTUP: u16 = 1 << 0;
+const TIME_GPS: u16 = 1 << 1;
+const COMMON_IMU: u16 = 1 << 9;
+const COMMON_DELTA_THETA: u16 = 1 << 11;
+const IMU_UNCOMP_ACCEL: u16 = 1 << 2;
+const IMU_UNCOMP_GYRO: u16 = 1 << 3;
+const IMU_TEMP: u16 = 1 << 4;
+const IMU_DELTA_THETA: u16 = 1 << 6;
+const IMU_DELTA_VEL: u16 = 1 << 7;
+const IMU_SENS_SAT: u16 = 1 << 11;
+
+/// Bits of `SensSat`.
+const SATURATED_ACCELEROMETER: u16 = 0b111 << 3;
+const SATURATED_GYRO: u16 = 0b111 << 6;
+
+/// The protocol.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct VectorNav;
+
+/// Finds readings in a stream of bytes.
+pub type Decoder = crate::framing::Decoder<VectorNav>;
+
+/// Masks of the groups of a header.
+struct Header {
+    masks: [u16; 7],
+    bytes: usize,
+}
+
+/// The header that bytes begin with.
+fn header(bytes: &[u8]) -> Result<Header, Extent> {
+    let groups = *bytes.get(1).ok_or(Extent::Open(1))?;
+    // Bit 7 continues the groups with a second byte, which no unit has.
+    if groups == 0 || groups & 0x80 != 0 {
+        return Err(Extent::None);
+    }
+    // The masks are there, or nothing can be said.
+    let header_bytes = 2 + 2 * groups.count_ones() as usize;
+    if bytes.len() < header_bytes {
+        return Err(Extent::Open(header_bytes - bytes.len()));
+    }
+    let mut masks = [0; 7];
+    let mut at = 2;
+    for (group, mask) in masks.iter_mut().enumerate() {
+        if groups & (1 << group) == 0 {
+            continue;
+        }
+        let found = bytes.get(at..).and_then(|rest| rest.first_chunk::<2>()).ok_or(Extent::None)?;
+        *mask = u16::from_le_bytes(*found);
+        // A group without a field, or with another word of fields.
+        if *mask == 0 || *mask & 0x8000 != 0 {
+            return Err(Extent::None);
+        }
+        at += 2;
+    }
+    Ok(Header { masks, bytes: at })
+}
+
+impl Framing for VectorNav {
+    type Room = [u8; MAX_BYTES];
+    const EMPTY: Self::Room = [0; MAX_BYTES];
+
+    #[inline]
+    fn begins(byte: u8) -> bool {
+        byte == SYNC
+    }
+
+    #[inline]
+    fn extent(bytes: &[u8]) -> Extent {
+        let header = match header(bytes) {
+            Ok(header) => header,
+            Err(extent) => return extent,
+        };
+        let mut length = header.bytes + 2;
+        for (group, mask) in header.masks.iter().enumerate() {
+            let mut rest = *mask;
+            while rest != 0 {
+                let bytes = FIELD_BYTES[group][rest.trailing_zeros() as usize];
+                if bytes == 0 {
+                    return Extent::None;
+                }
+                length += usize::from(bytes);
+                rest &= rest - 1;
+            }
+        }
+        Extent::Bytes(length)
+    }
+
+    #[inline]
+    fn read(&mut self, frame: &[u8]) -> Result<Option<Reading>, Cause> {
+        let (bare, crc) = frame.split_last_chunk::<2>().ok_or(Cause::Malformed)?;
+        let found = u16::from_be_bytes(*crc);
+        let computed = checksum::vectornav(bare.get(1..).unwrap_or_default());
+        if found != computed {
+            return Err(Cause::Checksum { found: found.into(), computed: computed.into() });
+        }
+        let header = header(bare).map_err(|_| Cause::Malformed)?;
+        let mut fields = Reader::new(&bare[header.bytes..]);
+        let mut reading = Reading::NOTHING;
+        let (mut means, mut gps_ns) = (Means::default(), None);
+        for (group, mask) in header.masks.into_iter().enumerate() {
+            let mut rest = mask;
+            while rest != 0 {
+                let index = rest.trailing_zeros() as usize;
+                rest &= rest - 1;
+                let mut field = fields;
+                fields.skip(usize::from(FIELD_BYTES[group][index]));
+                match (group, 1u16 << index) {
+                    (COMMON | TIME, TIME_STARTUP) => {
+                        let ns = field.u64_le();
+                        reading.stamp = Some(Stamp { ns, clock: Clock::Startup });
+                    }
+                    (COMMON | TIME, TIME_GPS) => gps_ns = Some(field.u64_le()),
+                    (COMMON, COMMON_DELTA_THETA) => {
+                        reading.interval_s = Some(f64::from(field.f32_le()));
+                        reading.rotation = Some(degrees(&mut field));
+                        reading.velocity = Some(Measured::increment(floats(&mut field)));
+                    }
+                    (COMMON, COMMON_IMU) => {
+                        means.common_velocity = Some(floats(&mut field));
+                        means.common_rotation = Some(floats(&mut field));
+                    }
+                    // What the common group says already is the same.
+                    (IMU, IMU_DELTA_THETA) if reading.rotation.is_none() => {
+                        reading.interval_s = Some(f64::from(field.f32_le()));
+                        reading.rotation = Some(degrees(&mut field));
+                    }
+                    (IMU, IMU_DELTA_VEL) if reading.velocity.is_none() => {
+                        reading.velocity = Some(Measured::increment(floats(&mut field)));
+                    }
+                    (IMU, IMU_UNCOMP_ACCEL) => means.velocity = Some(floats(&mut field)),
+                    (IMU, IMU_UNCOMP_GYRO) => means.rotation = Some(floats(&mut field)),
+                    (IMU, IMU_TEMP) => reading.temperature_c = Some(field.f32_le()),
+                    (IMU, IMU_SENS_SAT) => {
+                        let word = field.u16_le();
+                        reading.status_word = Some(word.into());
+                        let gyro = word & SATURATED_GYRO != 0;
+                        let accelerometer = word & SATURATED_ACCELEROMETER != 0;
+                        reading.status.set(Status::GYRO_SATURATED, gyro);
+                        reading.status.set(Status::ACCELEROMETER_SATURATED, accelerometer);
+                    }
+                    _ => {}
+                }
+            }
+        }
+        if reading.stamp.is_none() {
+            reading.stamp = gps_ns.map(|ns| Stamp { ns, clock: Clock::Gps });
+        }
+        let mean = |first: Option<[f64; 3]>, second: Option<[f64; 3]>| {
+            first.or(second).map(Measured::mean)
+        };
+        reading.rotation = reading.rotation.or_else(|| mean(means.common_rotation, means.rotation));
+        reading.velocity = reading.velocity.or_else(|| mean(means.common_velocity, means.velocity));
+        Ok(reading.is_inertial().then_some(reading))
+    }
+}
+
+/// What is used when there are no increments.
+#[derive(Default)]
+struct Means {
+    common_rotation: Option<[f64; 3]>,
+    common_velocity: Option<[f64; 3]>,
+    rotation: Option<[f64; 3]>,
+    velocity: Option<[f64; 3]>,
+}
+
+fn floats(field: &mut Reader<'_>) -> [f64; 3] {
+    field.three(|field| f64::from(field.f32_le()))
+}
+
+fn degrees(field: &mut Reader<'_>) -> Measured {
+    Measured::increment(floats(field).map(|degrees| degrees * DEGREE_RAD))
+}
+
+/// Makes frames as a unit does that is configured for `TimeStartup` and `DeltaTheta` of the common
+/// group, `Temp` and `SensSat` of the IMU group.
+#[derive(Clone, Debug)]
+pub struct Encoder {
+    frame: Frame<{ MAX_HEADER_BYTES + 64 }>,
+    rotation: Carry,
+    velocity: Carry,
+}
+
+impl Default for Encoder {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl Encoder {
+    /// Nothing sent yet.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self { frame: Frame::new(), rotation: Carry::new(), velocity: Carry::new() }
+    }
+
+    /// The frame of a reading. What the 32-bit floats leave over is carried to the next one.
+    ///
+    /// # Errors
+    /// If the reading lacks rotation, velocity, interval or stamp.
+    pub fn encode(&mut self, reading: &Reading) -> Result<&[u8], CannotCarry> {
+        let needs = Needs("VectorNav");
+        let interval_s = needs.some(reading.interval_s, "an interval")?;
+        let stamp = needs.some(reading.stamp, "a stamp")?;
+        let rotation = needs.increments(reading.rotation, Some(interval_s), "rotation")?;
+        let velocity = needs.increments(reading.velocity, Some(interval_s), "velocity")?;
+        let mut saturated = 0;
+        if reading.status.contains(Status::GYRO_SATURATED) {
+            saturated |= SATURATED_GYRO;
+        }
+        if reading.status.contains(Status::ACCELEROMETER_SATURATED) {
+            saturated |= SATURATED_ACCELEROMETER;
+        }
+        let frame = &mut self.frame;
+        frame.clear();
+        frame.put(&[SYNC, 1 << COMMON | 1 << IMU]);
+        frame.put(&(TIME_STARTUP | COMMON_DELTA_THETA).to_le_bytes());
+        frame.put(&(IMU_TEMP | IMU_SENS_SAT).to_le_bytes());
+        frame.put(&stamp.ns.to_le_bytes());
+        frame.put(&(interval_s as f32).to_le_bytes());
+        let rotation = self.rotation.floats(rotation, DEGREE_RAD);
+        let velocity = self.velocity.floats(velocity, 1.0);
+        for float in rotation.into_iter().chain(velocity) {
+            frame.put(&float.to_le_bytes());
+        }
+        frame.put(&reading.temperature_c.unwrap_or(f32::NAN).to_le_bytes());
+        frame.put(&saturated.to_le_bytes());
+        let crc = checksum::vectornav(&frame.bytes()[1..]);
+        frame.put(&crc.to_be_bytes());
+        Ok(frame.bytes())
+    }
+}

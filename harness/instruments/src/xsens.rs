@@ -1,0 +1,336 @@
+//! Xsens' MTData2: MTi of the 1, 10, 100 and 600 series.
+//!
+//! A frame is `0xFA 0xFF 0x36`, a length of one byte (`0xFF` and two bytes where it is longer), packets
+//! of data, and a byte that makes the sum of all but the first zero; numbers are big-endian. A packet is
+//! an identifier of 16 bits, a length and data; the low bits of the identifier choose the precision:
+//! float, double, or fixed point with 12.20 or 16.32 bits.
+//!
+//! Used are `DeltaQ` and `DeltaV`, else `RateOfTurn` and `Acceleration`, else those with `HR`: packet
+//! counter, `SampleTimeFine` (0.1 ms), status word and temperature. `DeltaQ` becomes its rotation
+//! vector. The interval isn't said.
+//!
+//! The checksum is a byte: of damaged frames one in 256 passes it. So the packets have to fill the frame
+//! exactly and each has to have the length of its kind, which leaves damage inside of one number.
+
+use crate::bytes::{Frame, Reader};
+use crate::carry::Carry;
+use crate::checksum;
+use crate::encoding::{CannotCarry, Needs};
+use crate::framing::{Cause, Extent, Framing};
+use crate::rollover::Rollover;
+use crate::{Clock, Measured, Reading, Stamp};
+use octant_sample::Status;
+
+const HEAD: [u8; 3] = [0xFA, 0xFF, 0x36];
+/// The protocol has no longer data.
+const MAX_DATA_BYTES: usize = 2048;
+const MAX_BYTES: usize = 6 + MAX_DATA_BYTES + 1;
+
+// Identifiers without the bits of precision and coordinates.
+const TEMPERATURE: u16 = 0x0810;
+const PACKET_COUNTER: u16 = 0x1020;
+const SAMPLE_TIME_FINE: u16 = 0x1060;
+const DELTA_V: u16 = 0x4010;
+const ACCELERATION: u16 = 0x4020;
+const ACCELERATION_HR: u16 = 0x4040;
+const RATE_OF_TURN: u16 = 0x8020;
+const DELTA_Q: u16 = 0x8030;
+const RATE_OF_TURN_HR: u16 = 0x8040;
+const STATUS_BYTE: u16 = 0xE010;
+const STATUS_WORD: u16 = 0xE020;
+
+/// Nanoseconds of a count of `SampleTimeFine`.
+const FINE_NS: u64 = 100_000;
+
+/// Bits of the status word: the accelerometers and the gyros that were out of range.
+const CLIPPED_ACCELEROMETER: u32 = 0b111 << 8;
+const CLIPPED_GYRO: u32 = 0b111 << 11;
+
+/// The protocol, with where its counters stand.
+#[derive(Clone, Copy, Debug)]
+pub struct Xsens {
+    counter: Rollover,
+    fine: Rollover,
+}
+
+impl Default for Xsens {
+    fn default() -> Self {
+        Self { counter: Rollover::new(16), fine: Rollover::new(32) }
+    }
+}
+
+/// Finds readings in a stream of bytes.
+pub type Decoder = crate::framing::Decoder<Xsens>;
+
+/// How the numbers of a packet are written.
+#[derive(Clone, Copy)]
+enum Precision {
+    Float,
+    Fixed12,
+    Fixed16,
+    Double,
+}
+
+impl Precision {
+    fn of(identifier: u16) -> Self {
+        match identifier & 3 {
+            0 => Self::Float,
+            1 => Self::Fixed12,
+            2 => Self::Fixed16,
+            _ => Self::Double,
+        }
+    }
+
+    fn bytes(self) -> usize {
+        match self {
+            Self::Float | Self::Fixed12 => 4,
+            Self::Fixed16 => 6,
+            Self::Double => 8,
+        }
+    }
+
+    fn number(self, data: &mut Reader<'_>) -> f64 {
+        match self {
+            Self::Float => f64::from(data.f32_be()),
+            Self::Fixed12 => f64::from(data.i32_be()) / f64::from(1 << 20),
+            // The fraction comes first.
+            Self::Fixed16 => {
+                let fraction = data.u32_be();
+                f64::from(data.i16_be()) + f64::from(fraction) / (1u64 << 32) as f64
+            }
+            Self::Double => data.f64_be(),
+        }
+    }
+}
+
+impl Framing for Xsens {
+    type Room = [u8; MAX_BYTES];
+    const EMPTY: Self::Room = [0; MAX_BYTES];
+
+    #[inline]
+    fn begins(byte: u8) -> bool {
+        byte == HEAD[0]
+    }
+
+    #[inline]
+    fn extent(bytes: &[u8]) -> Extent {
+        let known = bytes.len().min(3);
+        if bytes[..known] != HEAD[..known] {
+            return Extent::None;
+        }
+        match bytes.get(3) {
+            None => Extent::Open(4 - bytes.len()),
+            Some(0xFF) => match bytes.get(4..6) {
+                None => Extent::Open(6 - bytes.len()),
+                Some(long) => {
+                    let length = usize::from(u16::from_be_bytes([long[0], long[1]]));
+                    if length > MAX_DATA_BYTES {
+                        return Extent::None;
+                    }
+                    Extent::Bytes(6 + length + 1)
+                }
+            },
+            Some(length) => Extent::Bytes(4 + usize::from(*length) + 1),
+        }
+    }
+
+    #[inline]
+    fn read(&mut self, frame: &[u8]) -> Result<Option<Reading>, Cause> {
+        let (checksum, summed) = frame.split_last().ok_or(Cause::Malformed)?;
+        let computed = checksum::sum(summed.get(1..).unwrap_or_default()).wrapping_neg();
+        if *checksum != computed {
+            return Err(Cause::Checksum { found: (*checksum).into(), computed: computed.into() });
+        }
+        let data = if frame[3] == 0xFF { 6 } else { 4 };
+        let found = Found::read(&summed[data..]).ok_or(Cause::Malformed)?;
+        let mut reading = Reading {
+            rotation: found.delta_q.map(rotation).or(found.rate).or(found.rate_hr),
+            velocity: found.delta_v.or(found.acceleration).or(found.acceleration_hr),
+            status_word: found.status_word.or(found.status_byte.map(u32::from)),
+            temperature_c: found.temperature_c,
+            ..Reading::NOTHING
+        };
+        if !reading.is_inertial() {
+            return Ok(None);
+        }
+        reading.sequence = found.counter.map(|counter| self.counter.continued(counter.into()));
+        reading.stamp = found.fine.map(|fine| Stamp {
+            ns: self.fine.continued(fine.into()).saturating_mul(FINE_NS),
+            clock: Clock::Startup,
+        });
+        if let Some(word) = found.status_word {
+            reading.status.set(Status::GYRO_SATURATED, word & CLIPPED_GYRO != 0);
+            let clipped = word & CLIPPED_ACCELEROMETER != 0;
+            reading.status.set(Status::ACCELEROMETER_SATURATED, clipped);
+        }
+        Ok(Some(reading))
+    }
+}
+
+/// The packets of a frame that are used.
+#[derive(Default)]
+struct Found {
+    counter: Option<u16>,
+    fine: Option<u32>,
+    delta_q: Option<[f64; 4]>,
+    delta_v: Option<Measured>,
+    rate: Option<Measured>,
+    rate_hr: Option<Measured>,
+    acceleration: Option<Measured>,
+    acceleration_hr: Option<Measured>,
+    status_byte: Option<u8>,
+    status_word: Option<u32>,
+    temperature_c: Option<f32>,
+}
+
+impl Found {
+    /// `None` if the packets don't fill the data, or one hasn't the length of its kind.
+    fn read(mut rest: &[u8]) -> Option<Self> {
+        let mut found = Self::default();
+        while !rest.is_empty() {
+            let (head, tail) = rest.split_first_chunk::<3>()?;
+            let identifier = u16::from_be_bytes([head[0], head[1]]);
+            let (data, tail) = tail.split_at_checked(usize::from(head[2]))?;
+            rest = tail;
+            let precision = Precision::of(identifier);
+            let is = |bytes: usize| (data.len() == bytes).then_some(());
+            let data_reader = &mut Reader::new(data);
+            let mut three = |kind: fn([f64; 3]) -> Measured| {
+                is(3 * precision.bytes())?;
+                Some(kind(data_reader.three(|data| precision.number(data))))
+            };
+            match identifier & 0xFFF0 {
+                PACKET_COUNTER => {
+                    is(2)?;
+                    found.counter = Some(data_reader.u16_be());
+                }
+                SAMPLE_TIME_FINE => {
+                    is(4)?;
+                    found.fine = Some(data_reader.u32_be());
+                }
+                DELTA_V => found.delta_v = Some(three(Measured::increment)?),
+                ACCELERATION => found.acceleration = Some(three(Measured::mean)?),
+                ACCELERATION_HR => found.acceleration_hr = Some(three(Measured::mean)?),
+                RATE_OF_TURN => found.rate = Some(three(Measured::mean)?),
+                RATE_OF_TURN_HR => found.rate_hr = Some(three(Measured::mean)?),
+                DELTA_Q => {
+                    is(4 * precision.bytes())?;
+                    let q = core::array::from_fn(|_| precision.number(data_reader));
+                    found.delta_q = Some(q);
+                }
+                STATUS_BYTE => {
+                    is(1)?;
+                    found.status_byte = Some(data_reader.u8_be());
+                }
+                STATUS_WORD => {
+                    is(4)?;
+                    found.status_word = Some(data_reader.u32_be());
+                }
+                TEMPERATURE => {
+                    is(precision.bytes())?;
+                    found.temperature_c = Some(precision.number(data_reader) as f32);
+                }
+                _ => {}
+            }
+        }
+        Some(found)
+    }
+}
+
+/// The rotation vector of a quaternion, scalar first, which rounding may have left a little longer or
+/// shorter than one.
+fn rotation(q: [f64; 4]) -> Measured {
+    let [w, v @ ..] = q;
+    // q and −q are the same rotation: the shorter way.
+    let sign = if w < 0.0 { -1.0 } else { 1.0 };
+    let norm = libm::sqrt(v.iter().map(|v| v * v).sum());
+    // 2·atan2(n, w)/n, of which the limit is 2/w.
+    let factor =
+        if norm > 1e-9 { 2.0 * libm::atan2(norm, w * sign) / norm } else { 2.0 / (w * sign) };
+    Measured::increment(v.map(|v| sign * factor * v))
+}
+
+/// The quaternion of a rotation vector, scalar first.
+fn quaternion(vector: [f64; 3]) -> [f64; 4] {
+    let angle = libm::sqrt(vector.iter().map(|v| v * v).sum());
+    let factor = if angle > 1e-9 { libm::sin(0.5 * angle) / angle } else { 0.5 };
+    let [x, y, z] = vector.map(|v| factor * v);
+    [libm::cos(0.5 * angle), x, y, z]
+}
+
+/// Makes frames as a unit does that is configured for packet counter, `SampleTimeFine`, `DeltaQ` and
+/// `DeltaV` as floats, temperature and status word.
+#[derive(Clone, Debug)]
+pub struct Encoder {
+    frame: Frame<80>,
+    rotation: Carry,
+    velocity: Carry,
+}
+
+impl Default for Encoder {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl Encoder {
+    /// Nothing sent yet.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self { frame: Frame::new(), rotation: Carry::new(), velocity: Carry::new() }
+    }
+
+    /// The frame of a reading. What the 32-bit floats leave over is carried to the next one; a stamp
+    /// is cut to 0.1 ms.
+    ///
+    /// # Errors
+    /// If the reading lacks rotation, velocity, sequence or stamp, or has means without an interval.
+    pub fn encode(&mut self, reading: &Reading) -> Result<&[u8], CannotCarry> {
+        let needs = Needs("Xsens");
+        let sequence = needs.some(reading.sequence, "a sequence number")?;
+        let stamp = needs.some(reading.stamp, "a stamp")?;
+        let interval_s = reading.interval_s;
+        let rotation_meant = needs.increments(reading.rotation, interval_s, "rotation")?;
+        let velocity = needs.increments(reading.velocity, interval_s, "velocity")?;
+        let mut word = 0;
+        if reading.status.contains(Status::GYRO_SATURATED) {
+            word |= CLIPPED_GYRO;
+        }
+        if reading.status.contains(Status::ACCELEROMETER_SATURATED) {
+            word |= CLIPPED_ACCELEROMETER;
+        }
+        let q = self.rotation.send(rotation_meant, |meant| {
+            let q = quaternion(meant).map(|number| number as f32);
+            (q, rotation(q.map(f64::from)).value)
+        });
+        let v = self.velocity.floats(velocity, 1.0);
+        let frame = &mut self.frame;
+        frame.clear();
+        frame.put(&HEAD);
+        frame.put(&[0]);
+        let mut packet = |identifier: u16, numbers: &[&[u8]]| {
+            let bytes: usize = numbers.iter().map(|number| number.len()).sum();
+            frame.put(&identifier.to_be_bytes());
+            frame.put(&[bytes as u8]);
+            for number in numbers {
+                frame.put(number);
+            }
+        };
+        // The counters roll over.
+        packet(PACKET_COUNTER, &[&(sequence as u16).to_be_bytes()]);
+        packet(SAMPLE_TIME_FINE, &[&((stamp.ns / FINE_NS) as u32).to_be_bytes()]);
+        let q = q.map(f32::to_be_bytes);
+        packet(DELTA_Q, &[&q[0], &q[1], &q[2], &q[3]]);
+        let v = v.map(f32::to_be_bytes);
+        packet(DELTA_V, &[&v[0], &v[1], &v[2]]);
+        if let Some(temperature_c) = reading.temperature_c {
+            packet(TEMPERATURE, &[&temperature_c.to_be_bytes()]);
+        }
+        packet(STATUS_WORD, &[&word.to_be_bytes()]);
+        let length = frame.bytes().len() - 4;
+        frame.set(3, length as u8);
+        let checksum = checksum::sum(&frame.bytes()[1..]).wrapping_neg();
+        frame.put(&[checksum]);
+        Ok(frame.bytes())
+    }
+}

@@ -1,0 +1,69 @@
+//! Decoding, encoding and sampling allocate nothing, damaged or not.
+#![allow(clippy::unwrap_used)]
+#![allow(unsafe_code, reason = "an allocator that counts is unsafe by its trait")]
+
+mod common;
+
+use octant_instruments::{AnyDecoder, AnyEncoder, Axes, Event, Protocol, Sampler, Settings};
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::cell::Cell;
+use std::hint::black_box;
+
+thread_local! {
+    static COUNT: Cell<u64> = const { Cell::new(0) };
+}
+
+struct Counting;
+
+// SAFETY: every call goes on to the system's allocator as it came.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        COUNT.with(|count| count.set(count.get() + 1));
+        // SAFETY: the caller keeps the contract of `alloc`, which is this one.
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
+        // SAFETY: the pointer came from `alloc` above, which is the system's.
+        unsafe { System.dealloc(pointer, layout) }
+    }
+}
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
+
+#[test]
+fn nothing_is_allocated() {
+    let before = COUNT.with(Cell::get);
+    let mut samples = 0;
+    for protocol in Protocol::ALL {
+        let (mut encoder, mut decoder) = (AnyEncoder::new(protocol), AnyDecoder::new(protocol));
+        let mut sampler = Sampler::new(Settings { axes: Axes::SAME, period_ns: 5_000_000 });
+        for number in 1..=200 {
+            let frame = encoder.encode(&common::reading(number)).unwrap();
+            // Each tenth is cut in two, each seventh has garbage before it.
+            if number % 7 == 0 {
+                black_box(decoder.next(&mut &[0xFF, 0x5A, 0xFA, 0xAA, 0x44, 0][..]));
+            }
+            let (head, tail) = frame.split_at(if number % 10 == 0 { 9 } else { 0 });
+            for mut piece in [head, tail] {
+                while let Some(event) = decoder.next(&mut piece) {
+                    if let Event::Reading(reading) = event {
+                        samples += u64::from(sampler.sample(&reading, None).is_ok());
+                    }
+                }
+            }
+        }
+        if let AnyEncoder::NovAtel(encoder) = &mut encoder {
+            black_box(encoder.encode_line(&common::reading(201)).unwrap());
+        }
+        while let Some(event) = decoder.end() {
+            black_box(event);
+        }
+    }
+    assert_eq!(COUNT.with(Cell::get) - before, 0);
+    assert_eq!(samples, 5 * 200);
+    // And it would have been noticed.
+    black_box(vec![0u8; 10]);
+    assert!(COUNT.with(Cell::get) > before);
+}

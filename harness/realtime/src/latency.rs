@@ -1,0 +1,72 @@
+//! How late this host wakes a thread: a short measurement, as cyclictest makes a long one.
+
+use crate::clock::{HostTime, now};
+use crate::pace::{FrameClock, Pacing, Report};
+use crate::schedule::{Granted, Wish, apply};
+use serde::{Deserialize, Serialize};
+use std::time::Duration;
+
+/// What is measured.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Trial {
+    /// Period, ns.
+    pub period_ns: u64,
+    /// How long, in all.
+    pub duration: Duration,
+    /// The last part of each wait that is spent looking at the clock, ns.
+    pub spin_ns: u64,
+    /// What the thread would like to have.
+    pub wish: Wish,
+}
+
+/// What was found.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Found {
+    /// What the thread got.
+    pub granted: Granted,
+    /// How late it was woken. Overruns are wakings later than a tenth of the period.
+    pub report: Report,
+}
+
+/// Measures on a thread of its own.
+///
+/// # Errors
+/// If the system gives no thread.
+pub fn measure(trial: Trial) -> std::io::Result<Found> {
+    let thread = std::thread::Builder::new().name("latency".into()).spawn(move || {
+        let granted = apply(&trial.wish);
+        // Spinning without a real-time priority is worse than sleeping, and nobody would run so.
+        let spin_ns = if granted.is_realtime() { trial.spin_ns } else { 0 };
+        let period_ns = trial.period_ns.max(1);
+        let pacing = Pacing { period_ns, spin_ns, overrun_ns: period_ns / 10 };
+        let end: HostTime = now().after(crate::clock::nanoseconds(trial.duration));
+        let mut clock = FrameClock::start(pacing);
+        while clock.deadline() <= end {
+            clock.wait();
+        }
+        Found { granted, report: clock.report() }
+    })?;
+    thread.join().map_err(|_| std::io::Error::other("the measurement ended by a panic"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn as_many_wakings_as_periods_are_measured() {
+        let found = measure(Trial {
+            period_ns: 1_000_000,
+            duration: Duration::from_millis(50),
+            spin_ns: 0,
+            wish: Wish { priority: None, lock_memory: false, cpu: None },
+        })
+        .unwrap_or_else(|error| panic!("{error}"));
+        assert!((49..=50).contains(&found.report.frames), "{found:?}");
+        assert_eq!(found.report.lateness.count, found.report.frames);
+        assert!(found.report.lateness.p50_us <= found.report.lateness.p99_us);
+        let text = serde_json::to_string(&found).unwrap_or_default();
+        let back: Found = serde_json::from_str(&text).unwrap_or_else(|e| panic!("{e}: {text}"));
+        assert_eq!(back, found);
+    }
+}

@@ -1,0 +1,162 @@
+//! How late things were.
+
+use hdrhistogram::Histogram;
+use serde::{Deserialize, Serialize};
+
+/// Largest lateness that is told apart from larger ones, ns: a minute.
+const LARGEST_NS: u64 = 60_000_000_000;
+
+/// Durations, in a histogram of three significant digits from 1 ns to a minute; longer ones count
+/// as a minute. Recording one takes a few nanoseconds and allocates nothing.
+#[derive(Clone, Debug)]
+pub struct Lateness {
+    histogram: Histogram<u64>,
+    /// The largest, exactly.
+    max_ns: u64,
+}
+
+impl Default for Lateness {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl Lateness {
+    /// An empty histogram.
+    #[must_use]
+    pub fn new() -> Self {
+        #[allow(clippy::expect_used, reason = "the bounds are constants that a test makes one of")]
+        let histogram = Histogram::new_with_bounds(1, LARGEST_NS, 3).expect("bounds of constants");
+        Self { histogram, max_ns: 0 }
+    }
+
+    /// Takes one.
+    #[inline]
+    pub fn record(&mut self, lateness_ns: u64) {
+        self.max_ns = self.max_ns.max(lateness_ns);
+        self.histogram.saturating_record(lateness_ns);
+    }
+
+    /// How many were taken.
+    #[must_use]
+    pub fn count(&self) -> u64 {
+        self.histogram.len()
+    }
+
+    /// The largest, ns.
+    #[must_use]
+    pub fn max_ns(&self) -> u64 {
+        self.max_ns
+    }
+
+    /// What a share of all doesn't exceed, ns, to three digits; 0 without any.
+    #[must_use]
+    pub fn quantile_ns(&self, share: f64) -> u64 {
+        self.histogram.value_at_quantile(share.clamp(0.0, 1.0)).min(self.max_ns)
+    }
+
+    /// Adds another histogram.
+    pub fn add(&mut self, other: &Self) {
+        self.max_ns = self.max_ns.max(other.max_ns);
+        for step in other.histogram.iter_recorded() {
+            self.histogram.saturating_record_n(step.value_iterated_to(), step.count_at_value());
+        }
+    }
+
+    /// Figures for a summary.
+    #[must_use]
+    pub fn figures(&self) -> Figures {
+        let us = |ns: u64| ns as f64 / 1e3;
+        Figures {
+            count: self.count(),
+            p50_us: us(self.quantile_ns(0.5)),
+            p99_us: us(self.quantile_ns(0.99)),
+            p999_us: us(self.quantile_ns(0.999)),
+            max_us: us(self.max_ns),
+        }
+    }
+
+    /// The histogram as rows: an upper edge in ns and how many are at most that and above the edge
+    /// before, ten rows to the decade, without empty ones at the ends. The counts sum up to
+    /// [`Self::count`].
+    #[must_use]
+    pub fn rows(&self) -> Vec<(u64, u64)> {
+        let mut rows: Vec<(u64, u64)> = Vec::new();
+        for step in self.histogram.iter_recorded() {
+            // Values are kept as the upper end of their cell, which is 0.1 % wide.
+            let value = step.value_iterated_to().max(1) as f64;
+            let edge = 10f64.powf((value.log10() * 10.0).ceil() / 10.0).round() as u64;
+            match rows.last_mut() {
+                Some((last, count)) if *last == edge => *count += step.count_at_value(),
+                _ => rows.push((edge, step.count_at_value())),
+            }
+        }
+        rows
+    }
+}
+
+/// The figures of a [`Lateness`] that are read first. The largest of many runs longer than the test
+/// did; the quantiles are what compares.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Figures {
+    /// How many.
+    pub count: u64,
+    /// Median, µs.
+    pub p50_us: f64,
+    /// 99 %, µs.
+    pub p99_us: f64,
+    /// 99.9 %, µs.
+    pub p999_us: f64,
+    /// The largest, µs.
+    pub max_us: f64,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    #[test]
+    fn nothing_is_late_where_nothing_was() {
+        let figures = Lateness::new().figures();
+        assert_eq!((figures.count, figures.p99_us, figures.max_us), (0, 0.0, 0.0));
+        assert!(Lateness::new().rows().is_empty());
+    }
+
+    #[test]
+    fn longer_than_a_minute_counts_as_one_and_the_largest_is_exact() {
+        let mut lateness = Lateness::new();
+        lateness.record(u64::MAX);
+        assert_eq!(lateness.max_ns(), u64::MAX);
+        assert_eq!(lateness.count(), 1);
+        let near = lateness.quantile_ns(0.5) as f64 / LARGEST_NS as f64;
+        assert!((1.0..1.15).contains(&near), "{near}");
+    }
+
+    proptest! {
+        #[test]
+        fn quantiles_are_those_of_the_sorted_values(
+            mut values in prop::collection::vec(0u64..2_000_000_000, 1..400),
+            share in 0.0f64..=1.0,
+        ) {
+            let mut lateness = Lateness::new();
+            let mut halves = [Lateness::new(), Lateness::new()];
+            for (index, value) in values.iter().enumerate() {
+                lateness.record(*value);
+                halves[index % 2].record(*value);
+            }
+            values.sort_unstable();
+            let rank = ((share * values.len() as f64).ceil() as usize).clamp(1, values.len());
+            let expected = values[rank - 1] as f64;
+            let found = lateness.quantile_ns(share) as f64;
+            prop_assert!((found - expected).abs() <= 1e-3 * expected + 1.0, "{found} {expected}");
+            prop_assert_eq!(lateness.max_ns(), values[values.len() - 1]);
+            let total: u64 = lateness.rows().iter().map(|(_, count)| count).sum();
+            prop_assert_eq!(total, values.len() as u64);
+            prop_assert!(lateness.rows().windows(2).all(|two| two[0].0 < two[1].0));
+            let [mut one, other] = halves;
+            one.add(&other);
+            prop_assert_eq!(one.figures(), lateness.figures());
+        }
+    }
+}

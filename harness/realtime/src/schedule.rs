@@ -1,0 +1,288 @@
+//! What makes a thread punctual: a real-time priority, memory that stays in place, a processor of
+//! its own. A host may refuse each; then the run goes on without, and its manifest says so.
+
+use serde::{Deserialize, Serialize};
+
+/// What a thread would like to have.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Wish {
+    /// Priority of SCHED_FIFO, 1 to 99; `None`: none is asked for.
+    pub priority: Option<u8>,
+    /// All memory of the process stays in place.
+    pub lock_memory: bool,
+    /// The only processor that the thread runs on, from 0.
+    pub cpu: Option<u16>,
+}
+
+/// What became of one wish.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case", tag = "outcome")]
+pub enum Outcome {
+    /// It wasn't asked for.
+    NotAsked,
+    /// It is so.
+    Granted {
+        /// What is so.
+        what: String,
+    },
+    /// It isn't.
+    Refused {
+        /// What was asked for.
+        what: String,
+        /// Why it was refused, and what would help.
+        why: String,
+    },
+}
+
+impl Outcome {
+    /// It was granted.
+    #[must_use]
+    pub fn is_granted(&self) -> bool {
+        matches!(self, Self::Granted { .. })
+    }
+
+    /// As a line for people.
+    #[must_use]
+    pub fn text(&self) -> String {
+        match self {
+            Self::NotAsked => "not asked for".to_owned(),
+            Self::Granted { what } => what.clone(),
+            Self::Refused { what, why } => format!("no {what}: {why}"),
+        }
+    }
+}
+
+/// What a thread got.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Granted {
+    /// Its scheduling.
+    pub scheduling: Outcome,
+    /// Whether memory stays in place.
+    pub memory: Outcome,
+    /// Which processor it runs on.
+    pub cpu: Outcome,
+}
+
+impl Granted {
+    /// The thread has a real-time priority: only then does spinning help.
+    #[must_use]
+    pub fn is_realtime(&self) -> bool {
+        self.scheduling.is_granted()
+    }
+}
+
+/// Gives the calling thread what of a wish the host permits. It never fails: what isn't permitted
+/// is told. The priority and the processor are the thread's, the locked memory the process's; all
+/// stays until the thread, or the process, ends.
+#[must_use]
+pub fn apply(wish: &Wish) -> Granted {
+    system::prepare();
+    Granted {
+        // First, so that a page fault of what follows is over before the thread is in a hurry.
+        memory: if wish.lock_memory { system::lock_memory() } else { Outcome::NotAsked },
+        cpu: wish.cpu.map_or(Outcome::NotAsked, system::pin),
+        scheduling: wish.priority.map_or(Outcome::NotAsked, system::fifo),
+    }
+}
+
+/// Takes from the calling thread what it was granted, but for the memory: that is the process's.
+pub fn release(granted: &Granted) {
+    system::release(granted);
+}
+
+#[cfg(target_os = "linux")]
+mod system {
+    use super::Outcome;
+    use rustix::mm::{MlockAllFlags, mlockall};
+    use rustix::process::{Resource, getrlimit};
+    use rustix::thread::{
+        CapabilitySet, CpuSet, capabilities, sched_setaffinity, set_current_timer_slack,
+    };
+    use std::num::NonZeroU64;
+    use thread_priority::{
+        Error, NormalThreadSchedulePolicy, RealtimeThreadSchedulePolicy, ThreadPriority,
+        ThreadSchedulePolicy, set_thread_priority_and_policy, thread_native_id,
+    };
+
+    /// A thread without a real-time priority is woken up to 50 µs late on purpose, so that wakings
+    /// can be put together. Not this one.
+    pub(super) fn prepare() {
+        // Where it is refused, the lateness tells.
+        let _ = set_current_timer_slack(NonZeroU64::new(1));
+    }
+
+    fn has(capability: CapabilitySet) -> bool {
+        capabilities(None).is_ok_and(|sets| sets.effective.contains(capability))
+    }
+
+    pub(super) fn fifo(priority: u8) -> Outcome {
+        let what = format!("SCHED_FIFO with priority {priority}");
+        let policy = ThreadSchedulePolicy::Realtime(RealtimeThreadSchedulePolicy::Fifo);
+        let why = match ThreadPriority::try_from(priority) {
+            Err(reason) => reason.to_owned(),
+            Ok(asked) => match set_thread_priority_and_policy(thread_native_id(), asked, policy) {
+                Ok(()) => return Outcome::Granted { what },
+                Err(Error::OS(number)) if number == rustix::io::Errno::PERM.raw_os_error() => {
+                    let limit = getrlimit(Resource::Rtprio).current.unwrap_or(99);
+                    format!(
+                        "the limit of real-time priorities is {limit} (`ulimit -r`) and the \
+                         process has no CAP_SYS_NICE; \"@realtime - rtprio 99\" in \
+                         /etc/security/limits.conf raises it for a group"
+                    )
+                }
+                Err(Error::OS(number)) => std::io::Error::from_raw_os_error(number).to_string(),
+                Err(error) => error.to_string(),
+            },
+        };
+        Outcome::Refused { what, why }
+    }
+
+    pub(super) fn release(granted: &super::Granted) {
+        if granted.scheduling.is_granted() {
+            let policy = ThreadSchedulePolicy::Normal(NormalThreadSchedulePolicy::Other);
+            // From a real-time policy back is always permitted.
+            let _ = set_thread_priority_and_policy(thread_native_id(), ThreadPriority::Min, policy);
+        }
+        if granted.cpu.is_granted() {
+            let mut all = CpuSet::new();
+            (0..CpuSet::MAX_CPU).for_each(|cpu| all.set(cpu));
+            // The kernel leaves out those that there are not, or that aren't for this process.
+            let _ = sched_setaffinity(None, &all);
+        }
+    }
+
+    pub(super) fn lock_memory() -> Outcome {
+        let what = "all memory locked".to_owned();
+        let refused = |why| Outcome::Refused { what: "locked memory".to_owned(), why };
+        // Under a limit the lock may succeed, and an allocation fail an hour later.
+        let limit = getrlimit(Resource::Memlock).current;
+        if let Some(bytes) = limit
+            && !has(CapabilitySet::IPC_LOCK)
+        {
+            return refused(format!(
+                "{} KiB may be locked (`ulimit -l`) and unlimited is needed; \"@realtime - memlock \
+                 unlimited\" in /etc/security/limits.conf raises it for a group",
+                bytes / 1024
+            ));
+        }
+        match mlockall(MlockAllFlags::CURRENT | MlockAllFlags::FUTURE) {
+            Ok(()) => Outcome::Granted { what },
+            Err(error) => refused(error.to_string()),
+        }
+    }
+
+    pub(super) fn pin(cpu: u16) -> Outcome {
+        let what = format!("processor {cpu} alone");
+        if usize::from(cpu) >= CpuSet::MAX_CPU {
+            let why = format!("processors are numbered from 0 to {}", CpuSet::MAX_CPU - 1);
+            return Outcome::Refused { what, why };
+        }
+        let mut set = CpuSet::new();
+        set.set(usize::from(cpu));
+        match sched_setaffinity(None, &set) {
+            Ok(()) => Outcome::Granted { what },
+            Err(rustix::io::Errno::INVAL) => Outcome::Refused {
+                why: "there is no such processor, or it isn't for this process".to_owned(),
+                what,
+            },
+            Err(error) => Outcome::Refused { what, why: error.to_string() },
+        }
+    }
+}
+
+#[cfg(not(target_os = "linux"))]
+mod system {
+    use super::Outcome;
+
+    pub(super) fn prepare() {}
+
+    pub(super) fn release(_granted: &super::Granted) {}
+
+    fn not_here(what: String) -> Outcome {
+        Outcome::Refused { what, why: "Octant does this on Linux only".to_owned() }
+    }
+
+    pub(super) fn fifo(priority: u8) -> Outcome {
+        not_here(format!("real-time priority {priority}"))
+    }
+
+    pub(super) fn lock_memory() -> Outcome {
+        not_here("locked memory".to_owned())
+    }
+
+    pub(super) fn pin(cpu: u16) -> Outcome {
+        not_here(format!("processor {cpu} alone"))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// On a thread of its own: what it gets doesn't stay with the test program's.
+    fn applied(wish: Wish) -> Granted {
+        std::thread::spawn(move || apply(&wish)).join().unwrap_or_else(|_| panic!("it panicked"))
+    }
+
+    const NOTHING: Wish = Wish { priority: None, lock_memory: false, cpu: None };
+
+    #[test]
+    fn what_is_not_asked_for_is_not_done() {
+        let granted = applied(NOTHING);
+        assert_eq!(granted.scheduling, Outcome::NotAsked);
+        assert_eq!(granted.memory, Outcome::NotAsked);
+        assert_eq!(granted.cpu, Outcome::NotAsked);
+        assert!(!granted.is_realtime());
+    }
+
+    #[test]
+    fn what_can_not_be_is_refused_with_a_reason() {
+        for cpu in [1023, u16::MAX] {
+            let granted = applied(Wish { cpu: Some(cpu), ..NOTHING });
+            assert!(
+                granted.cpu.text().starts_with(&format!("no processor {cpu} alone: ")),
+                "{:?}",
+                granted.cpu
+            );
+        }
+        for priority in [0, 101] {
+            let granted = applied(Wish { priority: Some(priority), ..NOTHING });
+            assert!(matches!(granted.scheduling, Outcome::Refused { .. }), "{granted:?}");
+        }
+    }
+
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn what_is_granted_is_so() {
+        std::thread::spawn(|| {
+            let granted = apply(&Wish { priority: Some(10), lock_memory: false, cpu: Some(0) });
+            let status = std::fs::read_to_string("/proc/thread-self/stat").unwrap_or_default();
+            // Fields 40 and 41 of proc_pid_stat(5), counted behind the name in parentheses.
+            let fields: Vec<&str> = status.rsplit(") ").next().unwrap_or("").split(' ').collect();
+            let (priority, policy) = (fields[37], fields[38]);
+            if granted.is_realtime() {
+                assert_eq!((priority, policy), ("10", "1"), "{status}");
+            } else {
+                assert_eq!((priority, policy), ("0", "0"), "{status}");
+                assert!(granted.scheduling.text().contains("ulimit -r"), "{granted:?}");
+            }
+            if granted.cpu.is_granted() {
+                let status =
+                    std::fs::read_to_string("/proc/thread-self/status").unwrap_or_default();
+                assert!(status.contains("Cpus_allowed_list:\t0\n"), "{status}");
+            }
+            release(&granted);
+            let status = std::fs::read_to_string("/proc/thread-self/stat").unwrap_or_default();
+            let fields: Vec<&str> = status.rsplit(") ").next().unwrap_or("").split(' ').collect();
+            assert_eq!((fields[37], fields[38]), ("0", "0"), "{status}");
+            let status = std::fs::read_to_string("/proc/thread-self/status").unwrap_or_default();
+            let of_all = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+            let list = |text: &str| {
+                text.lines().find(|l| l.starts_with("Cpus_allowed_list")).map(str::to_owned)
+            };
+            assert_eq!(list(&status), list(&of_all));
+        })
+        .join()
+        .unwrap_or_else(|_| panic!("the thread panicked"));
+    }
+}

@@ -1,0 +1,43 @@
+//! The frame clock allocates nothing once it has started.
+
+use octant_realtime::clock::now;
+use octant_realtime::pace::{FrameClock, Pacing};
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::sync::atomic::{AtomicU64, Ordering};
+
+static ALLOCATIONS: AtomicU64 = AtomicU64::new(0);
+
+struct Counting;
+
+#[allow(unsafe_code, reason = "an allocator can't be written without")]
+// SAFETY: every call goes to the system's allocator as it came.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        ALLOCATIONS.fetch_add(1, Ordering::Relaxed);
+        // SAFETY: the caller's promises are those that the system's allocator wants.
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
+        // SAFETY: the pointer came from `alloc`, which is the system's.
+        unsafe { System.dealloc(pointer, layout) }
+    }
+}
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
+
+#[test]
+fn frames_allocate_nothing() {
+    let pacing = Pacing { period_ns: 200_000, spin_ns: 20_000, overrun_ns: 50_000 };
+    // The first half is due already, and late: both ways are passed.
+    let start = octant_realtime::clock::HostTime { ns: now().ns - 20 * 200_000 };
+    let mut clock = FrameClock::start_at(pacing, start);
+    let before = ALLOCATIONS.load(Ordering::Relaxed);
+    for _ in 0..40 {
+        clock.wait();
+    }
+    assert_eq!(ALLOCATIONS.load(Ordering::Relaxed), before);
+    let boxed = Box::new(clock.report());
+    assert!(ALLOCATIONS.load(Ordering::Relaxed) > before, "the counter counts: {boxed:?}");
+}

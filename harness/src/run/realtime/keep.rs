@@ -1,0 +1,99 @@
+//! Everything but the frames: recording and watching what the real-time thread tells.
+
+use super::entry::{Answer, Entry};
+use crate::recorder::{Event, Extra, Frame, Recorder, RecorderError};
+use crate::run::faulted::occurrence_event;
+use crate::run::unit;
+use crate::run::watch::Watcher;
+use std::time::Duration;
+
+/// Wait where nothing is there: a fortieth of what a human sees as a delay.
+const PAUSE: Duration = Duration::from_millis(5);
+
+/// Takes entries until the real-time thread has ended and none is left.
+///
+/// # Errors
+/// If the recorder fails; what it was given before stays readable.
+pub(super) fn keep(
+    mut ring: rtrb::Consumer<Entry>,
+    names: &[(String, String)],
+    recorder: &mut Recorder,
+    watcher: &mut Watcher,
+) -> Result<(), RecorderError> {
+    loop {
+        let abandoned = ring.is_abandoned();
+        let mut any = false;
+        while let Ok(entry) = ring.pop() {
+            any = true;
+            take(entry, names, recorder, watcher)?;
+        }
+        // Looked at before the ring: what was laid in before the end has been taken.
+        if abandoned {
+            return Ok(());
+        }
+        if !any {
+            std::thread::sleep(PAUSE);
+        }
+    }
+}
+
+fn take(
+    entry: Entry,
+    names: &[(String, String)],
+    recorder: &mut Recorder,
+    watcher: &mut Watcher,
+) -> Result<(), RecorderError> {
+    match entry {
+        Entry::Frame { clean, faulted, answer } => {
+            watcher.source_time = Some(clean.sample.device_time);
+            recorder.push(Frame { clean: &clean, faulted: &faulted, output: &answer.output })?;
+            answered(&answer, recorder, watcher);
+        }
+        Entry::Added { step_ns, faulted, answer } => {
+            watcher.source_time = Some(octant_sample::DeviceTime { ns: step_ns });
+            recorder.added(step_ns, &faulted, &answer.output)?;
+            answered(&answer, recorder, watcher);
+        }
+        Entry::Lost { clean, truth } => {
+            recorder.lost(&clean)?;
+            if recorder.truth_due()
+                && let Some(truth) = truth
+            {
+                recorder.extra(&Extra::Truth(truth));
+            }
+        }
+        Entry::Unit { event, epoch } => recorder.event(unit::event(&event, epoch)),
+        Entry::Occurrence { fault, begins, epoch } => {
+            if let Some((id, kind)) = names.get(fault) {
+                recorder.event(occurrence_event(id, kind, begins, epoch));
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Parameters and truth that go with an output.
+fn answered(answer: &Answer, recorder: &mut Recorder, watcher: &mut Watcher) {
+    if let Some(estimate) = &answer.estimate {
+        recorder.extra(&Extra::Parameters(*estimate));
+        watcher.parameters(&answer.output, estimate);
+    }
+    let watched = watcher.epoch(&answer.output);
+    let Some(truth) = &answer.truth else { return };
+    if recorder.truth_due() {
+        recorder.extra(&Extra::Truth(*truth));
+    }
+    if watched {
+        watcher.truth(&answer.output, truth);
+    }
+}
+
+/// The event that ends the recording of a run by the clock.
+pub(in crate::run) fn event(kept: &super::Kept) -> Event {
+    let pacing = serde_json::to_value(&kept.pacing).unwrap_or_default();
+    let granted = serde_json::to_value(&kept.granted).unwrap_or_default();
+    Event {
+        kind: "pacing".to_owned(),
+        detail: serde_json::json!({ "pacing": pacing, "granted": granted }),
+    }
+}

@@ -1,0 +1,152 @@
+//! A run against the clock: sample k leaves at the start of the run plus k periods.
+//!
+//! [`frames`] is the real-time thread: it waits for the frame, steps source, faults and endpoint,
+//! and lays what came of it into a ring ([`entry`]). It allocates nothing and touches no file.
+//! [`keep`] is everybody else: the thread that called takes the entries out, records and watches.
+//! Where the ring is full an entry is dropped and counted, and the run is inconclusive.
+//!
+//! The clock enters nothing that is computed: an endpoint that answers in time gives the bits of
+//! a run in simulated time.
+
+mod entry;
+mod frames;
+mod keep;
+
+use super::drive::{Control, Ended, RunError};
+use super::faulted::{Faulted, receipts_event};
+use super::watch::Watcher;
+use crate::endpoint::{Endpoint, RemoteClock};
+use crate::recorder::Recorder;
+use crate::scenario::Realtime;
+use crate::score::summary::{DeviceClock, Lateness, Pacing};
+use crate::source::Source;
+use octant_realtime::lateness::Figures;
+use octant_realtime::pace::FrameClock;
+use octant_realtime::schedule::{self, Granted};
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// Entries of the ring: at 1 kHz the recorder may stall for eight seconds.
+const ENTRIES: usize = 8192;
+
+/// How a run kept time.
+#[derive(Clone, Debug)]
+pub struct Kept {
+    /// For the summary.
+    pub pacing: Pacing,
+    /// What the host granted the thread.
+    pub granted: Granted,
+}
+
+/// Parts of a run that the frames go through.
+#[derive(Debug)]
+pub struct Line<'a, S: ?Sized, E: ?Sized> {
+    /// Where samples come from.
+    pub source: &'a mut S,
+    /// What is done to them.
+    pub faulted: Option<&'a mut Faulted>,
+    /// Where the core is.
+    pub endpoint: &'a mut E,
+}
+
+/// Drives as [`drive`](super::drive()) and [`drive_faulted`](super::drive_faulted) do, by the
+/// clock, on the thread that calls: it has what the host granted until the run has ended. How time
+/// was kept is told whatever the end was.
+pub fn drive_by_clock<S, E>(
+    settings: &Realtime,
+    period_ns: u64,
+    line: Line<'_, S, E>,
+    recorder: &mut Recorder,
+    watcher: &mut Watcher,
+    control: &Control,
+) -> (Result<Ended, RunError>, Kept)
+where
+    S: Source + ?Sized,
+    E: Endpoint + ?Sized,
+{
+    let (producer, consumer) = rtrb::RingBuffer::new(ENTRIES);
+    let names: Vec<(String, String)> = line.faulted.as_ref().map_or_else(Vec::new, |faulted| {
+        faulted.station.names().map(|(id, kind)| (id.to_owned(), kind.to_owned())).collect()
+    });
+    let receipts = line.faulted.is_some();
+    let stop = AtomicBool::new(false);
+    let (ended, kept, time) = std::thread::scope(|scope| {
+        let stop = &stop;
+        let keeper = scope.spawn(|| {
+            let kept = keep::keep(consumer, &names, recorder, watcher);
+            stop.store(true, Ordering::Relaxed);
+            kept
+        });
+        let granted = schedule::apply(&schedule::Wish {
+            priority: settings.priority,
+            lock_memory: settings.lock_memory,
+            cpu: settings.cpu,
+        });
+        let clock = clock(settings, period_ns, granted.is_realtime());
+        let mut frames = frames::Frames::new(clock, settings.silence_ns, producer, stop);
+        let Line { source, mut faulted, endpoint } = line;
+        let ended = frames.run(source, faulted.as_deref_mut(), endpoint, control);
+        // Its end of the ring goes with it: the keeper takes what is left, and ends.
+        let found = frames.found();
+        schedule::release(&granted);
+        let kept = keeper.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic));
+        let last = receipts.then(|| faulted.map(|f| f.station.receipts())).flatten();
+        let time = Kept { pacing: pacing(settings, &found, endpoint.remote_clock()), granted };
+        (ended, kept.map(|()| last), time)
+    });
+    let ended = match kept {
+        Ok(receipts) => {
+            if let Some(receipts) = receipts {
+                recorder.event(receipts_event(&receipts));
+            }
+            ended
+        }
+        Err(error) => Err(error.into()),
+    };
+    recorder.event(keep::event(&time));
+    (ended, time)
+}
+
+/// Figures of a run for its summary.
+fn pacing(settings: &Realtime, found: &frames::Found, clock: Option<RemoteClock>) -> Pacing {
+    let report = found.clock.report();
+    let of = |figures: Figures| Lateness {
+        p50: figures.p50_us,
+        p99: figures.p99_us,
+        p999: figures.p999_us,
+        max: figures.max_us,
+    };
+    Pacing {
+        frames: report.frames,
+        period_us: report.period_us,
+        lateness_us: of(report.lateness),
+        lateness_histogram_ns: (found.clock.lateness().rows().iter())
+            .map(|(edge_ns, count)| [*edge_ns, *count])
+            .collect(),
+        overrun_us: settings.overrun_ns as f64 / 1e3,
+        overruns: report.overruns,
+        overruns_in_a_row: report.longest_row_of_overruns,
+        first_overrun: report.first_overrun,
+        slack_p1_us: report.slack_p1_us,
+        answer_us: of(found.answers.figures()),
+        late_answers: found.late_answers,
+        missed_answers: found.missed_answers,
+        not_sent: found.not_sent,
+        device_clock: clock.map(|clock| DeviceClock {
+            offset_us: clock.offset_ns / 1e3,
+            bound_us: clock.bound_ns / 1e3,
+            skew_ppm: clock.skew.map(|skew| skew * 1e6),
+            exchanges: clock.exchanges,
+        }),
+        dropped_records: found.dropped,
+    }
+}
+
+/// The clock that frames are paced by.
+fn clock(settings: &Realtime, period_ns: u64, is_realtime: bool) -> FrameClock {
+    FrameClock::start(octant_realtime::pace::Pacing {
+        period_ns,
+        // Spinning without a real-time priority is worse than sleeping.
+        spin_ns: if is_realtime { settings.spin_ns } else { 0 },
+        overrun_ns: settings.overrun_ns,
+    })
+}
