@@ -134,7 +134,12 @@ fn every_kind_has_an_example_that_parses_and_builds() {
     let mut wrong = Vec::new();
     for kind in kinds::all() {
         let example = fault_example(kind.name).unwrap();
-        let scenario = match parse(&format!("{HEAD}{example}")) {
+        // Faults of the wire need one; which, their name says.
+        let port = if kind.name.starts_with("can-") { "can:can0" } else { "serial:/dev/ttyUSB0" };
+        let wire = kind.acts == octant_faults::catalogue::Acts::Wire;
+        let endpoint = format!("[endpoint]\nuri = {port:?}\n");
+        let endpoint = if wire { endpoint.as_str() } else { "" };
+        let scenario = match parse(&format!("{HEAD}{endpoint}{example}")) {
             Ok(scenario) => scenario,
             Err(problems) => {
                 wrong.push(format!("{example}{problems:?}"));

@@ -133,6 +133,8 @@ pub struct Device<'a> {
     notice: &'a mut dyn FnMut(&Notice),
     session: Option<Session>,
     output: Output,
+    /// The newer version that was heard last.
+    newer: Option<u16>,
     /// A hello that belongs to no session was said then.
     lost_since: Option<Instant>,
 }
@@ -163,6 +165,7 @@ impl<'a> Device<'a> {
             notice,
             session: None,
             output: Output::default(),
+            newer: None,
             lost_since: None,
         };
         device.say_hello(0, Pacing::LockStep, Duration::ZERO)?;
@@ -172,7 +175,8 @@ impl<'a> Device<'a> {
     /// Serves until it is stopped.
     ///
     /// # Errors
-    /// If the port goes away. The session stays: [`Self::replace`] goes on with it.
+    /// If the port goes away. The session stays: when the port is [open again](Wire::reopen) it goes
+    /// on.
     pub fn serve(&mut self, stop: &AtomicBool) -> Result<(), PortError> {
         let mut looked = Instant::now();
         while !stop.load(Ordering::Relaxed) {
@@ -186,11 +190,6 @@ impl<'a> Device<'a> {
             }
         }
         self.leave(Reason::STOPPED, "the device was stopped")
-    }
-
-    /// Another port in the place of one that is gone.
-    pub fn replace(&mut self, port: port::Port) {
-        self.wire.replace(port);
     }
 
     /// The wire.
@@ -228,6 +227,12 @@ impl<'a> Device<'a> {
         let arrived = Instant::now();
         let message = match incoming {
             Incoming::Message(message) => message,
+            // Nothing protects the version of a hello on a bus: in a session it has to be said twice.
+            Incoming::Newer(found)
+                if self.session.is_some() && self.newer.replace(found) != Some(found) =>
+            {
+                return Ok(());
+            }
             Incoming::Newer(found) => {
                 (self.notice)(&Notice::Refused(format!(
                     "it speaks version {found}, this device version {VERSION}"
@@ -509,20 +514,14 @@ pub fn serve(
         Device::new(Wire::new(uri.to_string(), opened, Role::Device), facts, steps, notice)?;
     while let Err(error) = device.serve(stop) {
         (device.notice)(&Notice::PortGone(error.to_string()));
-        let again = loop {
+        while device.wire.reopen().is_err() {
             if stop.load(Ordering::Relaxed) {
                 return Ok(());
             }
+            device.look_for_silence();
             std::thread::sleep(REOPEN_EVERY);
-            match port::open(uri, Role::Device) {
-                Ok(port) => break port,
-                // Until it is back.
-                Err(_) => device.look_for_silence(),
-            }
-        };
-        let name = port::announcement(uri, &again);
-        device.replace(again);
-        (device.notice)(&Notice::Listening(name));
+        }
+        (device.notice)(&Notice::Listening(device.wire.reached_at()));
     }
     Ok(())
 }

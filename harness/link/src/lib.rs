@@ -6,6 +6,7 @@
 //! - [`harness`]: the end that tests: it sends samples and gets outputs.
 //! - [`device`]: the end that is tested: it steps a core on each sample, and never twice.
 //! - [`clock`]: how far two clocks are apart, and how fast they drift.
+//! - [`fault`]: what can go wrong on a wire, done on purpose.
 //! - [`load`]: whether a line or bus carries a sample rate, before anything is sent.
 //!
 //! In lock-step nothing is ever lost: what isn't answered is asked for again. So the outputs are the
@@ -13,6 +14,7 @@
 
 pub mod clock;
 pub mod device;
+pub mod fault;
 pub mod harness;
 pub mod load;
 pub mod port;

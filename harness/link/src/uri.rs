@@ -60,7 +60,7 @@ pub struct Udp {
     /// The other end's host or address; of the device end, the address that it listens at; empty:
     /// loopback.
     pub host: String,
-    /// Port there.
+    /// Port there; 0: of the device end, any that is free.
     pub port: u16,
 }
 
@@ -269,8 +269,7 @@ impl std::str::FromStr for Uri {
                 Options::read(options, "udp", &[])?;
                 udp(name).ok_or_else(|| UriError::Name {
                     found: found(),
-                    expected: "udp:HOST:PORT with a port from 1 to 65535, such as \
-                               udp:127.0.0.1:5005 or udp:[::1]:5005",
+                    expected: "udp:HOST:PORT, such as udp:127.0.0.1:5005 or udp:[::1]:5005",
                 })
             }
             _ => Err(UriError::Scheme { found: scheme.to_owned() }),

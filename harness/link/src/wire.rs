@@ -1,6 +1,7 @@
 //! Messages across a port, and counts of what was lost on it.
 
 use crate::port::{BusEvent, Bytes, Frames, Port, PortError, Trouble};
+use octant_faults::wire::Wired;
 use octant_wire::can::{self, Bits, Bus, Format, Reassembler};
 use octant_wire::message::{ClockTime, Message, Role};
 use octant_wire::serial::{self, Decoder, Encoder};
@@ -280,18 +281,38 @@ impl Wire {
         }
     }
 
-    /// Another port in the place of one that is gone: numbers of frames and counts go on.
-    pub fn replace(&mut self, port: Port) {
-        match (&mut self.medium, port) {
-            (Medium::Bytes(medium), Port::Bytes(port)) => {
-                medium.port = port;
+    /// Opens the port again after it went away: numbers of frames and counts go on.
+    ///
+    /// # Errors
+    /// If it isn't back.
+    pub fn reopen(&mut self) -> Result<(), PortError> {
+        match &mut self.medium {
+            Medium::Bytes(medium) => {
+                medium.port.reopen()?;
                 // What came last is a piece of a frame: a zero comes before the next.
                 medium.from = 0;
                 medium.to = 0;
             }
-            (Medium::Frames(medium), Port::Frames(port)) => medium.port = port,
-            // Of the same name, so of the same kind.
-            _ => {}
+            Medium::Frames(medium) => medium.port.reopen()?,
+        }
+        self.off = false;
+        Ok(())
+    }
+
+    /// The name by which the other end reaches it.
+    #[must_use]
+    pub fn reached_at(&self) -> String {
+        match &self.medium {
+            Medium::Bytes(medium) => medium.port.reached_at(),
+            Medium::Frames(_) => self.name.clone(),
+        }
+    }
+
+    /// Who does faults on the wire; `None`: it was opened without.
+    pub fn wired(&mut self) -> Option<&mut dyn Wired> {
+        match &mut self.medium {
+            Medium::Bytes(medium) => medium.port.wired(),
+            Medium::Frames(medium) => medium.port.wired(),
         }
     }
 

@@ -5,7 +5,7 @@ use super::faults::{acts, lasts};
 use crate::report::fault_picture::{Window, picture as draw};
 use crate::run::side_by_side::side_by_side;
 use crate::scenario::{Scenario, fault_example, fault_parameters};
-use octant_faults::catalogue::{Kind, Lasts};
+use octant_faults::catalogue::{Acts, Kind, Lasts};
 use std::path::Path;
 
 /// What the example of a kind is simulated in: at 100 s the instrument dwells, the third position
@@ -31,7 +31,9 @@ const SHOWN_MAX_S: f64 = 45.0;
 pub(super) fn markdown(kind: &'static Kind) -> String {
     let name = kind.name;
     let mut out = format!("# {name}\n\n{}\n\n", kind.summary);
-    out += &format!("![{name}: the example, with the fault and without it]({name}.svg)\n\n");
+    if has_picture(kind) {
+        out += &format!("![{name}: the example, with the fault and without it]({name}.svg)\n\n");
+    }
     out += &format!("{}\n\n", kind.model);
     out += &format!("Acts {}. Lasts {}.\n\n## Parameters\n\n", acts(kind.acts), lasts(kind.lasts));
     let takes = fault_parameters(name);
@@ -63,8 +65,19 @@ pub(super) fn markdown(kind: &'static Kind) -> String {
     out
 }
 
+/// A fault of the wire alters frames, and no sample that could be drawn.
+pub(super) fn has_picture(kind: &Kind) -> bool {
+    kind.acts != Acts::Wire
+}
+
 /// The picture of a kind: its example, simulated.
 pub(super) fn picture(kind: &'static Kind) -> Result<String, Failure> {
+    if !has_picture(kind) {
+        return Err(Failure::input(format!(
+            "{} acts on the wire to a device, of which there is no picture",
+            kind.name
+        )));
+    }
     let example = fault_example(kind.name).unwrap_or_default();
     for reference in REFERENCES {
         let text = format!(

@@ -217,6 +217,7 @@ pub(super) fn acts(acts: Acts) -> &'static str {
         Acts::Samples => "on samples and aiding on their way to the core",
         Acts::Delivery => "on the delivery of samples: lost, late, in another order",
         Acts::Unit => "on the unit under test itself",
+        Acts::Wire => "on the wire between the harness and a device",
         _ => "elsewhere",
     }
 }

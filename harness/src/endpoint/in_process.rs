@@ -77,6 +77,7 @@ impl Endpoint for InProcess {
             nis_mean: Some(quality.nis_mean),
             measurements: Some(quality.used + quality.rejected),
             table: self.core.table().cloned(),
+            events: Vec::new(),
         }
     }
 }

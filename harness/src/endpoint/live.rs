@@ -4,12 +4,15 @@
 //! so the outputs are those of the device's core to the last bit, however bad the line is. By the
 //! clock a sample is sent once, and what comes of it is taken when it comes.
 
-use super::{Endpoint, EndpointError, OpenError, ParameterEstimate, RemoteClock, Sent};
+use super::{Conclusion, Endpoint, EndpointError, OpenError, ParameterEstimate, RemoteClock, Sent};
+use crate::recorder;
 use crate::scenario::{Live, Scenario};
 use crate::source::Epoch;
 use octant_calibration::Config;
+use octant_faults::catalogue::Acts;
+use octant_faults::wire::Wired;
 use octant_link::clock::ClockEstimator;
-use octant_link::harness::{Event, Harness, Options, Patience, Sending, SessionError};
+use octant_link::harness::{ANEW, Event, Harness, Options, Patience, Sending, SessionError};
 use octant_link::{PortError, Uri, Wire, load, port};
 use octant_realtime::clock::{HostTime, now};
 use octant_sample::parameters::PARAMETER_COUNT;
@@ -26,6 +29,7 @@ pub struct LiveEndpoint {
     /// How long a port that went away is waited for.
     reconnect: Duration,
     estimate: ParameterEstimate,
+    begun: Instant,
     underway: Underway,
 }
 
@@ -38,6 +42,8 @@ struct Underway {
     clock: ClockEstimator,
     /// When the time was asked for last.
     asked: HostTime,
+    /// Hellos without a session since the last answer.
+    anew: u32,
 }
 
 /// An answer, and whether parameters come after it.
@@ -83,7 +89,11 @@ impl LiveEndpoint {
         };
         let pacing = if scenario.realtime.by_clock { Pacing::RealTime } else { Pacing::LockStep };
         let options = Options { pacing, ..options };
-        let mut wire = Wire::open(&live.uri, Role::Harness).map_err(SessionError::from)?;
+        let mut port = port::open(&live.uri, Role::Harness).map_err(SessionError::from)?;
+        if scenario.faults.iter().any(|fault| fault.spec.kind.acts == Acts::Wire) {
+            port = octant_link::fault::around(port);
+        }
+        let mut wire = Wire::new(live.uri.to_string(), port, Role::Harness);
         if let Some(bus) = load::bus(&live.uri) {
             wire.set_bus(bus);
         }
@@ -93,12 +103,14 @@ impl LiveEndpoint {
             uri: live.uri.clone(),
             reconnect: Duration::from_secs_f64(live.reconnect_s),
             estimate: NOTHING,
+            begun: Instant::now(),
             underway: Underway {
                 // As many as a step number can tell apart.
                 steps: VecDeque::with_capacity(1 << 14),
                 held: None,
                 clock: ClockEstimator::new(10.0),
                 asked: HostTime::default(),
+                anew: 0,
             },
         })
     }
@@ -131,8 +143,9 @@ impl LiveEndpoint {
                 return Err(error.into());
             }
             std::thread::sleep(Duration::from_millis(50));
-            let Ok(port) = port::open(&self.uri, Role::Harness) else { continue };
-            self.harness.reconnect(port, begun.elapsed())?;
+            if self.harness.reopen(begun.elapsed()).is_err() {
+                continue;
+            }
             match self.harness.step_again(output) {
                 Ok(_) => return Ok(()),
                 Err(SessionError::Port(PortError::Gone { .. })) => {}
@@ -217,6 +230,7 @@ impl Endpoint for LiveEndpoint {
             };
             match event {
                 Event::Output(message) => {
+                    self.underway.anew = 0;
                     // One that still waits waits in vain: what comes is in order.
                     let before = self.release(output);
                     let waits = message.parameters_follow
@@ -234,6 +248,12 @@ impl Endpoint for LiveEndpoint {
                     }
                 }
                 Event::Time(stamps) => self.underway.clock.add(&stamps),
+                Event::Anew => {
+                    self.underway.anew += 1;
+                    if self.underway.anew >= ANEW {
+                        return Err(self.harness.started_anew().into());
+                    }
+                }
                 _ => {}
             }
         }
@@ -264,6 +284,44 @@ impl Endpoint for LiveEndpoint {
         let output = self.harness.end()?;
         self.take_parameters();
         Ok(output)
+    }
+
+    fn wired(&mut self) -> Option<&mut dyn Wired> {
+        self.harness.wire().wired()
+    }
+
+    fn conclusion(&mut self) -> Conclusion {
+        let (counts, effort) = (self.harness.counts(), self.harness.effort());
+        let theirs = self.harness.theirs();
+        let wall_s = self.begun.elapsed().as_secs_f64();
+        let detail = serde_json::json!({
+            "port": self.uri.to_string(),
+            "device": theirs.name.as_str(),
+            "firmware": theirs.firmware.as_str(),
+            "pacing": theirs.pacing.name(),
+            "configuration_compared": self.harness.agreement().configuration_compared,
+            "wall_s": wall_s,
+            "sent": counts.sent,
+            "not_sent": counts.not_sent,
+            "received": counts.received,
+            "repeated": effort.repeated,
+            "doubled": effort.doubled,
+            "lost": counts.lost,
+            "damaged": counts.damaged,
+            "missing": counts.missing,
+            "out_of_order": counts.out_of_order,
+            "unreadable": counts.unreadable,
+            "reconnected": effort.reconnected,
+            "away_s": effort.away.as_secs_f64(),
+            "bus_load": (counts.bus_s > 0.0).then(|| counts.bus_s / wall_s),
+            "error_frames": counts.error_frames,
+            "error_passive": counts.error_passive,
+            "bus_off": counts.bus_off,
+            "restarted": counts.restarted,
+            "arbitration_lost": counts.arbitration_lost,
+        });
+        let event = recorder::Event { kind: "link".to_owned(), detail };
+        Conclusion { events: vec![event], ..Conclusion::default() }
     }
 }
 

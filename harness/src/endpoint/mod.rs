@@ -11,11 +11,13 @@ pub use live::{LiveEndpoint, configuration};
 pub use served::ServedCore;
 
 use crate::fmu::mapping::stepper::UseError;
+use crate::recorder::Event;
 use crate::scenario::{self, Scenario};
 use crate::source::Epoch;
 use octant_calibration::Config;
 use octant_calibration::state_machine::ConfigError;
 use octant_calibration::table::CalibrationTable;
+use octant_faults::wire::Wired;
 use octant_link::harness::SessionError;
 use octant_realtime::clock::HostTime;
 use octant_sample::parameters::PARAMETER_COUNT;
@@ -83,6 +85,11 @@ pub trait Endpoint {
     /// The parameters as of the last output.
     fn parameters(&self) -> ParameterEstimate;
 
+    /// The wire to the core, where there is one on which faults can be done.
+    fn wired(&mut self) -> Option<&mut dyn Wired> {
+        None
+    }
+
     /// The source has ended: what the core makes of that. `None`: it can't be told.
     ///
     /// # Errors
@@ -138,6 +145,10 @@ impl<E: Endpoint + ?Sized> Endpoint for Box<E> {
     fn conclusion(&mut self) -> Conclusion {
         (**self).conclusion()
     }
+
+    fn wired(&mut self) -> Option<&mut dyn Wired> {
+        (**self).wired()
+    }
 }
 
 /// What a core says at the end of a run, as far as its realisation tells.
@@ -151,6 +162,8 @@ pub struct Conclusion {
     pub measurements: Option<u64>,
     /// The calibration table, where the calibration was accepted.
     pub table: Option<CalibrationTable>,
+    /// What is to be recorded of the way to it: what a wire carried, and lost.
+    pub events: Vec<Event>,
 }
 
 /// What became of an epoch that was handed over without waiting.

@@ -8,9 +8,11 @@ use super::watch::Watcher;
 use crate::endpoint::Endpoint;
 use crate::recorder::{Event, Extra, Frame, Recorder};
 use crate::source::{Epoch, Source};
+use octant_faults::catalogue::Acts;
 use octant_faults::disturbance::Disturbed;
 use octant_faults::rule::UnitEvent;
 use octant_faults::station::{Delivered, World};
+use octant_faults::wire::Wired;
 use octant_faults::{Receipt, Station};
 use octant_sample::{GimbalCommand, Output, Truth};
 
@@ -23,12 +25,16 @@ pub struct Faulted {
     pub fires: Vec<(u64, String)>,
 }
 
-/// The source as the station's world.
-pub(super) struct Behind<'a, S: ?Sized>(pub(super) &'a mut S);
+/// Source and endpoint as the station's world.
+pub(super) struct Behind<'a, S: ?Sized, E: ?Sized>(pub(super) &'a mut S, pub(super) &'a mut E);
 
-impl<S: Source + ?Sized> World for Behind<'_, S> {
+impl<S: Source + ?Sized, E: Endpoint + ?Sized> World for Behind<'_, S, E> {
     fn disturbed(&mut self) -> Option<&mut dyn Disturbed> {
         self.0.disturbed()
+    }
+
+    fn wired(&mut self) -> Option<&mut dyn Wired> {
+        self.1.wired()
     }
 
     fn truth(&self) -> Option<Truth> {
@@ -81,6 +87,7 @@ where
         powered: true,
     };
     let station = &mut faulted.station;
+    let wires = station.acts_on(Acts::Wire);
     let mut fires = faulted.fires.iter().peekable();
     let mut epochs = 0u64;
     let mut epoch = Epoch::default();
@@ -94,17 +101,21 @@ where
             station.fire(id);
         }
         let mut command = run.command;
-        station.before(&mut command, &run.output, &mut Behind(source));
+        station.before(&mut command, &run.output, &mut Behind(source, &mut *run.endpoint));
         if !source.next(&command, &mut epoch)? {
             return Ok(Ended::SourceEnded);
         }
         for event in station.unit_events() {
             run.unit(event, epochs + 1)?;
         }
-        let ended = match station.after(&epoch, &run.output) {
-            Delivered::Untouched => run.deliver(source, &epoch, std::slice::from_ref(&epoch))?,
-            Delivered::These(these) => run.deliver(source, &epoch, these)?,
+        let delivered = match station.after(&epoch, &run.output) {
+            Delivered::Untouched => run.deliver(source, &epoch, std::slice::from_ref(&epoch)),
+            Delivered::These(these) => run.deliver(source, &epoch, these),
         };
+        if wires && let Some(wire) = run.endpoint.wired() {
+            station.exchanged(wire);
+        }
+        let ended = delivered?;
         epochs += 1;
         if !station.occurrences().is_empty() || !station.unit_events().is_empty() {
             tell(station, run.recorder);

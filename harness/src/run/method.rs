@@ -333,7 +333,8 @@ fn to_the_end<S: Source, E: Endpoint>(
         }
         Err(error) => return Err(error),
     };
-    let conclusion = endpoint.conclusion();
+    let mut conclusion = endpoint.conclusion();
+    conclusion.events.drain(..).for_each(|event| recorder.event(event));
     Ok(Closed { ended, broken, last, conclusion, estimate: endpoint.parameters(), kept })
 }
 

@@ -53,11 +53,13 @@ pub enum Family {
     Unit,
     /// The reference of the calibration.
     Aiding,
+    /// The wire to a device.
+    Wire,
 }
 
 impl Family {
     /// All families, in the order of the documentation.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 9] = [
         Self::Physics,
         Self::Analogue,
         Self::RingLaser,
@@ -66,6 +68,7 @@ impl Family {
         Self::Turntable,
         Self::Unit,
         Self::Aiding,
+        Self::Wire,
     ];
 
     /// Name for people.
@@ -80,6 +83,7 @@ impl Family {
             Self::Turntable => "turntable",
             Self::Unit => "unit under test",
             Self::Aiding => "aiding",
+            Self::Wire => "wire",
         }
     }
 }
@@ -99,6 +103,8 @@ pub enum Acts {
     Delivery,
     /// On the unit under test.
     Unit,
+    /// On the wire to the unit under test. Needs an endpoint with a wire.
+    Wire,
 }
 
 /// How long a fault of a kind lasts.

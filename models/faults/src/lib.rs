@@ -13,8 +13,8 @@
 //!   triggers and receipts.
 //!
 //! Faults of the physical world act inside the plant, before its sensors integrate
-//! ([`disturbance`]), so that gyros and accelerometers feel the same motion. Faults of bytes, buses
-//! and hosts belong to the endpoints that have bytes, buses and hosts.
+//! ([`disturbance`]), so that gyros and accelerometers feel the same motion. Faults of a wire are
+//! described here ([`wire`]) and realised by who has it.
 //!
 //! Nothing here allocates after the station is built, and a station whose faults wait costs two
 //! comparisons an epoch.
@@ -34,6 +34,7 @@ mod setup;
 pub mod station;
 pub mod trigger;
 pub mod values;
+pub mod wire;
 
 pub use catalogue::Kind;
 pub use receipt::Receipt;

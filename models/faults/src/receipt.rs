@@ -1,5 +1,6 @@
 //! What became of a fault: found by comparing, not told by the fault.
 
+use crate::wire::Altered;
 use alloc::string::String;
 use octant_sample::canonical::{AIDING_BYTES, SAMPLE_BYTES, aiding, sample};
 use octant_sample::{Epoch, GimbalCommand};
@@ -21,7 +22,8 @@ pub struct Receipt {
     /// Last epoch of the source that it altered.
     pub last_sample: Option<u64>,
     /// Epochs that it altered. Of a fault inside the plant: epochs that it was active in; what it
-    /// changed there shows in the difference to the run without it.
+    /// changed there shows in the difference to the run without it. Of a fault of the wire: epochs
+    /// in whose exchange it altered a frame.
     pub samples_altered: u64,
     /// CRC-32 of what it was given, over the epochs that it altered.
     pub clean_crc32: u32,
@@ -91,6 +93,15 @@ impl Ledger {
 
     pub(crate) fn faulted(&mut self, epoch: &Epoch) {
         digest(&mut self.faulted, epoch);
+    }
+
+    /// Frames of a wire were altered; the checksums are over all of them so far.
+    pub(crate) fn frames(&mut self, epoch: u64, altered: &Altered) {
+        if altered.frames > 0 {
+            self.touched(epoch);
+            self.clean = crc32fast::Hasher::new_with_initial(altered.clean_crc32);
+            self.faulted = crc32fast::Hasher::new_with_initial(altered.faulted_crc32);
+        }
     }
 
     /// A number, before and after.

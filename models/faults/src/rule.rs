@@ -6,6 +6,7 @@
 
 use crate::disturbance::{Disturbance, Motor};
 use crate::setup::Stream;
+use crate::wire::WireFault;
 use alloc::boxed::Box;
 use alloc::vec::Vec;
 use core::fmt::Debug;
@@ -29,6 +30,8 @@ pub enum Rule {
     Delivery(Box<dyn DeliveryRule>),
     /// On the unit under test.
     Unit(Box<dyn UnitRule>),
+    /// On the wire to it.
+    Wire(Box<dyn WireRule>),
 }
 
 dyn_clone::clone_trait_object!(PlantRule);
@@ -36,6 +39,7 @@ dyn_clone::clone_trait_object!(CommandRule);
 dyn_clone::clone_trait_object!(SampleRule);
 dyn_clone::clone_trait_object!(DeliveryRule);
 dyn_clone::clone_trait_object!(UnitRule);
+dyn_clone::clone_trait_object!(WireRule);
 
 impl State for Rule {
     fn save(&self, to: &mut Writer) {
@@ -45,6 +49,7 @@ impl State for Rule {
             Self::Samples(rule) => rule.save(to),
             Self::Delivery(rule) => rule.save(to),
             Self::Unit(rule) => rule.save(to),
+            Self::Wire(rule) => rule.save(to),
         }
     }
 
@@ -55,6 +60,7 @@ impl State for Rule {
             Self::Samples(rule) => rule.load(from),
             Self::Delivery(rule) => rule.load(from),
             Self::Unit(rule) => rule.load(from),
+            Self::Wire(rule) => rule.load(from),
         }
     }
 }
@@ -168,6 +174,12 @@ pub trait CommandRule: Debug + Send + DynClone + State {
 pub trait PlantRule: Debug + Send + DynClone + State {
     /// What the plant suffers from now on; `motor` is the turntable as it stands.
     fn begin(&mut self, now: &Context<'_>, motor: &Motor) -> Disturbance;
+}
+
+/// Acts on the wire to the unit under test.
+pub trait WireRule: Debug + Send + DynClone + State {
+    /// What the wire suffers from now on, until the fault ends.
+    fn begin(&mut self, now: &Context<'_>) -> WireFault;
 }
 
 /// Acts on the unit under test.

@@ -14,6 +14,7 @@ use crate::rule::{Context, Rule, SetPoints, UnitEvent};
 use crate::setup::{BuildError, Setup};
 use crate::trigger::{Clock, News, Scene, Schedule, State, Trigger};
 use crate::values::Values;
+use crate::wire::Wired;
 use alloc::string::String;
 use alloc::vec::Vec;
 use octant_random::stream::Phase;
@@ -38,6 +39,10 @@ pub struct Spec {
 pub trait World {
     /// The plant, where the source is one.
     fn disturbed(&mut self) -> Option<&mut dyn Disturbed>;
+    /// The wire to the unit under test, where there is one.
+    fn wired(&mut self) -> Option<&mut dyn Wired> {
+        None
+    }
     /// Truth at the last epoch, where the source knows it.
     fn truth(&self) -> Option<Truth>;
 }
@@ -95,7 +100,7 @@ impl Stage {
             || match &self.rule {
                 Rule::Delivery(rule) => rule.holds() > 0,
                 Rule::Samples(rule) => rule.lingers() || self.is_owed(),
-                Rule::Plant(_) | Rule::Command(_) | Rule::Unit(_) => false,
+                Rule::Plant(_) | Rule::Command(_) | Rule::Unit(_) | Rule::Wire(_) => false,
             }
     }
 
@@ -467,7 +472,7 @@ impl Station {
                 self.events.extend(event);
             }
             Rule::Plant(_) => stage.ledger.touched(shared.epoch),
-            Rule::Command(_) | Rule::Samples(_) | Rule::Delivery(_) => {}
+            Rule::Command(_) | Rule::Samples(_) | Rule::Delivery(_) | Rule::Wire(_) => {}
         }
     }
 
@@ -518,12 +523,22 @@ impl Station {
                     }
                     core::mem::swap(&mut self.flight, &mut self.landed);
                 }
-                Rule::Plant(_) | Rule::Command(_) | Rule::Unit(_) => {}
+                Rule::Plant(_) | Rule::Command(_) | Rule::Unit(_) | Rule::Wire(_) => {}
             }
         }
         self.last = *epoch;
         self.plan();
         if engaged { Delivered::These(&self.flight) } else { Delivered::Untouched }
+    }
+
+    /// What faults of the wire altered while the present epoch was exchanged goes into their receipts.
+    pub fn exchanged(&mut self, wire: &mut dyn Wired) {
+        let epoch = self.epoch;
+        for (handle, stage) in self.stages.iter_mut().enumerate() {
+            if matches!(stage.rule, Rule::Wire(_)) {
+                stage.ledger.frames(epoch, &wire.altered(handle as u32));
+            }
+        }
     }
 
     /// What happened to the unit under test in this epoch, to be done before it gets the epoch.
@@ -623,11 +638,17 @@ fn begin(stage: &mut Stage, handle: u32, now: &Context<'_>, world: &mut dyn Worl
         let disturbance = rule.begin(now, &plant.motor());
         plant.begin(handle, &disturbance);
     }
+    if let (Rule::Wire(rule), Some(wire)) = (&mut stage.rule, world.wired()) {
+        wire.begin(handle, &rule.begin(now));
+    }
 }
 
 fn end(stage: &Stage, handle: u32, world: &mut dyn World) {
     if let (Rule::Plant(_), Some(plant)) = (&stage.rule, world.disturbed()) {
         plant.end(handle);
+    }
+    if let (Rule::Wire(_), Some(wire)) = (&stage.rule, world.wired()) {
+        wire.end(handle);
     }
 }
 

@@ -16,6 +16,7 @@ pub use socket_can::{SocketCan, interface_bus};
 pub use udp::UdpPort;
 
 use crate::Uri;
+use octant_faults::wire::Wired;
 use octant_wire::Role;
 use octant_wire::can::{Format, Frame};
 use std::fmt::Debug;
@@ -76,6 +77,20 @@ pub trait Bytes: Debug + Send {
     /// A session begins with the peer that was heard last, or it ends: until then nobody else is
     /// heard.
     fn hold_peer(&mut self, hold: bool);
+
+    /// Closes the port; until it is opened again it is gone.
+    fn close(&mut self);
+
+    /// Opens it again after it went away.
+    ///
+    /// # Errors
+    /// If it isn't back.
+    fn reopen(&mut self) -> Result<(), PortError>;
+
+    /// Who does faults on it, where somebody does.
+    fn wired(&mut self) -> Option<&mut dyn Wired> {
+        None
+    }
 }
 
 /// What a CAN port reports.
@@ -133,6 +148,20 @@ pub trait Frames: Debug + Send {
     /// # Errors
     /// If the port is gone.
     fn restart(&mut self) -> Result<bool, PortError>;
+
+    /// Closes the port; until it is opened again it is gone.
+    fn close(&mut self);
+
+    /// Opens it again after it went away.
+    ///
+    /// # Errors
+    /// If it isn't back.
+    fn reopen(&mut self) -> Result<(), PortError>;
+
+    /// Who does faults on it, where somebody does.
+    fn wired(&mut self) -> Option<&mut dyn Wired> {
+        None
+    }
 }
 
 /// An open port.

@@ -6,8 +6,10 @@ use std::time::Duration;
 /// The near end of a pseudo terminal; the far end is opened by its name like a serial port.
 #[derive(Debug)]
 pub struct Pty {
+    link: String,
+    /// `None` while it is closed.
     #[cfg(unix)]
-    inner: unix::Pair,
+    inner: Option<unix::Pair>,
 }
 
 #[cfg(unix)]
@@ -71,7 +73,7 @@ impl Pty {
     /// If there are none on this system, none is free, or the link can't be made.
     #[cfg(unix)]
     pub fn open(link: &str) -> Result<Self, PortError> {
-        Ok(Self { inner: unix::Pair::open(link)? })
+        Ok(Self { inner: Some(unix::Pair::open(link)?), link: link.to_owned() })
     }
 
     /// Makes one.
@@ -87,7 +89,7 @@ impl Pty {
     #[must_use]
     pub fn name(&self) -> &str {
         #[cfg(unix)]
-        return &self.inner.name;
+        return self.inner.as_ref().map_or("", |pair| &pair.name);
         #[cfg(not(unix))]
         return "";
     }
@@ -96,11 +98,17 @@ impl Pty {
 #[cfg(unix)]
 impl Bytes for Pty {
     fn send(&mut self, bytes: &[u8], wait: Duration) -> Result<bool, PortError> {
-        super::serial::write(&mut self.inner.near, &self.inner.name, bytes, wait)
+        match &mut self.inner {
+            Some(pair) => super::serial::write(&mut pair.near, &pair.name, bytes, wait),
+            None => Err(super::serial::closed("pty:")),
+        }
     }
 
     fn receive(&mut self, buffer: &mut [u8], wait: Duration) -> Result<usize, PortError> {
-        super::serial::read(&mut self.inner.near, &self.inner.name, buffer, wait)
+        match &mut self.inner {
+            Some(pair) => super::serial::read(&mut pair.near, &pair.name, buffer, wait),
+            None => Err(super::serial::closed("pty:")),
+        }
     }
 
     fn datagrams(&self) -> bool {
@@ -108,10 +116,21 @@ impl Bytes for Pty {
     }
 
     fn reached_at(&self) -> String {
-        format!("serial:{}", self.inner.name)
+        format!("serial:{}", self.name())
     }
 
     fn hold_peer(&mut self, _: bool) {}
+
+    fn close(&mut self) {
+        self.inner = None;
+    }
+
+    /// A new one, under the same link and another name.
+    fn reopen(&mut self) -> Result<(), PortError> {
+        self.inner = None;
+        *self = Self::open(&self.link)?;
+        Ok(())
+    }
 }
 
 #[cfg(not(unix))]
@@ -133,4 +152,11 @@ impl Bytes for Pty {
     }
 
     fn hold_peer(&mut self, _: bool) {}
+
+    fn close(&mut self) {}
+
+    fn reopen(&mut self) -> Result<(), PortError> {
+        *self = Self::open(&self.link)?;
+        Ok(())
+    }
 }

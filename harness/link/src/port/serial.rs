@@ -9,8 +9,10 @@ use std::time::Duration;
 
 /// A serial line: 8 data bits, no parity, 1 stop bit, no flow control, for this program alone.
 pub struct SerialLine {
+    serial: Serial,
     uri: String,
-    port: Box<dyn SerialPort>,
+    /// `None` while it is closed.
+    port: Option<Box<dyn SerialPort>>,
 }
 
 impl std::fmt::Debug for SerialLine {
@@ -45,7 +47,7 @@ impl SerialLine {
         }
         // What came before is of no session.
         port.clear(serialport::ClearBuffer::Input).map_err(|error| refused(error.to_string()))?;
-        Ok(Self { uri, port })
+        Ok(Self { serial: serial.clone(), uri, port: Some(port) })
     }
 }
 
@@ -68,11 +70,17 @@ fn explain(error: &serialport::Error) -> String {
 
 impl Bytes for SerialLine {
     fn send(&mut self, bytes: &[u8], wait: Duration) -> Result<bool, PortError> {
-        write(self.port.as_mut(), &self.uri, bytes, wait)
+        match &mut self.port {
+            Some(port) => write(port.as_mut(), &self.uri, bytes, wait),
+            None => Err(closed(&self.uri)),
+        }
     }
 
     fn receive(&mut self, buffer: &mut [u8], wait: Duration) -> Result<usize, PortError> {
-        read(self.port.as_mut(), &self.uri, buffer, wait)
+        match &mut self.port {
+            Some(port) => read(port.as_mut(), &self.uri, buffer, wait),
+            None => Err(closed(&self.uri)),
+        }
     }
 
     fn datagrams(&self) -> bool {
@@ -85,6 +93,22 @@ impl Bytes for SerialLine {
 
     /// A line has one other end.
     fn hold_peer(&mut self, _: bool) {}
+
+    fn close(&mut self) {
+        self.port = None;
+    }
+
+    fn reopen(&mut self) -> Result<(), PortError> {
+        // It is held for this program alone, by this one too.
+        self.port = None;
+        *self = Self::open(&self.serial)?;
+        Ok(())
+    }
+}
+
+/// Of a port that is closed.
+pub(super) fn closed(uri: &str) -> PortError {
+    PortError::gone(uri, "it is closed")
 }
 
 /// Writes all bytes within a time.

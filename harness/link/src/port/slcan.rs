@@ -13,7 +13,7 @@ use std::time::{Duration, Instant};
 #[derive(Debug)]
 pub struct Slcan {
     line: Box<dyn Bytes>,
-    format: Format,
+    slcan: uri::Slcan,
     text: Lines,
     buffer: [u8; 512],
     from: usize,
@@ -41,25 +41,32 @@ impl Slcan {
     /// # Errors
     /// If the line goes away, or the adapter refuses its bit rate.
     pub fn over(line: Box<dyn Bytes>, slcan: &uri::Slcan) -> Result<Self, PortError> {
-        let uri = Uri::Slcan(slcan.clone());
-        let format = slcan.bus.format();
-        let mut this =
-            Self { line, format, text: Lines::default(), buffer: [0; 512], from: 0, to: 0 };
+        let slcan = slcan.clone();
+        let text = Lines::default();
+        let mut this = Self { line, slcan, text, buffer: [0; 512], from: 0, to: 0 };
+        this.set_up()?;
+        Ok(this)
+    }
+
+    /// Sets the bit rate and opens the channel.
+    fn set_up(&mut self) -> Result<(), PortError> {
+        let bus = self.slcan.bus;
         // A channel that is open takes no rate; one that is closed may refuse to be closed.
-        this.command("C\r")?;
-        let code = SLCAN_BITRATES.iter().position(|rate| *rate == slcan.bus.nominal_bps);
-        let data = slcan.bus.data_bps.map(|rate| rate / 1_000_000);
+        self.command("C\r")?;
+        let code = SLCAN_BITRATES.iter().position(|rate| *rate == bus.nominal_bps);
+        let data = bus.data_bps.map(|rate| rate / 1_000_000);
         let commands = [
             code.map(|code| (format!("S{code}\r"), "bit rate")),
             data.map(|code| (format!("Y{code}\r"), "bit rate of data")),
             Some(("O\r".to_owned(), "opening of the channel")),
         ];
         for (command, what) in commands.into_iter().flatten() {
-            if !this.command(&command)? {
-                return Err(PortError::open(&uri, format!("the adapter refuses the {what}")));
+            if !self.command(&command)? {
+                let uri = Uri::Slcan(self.slcan.clone());
+                return Err(PortError::open(uri, format!("the adapter refuses the {what}")));
             }
         }
-        Ok(this)
+        Ok(())
     }
 
     /// Sends a command; false: the adapter refused it. Many answer nothing.
@@ -116,12 +123,23 @@ impl Frames for Slcan {
     }
 
     fn format(&self) -> Format {
-        self.format
+        self.slcan.bus.format()
     }
 
     fn restart(&mut self) -> Result<bool, PortError> {
         self.line.send(b"C\r", COMMAND_WAIT)?;
         self.line.send(b"O\r", COMMAND_WAIT)
+    }
+
+    fn close(&mut self) {
+        self.line.close();
+    }
+
+    fn reopen(&mut self) -> Result<(), PortError> {
+        self.line.reopen()?;
+        self.text = Lines::default();
+        (self.from, self.to) = (0, 0);
+        self.set_up()
     }
 }
 

@@ -16,10 +16,11 @@ use std::time::{Duration, Instant};
 /// A CAN interface that hears what is meant for its role, and what is wrong with the bus.
 #[derive(Debug)]
 pub struct SocketCan {
+    can: Can,
+    role: Role,
     uri: String,
-    interface: String,
-    socket: CanFdSocket,
-    format: Format,
+    /// `None` while it is closed.
+    socket: Option<CanFdSocket>,
 }
 
 /// Bits of an identifier as the kernel has it.
@@ -75,11 +76,15 @@ impl SocketCan {
             socket.set_error_filter_accept_all()
         };
         set_up().map_err(|error: std::io::Error| refused(error.to_string()))?;
-        Ok(Self { uri, interface: can.interface.clone(), socket, format: can.format })
+        Ok(Self { can: can.clone(), role, uri, socket: Some(socket) })
     }
 
     fn gone(&self, error: &std::io::Error) -> PortError {
         PortError::gone(&self.uri, error)
+    }
+
+    fn socket(&self) -> Result<&CanFdSocket, PortError> {
+        self.socket.as_ref().ok_or_else(|| PortError::gone(&self.uri, "it is closed"))
     }
 
     /// Waits until a frame is there.
@@ -88,7 +93,7 @@ impl SocketCan {
             tv_sec: i64::try_from(wait.as_secs()).unwrap_or(i64::MAX),
             tv_nsec: i64::from(wait.subsec_nanos()),
         };
-        let mut fds = [PollFd::new(&self.socket, PollFlags::IN)];
+        let mut fds = [PollFd::new(self.socket()?, PollFlags::IN)];
         match poll(&mut fds, Some(&timeout)) {
             Ok(_) | Err(rustix::io::Errno::INTR) => Ok(()),
             Err(error) => Err(self.gone(&error.into())),
@@ -191,17 +196,18 @@ impl Frames for SocketCan {
     fn send(&mut self, frame: &Frame, wait: Duration) -> Result<bool, PortError> {
         // Our identifiers have 11 bits.
         let Some(id) = StandardId::new(frame.id()) else { return Ok(false) };
+        let socket = self.socket()?;
         let begun = Instant::now();
         loop {
             let written = match frame.format() {
                 Format::Classic => match CanDataFrame::new(id, frame.data()) {
-                    Some(frame) => self.socket.write_frame(&socketcan::CanFrame::Data(frame)),
+                    Some(frame) => socket.write_frame(&socketcan::CanFrame::Data(frame)),
                     None => return Ok(false),
                 },
                 Format::Fd => match CanFdFrame::new(id, frame.data()) {
                     Some(mut frame) => {
                         frame.set_brs(true);
-                        self.socket.write_frame(&frame)
+                        socket.write_frame(&frame)
                     }
                     None => return Ok(false),
                 },
@@ -223,7 +229,7 @@ impl Frames for SocketCan {
     fn receive(&mut self, wait: Duration) -> Result<Option<BusEvent>, PortError> {
         let mut waited = wait.is_zero();
         loop {
-            match self.socket.read_frame() {
+            match self.socket()?.read_frame() {
                 Ok(frame) => return Ok(Some(event(&frame))),
                 Err(error) if error.kind() == ErrorKind::WouldBlock => {
                     if std::mem::replace(&mut waited, true) {
@@ -238,14 +244,23 @@ impl Frames for SocketCan {
     }
 
     fn format(&self) -> Format {
-        self.format
+        self.can.format
     }
 
     fn restart(&mut self) -> Result<bool, PortError> {
         // Refused without rights, and where the interface restarts by itself (restart-ms).
-        let interface = CanInterface::open(&self.interface)
+        let interface = CanInterface::open(&self.can.interface)
             .map_err(|error| PortError::gone(&self.uri, error))?;
         Ok(interface.restart().is_ok())
+    }
+
+    fn close(&mut self) {
+        self.socket = None;
+    }
+
+    fn reopen(&mut self) -> Result<(), PortError> {
+        *self = Self::open(&self.can, self.role)?;
+        Ok(())
     }
 }
 

@@ -37,6 +37,10 @@ impl UdpPort {
     /// If the address can't be found, or no port is free.
     pub fn connect(udp: &Udp) -> Result<Self, PortError> {
         let peer = resolve(udp)?;
+        if peer.port() == 0 {
+            let uri = crate::Uri::Udp(udp.clone());
+            return Err(PortError::open(uri, "nobody listens at port 0, expected 1 to 65535"));
+        }
         let near: IpAddr = match peer.ip() {
             IpAddr::V4(ip) if ip.is_loopback() => Ipv4Addr::LOCALHOST.into(),
             IpAddr::V4(_) => Ipv4Addr::UNSPECIFIED.into(),
@@ -165,5 +169,13 @@ impl Bytes for UdpPort {
         if self.listens {
             self.held = hold;
         }
+    }
+
+    /// A socket stays: what comes meanwhile lies in it.
+    fn close(&mut self) {}
+
+    /// A network that is back needs no other socket.
+    fn reopen(&mut self) -> Result<(), PortError> {
+        Ok(())
     }
 }

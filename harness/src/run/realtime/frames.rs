@@ -6,6 +6,7 @@ use crate::run::drive::{Control, Ended, RunError, over};
 use crate::run::faulted::{Behind, Faulted};
 use crate::run::unit;
 use crate::source::{Epoch, Source};
+use octant_faults::catalogue::Acts;
 use octant_faults::rule::UnitEvent;
 use octant_faults::station::Delivered;
 use octant_realtime::clock::{HostTime, now};
@@ -156,7 +157,7 @@ impl<'a> Frames<'a> {
     {
         let station = &mut faulted.station;
         let mut command = self.command;
-        station.before(&mut command, &self.output, &mut Behind(source));
+        station.before(&mut command, &self.output, &mut Behind(source, endpoint));
         if !source.next(&command, epoch)? {
             return Ok(None);
         }
@@ -167,12 +168,18 @@ impl<'a> Frames<'a> {
             self.outstanding.clear();
             self.lay(Entry::Unit { event: *event, epoch: number });
         }
-        let ended = match station.after(epoch, &self.output) {
+        let delivered = match station.after(epoch, &self.output) {
             Delivered::Untouched => {
-                self.deliver(source, endpoint, epoch, std::slice::from_ref(epoch), frame_end)?
+                self.deliver(source, endpoint, epoch, std::slice::from_ref(epoch), frame_end)
             }
-            Delivered::These(these) => self.deliver(source, endpoint, epoch, these, frame_end)?,
+            Delivered::These(these) => self.deliver(source, endpoint, epoch, these, frame_end),
         };
+        if station.acts_on(Acts::Wire)
+            && let Some(wire) = endpoint.wired()
+        {
+            station.exchanged(wire);
+        }
+        let ended = delivered?;
         for occurrence in station.occurrences() {
             let (fault, begins, epoch) = (occurrence.fault, occurrence.begins, occurrence.epoch);
             self.lay(Entry::Occurrence { fault, begins, epoch });

@@ -9,11 +9,14 @@ use super::Reader;
 use super::source::Source;
 use crate::scenario::document::{Node, Value as Written};
 use crate::scenario::error::{Place, Problem};
-use crate::scenario::{Method, Scenario, keys, quantity};
+use crate::scenario::{Endpoint, Method, Scenario, keys, quantity};
 use grid::{Waiting, check_chains};
 use octant_faults::catalogue::{Acts, Kind, Parameter, Takes};
+use octant_faults::kinds::wire::happens_on;
 use octant_faults::station::Spec;
+use octant_faults::wire::Medium;
 use octant_faults::{BuildError, Channels, Setup, Station, Value, Values, kinds};
+use octant_link::Uri;
 use schedule::Timing;
 
 /// A fault of a scenario.
@@ -134,6 +137,9 @@ fn fault(table: &Reader<'_>, scenario: &Scenario, timing: &Timing) -> Result<Fau
     if let Some(why) = impossible(kind, &scenario.source) {
         return Err(table.problem("kind", format!("{name} {why}")));
     }
+    if let Some(why) = without_wire(kind, &scenario.endpoint) {
+        return Err(table.problem("kind", format!("{name} {why}")));
+    }
     let mut values = Values::default();
     for parameter in kind.parameters {
         values.set(parameter.name, value(table, parameter)?);
@@ -164,6 +170,26 @@ fn impossible(kind: &Kind, source: &Source) -> Option<&'static str> {
         ),
         _ => None,
     }
+}
+
+/// Why a kind can't act on the way to an endpoint.
+fn without_wire(kind: &Kind, endpoint: &Endpoint) -> Option<String> {
+    if kind.acts != Acts::Wire {
+        return None;
+    }
+    let Endpoint::Live(live) = endpoint else {
+        return Some(
+            "acts on the wire to a device, and there is none: endpoint.uri names no port"
+                .to_owned(),
+        );
+    };
+    let medium = match live.uri {
+        Uri::Serial(_) | Uri::Pty { .. } => Medium::Line,
+        Uri::Udp(_) => Medium::Datagrams,
+        Uri::Can(_) | Uri::Slcan(_) => Medium::Bus,
+    };
+    (!happens_on(kind, medium))
+        .then(|| format!("doesn't happen on {}, which endpoint.uri names", medium.name()))
 }
 
 /// The value of a parameter. What the check has passed is there.

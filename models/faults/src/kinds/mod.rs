@@ -16,6 +16,7 @@ mod span;
 mod time;
 mod turntable;
 mod unit;
+pub mod wire;
 
 use crate::catalogue::Kind;
 
@@ -29,6 +30,7 @@ pub static KINDS: &[&[&Kind]] = &[
     turntable::KINDS,
     unit::KINDS,
     aiding::KINDS,
+    wire::KINDS,
 ];
 
 /// All kinds one by one.

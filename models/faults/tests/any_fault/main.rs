@@ -298,7 +298,8 @@ proptest! {
 #[test]
 fn every_kind_can_be_built_and_leaves_a_trace() {
     let mut runner = TestRunner::deterministic();
-    for kind in kinds::all() {
+    // Those of the wire leave theirs on a wire.
+    for kind in kinds::all().filter(|kind| kind.acts != Acts::Wire) {
         let strategy = values(kind);
         let traced = (0..500).any(|_| {
             let values = strategy.new_tree(&mut runner).unwrap().current();

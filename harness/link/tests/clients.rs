@@ -1,0 +1,137 @@
+//! The reference clients in Python and C as devices: over a pseudo terminal and UDP, good lines and bad.
+//!
+//! Where there is no `python3` or no `cc` their part is skipped, unless `OCTANT_REQUIRE_PEERS` is set.
+#![cfg(unix)]
+#![allow(clippy::unwrap_used)]
+#![allow(clippy::print_stdout, reason = "what is skipped is said")]
+
+mod common;
+
+use common::{drive, options};
+use octant_faults::wire::{Ways, WireAction, WireFault};
+use octant_link::fault::around;
+use octant_link::harness::{Harness, Options, Patience};
+use octant_link::port::{self, Port, Pty};
+use octant_link::{Uri, Wire};
+use octant_wire::message::{Reason, Role};
+use std::io::{BufRead, BufReader, Read};
+use std::path::PathBuf;
+use std::process::{Child, Command, Stdio};
+use std::sync::OnceLock;
+use std::time::Duration;
+
+const CLIENTS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/wire/clients");
+
+fn there_is(program: &str) -> bool {
+    let mut version = Command::new(program);
+    version.arg("--version").stdout(Stdio::null()).stderr(Stdio::null());
+    let there = version.status().is_ok_and(|status| status.success());
+    let required = std::env::var_os("OCTANT_REQUIRE_PEERS").is_some();
+    assert!(there || !required, "there is no {program} here");
+    if !there {
+        println!("skipped: there is no {program} here");
+    }
+    there
+}
+
+/// How each client is started, as far as it can be had here.
+fn clients() -> &'static [(&'static str, Vec<String>)] {
+    static ALL: OnceLock<Vec<(&'static str, Vec<String>)>> = OnceLock::new();
+    ALL.get_or_init(|| {
+        let mut all = Vec::new();
+        if there_is("python3") {
+            let script = format!("{CLIENTS}/octant_client.py");
+            all.push(("python", vec!["python3".to_owned(), script]));
+        }
+        if there_is("cc") {
+            let program = PathBuf::from(env!("CARGO_TARGET_TMPDIR"))
+                .join(format!("octant_client-{}", std::process::id()));
+            let built = Command::new("cc")
+                .args(["-std=c99", "-O2", "-o"])
+                .arg(&program)
+                .arg(format!("{CLIENTS}/octant_client.c"))
+                .output()
+                .unwrap();
+            assert!(built.status.success(), "{}", String::from_utf8_lossy(&built.stderr));
+            all.push(("c", vec![program.display().to_string()]));
+        }
+        all
+    })
+}
+
+/// A client that is a device, stopped with the test.
+struct Device(Child);
+
+impl Device {
+    fn new(command: &[String], at: &str) -> Self {
+        let mut device = Command::new(&command[0]);
+        device.args(&command[1..]).args(["device", at]).stderr(Stdio::piped());
+        Self(device.spawn().unwrap())
+    }
+
+    /// The first line that it says; the others go nowhere.
+    fn first_line(&mut self) -> String {
+        let mut stderr = BufReader::new(self.0.stderr.take().unwrap());
+        let mut line = String::new();
+        stderr.read_line(&mut line).unwrap();
+        std::thread::spawn(move || stderr.read_to_string(&mut String::new()));
+        line
+    }
+}
+
+impl Drop for Device {
+    fn drop(&mut self) {
+        let _ = self.0.kill();
+        let _ = self.0.wait();
+    }
+}
+
+/// A port with frames lost, damaged and doubled on it, or as it is.
+fn session(port: Port, bad: bool) {
+    let patience = Patience { repeat: Duration::from_millis(20), ..options().patience };
+    let options = if bad { Options { patience, ..options() } } else { options() };
+    let mut harness =
+        Harness::open(Wire::new("client", around(port), Role::Harness), options).unwrap();
+    if bad {
+        let ways = Ways { to_device: true, to_harness: true };
+        for (handle, action) in
+            [WireAction::Lose, WireAction::Flip, WireAction::Duplicate].into_iter().enumerate()
+        {
+            let fault = WireFault { ways, chance: 0.05, action, key: [3, handle as u64] };
+            harness.wire().wired().unwrap().begin(handle as u32, &fault);
+        }
+    }
+    drive(&mut harness, 100);
+    for handle in 0..3 {
+        let altered = harness.wire().wired().unwrap().altered(handle).frames;
+        assert_eq!(altered > 0, bad);
+    }
+    harness.bye(Reason::DONE, "");
+}
+
+#[test]
+fn they_are_devices_on_udp() {
+    for (name, command) in clients() {
+        for bad in [false, true] {
+            let mut device = Device::new(command, "udp-listen:127.0.0.1:0");
+            let line = device.first_line();
+            let number = line.trim().rsplit(' ').next().unwrap();
+            let uri: Uri = format!("udp:127.0.0.1:{number}").parse().expect(name);
+            session(port::open(&uri, Role::Harness).unwrap(), bad);
+        }
+    }
+}
+
+#[test]
+fn they_are_devices_on_a_serial_line() {
+    for (_, command) in clients() {
+        for bad in [false, true] {
+            let pty = Pty::open("").unwrap();
+            let at = format!("serial:{}?baud=115200", pty.name());
+            let mut device = Device::new(command, &at);
+            session(Port::Bytes(Box::new(pty)), bad);
+            let mut stderr = device.0.stderr.take().unwrap();
+            std::thread::spawn(move || stderr.read_to_string(&mut String::new()));
+        }
+    }
+}

@@ -1,0 +1,224 @@
+//! Faults on a wire: in lock-step the answers are those of the core all the same, bit for bit, and what
+//! each fault altered is counted.
+#![cfg(unix)]
+#![allow(clippy::unwrap_used)]
+
+mod common;
+
+use common::{Served, drive, facts, options, sample};
+use octant_faults::wire::{Medium, Ways, WireAction, WireFault};
+use octant_link::fault::around;
+use octant_link::harness::{Harness, Options, Patience, SessionError};
+use octant_link::port::{self, Port, Pty, Slcan};
+use octant_link::{PortError, Uri, Wire};
+use octant_sample::Output;
+use octant_wire::message::Role;
+use std::time::Duration;
+
+const BOTH: Ways = Ways { to_device: true, to_harness: true };
+
+/// Every action that a session in lock-step survives.
+fn actions() -> Vec<(WireAction, f64)> {
+    vec![
+        (WireAction::Flip, 0.2),
+        (WireAction::Insert, 0.2),
+        (WireAction::Drop, 0.2),
+        (WireAction::Truncate, 0.2),
+        (WireAction::Checksum, 0.2),
+        (WireAction::Duplicate, 1.0),
+        (WireAction::Reorder, 0.2),
+        (WireAction::Lose, 0.2),
+        (WireAction::Delay { by_s: 1e-4, jitter_s: 1e-3 }, 1.0),
+        (WireAction::Replay { age: 3 }, 1.0),
+        (WireAction::Split { pieces: 3, apart_s: 2e-4 }, 1.0),
+        (WireAction::Coalesce, 0.2),
+        (WireAction::Babble { count: 40 }, 1.0),
+        (WireAction::Break { lasts_s: 0.02 }, 1.0),
+        (WireAction::Framing, 0.2),
+        (WireAction::SlowReader { pause_s: 0.05 }, 1.0),
+        (WireAction::ErrorFrame, 0.5),
+        (WireAction::ArbitrationLost, 0.5),
+        (WireAction::BusOff { off_s: 0.05 }, 1.0),
+        // Each message is many frames: one that is spoilt costs all of it.
+        (WireAction::Collision, 0.01),
+        (WireAction::Overload { frames: 2, each_s: 2e-5 }, 0.2),
+    ]
+}
+
+fn patient() -> Options {
+    let patience = Patience { repeat: Duration::from_millis(10), ..options().patience };
+    Options { patience, ..options() }
+}
+
+/// A device on a medium, and the harness's port to it.
+fn pair(medium: Medium) -> (Served, Port) {
+    match medium {
+        Medium::Line | Medium::Datagrams => {
+            let uri = if medium == Medium::Line { "pty:" } else { "udp:0" };
+            let (served, uri) = Served::on(uri, facts());
+            let port = port::open(&uri, Role::Harness).unwrap();
+            (served, port)
+        }
+        // Two adapters whose lines are each other's: what one sends the other receives.
+        Medium::Bus => {
+            let pty = Pty::open("").unwrap();
+            let uri = format!("slcan:{}?bitrate=500000", pty.name());
+            let Uri::Slcan(slcan) = uri.parse().unwrap() else { panic!() };
+            let far = slcan.clone();
+            let device = std::thread::spawn(move || Slcan::over(Box::new(pty), &far).unwrap());
+            let near = Slcan::open(&slcan).unwrap();
+            let device = Port::Frames(Box::new(device.join().unwrap()));
+            let served = Served::over(Wire::new("device", device, Role::Device), facts());
+            (served, Port::Frames(Box::new(near)))
+        }
+    }
+}
+
+/// A harness with one fault on its wire, after the hello.
+fn faulted(port: Port, fault: WireFault, options: Options) -> Harness {
+    let wire = Wire::new("faulted", around(port), Role::Harness);
+    let mut harness = Harness::open(wire, options).unwrap();
+    harness.wire().wired().unwrap().begin(7, &fault);
+    harness
+}
+
+fn survives(medium: Medium) {
+    for (action, chance) in actions() {
+        if !action.happens_on(medium) {
+            continue;
+        }
+        let (mut served, port) = pair(medium);
+        // A message is up to 17 frames on a bus, an answer with parameters 89: all of them have to
+        // come through.
+        let spoils = matches!(
+            action,
+            WireAction::Flip
+                | WireAction::Lose
+                | WireAction::Reorder
+                | WireAction::Replay { .. }
+                | WireAction::Babble { .. }
+        );
+        let chance = if spoils && medium == Medium::Bus { 0.01 } else { chance };
+        let fault = WireFault { ways: BOTH, chance, action, key: [1, 2] };
+        let mut harness = faulted(port, fault, patient());
+        drive(&mut harness, 60);
+        let wired = harness.wire().wired().unwrap();
+        let altered = wired.altered(7);
+        assert!(altered.frames > 0, "{action:?} altered nothing on {}", medium.name());
+        assert_eq!(wired.altered(7).frames, 0, "what was told is not told again");
+        assert_eq!(wired.altered(8).frames, 0, "there is no such fault");
+        let same = altered.clean_crc32 == altered.faulted_crc32;
+        let unaltered = matches!(
+            action,
+            WireAction::Delay { .. } | WireAction::ErrorFrame | WireAction::Split { .. }
+        );
+        assert_eq!(same, unaltered, "{action:?} on {}", medium.name());
+        harness.wire().wired().unwrap().end(7);
+        drop(harness);
+        served.stop();
+    }
+}
+
+#[test]
+fn a_serial_line_may_be_as_bad_as_it_likes() {
+    survives(Medium::Line);
+}
+
+#[test]
+fn udp_may_be_as_bad_as_it_likes() {
+    survives(Medium::Datagrams);
+}
+
+#[test]
+fn a_bus_may_be_as_bad_as_it_likes() {
+    survives(Medium::Bus);
+}
+
+#[test]
+fn a_bus_without_faults_carries_a_session() {
+    let (mut served, port) = pair(Medium::Bus);
+    let mut harness = Harness::open(Wire::new("bus", port, Role::Harness), options()).unwrap();
+    drive(&mut harness, 60);
+    let counts = harness.counts();
+    assert_eq!((counts.lost, counts.damaged, counts.missing), (0, 0, 0));
+    drop(harness);
+    served.stop();
+}
+
+#[test]
+fn where_all_is_lost_the_error_says_so() {
+    let (_served, port) = pair(Medium::Datagrams);
+    let mut options = patient();
+    options.patience.answer = Duration::from_millis(100);
+    let ways = Ways { to_device: true, to_harness: false };
+    let fault = WireFault { ways, chance: 1.0, action: WireAction::Lose, key: [1, 2] };
+    let mut harness = faulted(port, fault, options);
+    let (one, aiding) = sample(1);
+    let error = harness.step(&one, aiding.as_ref(), &mut Output::default()).unwrap_err();
+    assert!(
+        matches!(&error, SessionError::NoAnswer { waited_for, .. } if waited_for == "output to step 1")
+    );
+    assert!(error.to_string().contains("nothing at all was received"), "{error}");
+}
+
+#[test]
+fn garbage_alone_is_told_from_silence() {
+    let (_served, port) = pair(Medium::Line);
+    let mut options = patient();
+    options.patience.answer = Duration::from_millis(200);
+    let ways = Ways { to_device: false, to_harness: true };
+    let fault = WireFault { ways, chance: 1.0, action: WireAction::Checksum, key: [1, 2] };
+    let mut harness = faulted(port, fault, options);
+    let (one, aiding) = sample(1);
+    let error = harness.step(&one, aiding.as_ref(), &mut Output::default()).unwrap_err();
+    let told = error.to_string();
+    assert!(told.contains("no message was received, but"), "{told}");
+}
+
+#[test]
+fn a_plug_that_was_pulled_ends_the_step_and_a_port_that_is_back_goes_on() {
+    for medium in [Medium::Line, Medium::Datagrams, Medium::Bus] {
+        let (_served, port) = pair(medium);
+        let action = WireAction::HangUp { away_s: 0.2 };
+        let fault = WireFault { ways: BOTH, chance: 1.0, action, key: [1, 2] };
+        let wire = Wire::new("pulled", around(port), Role::Harness);
+        let mut harness = Harness::open(wire, patient()).unwrap();
+        let mut output = Output::default();
+        let (one, aiding) = sample(1);
+        harness.step(&one, aiding.as_ref(), &mut output).unwrap();
+        harness.wire().wired().unwrap().begin(0, &fault);
+        let (two, aiding) = sample(2);
+        let error = harness.step(&two, aiding.as_ref(), &mut output).unwrap_err();
+        assert!(matches!(error, SessionError::Port(PortError::Gone { .. })), "{error}");
+        assert!(harness.reopen(Duration::ZERO).is_err(), "it is still away");
+        std::thread::sleep(Duration::from_millis(250));
+        harness.reopen(Duration::from_millis(250)).unwrap();
+        harness.step_again(&mut output).unwrap();
+        assert_eq!(output.sequence, 2);
+        assert_eq!(harness.effort().reconnected, 1);
+        assert_eq!(harness.wire().wired().unwrap().altered(0).frames, 1);
+        let (three, aiding) = sample(3);
+        harness.step(&three, aiding.as_ref(), &mut output).unwrap();
+        assert_eq!(output.sequence, 3);
+    }
+}
+
+#[test]
+fn what_was_held_back_goes_on_when_the_fault_ends() {
+    let (_served, port) = pair(Medium::Line);
+    let fault = WireFault { ways: BOTH, chance: 1.0, action: WireAction::Reorder, key: [1, 2] };
+    let mut options = patient();
+    options.patience.repeat = Duration::from_secs(5);
+    let mut harness = faulted(port, fault, options);
+    let (one, aiding) = sample(1);
+    assert!(aiding.is_none());
+    harness
+        .wire()
+        .wired()
+        .unwrap()
+        .begin(7, &WireFault { ways: Ways { to_device: true, to_harness: false }, ..fault });
+    harness.send_sample(&one, None).unwrap();
+    assert!(harness.poll(Duration::from_millis(50)).unwrap().is_none());
+    harness.wire().wired().unwrap().end(7);
+    assert!(harness.poll(Duration::from_secs(5)).unwrap().is_some());
+}

@@ -1,0 +1,256 @@
+//! A peer that does what no device should: late, twice, never, something else.
+#![allow(clippy::unwrap_used)]
+
+mod common;
+
+use common::{PERIOD_NS, options, sample};
+use octant_link::harness::{Harness, Options, Patience, SessionError};
+use octant_link::{Uri, Wire};
+use octant_sample::Output;
+use octant_wire::VERSION;
+use octant_wire::message::*;
+use octant_wire::serial::{Decoder, Encoder, Event};
+use std::net::UdpSocket;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread::JoinHandle;
+use std::time::Duration;
+
+/// A peer on UDP that answers each message with what a script says, as messages or bytes.
+struct Scripted {
+    stop: Arc<AtomicBool>,
+    thread: Option<JoinHandle<()>>,
+    uri: Uri,
+}
+
+/// What a script says to a message.
+enum Say {
+    Message(Message),
+    Bytes(Vec<u8>),
+    Wait(Duration),
+}
+
+impl Scripted {
+    fn new(mut script: impl FnMut(&Message) -> Vec<Say> + Send + 'static) -> Self {
+        let socket = UdpSocket::bind("127.0.0.1:0").unwrap();
+        socket.set_read_timeout(Some(Duration::from_millis(10))).unwrap();
+        let uri = format!("udp:{}", socket.local_addr().unwrap()).parse().unwrap();
+        let stop = Arc::new(AtomicBool::new(false));
+        let until = Arc::clone(&stop);
+        let thread = std::thread::spawn(move || {
+            let (mut encoder, mut decoder) = (Encoder::new(), Decoder::new());
+            let mut bytes = [0; 2000];
+            while !until.load(Ordering::Relaxed) {
+                let Ok((count, from)) = socket.recv_from(&mut bytes) else { continue };
+                let mut rest = &bytes[..count];
+                while let Some(event) = decoder.next(&mut rest) {
+                    let Event::Received(received) = event else { continue };
+                    for say in script(&received.message) {
+                        let sent = match say {
+                            Say::Message(message) => {
+                                socket.send_to(encoder.encode(&message, ClockTime::default()), from)
+                            }
+                            Say::Bytes(bytes) => socket.send_to(&bytes, from),
+                            Say::Wait(time) => {
+                                std::thread::sleep(time);
+                                continue;
+                            }
+                        };
+                        // The harness may be gone.
+                        let _ = sent;
+                    }
+                }
+            }
+        });
+        Self { stop, thread: Some(thread), uri }
+    }
+}
+
+impl Drop for Scripted {
+    fn drop(&mut self) {
+        self.stop.store(true, Ordering::Relaxed);
+        let _ = self.thread.take().unwrap().join();
+    }
+}
+
+fn hello(session: u32) -> Message {
+    Message::Hello(Hello {
+        role: Role::Device,
+        session,
+        capabilities: Capabilities::all(),
+        sample_period_ns: PERIOD_NS,
+        ..Hello::default()
+    })
+}
+
+fn output(step: Step, sequence: u64) -> Message {
+    let output = Output { sequence, ..Output::default() };
+    Message::Output(OutputMessage { step, parameters_follow: false, output, computing_ns: 0 })
+}
+
+/// Answers hello, and samples with what the script says.
+fn device(mut on_sample: impl FnMut(&SampleMessage) -> Vec<Say> + Send + 'static) -> Scripted {
+    Scripted::new(move |message| match message {
+        Message::Hello(theirs) => vec![Say::Message(hello(theirs.session))],
+        Message::Sample(sample) => on_sample(sample),
+        _ => Vec::new(),
+    })
+}
+
+fn impatient() -> Options {
+    let patience = Patience {
+        hello: Duration::from_millis(500),
+        answer: Duration::from_millis(500),
+        repeat: Duration::from_millis(20),
+    };
+    Options { patience, ..options() }
+}
+
+fn open(peer: &Scripted) -> Result<Harness, SessionError> {
+    Harness::open(Wire::open(&peer.uri, Role::Harness).unwrap(), impatient())
+}
+
+/// Takes steps until one fails.
+fn steps(harness: &mut Harness, count: u64) -> Result<(), SessionError> {
+    let mut output = Output::default();
+    for k in 1..=count {
+        let (sample, _) = sample(k);
+        harness.step(&sample, None, &mut output)?;
+        assert_eq!(output.sequence, k, "the answer is of another sample");
+    }
+    Ok(())
+}
+
+#[test]
+fn one_that_never_answers() {
+    let peer = Scripted::new(|_| Vec::new());
+    let error = open(&peer).unwrap_err().to_string();
+    assert!(error.contains("no hello within 0.") && error.contains("nothing at all"), "{error}");
+    let peer = device(|_| Vec::new());
+    let error = steps(&mut open(&peer).unwrap(), 1).unwrap_err().to_string();
+    assert!(error.contains("no output to step 1 within 0."), "{error}");
+}
+
+#[test]
+fn one_that_answers_late() {
+    // Each answer takes longer than it is waited for: it comes behind repeated requests.
+    let peer = device(|sample| {
+        let answer = output(sample.step, sample.sample.sequence);
+        vec![Say::Wait(Duration::from_millis(35)), Say::Message(answer)]
+    });
+    let mut harness = open(&peer).unwrap();
+    steps(&mut harness, 5).unwrap();
+    assert!(harness.effort().repeated > 0);
+}
+
+#[test]
+fn one_that_answers_twice_and_with_old_answers() {
+    let mut last = None;
+    let peer = device(move |sample| {
+        let answer = output(sample.step, sample.sample.sequence);
+        let old = last.replace(answer);
+        old.into_iter().chain([answer, answer]).map(Say::Message).collect()
+    });
+    steps(&mut open(&peer).unwrap(), 50).unwrap();
+}
+
+#[test]
+fn one_that_answers_other_steps() {
+    let peer = device(|sample| {
+        let other = Step::new(sample.step.number() + 7);
+        vec![Say::Message(output(other, 99)), Say::Bytes(vec![0xA5; 300]), Say::Bytes(vec![0; 9])]
+    });
+    let error = steps(&mut open(&peer).unwrap(), 1).unwrap_err().to_string();
+    assert!(error.contains("other messages were received, and"), "{error}");
+}
+
+#[test]
+fn one_that_started_anew() {
+    let peer = device(|sample| match sample.step.number() {
+        1 => vec![Say::Message(output(sample.step, 1))],
+        _ => vec![Say::Message(hello(0))],
+    });
+    let error = steps(&mut open(&peer).unwrap(), 2).unwrap_err();
+    assert!(matches!(error, SessionError::StartedAnew { .. }), "{error}");
+}
+
+#[test]
+fn an_old_hello_that_comes_again_is_no_new_start() {
+    let peer = device(|sample| {
+        let answer = output(sample.step, sample.sample.sequence);
+        vec![Say::Message(hello(0)), Say::Message(answer)]
+    });
+    steps(&mut open(&peer).unwrap(), 20).unwrap();
+}
+
+#[test]
+fn one_that_announces_parameters_and_sends_none() {
+    let peer = device(|sample| {
+        let output = Output { sequence: 1, ..Output::default() };
+        let parameters_follow = true;
+        vec![Say::Message(Message::Output(OutputMessage {
+            step: sample.step,
+            parameters_follow,
+            output,
+            computing_ns: 0,
+        }))]
+    });
+    let error = steps(&mut open(&peer).unwrap(), 1).unwrap_err();
+    assert!(matches!(error, SessionError::NoAnswer { .. }), "{error}");
+}
+
+#[test]
+fn one_that_says_bye_in_the_middle() {
+    let peer = device(|_| {
+        let text = octant_wire::Text::fitting("the motor is on fire");
+        vec![Say::Message(Message::Bye(Bye { reason: Reason::FAILED, text }))]
+    });
+    let error = steps(&mut open(&peer).unwrap(), 1).unwrap_err().to_string();
+    assert!(error.contains("said bye while output was waited for"), "{error}");
+    assert!(error.contains("failed (the motor is on fire)"), "{error}");
+}
+
+#[test]
+fn one_that_is_newer() {
+    let peer = Scripted::new(|message| match message {
+        Message::Hello(theirs) => {
+            let Message::Hello(ours) = hello(theirs.session) else { unreachable!() };
+            vec![Say::Message(Message::Hello(Hello { version: VERSION + 1, ..ours }))]
+        }
+        _ => Vec::new(),
+    });
+    let error = open(&peer).unwrap_err();
+    assert!(matches!(error, SessionError::Newer { .. }), "{error}");
+    assert!(error.to_string().contains("update this program"), "{error}");
+}
+
+#[test]
+fn one_that_can_not_restart_says_so_before_it_is_asked() {
+    let peer = Scripted::new(|message| match message {
+        Message::Hello(theirs) => {
+            let Message::Hello(ours) = hello(theirs.session) else { unreachable!() };
+            let capabilities = Capabilities::LOCK_STEP;
+            vec![Say::Message(Message::Hello(Hello { capabilities, ..ours }))]
+        }
+        _ => Vec::new(),
+    });
+    let mut harness = open(&peer).unwrap();
+    let error = harness.restart(None).unwrap_err().to_string();
+    assert!(error.contains("the device doesn't do restarts of its core"), "{error}");
+    assert!(harness.end().unwrap().is_none(), "it doesn't conclude");
+}
+
+#[test]
+fn a_stale_bye_doesn_t_end_a_session_that_begins() {
+    let mut said = false;
+    let peer = Scripted::new(move |message| match message {
+        Message::Hello(theirs) => {
+            let stale = Bye { reason: Reason::SILENCE, ..Bye::default() };
+            let first = (!std::mem::replace(&mut said, true)).then_some(Message::Bye(stale));
+            first.into_iter().chain([hello(theirs.session)]).map(Say::Message).collect()
+        }
+        Message::Sample(sample) => vec![Say::Message(output(sample.step, sample.sample.sequence))],
+        _ => Vec::new(),
+    });
+    steps(&mut open(&peer).unwrap(), 3).unwrap();
+}

@@ -1,0 +1,115 @@
+//! What happens to a port.
+
+use super::{SHARE, WAYS, rule, time, wire};
+use crate::catalogue::{Kind, Lasts};
+use crate::wire::WireAction;
+
+pub(super) static BREAK: Kind = wire(
+    "serial-break",
+    "A serial line is held in a break.",
+    "From its onset the line is held for `length` of host time. What is sent in that time is lost, and \
+     the receiver reads one zero byte for all of it, as a serial port does that isn't asked to tell \
+     breaks from data. The zero ends whatever was begun.",
+    &[WAYS, time("length", "5 ms", "How long the line is held; host time.")],
+    Lasts::Instant,
+    |values, setup| rule(values, setup, WireAction::Break { lasts_s: values.quantity("length")? }),
+);
+
+pub(super) static FRAMING: Kind = wire(
+    "serial-framing",
+    "Bytes of a serial line have no stop bit.",
+    "While it lasts, one byte of each frame that it acts on, at a place that is drawn, is read as a zero: \
+     its stop bit wasn't there, as with two rates that differ by a few percent. A zero ends a frame: what \
+     was one becomes two pieces of none.",
+    &[WAYS, SHARE],
+    Lasts::Span,
+    |values, setup| rule(values, setup, WireAction::Framing),
+);
+
+pub(super) static HANG_UP: Kind = wire(
+    "wire-hang-up",
+    "The port goes away, as when its plug is pulled, and comes back.",
+    "At its onset the harness's port is closed, and can't be opened again before `away` of host time has \
+     passed. What is on its way then is lost. By default the run ends there, as a failure of the bench; \
+     with `endpoint.link.reconnect` longer than `away` it goes on, asks for the answer again, and the gap \
+     is counted. The device keeps its power and its session.",
+    &[time("away", "1 s", "How long the port is away; host time.")],
+    Lasts::Instant,
+    |values, setup| rule(values, setup, WireAction::HangUp { away_s: values.quantity("away")? }),
+);
+
+pub(super) static SLOW_READER: Kind = wire(
+    "wire-slow-reader",
+    "The harness takes nothing from its port for a time.",
+    "From its onset nothing is read for `pause` of host time: what the device sends fills the buffers on \
+     the way, and then its own. Afterwards all comes at once, as far as it was kept.",
+    &[time("pause", "500 ms", "How long nothing is read; host time.")],
+    Lasts::Instant,
+    |values, setup| {
+        rule(values, setup, WireAction::SlowReader { pause_s: values.quantity("pause")? })
+    },
+);
+
+#[cfg(test)]
+mod tests {
+    use crate::kinds::wire::{KINDS, happens_on};
+    use crate::setup::Setup;
+    use crate::values::{Value, Values};
+    use crate::wire::{Medium, WireAction};
+
+    #[test]
+    fn a_kind_happens_where_its_action_does() {
+        let setup = Setup {
+            seed: 1,
+            sample_period_ns: 5_000_000,
+            calibration_samples: 1000,
+            angle_random_walk: 0.0,
+            velocity_random_walk: 0.0,
+            turntable_rate_radps: 0.1,
+            id: "w".into(),
+        };
+        let mut seen: alloc::vec::Vec<WireAction> = alloc::vec::Vec::new();
+        for kind in KINDS {
+            let mut values = Values::default();
+            for parameter in kind.parameters {
+                let value = match parameter.takes {
+                    crate::catalogue::Takes::Choice(choices) => Value::Choice(choices[0].0),
+                    crate::catalogue::Takes::Integer(from, _) => Value::Integer(from),
+                    crate::catalogue::Takes::Quantity(dimensions, _) => {
+                        Value::Quantity(0.5, dimensions[0])
+                    }
+                    _ => panic!("{}", parameter.name),
+                };
+                values.set(parameter.name, value);
+            }
+            let crate::rule::Rule::Wire(mut rule) = (kind.build)(&values, &setup).unwrap() else {
+                panic!("{} is no fault of a wire", kind.name);
+            };
+            let output = octant_sample::Output::default();
+            let epoch = octant_sample::Epoch::default();
+            let now = crate::rule::Context {
+                epoch: 1,
+                phase: octant_random::stream::Phase::Calibration,
+                counter: 0,
+                dt_s: 0.005,
+                since_onset: 0,
+                firing: 0,
+                strength: 1.0,
+                last: &epoch,
+                output: &output,
+                set_points: crate::rule::SetPoints::default(),
+            };
+            let fault = rule.begin(&now);
+            for medium in [Medium::Line, Medium::Datagrams, Medium::Bus] {
+                let expected = fault.action.happens_on(medium);
+                assert_eq!(happens_on(kind, medium), expected, "{} {medium:?}", kind.name);
+            }
+            assert!(!seen.contains(&fault.action), "{}", kind.name);
+            seen.push(fault.action);
+            // Another onset has other numbers, the same one the same.
+            let again = rule.begin(&crate::rule::Context { firing: 1, ..now });
+            assert_ne!(fault.key, again.key);
+            assert_eq!(fault.key, rule.begin(&now).key);
+        }
+    }
+}
