@@ -96,6 +96,17 @@ impl<P: Port> Driver<P> {
         Ok(())
     }
 
+    /// There are no guards here: what is left is the controller's watchdog.
+    ///
+    /// # Errors
+    /// Always.
+    #[cfg(not(unix))]
+    pub fn guard(&mut self, _: &mut std::process::Command, _: Duration) -> Result<(), Error> {
+        let reason =
+            "a process can't be given a port on this system: use the controller's watchdog";
+        Err(Error::Guard { reason: reason.into() })
+    }
+
     /// Tells the controller's watchdog and the guard that the harness is there. To be called more
     /// often than their silence; [`crate::Supervisor`] does.
     ///

@@ -21,6 +21,7 @@
 mod dialect;
 mod driver;
 mod error;
+mod follow;
 mod guard;
 mod limits;
 mod port;
@@ -32,6 +33,7 @@ mod table;
 pub use dialect::Dialect;
 pub use driver::{Driver, Settings};
 pub use error::Error;
+pub use follow::Follower;
 pub use guard::{Guard, run_guard};
 pub use limits::{AxisLimits, Limits};
 pub use port::{Port, open};

@@ -109,10 +109,6 @@ fn on_pty(controller: Controller, link: &str) -> Result<Server, Failure> {
     std::os::unix::fs::symlink(&name, link)
         .map_err(|error| Failure::Input(format!("link {link} to {name}: {error}")))?;
     let _ = writeln!(std::io::stderr(), "a table listens on serial:{link}");
-    // Kept open: else the line ends when its first user goes. Not exclusive: its users open it again.
-    let mut slave = slave;
-    slave.set_exclusive(false).map_err(bench)?;
-    std::mem::forget(slave);
     Server::line(controller, master, 1.0).map_err(bench)
 }
 

@@ -4,8 +4,11 @@
 mod common;
 
 use common::*;
+use octant_sample::{GimbalAngles, GimbalCommand};
 use octant_turntable::simulate::{Behaviour, Server};
-use octant_turntable::{Axis, Dialect, Driver, Error, Port, Settings, Supervisor, Turntable};
+use octant_turntable::{
+    Axis, Dialect, Driver, Error, Follower, Port, Settings, Supervisor, Turntable,
+};
 use std::collections::VecDeque;
 use std::io::{self, Read, Write};
 use std::sync::{Arc, Mutex};
@@ -351,5 +354,38 @@ proptest::proptest! {
             controller.line("INNER:MOVE 3", 5);
             controller.line("INNER:ST?", 6);
         }
+    }
+}
+
+#[test]
+fn the_core_moves_the_table() {
+    let (server, name) = tcp(ensemble());
+    let mut driver = drive(&name, ensemble(), settings());
+    let mut follower = Follower::new();
+    let target = GimbalAngles::from_rad(degrees(90.0), degrees(-45.0));
+    let command = GimbalCommand { target };
+    assert!(follower.command(&mut driver, &command).unwrap());
+    let heard = server.with(|controller, _| controller.log().len());
+    // The same set point in every output after it.
+    for _ in 0..100 {
+        assert!(!follower.command(&mut driver, &command).unwrap());
+    }
+    assert_eq!(server.with(|controller, _| controller.log().len()), heard);
+    wait_for("the position", || {
+        let found = driver.status().unwrap().gimbal();
+        // Six decimals of a degree, in counts of 2⁻²⁷ rad.
+        (found.azimuth - target.azimuth).abs() <= 3 && (found.roll - target.roll).abs() <= 3
+    });
+    // One gimbal at a time.
+    let lines = server.with(|controller, _| controller.log().len());
+    let on = GimbalCommand { target: GimbalAngles { azimuth: 0, ..target } };
+    assert!(follower.command(&mut driver, &on).unwrap());
+    let told = server.with(|controller, _| controller.log()[lines..].to_vec());
+    assert!(told.iter().any(|line| line.starts_with("LINEAR @0 0.000000")), "{told:?}");
+    assert!(!told.iter().any(|line| line.starts_with("LINEAR @1")), "{told:?}");
+    // Beyond the limits it is refused, and said again each time.
+    let far = GimbalCommand { target: GimbalAngles::from_rad(degrees(400.0), degrees(-45.0)) };
+    for _ in 0..2 {
+        assert!(matches!(follower.command(&mut driver, &far), Err(Error::Angle { .. })));
     }
 }

@@ -52,10 +52,10 @@ impl Server {
         let serve = move |shared: &Shared| {
             while !shared.ends.load(Ordering::SeqCst) {
                 match listener.accept() {
-                    Ok((stream, _)) => {
+                    Ok((mut stream, _)) => {
                         let _ = stream.set_nonblocking(false);
                         let _ = stream.set_nodelay(true);
-                        serve(shared, stream);
+                        serve(shared, &mut stream);
                     }
                     Err(_) => {
                         shared.controller().tick(shared.now_ns());
@@ -72,14 +72,11 @@ impl Server {
     /// # Errors
     /// If its thread can't be started.
     pub fn line(controller: Controller, port: impl Port + 'static, speed: f64) -> io::Result<Self> {
-        let port = Mutex::new(Some(port));
+        let mut port = port;
         Self::start(controller, speed, None, move |shared: &Shared| {
-            let port = port.lock().unwrap_or_else(PoisonError::into_inner).take();
-            if let Some(port) = port {
-                serve(shared, port);
-            }
-            // The table goes on without its line.
+            // A pseudo-terminal that nobody has open is gone, and comes back. The table goes on meanwhile.
             while !shared.ends.load(Ordering::SeqCst) {
+                serve(shared, &mut port);
                 shared.controller().tick(shared.now_ns());
                 std::thread::sleep(WAIT);
             }
@@ -137,7 +134,7 @@ impl Drop for Server {
 }
 
 /// One peer, until it goes.
-fn serve(shared: &Shared, mut port: impl Port) {
+fn serve(shared: &Shared, port: &mut impl Port) {
     let end = shared.controller().end().to_owned();
     if port.set_wait(WAIT).is_err() {
         return;
