@@ -38,6 +38,11 @@ pub trait Component: Clone + Send + Sized + 'static {
         None
     }
 
+    /// The bus that it is on; none of those that step with time are on one.
+    fn network(&mut self) -> Option<&mut dyn Network> {
+        None
+    }
+
     /// Everything that it needs to go on, but its values, as bytes; see [`Self::load`].
     fn save(&self, bytes: &mut Vec<u8>);
 
@@ -46,4 +51,17 @@ pub trait Component: Clone + Send + Sized + 'static {
     /// # Errors
     /// If the bytes are not those of such a component.
     fn load(bytes: &[u8], values: &Values) -> Result<Self, String>;
+}
+
+/// A component on a bus: it is told what comes at a time, and says when it wants to send. Between
+/// events nothing happens but that time goes on.
+pub trait Network {
+    /// Bytes have come.
+    fn receive(&mut self, bytes: &[u8], time_s: f64, values: &mut Values);
+
+    /// What it sends now, at most so many bytes. What doesn't fit it sends the next time.
+    fn send(&mut self, time_s: f64, max_bytes: usize, values: &mut Values) -> Vec<u8>;
+
+    /// When it wants to send: now or later. `None`: it doesn't know yet.
+    fn due_s(&self, time_s: f64) -> Option<f64>;
 }

@@ -7,14 +7,16 @@
 //! | [`values`] | the values of all variables of an instance, flat |
 //! | [`component`] | what a model has to do: be made from its parameters, and step |
 //! | [`calibrator`] | the calibration core as a component |
+//! | [`calibrator_can`] | the same core as a device on a CAN bus |
 //! | [`plant`] | motion, turntable, sensors and faults as a component |
 //! | [`c`] | the C interface of both standards, the same for every component |
 //!
-//! One shared library holds both models and both standards: the token given at instantiation
+//! One shared library holds all models and both standards: the token given at instantiation
 //! chooses the model.
 
 pub mod c;
 pub mod calibrator;
+pub mod calibrator_can;
 pub mod component;
 mod groups;
 pub mod plant;

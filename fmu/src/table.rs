@@ -17,6 +17,30 @@ pub enum Kind {
     Boolean,
     /// One of some named values: Enumeration in both.
     Enumeration(&'static Enumeration),
+    /// Bytes that belong to a clock; FMI 3.0 only.
+    Binary(&'static Binary),
+    /// A clock; FMI 3.0 only.
+    Clock(Ticks),
+}
+
+/// Bytes that belong to a clock.
+#[derive(Debug, PartialEq)]
+pub struct Binary {
+    /// What the bytes are.
+    pub mime_type: &'static str,
+    /// The most bytes that there are at a tick.
+    pub max_bytes: usize,
+    /// Name of the clock.
+    pub clock: &'static str,
+}
+
+/// When a clock ticks. Clocks are inputs: the importer lets them tick.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ticks {
+    /// When something comes from outside.
+    Triggered,
+    /// Once after each interval that the model has asked for.
+    Countdown,
 }
 
 /// A type with named values.
@@ -222,6 +246,12 @@ impl Variable {
         self
     }
 
+    /// Whether it has a value at the ticks of a clock only, or is a clock.
+    #[must_use]
+    pub const fn is_clocked(&self) -> bool {
+        matches!(self.kind, Kind::Binary(_) | Kind::Clock(_))
+    }
+
     /// Slots that it occupies.
     #[must_use]
     pub const fn slots(&self) -> usize {
@@ -246,11 +276,27 @@ pub struct Model {
     pub description: &'static str,
     /// Its variables, in the order of their slots, from slot 1 on.
     pub variables: &'static [Variable],
-    /// The smallest and the largest number of sample periods in a communication step.
+    /// The smallest and the largest number of sample periods in a communication step; or
+    /// [`Model::ANY_STEP`].
     pub periods_per_step: (u64, u64),
 }
 
 impl Model {
+    /// Steps of any length: something happens at events only. A range without a number in it.
+    pub const ANY_STEP: (u64, u64) = (1, 0);
+
+    /// Something happens at events only.
+    #[must_use]
+    pub const fn is_event_driven(&self) -> bool {
+        self.periods_per_step.0 > self.periods_per_step.1
+    }
+
+    /// FMI 2.0 has no clocks.
+    #[must_use]
+    pub fn needs_clocks(&self) -> bool {
+        self.variables.iter().any(Variable::is_clocked)
+    }
+
     /// Number of slots, time included.
     #[must_use]
     pub const fn slots(&self) -> usize {

@@ -21,6 +21,8 @@ impl Values {
                     Kind::Count => start as u64,
                     Kind::Integer | Kind::Enumeration(_) => i64::from(start as i32) as u64,
                     Kind::Boolean => u64::from(start != 0.0),
+                    // What they are isn't in a cell.
+                    Kind::Binary(_) | Kind::Clock(_) => 0,
                 });
             }
         }
@@ -36,6 +38,8 @@ impl Values {
             Kind::Count => self.count(slot) as f64,
             Kind::Integer | Kind::Enumeration(_) => f64::from(self.integer(slot)),
             Kind::Boolean => f64::from(u8::from(self.boolean(slot))),
+            // No parameter is one.
+            Kind::Binary(_) | Kind::Clock(_) => 0.0,
         };
         model
             .with_slots()

@@ -4,12 +4,13 @@
 
 use octant_fmu::c::{Standard, token};
 use octant_fmu::calibrator::table::MODEL;
+use octant_fmu::calibrator_can;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-const SOURCES: [&str; 8] =
-    ["main", "handles", "order", "values", "time", "states", "random", "threads"];
+const SOURCES: [&str; 9] =
+    ["main", "handles", "order", "values", "time", "states", "random", "threads", "bus"];
 
 /// Value references that the program uses.
 const NAMES: [(&str, &str); 24] = [
@@ -39,6 +40,16 @@ const NAMES: [(&str, &str); 24] = [
     ("ALIGNMENT_DURATION", "procedure.alignment.duration"),
 ];
 
+/// Those of the Calibrator on a bus.
+const BUS_NAMES: [(&str, &str); 6] = [
+    ("BUS_RX_CLOCK", "can.Rx_Clock"),
+    ("BUS_RX_DATA", "can.Rx_Data"),
+    ("BUS_TX_CLOCK", "can.Tx_Clock"),
+    ("BUS_TX_DATA", "can.Tx_Data"),
+    ("BUS_NOTIFICATIONS", "can.bus_notifications"),
+    ("BUS_MODE", "mode"),
+];
+
 /// What the program knows of the Calibrator, from its table.
 fn header() -> String {
     let mut text = "/* Made by the test. */\n".to_owned();
@@ -55,6 +66,13 @@ fn header() -> String {
         .map(|(slot, _)| slot.to_string())
         .collect();
     let _ = writeln!(text, "#define OUTPUT_GROUPS {}", groups.join(", "));
+    for (constant, name) in BUS_NAMES {
+        let _ = writeln!(text, "#define {constant} {}u", calibrator_can::table::MODEL.slot(name));
+    }
+    let bus = token(&calibrator_can::table::MODEL, Standard::Fmi3);
+    let _ = writeln!(text, "#define TOKEN_BUS \"{bus}\"");
+    let of_fmi2 = token(&calibrator_can::table::MODEL, Standard::Fmi2);
+    let _ = writeln!(text, "#define TOKEN_BUS2 \"{of_fmi2}\"");
     let _ = writeln!(text, "#define SLOTS {}u", MODEL.slots());
     let _ = writeln!(text, "#define TOKEN2 \"{}\"", token(&MODEL, Standard::Fmi2));
     let _ = writeln!(text, "#define TOKEN3 \"{}\"", token(&MODEL, Standard::Fmi3));

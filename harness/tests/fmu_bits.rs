@@ -144,6 +144,7 @@ impl Unit {
                 let value = values[0] as u8;
                 assert_eq!(unsafe { fmi3SetBoolean(self.handle, &first, 1, &value, 1) }, OK);
             }
+            (Standard::Fmi3, Kind::Binary(_) | Kind::Clock(_)) => panic!("the core has none"),
         }
     }
 

@@ -4,7 +4,8 @@
 use octant::fmu::archive::Archive;
 use octant::fmu::build::{BuildError, Options, build};
 use octant::fmu::description::{
-    Causality, Description, Initial, Kind, Standard, Variability, Variable, read_bytes,
+    Causality, Description, Initial, IntervalVariability, Kind, Standard, Variability, Variable,
+    read_bytes,
 };
 use octant::fmu::instance::{self, Instance, Outcome, Place, Plan};
 use octant_fmu::table::{self, Model};
@@ -33,6 +34,12 @@ fn all() -> impl Iterator<Item = (&'static Model, Standard, PathBuf)> {
     })
 }
 
+/// The same, and the one on a bus, which has no table of inputs and results.
+fn described() -> impl Iterator<Item = (&'static Model, Standard, PathBuf)> {
+    let model = &octant_fmu::calibrator_can::table::MODEL;
+    all().chain([(model, Standard::Fmi3, built().join("calibrator_can_fmi3.fmu"))])
+}
+
 fn description(path: &Path) -> Description {
     let bytes = Archive::open(path).unwrap().read("modelDescription.xml").unwrap();
     read_bytes(&bytes, "modelDescription.xml").unwrap()
@@ -43,7 +50,7 @@ fn the_same_source_gives_the_same_bytes() {
     let again = tempfile::tempdir().unwrap();
     let options = Options { out: again.path().to_owned(), ..Options::default() };
     let files = build(&options).unwrap();
-    assert_eq!(files.len(), 5);
+    assert_eq!(files.len(), 6);
     for file in files {
         let name = file.file_name().unwrap();
         let first = std::fs::read(built().join(name)).unwrap();
@@ -54,7 +61,7 @@ fn the_same_source_gives_the_same_bytes() {
 /// Our own reader is tolerant, and finds nothing to tolerate.
 #[test]
 fn descriptions_say_what_the_tables_say() {
-    for (model, standard, path) in all() {
+    for (model, standard, path) in described() {
         let description = description(&path);
         assert_eq!(description.tolerated, [String::new(); 0], "{}", path.display());
         assert_eq!(description.standard, standard);
@@ -66,7 +73,8 @@ fn descriptions_say_what_the_tables_say() {
         };
         assert_eq!(description.token, octant_fmu::c::token(model, of_library));
         let interface = description.co_simulation.as_ref().unwrap();
-        assert!(interface.state && interface.serialized_state && !interface.variable_step);
+        assert!(interface.state && interface.serialized_state);
+        assert_eq!(interface.variable_step, model.is_event_driven());
         assert!(description.model_exchange.is_none() && !description.scheduled_execution);
         let categories = octant_fmu::c::CATEGORIES.map(|(name, _)| name);
         assert_eq!(description.log_categories, categories);
@@ -118,6 +126,8 @@ fn same(
         table::Kind::Count => Kind::Float64,
         table::Kind::Enumeration(_) if fmi3 => Kind::Enumeration,
         table::Kind::Enumeration(_) => Kind::Int32,
+        table::Kind::Binary(_) => Kind::Binary,
+        table::Kind::Clock(_) => Kind::Clock,
     };
     assert_eq!(found.kind, kind, "{name}");
     let causality = match variable.causality {
@@ -134,6 +144,21 @@ fn same(
         table::Variability::Discrete => Variability::Discrete,
     };
     assert_eq!(found.variability, variability, "{name}");
+    if let table::Kind::Binary(binary) = variable.kind {
+        assert_eq!(found.mime_type.as_deref(), Some(binary.mime_type), "{name}");
+        let clock = description.variable(binary.clock).unwrap();
+        assert_eq!(found.clocks, [clock.reference], "{name}");
+        assert_eq!(found.start, vec![String::new(); found.start.len()], "{name}");
+        return;
+    }
+    if let table::Kind::Clock(ticks) = variable.kind {
+        let expected = match ticks {
+            table::Ticks::Triggered => IntervalVariability::Triggered,
+            table::Ticks::Countdown => IntervalVariability::Countdown,
+        };
+        assert_eq!(found.clock.unwrap().interval_variability, expected, "{name}");
+        return;
+    }
     let given = matches!(causality, Causality::Parameter | Causality::Input);
     let expected = if given { Initial::Exact } else { Initial::Calculated };
     assert!(found.initial.is_none_or(|initial| initial == expected), "{name}");
@@ -265,6 +290,38 @@ fn references_are_what_the_libraries_give() {
             assert!(row.is_none() && compared == 701 * get.elements, "{}", path.display());
         }
     }
+}
+
+/// What FMI-LS-BUS wants is there, and our own checker finds nothing to complain of.
+#[test]
+fn the_one_on_a_bus_follows_the_layered_standard() {
+    let (model, _, path) = described().last().unwrap();
+    assert!(model.needs_clocks());
+    let checked = octant::fmu::check::check(&path).unwrap();
+    let report = checked.report();
+    assert!(report.findings.is_empty(), "{:#?}", report.findings);
+    let manifest = "extra/org.fmi-standard.fmi-ls-bus/fmi-ls-manifest.xml";
+    assert!(Archive::open(&path).unwrap().read(manifest).is_ok());
+    // Its clocks are ticked by whoever steps it; without a harness on the bus it says hello, and no
+    // more.
+    let options = instance::Options {
+        place: Place::ThisProcess,
+        event_mode: true,
+        ..instance::Options::default()
+    };
+    let mut instance = octant::fmu::open(&path, &options).unwrap();
+    instance.enter_initialization(0.0, None, None).unwrap();
+    instance.exit_initialization().unwrap();
+    let get = plan(&*instance, &["can.waiting".to_owned(), "time".to_owned()]);
+    let mut outputs = vec![f64::NAN; get.elements];
+    for step in 0..10 {
+        let time_s = f64::from(step) * 0.1;
+        instance.exchange(&[], &[], time_s, 0.1, &get.groups, &mut outputs).unwrap();
+    }
+    let mut found: Vec<f64> = outputs.clone();
+    found.sort_by(f64::total_cmp);
+    assert_eq!(found[0], 0.0, "all was sent");
+    assert!((found[1] - 1.0).abs() < 1e-9);
 }
 
 /// Parameter values of a scenario, as files.

@@ -49,6 +49,7 @@ fn set(values: &mut Values, slot: usize, variable: &Variable, value: f64) {
         Kind::Count => values.set_count(slot, value as u64),
         Kind::Integer | Kind::Enumeration(_) => values.set_integer(slot, value as i32),
         Kind::Boolean => values.set_boolean(slot, value != 0.0),
+        Kind::Binary(_) | Kind::Clock(_) => panic!("no parameter is one"),
     }
 }
 

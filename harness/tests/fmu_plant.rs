@@ -59,6 +59,7 @@ impl<C: Component> Instance<C> {
                         values.set_integer(slot, *number as i32);
                     }
                     Kind::Boolean => values.set_boolean(slot, *number != 0.0),
+                    Kind::Binary(_) | Kind::Clock(_) => panic!("no parameter is one"),
                 }
             }
         }

@@ -98,7 +98,7 @@ fn a_duration_without_room_for_the_dwells_is_told_with_the_figures() {
         let text = format!("{HEAD}positions = \"six\"\nduration = \"{duration}\"\n");
         problems_with(&text, &[])
     };
-    assert_eq!(six("177 s"), []);
+    assert!(six("177 s").is_empty());
     let problem = six("176 s").remove(0);
     assert_eq!(
         (problem.place, problem.path.as_str()),

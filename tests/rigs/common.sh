@@ -54,3 +54,15 @@ npm_packages() {
     || skip "npm could not install tests/rigs/package-lock.json"
   cp .rigs/npm/package-lock.json .rigs/npm/installed
 }
+
+# apt_packages PROGRAM PACKAGE...: installs Debian packages where the program isn't there.
+apt_packages() {
+  local program=$1
+  shift
+  command -v "$program" >/dev/null && return
+  echo "installing Debian's $*"
+  [ "$(id -u)" = 0 ] && command -v apt-get >/dev/null || skip "there is no $program, and no root with apt-get to install it"
+  install_quietly apt-get update || skip "apt-get update failed: no $program"
+  DEBIAN_FRONTEND=noninteractive install_quietly apt-get install -y --no-install-recommends "$@" \
+    || skip "apt-get could not install $*"
+}

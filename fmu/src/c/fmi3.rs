@@ -3,10 +3,12 @@
 #![allow(unsafe_code, reason = "functions of a C interface")]
 #![allow(non_snake_case, reason = "names of the standard")]
 
+mod clocked;
 mod step;
 mod types;
 mod unsupported;
 
+pub use clocked::*;
 pub use types::*;
 pub use unsupported::*;
 
@@ -162,6 +164,7 @@ export! {
     EnterStepMode: fn fmi3EnterStepMode(i: Handle) -> Status {
         enter(i, "fmi3EnterStepMode", |instance| {
             instance.require(mode::EVENT)?;
+            instance.end_ticks()?;
             instance.run.mode = Mode::Step;
             Ok(octant_fmi::fmi3::OK)
         })
@@ -263,7 +266,8 @@ export! {
         enter(i, "fmi3EvaluateDiscreteStates", |instance| ok(instance.require(mode::EVENT)))
     }
 
-    /// End of an event: the next one is the next sample.
+    /// End of an event: what came with the clocks that ticked is taken, and the next event is the next
+    /// sample.
     UpdateDiscreteStates: fn fmi3UpdateDiscreteStates(
         i: Handle,
         need_update: *mut Boolean,
@@ -283,8 +287,11 @@ export! {
             ] {
                 put(flag, FALSE, what)?;
             }
-            put(next_event_time_defined, TRUE, "nextEventTimeDefined")?;
-            ok(put(next_event_time, instance.next_event_s(), "nextEventTime"))
+            let next_s = instance.next_event_s();
+            let defined = if next_s.is_some() { TRUE } else { FALSE };
+            put(next_event_time_defined, defined, "nextEventTimeDefined")?;
+            put(next_event_time, next_s.unwrap_or_default(), "nextEventTime")?;
+            ok(instance.end_ticks())
         })
     }
 

@@ -1,5 +1,6 @@
 //! One instance of a model: its life, from instantiation to its end.
 
+use super::clocked::Clocked;
 use super::layout::{Layout, Slot};
 use super::log::{Log, Outlet};
 use super::mode::{self, Mode, Modes, Refusal, Standard};
@@ -33,11 +34,14 @@ pub(super) struct Run {
     pub stale: bool,
     /// Sample periods since the start.
     pub tick: u64,
+    /// Clocks, and the variables that have a value at their ticks only.
+    pub clocked: Clocked,
 }
 
 impl Run {
-    fn new(model: &Model) -> Self {
+    fn new(model: &Model, layout: &Layout) -> Self {
         Self {
+            clocked: Clocked::new(layout),
             mode: Mode::Instantiated,
             experiment: Experiment::default(),
             values: Values::new(model),
@@ -57,6 +61,7 @@ impl Clone for Run {
             component: self.component.as_ref().map(|component| component.boxed_clone()),
             stale: self.stale,
             tick: self.tick,
+            clocked: self.clocked.clone(),
         }
     }
 }
@@ -94,7 +99,8 @@ impl Instance {
         logging: bool,
     ) -> Self {
         let log = Log::new(standard, logging, outlet.callback.is_some());
-        let (layout, run) = (maker.layout(), Run::new(maker.model));
+        let layout = maker.layout();
+        let run = Run::new(maker.model, layout);
         let (snapshots, before) = (Snapshots::default(), Vec::with_capacity(layout.outputs.len()));
         Self { standard, maker, layout, options, outlet, log, run, snapshots, before }
     }
@@ -239,7 +245,7 @@ impl Instance {
 
     pub(super) fn reset(&mut self) -> Result<(), Refusal> {
         self.require(mode::ALIVE)?;
-        self.run = Run::new(self.maker.model);
+        self.run = Run::new(self.maker.model, self.layout);
         Ok(())
     }
 

@@ -1,6 +1,6 @@
 //! What setting and getting need to know of a slot, made from a model's table once.
 
-use crate::table::{Causality, Enumeration, Kind, Model, Variability};
+use crate::table::{Causality, Enumeration, Kind, Model, Ticks, Variability};
 
 /// Largest whole number up to which all are exact as f64.
 pub(super) const EXACT_MAX: f64 = 9_007_199_254_740_992.0;
@@ -14,6 +14,10 @@ pub(super) enum Cell {
     Integer,
     Enumeration,
     Boolean,
+    /// Bytes, which are kept elsewhere.
+    Binary,
+    /// A clock, which is kept elsewhere.
+    Clock,
 }
 
 /// Who may set it, and when.
@@ -48,8 +52,29 @@ pub(super) struct Slot {
 #[derive(Debug)]
 pub(super) struct Layout {
     pub slots: Box<[Slot]>,
-    /// The outputs, as slots.
+    /// The outputs that have cells, as slots.
     pub outputs: Box<[u32]>,
+    /// The clocks.
+    pub clocks: Box<[Clock]>,
+    /// The binary variables.
+    pub binaries: Box<[ClockedBinary]>,
+}
+
+/// A clock.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Clock {
+    pub slot: u32,
+    pub ticks: Ticks,
+}
+
+/// A binary variable.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct ClockedBinary {
+    pub slot: u32,
+    pub max_bytes: usize,
+    /// Place of its clock among the clocks.
+    pub clock: usize,
+    pub is_input: bool,
 }
 
 impl Layout {
@@ -72,6 +97,8 @@ impl Layout {
                 Kind::Integer => Cell::Integer,
                 Kind::Enumeration(_) => Cell::Enumeration,
                 Kind::Boolean => Cell::Boolean,
+                Kind::Binary(_) => Cell::Binary,
+                Kind::Clock(_) => Cell::Clock,
             };
             let slot = Slot {
                 cell,
@@ -97,11 +124,32 @@ impl Layout {
             };
             slots.extend(core::iter::repeat_n(slot, variable.slots()));
             slots[first].elements = variable.slots() as u16;
-            if variable.causality == Causality::Output {
+            if variable.causality == Causality::Output && !variable.is_clocked() {
                 outputs.extend(first as u32..(first + variable.slots()) as u32);
             }
         }
-        Self { slots: slots.into(), outputs: outputs.into() }
+        let clocks: Box<[(&str, Clock)]> = model
+            .with_slots()
+            .filter_map(|(slot, variable)| match variable.kind {
+                Kind::Clock(ticks) => Some((variable.name, Clock { slot: slot as u32, ticks })),
+                _ => None,
+            })
+            .collect();
+        let binaries = model
+            .with_slots()
+            .filter_map(|(slot, variable)| {
+                let Kind::Binary(binary) = variable.kind else { return None };
+                let clock = clocks.iter().position(|(name, _)| *name == binary.clock)?;
+                Some(ClockedBinary {
+                    slot: slot as u32,
+                    max_bytes: binary.max_bytes,
+                    clock,
+                    is_input: variable.causality == Causality::Input,
+                })
+            })
+            .collect();
+        let clocks = clocks.iter().map(|(_, clock)| *clock).collect();
+        Self { slots: slots.into(), outputs: outputs.into(), clocks, binaries }
     }
 }
 

@@ -11,6 +11,7 @@
 //! | `mode` | the standards' state machines |
 //! | `instance` | one instance: its life |
 //! | `access`, `layout`, `types` | getting and setting variables |
+//! | `clocked` | clocks, and variables that have a value at their ticks |
 //! | `step` | communication steps |
 //! | `state` | FMU states, kept and as bytes |
 //! | `log` | messages to the importer |
@@ -18,7 +19,7 @@
 //!
 //! What is not in it: model exchange and scheduled execution (their functions are there, and refuse),
 //! directional and adjoint derivatives (the models are sampled: there is nothing to differentiate),
-//! derivatives of inputs and outputs, structural parameters, clocks, asynchronous steps.
+//! derivatives of inputs and outputs, structural parameters, periodic clocks, asynchronous steps.
 
 macro_rules! export {
     ($($(#[$doc:meta])* $alias:ident: fn $name:ident($($argument:ident: $kind:ty),* $(,)?) $(-> $result:ty)? $body:block)*) => {$(
@@ -36,6 +37,7 @@ macro_rules! export {
 
 mod access;
 mod call;
+mod clocked;
 pub mod fmi2;
 pub mod fmi3;
 mod instance;

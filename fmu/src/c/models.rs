@@ -4,7 +4,8 @@ use super::layout::Layout;
 use super::mode::Standard;
 use super::token::token;
 use crate::calibrator::Calibrator;
-use crate::component::Component;
+use crate::calibrator_can::CalibratorCan;
+use crate::component::{Component, Network};
 use crate::plant::Plant;
 use crate::table::Model;
 use crate::values::Values;
@@ -16,6 +17,7 @@ pub(super) trait AnyComponent: Send + core::fmt::Debug {
     fn period_ns(&self) -> u64;
     fn terminate(&mut self, values: &mut Values);
     fn remark(&mut self) -> Option<String>;
+    fn network(&mut self) -> Option<&mut dyn Network>;
     fn save(&self, bytes: &mut Vec<u8>);
     fn boxed_clone(&self) -> Box<dyn AnyComponent>;
 }
@@ -44,6 +46,10 @@ impl<C: Component> AnyComponent for Boxed<C> {
 
     fn remark(&mut self) -> Option<String> {
         self.0.remark()
+    }
+
+    fn network(&mut self) -> Option<&mut dyn Network> {
+        self.0.network()
     }
 
     fn save(&self, bytes: &mut Vec<u8>) {
@@ -91,9 +97,11 @@ impl Maker {
 }
 
 /// All models.
-static MAKERS: [Maker; 2] = [Maker::of::<Calibrator>(), Maker::of::<Plant>()];
+static MAKERS: [Maker; 3] =
+    [Maker::of::<Calibrator>(), Maker::of::<Plant>(), Maker::of::<CalibratorCan>()];
 
 /// The model with this token.
 pub(super) fn find(standard: Standard, token: &str) -> Option<&'static Maker> {
-    MAKERS.iter().find(|maker| maker.token(standard) == token)
+    let found = MAKERS.iter().find(|maker| maker.token(standard) == token)?;
+    (standard == Standard::Fmi3 || !found.model.needs_clocks()).then_some(found)
 }

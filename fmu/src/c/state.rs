@@ -3,6 +3,7 @@
 #![allow(unsafe_code, reason = "states go to and come from the importer's memory")]
 
 use super::call::put;
+use super::clocked::Clocked;
 use super::instance::{Experiment, Instance, Run};
 use super::mode::{self, Mode, Refusal};
 use crate::values::Values;
@@ -156,6 +157,10 @@ impl Instance {
             to.value("tick", &run.tick);
             to.value("cells", run.values.cells());
             to.value("component", &component);
+            // Models without clocks have the states that they always had.
+            if self.model().needs_clocks() {
+                to.part("clocked", &run.clocked);
+            }
         });
         bytes
     }
@@ -183,6 +188,11 @@ impl Instance {
         check_count("tick", tick).map_err(said)?;
         let cells: Vec<u64> = from.value("cells").map_err(said)?;
         let component: Option<Vec<u8>> = from.value("component").map_err(said)?;
+        let mut clocked = Clocked::new(self.layout());
+        if self.model().needs_clocks() {
+            from.part("clocked", &mut clocked).map_err(said)?;
+            clocked.check(self.layout())?;
+        }
         from.end().map_err(said)?;
 
         let mut values = Values::new(self.model());
@@ -198,7 +208,7 @@ impl Instance {
         if component.is_none() && matches!(mode, Mode::Step | Mode::Event) {
             return Err("there is no component in them".to_owned());
         }
-        Ok(Run { mode, experiment, values, component, stale, tick })
+        Ok(Run { mode, experiment, values, component, stale, tick, clocked })
     }
 }
 

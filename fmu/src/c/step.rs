@@ -7,10 +7,13 @@ use super::mode::{self, Mode, Refusal};
 /// more than rounding, far less than anybody means.
 const STEP_TOLERANCE: f64 = 1e-6;
 
+/// How far apart two times of an event-driven model may be that are meant to be the same, s.
+const TIME_TOLERANCE_S: f64 = 1e-9;
+
 /// A step that was agreed to.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Agreed {
-    /// Sample periods that it has.
+    /// Sample periods that it has; 0: time goes on, and nothing else happens.
     pub periods: u64,
 }
 
@@ -31,9 +34,9 @@ impl Instance {
         self.run.component.as_ref().map_or(1, |component| component.period_ns())
     }
 
-    /// Time of the next event: the next sample.
-    pub(super) fn next_event_s(&self) -> f64 {
-        self.tick_s(self.run.tick + 1)
+    /// Time of the next event: the next sample. What an event-driven model waits for its clocks say.
+    pub(super) fn next_event_s(&self) -> Option<f64> {
+        (!self.model().is_event_driven()).then(|| self.tick_s(self.run.tick + 1))
     }
 
     /// Whether a step from `time_s` by `step_s` can be done; nothing is changed.
@@ -52,7 +55,7 @@ impl Instance {
         let periods = (found + 0.5) as u64;
         if !((found - periods as f64).abs() <= STEP_TOLERANCE && (least..=most).contains(&periods))
         {
-            return Err(self.wrong_step(step_s));
+            return self.agree_to_any(time_s, step_s);
         }
         let own_s = self.tick_s(self.run.tick);
         if !((time_s - own_s).abs() <= 0.5 * period_s) {
@@ -69,6 +72,42 @@ impl Instance {
             }
         }
         Ok(Agreed { periods })
+    }
+
+    /// A step that isn't a whole number of periods: an event-driven model takes it.
+    #[cold]
+    fn agree_to_any(&self, time_s: f64, step_s: f64) -> Result<Agreed, Refusal> {
+        if !self.model().is_event_driven() {
+            return Err(self.wrong_step(step_s));
+        }
+        let own_s = self.time_s();
+        // What was added up in another order differs in the last bits.
+        let tolerance_s = TIME_TOLERANCE_S.max(own_s.abs() * 4.0 * f64::EPSILON);
+        if !((time_s - own_s).abs() <= tolerance_s) {
+            return Err(Refusal::discard(format!(
+                "the communication point is {time_s} s, the model is at {own_s} s"
+            )));
+        }
+        let end_s = time_s + step_s;
+        if !end_s.is_finite() {
+            return Err(Refusal::discard(format!("the step ends at {end_s} s")));
+        }
+        if let Some(stop_s) = self.run.experiment.stop_s
+            && end_s > stop_s + tolerance_s
+        {
+            return Err(Refusal::error(format!(
+                "the step ends at {end_s} s, after the stop time of {stop_s} s"
+            )));
+        }
+        Ok(Agreed { periods: 0 })
+    }
+
+    /// Time of an event-driven model goes on. True: it wants to send, and the importer handles
+    /// events.
+    pub(super) fn step_to(&mut self, time_s: f64) -> bool {
+        self.set_time(time_s);
+        let due_s = self.due_s();
+        self.options.event_mode_used && due_s.is_some_and(|due_s| due_s <= time_s)
     }
 
     #[cold]

@@ -15,6 +15,12 @@ use octant_sample::{Aiding, DeviceTime, GimbalAngles, Mode, Output, Reference, S
 use octant_state::{Format, StateError, check_count};
 use table::slot;
 
+/// Everything that the core shows, as the values of the Calibrator's outputs.
+pub(crate) fn put_outputs(output: &Output, core: &Core, values: &mut Values) {
+    outputs::put(output, values);
+    outputs::put_parameters(core, values);
+}
+
 /// The core, and what turns the variables into its samples.
 #[derive(Clone, Debug)]
 pub struct Calibrator {

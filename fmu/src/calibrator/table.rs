@@ -5,6 +5,8 @@ mod parameters;
 mod ports;
 
 pub use enumerations::*;
+pub(crate) use parameters::PARAMETERS;
+pub(crate) use ports::OUTPUTS;
 
 use crate::table::{Model, Variable, concatenated};
 

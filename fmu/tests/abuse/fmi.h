@@ -203,5 +203,6 @@ void abuse_time(void);
 void abuse_states(void);
 void abuse_randomly(unsigned calls);
 void abuse_threads(unsigned steps);
+void abuse_bus(unsigned calls);
 
 #endif

@@ -232,6 +232,7 @@ int main(int count, char **arguments) {
     abuse_states();
     abuse_randomly(calls);
     abuse_threads(calls / 400);
+    abuse_bus(calls);
     printf("%d answers were wrong\n", failures);
     return failures != 0;
 }

@@ -4,6 +4,7 @@
 #![allow(clippy::print_stdout, reason = "results go to stdout")]
 
 mod compare;
+mod doctor;
 mod fault_page;
 mod faults;
 mod fmu;
@@ -15,8 +16,10 @@ mod report;
 mod run;
 mod run_system;
 mod score;
+mod serve;
 mod sweep;
 
+use crate::scenario::{Dimension, quantity_of};
 use crate::score::verdict::Verdict;
 use clap::{Args, Parser, Subcommand};
 use std::ffi::OsString;
@@ -39,6 +42,8 @@ enum Command {
     Compare(compare::Arguments),
     /// Put a recorded stream through the core again.
     Replay(replay::Arguments),
+    /// Serve the core as a device, that a harness drives over a port.
+    Serve(serve::Arguments),
     /// Score a recording.
     Score(score::Arguments),
     /// Tell what a sequence can observe and reach, before anything is run.
@@ -49,6 +54,8 @@ enum Command {
     Faults(faults::Arguments),
     /// Make, check and step FMUs.
     Fmu(fmu::Arguments),
+    /// Tell what this host can do for runs by the clock, and what to change.
+    Doctor(doctor::Arguments),
     /// Print the JSON Schema of scenarios, for completion in editors.
     Schema,
     #[command(external_subcommand)]
@@ -56,7 +63,7 @@ enum Command {
 }
 
 /// Commands that belong to the plan of the program and are not in this version.
-const LATER: [&str; 7] = ["campaign", "serve", "nightly", "selftest", "watch", "doctor", "verify"];
+const LATER: [&str; 5] = ["campaign", "nightly", "selftest", "watch", "verify"];
 
 /// A command that isn't there.
 fn other(words: &[OsString]) -> Failure {
@@ -114,11 +121,20 @@ impl From<crate::run::method::MethodError> for Failure {
         use crate::run::RunError;
         use crate::run::method::{MethodError, SetupError};
         use crate::source::SourceError;
+        use octant_link::harness::SessionError;
         match &error {
             MethodError::Setup(
                 SetupError::Recorder(_)
                 | SetupError::Source(SourceError::Use(UseError::Gone { .. }))
-                | SetupError::Endpoint(OpenError::Use(UseError::Gone { .. })),
+                | SetupError::Endpoint(
+                    OpenError::Use(UseError::Gone { .. })
+                    | OpenError::Live(
+                        SessionError::Port(_)
+                        | SessionError::NoAnswer { .. }
+                        | SessionError::Bye { .. }
+                        | SessionError::StartedAnew { .. },
+                    ),
+                ),
             ) => Self::bench(error),
             // A file that can't be read to its end is bad input, not a bench that failed.
             MethodError::Setup(_)
@@ -149,10 +165,12 @@ pub fn main() -> ExitCode {
         Command::Run(arguments) => run::command(&arguments),
         Command::Compare(arguments) => compare::command(&arguments),
         Command::Replay(arguments) => replay::command(&arguments),
+        Command::Serve(arguments) => serve::command(&arguments),
         Command::Score(arguments) => score::command(&arguments),
         Command::Observe(arguments) => observe::command(&arguments),
         Command::Report(arguments) => report::command(&arguments),
         Command::Faults(arguments) => faults::command(&arguments),
+        Command::Doctor(arguments) => doctor::command(&arguments),
         Command::Fmu(arguments) => fmu::command(&arguments),
         Command::Other(words) => Err(other(&words)),
         Command::Schema => {
@@ -166,6 +184,15 @@ pub fn main() -> ExitCode {
             ExitCode::from(failure.status)
         }
     }
+}
+
+/// A time of the command line: a number of seconds, or a quantity.
+fn seconds(name: &str, text: &str) -> Result<f64, Failure> {
+    let number = text.trim().parse::<f64>().ok().filter(|number| number.is_finite());
+    let quantity = || quantity_of(text).ok().filter(|quantity| quantity.is(Dimension::TIME));
+    number.or_else(|| quantity().map(|quantity| quantity.si)).ok_or_else(|| {
+        Failure::input(format!("{name}: found {text:?}, expected a time such as 10 or \"10 s\""))
+    })
 }
 
 /// Writes a result to stdout. A reader that has gone (`| head`) is no failure.

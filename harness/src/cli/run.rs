@@ -2,13 +2,14 @@
 
 use super::progress::with_progress;
 use super::{Failure, ScenarioArguments, load_fired, print, write};
+use crate::endpoint::LiveEndpoint;
 use crate::evidence::{self, Existing, FmuFacts, FolderError, Manifest, RunFacts, RunFolder};
 use crate::report;
 use crate::run::assemble::{parameter_text, text};
 use crate::run::method::{MethodError, SetupError, configurations, run_as_far_as_it_goes};
 use crate::run::raw_counts;
 use crate::run::{Control, Ended, MethodRun, Recording, Run, assemble};
-use crate::scenario::{Method, Scenario};
+use crate::scenario::{Endpoint, Method, Scenario};
 use crate::score::junit::junit;
 use crate::score::verdict::Verdict;
 use clap::Args;
@@ -149,7 +150,12 @@ fn set_up(scenario: &Scenario, method: Method, seed: u64) -> Result<(), Failure>
     let (plant, core, _) = configurations(scenario, method, seed).map_err(failure)?;
     octant_calibration::Core::new(&core).map_err(|error| failure(error.into()))?;
     crate::source::open(scenario, &plant).map_err(|error| failure(error.into()))?;
-    crate::endpoint::open(scenario, &core).map_err(|error| failure(error.into()))?;
+    // A device is greeted once, when the run begins: some restart when their port is opened.
+    match &scenario.endpoint {
+        Endpoint::Live(live) => LiveEndpoint::check(scenario, live),
+        _ => crate::endpoint::open(scenario, &core).map(|_| ()),
+    }
+    .map_err(|error| failure(error.into()))?;
     Ok(())
 }
 
@@ -278,7 +284,9 @@ fn execute(
             };
             run_as_far_as_it_goes(scenario, *method, seed, recording, control)
         };
-        let at_once = if scenario.realtime.by_clock { 1 } else { tasks.len() };
+        // A device does one thing after the other.
+        let alone = scenario.realtime.by_clock || matches!(scenario.endpoint, Endpoint::Live(_));
+        let at_once = if alone { 1 } else { tasks.len() };
         let mut results = Vec::with_capacity(tasks.len());
         for (tasks, controls) in tasks.chunks(at_once).zip(controls.chunks(at_once)) {
             std::thread::scope(|scope| {

@@ -2,9 +2,13 @@
 
 mod fmu;
 mod in_process;
+mod live;
+mod served;
 
 pub use fmu::FmuEndpoint;
 pub use in_process::InProcess;
+pub use live::{LiveEndpoint, configuration};
+pub use served::ServedCore;
 
 use crate::fmu::mapping::stepper::UseError;
 use crate::scenario::{self, Scenario};
@@ -12,6 +16,7 @@ use crate::source::Epoch;
 use octant_calibration::Config;
 use octant_calibration::state_machine::ConfigError;
 use octant_calibration::table::CalibrationTable;
+use octant_link::harness::SessionError;
 use octant_realtime::clock::HostTime;
 use octant_sample::parameters::PARAMETER_COUNT;
 use octant_sample::{Output, Parameters};
@@ -39,23 +44,32 @@ pub trait Endpoint {
     /// Name of the endpoint in messages: its URI.
     fn uri(&self) -> String;
 
-    /// Hands over one epoch without waiting for the answer; true where the answer is in `output`
-    /// already. Answers come in the order of their epochs, from here or from [`Self::answer`].
+    /// Hands over one epoch without waiting for the answer.
     ///
     /// # Errors
     /// As [`Self::step`].
-    fn send(&mut self, epoch: &Epoch, output: &mut Output) -> Result<bool, EndpointError> {
+    fn send(&mut self, epoch: &Epoch, output: &mut Output) -> Result<Sent, EndpointError> {
         self.step(epoch, output)?;
-        Ok(true)
+        Ok(Sent::Answered)
     }
 
-    /// Waits for the answer to the oldest epoch that was sent and not answered, until a time of the
-    /// host; false where it didn't come, and then `output` is as it was.
+    /// Waits for an answer until a time of the host. Answers come in the order of their epochs;
+    /// `Some` tells how many epochs before the one answered will have none. `None`: none came, and
+    /// `output` is as it was.
     ///
     /// # Errors
     /// As [`Self::step`].
-    fn answer(&mut self, _until: HostTime, _output: &mut Output) -> Result<bool, EndpointError> {
-        Ok(false)
+    fn answer(
+        &mut self,
+        _until: HostTime,
+        _output: &mut Output,
+    ) -> Result<Option<usize>, EndpointError> {
+        Ok(None)
+    }
+
+    /// How the endpoint's own clock goes against the host's, where it has one that is compared.
+    fn remote_clock(&self) -> Option<RemoteClock> {
+        None
     }
 
     /// The core starts anew, as at power on: it forgets everything and waits for its first sample.
@@ -93,12 +107,20 @@ impl<E: Endpoint + ?Sized> Endpoint for Box<E> {
         (**self).uri()
     }
 
-    fn send(&mut self, epoch: &Epoch, output: &mut Output) -> Result<bool, EndpointError> {
+    fn send(&mut self, epoch: &Epoch, output: &mut Output) -> Result<Sent, EndpointError> {
         (**self).send(epoch, output)
     }
 
-    fn answer(&mut self, until: HostTime, output: &mut Output) -> Result<bool, EndpointError> {
+    fn answer(
+        &mut self,
+        until: HostTime,
+        output: &mut Output,
+    ) -> Result<Option<usize>, EndpointError> {
         (**self).answer(until, output)
+    }
+
+    fn remote_clock(&self) -> Option<RemoteClock> {
+        (**self).remote_clock()
     }
 
     fn restart(&mut self, offset: Option<&Parameters>) -> Result<(), EndpointError> {
@@ -131,6 +153,30 @@ pub struct Conclusion {
     pub table: Option<CalibrationTable>,
 }
 
+/// What became of an epoch that was handed over without waiting.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Sent {
+    /// Its answer is there already.
+    Answered,
+    /// It is on its way, and [`Endpoint::answer`] has its answer when it comes.
+    Underway,
+    /// It could not be sent: too many are underway, or the port didn't take it.
+    NotSent,
+}
+
+/// An endpoint's clock against the host's.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RemoteClock {
+    /// How far it is ahead, ns, at the last exchange.
+    pub offset_ns: f64,
+    /// By how much that may be wrong, ns.
+    pub bound_ns: f64,
+    /// By how much it goes faster; `None`: not known yet.
+    pub skew: Option<f64>,
+    /// Exchanges of the time.
+    pub exchanges: u64,
+}
+
 /// Why the endpoint of a scenario can't be opened.
 #[derive(Debug, thiserror::Error)]
 pub enum OpenError {
@@ -140,6 +186,21 @@ pub enum OpenError {
     /// An FMU can't be used.
     #[error(transparent)]
     Use(#[from] UseError),
+    /// A device can't be used.
+    #[error("begin a session with the device: {0}")]
+    Live(#[from] SessionError),
+    /// The line or bus is too slow for the clock.
+    #[error(transparent)]
+    Load(#[from] octant_link::load::LoadError),
+    /// A device has one core, with one configuration.
+    #[error(
+        "set the core at {uri} to a second method, which the scenario's [baseline] asks for: that can \
+         be done with Octant's own core alone"
+    )]
+    OneMethod {
+        /// The port.
+        uri: String,
+    },
 }
 
 /// Opens the endpoint of a scenario with the core of `config`; `None` where it is the core in this
@@ -152,6 +213,9 @@ pub fn open(scenario: &Scenario, config: &Config) -> Result<Option<Box<dyn Endpo
         scenario::Endpoint::InProcess => Ok(None),
         scenario::Endpoint::Fmu(fmu) => {
             Ok(Some(Box::new(FmuEndpoint::open(scenario, fmu, config)?)))
+        }
+        scenario::Endpoint::Live(live) => {
+            Ok(Some(Box::new(LiveEndpoint::open(scenario, live, config)?)))
         }
     }
 }
@@ -173,6 +237,9 @@ pub enum EndpointError {
         /// What happened.
         reason: String,
     },
+    /// The session with the device can't go on.
+    #[error("endpoint {0}")]
+    Live(#[from] SessionError),
     /// The core behind the endpoint can't be started anew.
     #[error("restart the core at {uri}: {reason}")]
     Restart {

@@ -19,7 +19,7 @@ pub fn fmus(scenario: &Scenario) -> Result<Vec<FmuFacts>, UseError> {
     };
     let endpoint = match &scenario.endpoint {
         Endpoint::Fmu(fmu) => Some(("endpoint", fmu)),
-        Endpoint::InProcess => None,
+        Endpoint::InProcess | Endpoint::Live(_) => None,
     };
     source.into_iter().chain(endpoint).map(|(role, fmu)| facts(scenario, role, fmu)).collect()
 }

@@ -13,6 +13,7 @@ pub mod counterfactual;
 mod drift;
 pub mod fault_picture;
 pub mod number;
+mod pacing;
 mod page;
 mod parameters;
 pub mod run;

@@ -5,6 +5,7 @@ use super::chart::{Chart, Line, Role};
 use super::counterfactual::counterfactual;
 use super::drift::drift;
 use super::number;
+use super::pacing::pacing;
 use super::page::{badge, page};
 use crate::score::summary::{Calibration, HeightChannel, Summary};
 use crate::score::verdict::Verdict;
@@ -103,6 +104,7 @@ pub fn render(data: &ReportData) -> String {
         (calibration(data))
         (gimbals(data))
         (events(data))
+        (pacing(summary))
         (provenance(data))
     };
     page(&format!("{}: {}", summary.scenario, summary.verdict.name()), &body)

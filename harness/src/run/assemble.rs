@@ -142,6 +142,12 @@ fn too_late(limits: &Realtime, pacing: &Pacing) -> Vec<Finding> {
             pacing.late_answers, pacing.frames, limits.late_answers
         ));
     }
+    if pacing.missed_answers + pacing.not_sent > 0 {
+        reasons.push(format!(
+            "{} samples were never answered, {} could not be sent",
+            pacing.missed_answers, pacing.not_sent
+        ));
+    }
     if pacing.dropped_records > 0 {
         reasons.push(format!(
             "{} steps found no room on their way to the recorder: the recording is not complete",
@@ -209,8 +215,12 @@ pub fn facts(scenario: &Scenario) -> Vec<(String, String)> {
         }
         Source::Fmu(fmu) => facts.push(("source".to_owned(), format!("FMU {}", fmu.file.0))),
     }
-    if let Endpoint::Fmu(fmu) = &scenario.endpoint {
-        facts.push(("core".to_owned(), format!("FMU {}", fmu.file.0)));
+    match &scenario.endpoint {
+        Endpoint::InProcess => {}
+        Endpoint::Fmu(fmu) => facts.push(("core".to_owned(), format!("FMU {}", fmu.file.0))),
+        Endpoint::Live(live) => {
+            facts.push(("core".to_owned(), format!("device at {}, in lock-step", live.uri)));
+        }
     }
     facts
 }

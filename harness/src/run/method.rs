@@ -187,6 +187,22 @@ pub fn configurations(
     Ok((plant, core, draws))
 }
 
+/// The configuration of the core of a method, as a run has it.
+///
+/// # Errors
+/// If it can't be made.
+pub fn core_of(
+    scenario: &Scenario,
+    method: Method,
+    seed: u64,
+) -> Result<core::Config, MethodError> {
+    let (plant, mut core, _) = configurations(scenario, method, seed)?;
+    if scenario.source.is_recorded() {
+        settle(scenario, &plant, &mut core)?;
+    }
+    Ok(core)
+}
+
 /// Runs one method of a scenario with a seed.
 ///
 /// # Errors

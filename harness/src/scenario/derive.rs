@@ -2,7 +2,7 @@
 
 use super::document::{Node, Table, Value, parse_default};
 use super::error::Problem;
-use super::keys::{Default, ENDPOINT_FMU, SOURCE_FMU, Section};
+use super::keys::{Default, ENDPOINT_FMU, ENDPOINT_LINK, SOURCE_FMU, Section};
 use super::quantity::{self, Dimension};
 
 /// Writes the defaults that depend on other keys into a document that hasn't been checked yet:
@@ -28,6 +28,13 @@ pub(crate) fn derive(document: &mut Table) {
             fmu(document, &format!("{name}.fmu"), keys);
         }
     }
+    if is_live(document) {
+        for key in ENDPOINT_LINK.keys {
+            if let Default::Value(value) = key.default {
+                set(document, &format!("endpoint.link.{}", key.name), value);
+            }
+        }
+    }
     for table in ["source.text", "source.mcap"] {
         if document.at(table).is_some() {
             let rate = text(document, "imu.rate").unwrap_or("200 Hz").to_owned();
@@ -45,6 +52,11 @@ pub(crate) fn derive(document: &mut Table) {
 }
 
 /// The table of an FMU with its defaults, also where the scenario leaves it out.
+/// The core is at the other end of a wire.
+fn is_live(document: &Table) -> bool {
+    text(document, "endpoint.uri").is_some_and(octant_link::Uri::is_one)
+}
+
 fn fmu(document: &mut Table, path: &str, keys: &Section) {
     for key in keys.keys {
         if let Default::Value(value) = key.default {
@@ -157,6 +169,9 @@ pub(crate) fn without_effect(document: &Table) -> Vec<(String, &'static str)> {
     }
     if !text(document, "endpoint.uri").is_some_and(|uri| uri.starts_with("fmu:")) {
         add("endpoint", &["fmu"], "without effect: endpoint.uri is not fmu:FILE");
+    }
+    if !is_live(document) {
+        add("endpoint", &["link"], "without effect: endpoint.uri names no device");
     }
     for table in ["source.fmu", "endpoint.fmu"] {
         if is(&format!("{table}.process"), "shared") {

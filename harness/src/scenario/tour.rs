@@ -81,6 +81,7 @@ const EXAMPLES: &[(&str, &str)] = &[
         r#"[{ variable = "imu.fx", unit = "g" }, { variable = "imu.fy", unit = "g" }, { variable = "imu.fz", unit = "g" }]"#,
     ),
     ("source.fmu.map.gimbal.roll", r#"{ constant = "0 deg" }"#),
+    ("endpoint.link.hello", r#""10 s""#),
     ("endpoint.fmu.time_limit", r#""10 s""#),
     ("endpoint.fmu.tolerance", "1e-6"),
     ("endpoint.fmu.parameters", r#"{ "filter.gain" = 0.5 }"#),

@@ -81,6 +81,8 @@ impl Scenario {
             };
             let resolved = match (path, written.split_once(':')) {
                 ("source.uri" | "endpoint.uri", None) => continue,
+                // A port, and no file.
+                ("endpoint.uri", Some((scheme, _))) if scheme != "fmu" => continue,
                 ("source.uri" | "endpoint.uri", Some((scheme, file))) => {
                     format!("{scheme}:{}", absolute(file))
                 }

@@ -410,6 +410,9 @@ pub struct Pacing {
     pub period_us: f64,
     /// How late they began.
     pub lateness_us: Lateness,
+    /// Histogram of that: an upper edge, ns, and how many were at most as late and later than the
+    /// edge before.
+    pub lateness_histogram_ns: Vec<[u64; 2]>,
     /// Lateness from which on a frame is an overrun, µs.
     pub overrun_us: f64,
     /// Overruns.
@@ -424,8 +427,27 @@ pub struct Pacing {
     pub answer_us: Lateness,
     /// Frames that ended without their answer.
     pub late_answers: u64,
+    /// Samples whose answer never came, while later ones were answered.
+    pub missed_answers: u64,
+    /// Samples that could not be sent: the device had too many already, or the port was full.
+    pub not_sent: u64,
+    /// The device's clock against the host's; null where it has none that was compared.
+    pub device_clock: Option<DeviceClock>,
     /// Steps that found no room on their way to the recorder.
     pub dropped_records: u64,
+}
+
+/// A device's clock against the host's.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct DeviceClock {
+    /// How far it was ahead at the last exchange, µs.
+    pub offset_us: f64,
+    /// By how much that may be wrong, µs.
+    pub bound_us: f64,
+    /// By how much it goes faster; null where there were too few exchanges.
+    pub skew_ppm: Option<f64>,
+    /// Exchanges of the time.
+    pub exchanges: u64,
 }
 
 /// Quantiles of a duration, µs.

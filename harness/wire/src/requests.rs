@@ -100,6 +100,46 @@ impl Requests {
     }
 }
 
+#[cfg(feature = "state")]
+mod state {
+    use super::{AidingMessage, Pacing, Requests};
+    use crate::{Kind, Message};
+    use octant_state::{Reader, State, StateError, Writer};
+
+    impl State for Requests {
+        fn save(&self, to: &mut Writer) {
+            to.value("real time", &(self.pacing == Pacing::RealTime));
+            let aiding = self.aiding.map(|aiding| Message::Aiding(aiding).payload());
+            to.value("aiding", &aiding.as_ref().map(|payload| payload.bytes()));
+            to.value("answered", &self.answered);
+            to.value("status", Message::Status(self.status).payload().bytes());
+        }
+
+        fn load(&mut self, from: &mut Reader<'_>) -> Result<(), StateError> {
+            let none = |field| move |_| StateError::value(field, "it is no message");
+            let real_time: bool = from.value("real time")?;
+            self.pacing = if real_time { Pacing::RealTime } else { Pacing::LockStep };
+            let aiding: Option<&[u8]> = from.value("aiding")?;
+            self.aiding = aiding
+                .map(|bytes| {
+                    let read = Message::read(Kind::Aiding, bytes).map_err(none("aiding"))?;
+                    Ok::<Option<AidingMessage>, StateError>(match read {
+                        Message::Aiding(aiding) => Some(aiding),
+                        _ => None,
+                    })
+                })
+                .transpose()?
+                .flatten();
+            self.answered = from.value("answered")?;
+            let status = Message::read(Kind::Status, from.value("status")?);
+            if let Message::Status(status) = status.map_err(none("status"))? {
+                self.status = status;
+            }
+            Ok(())
+        }
+    }
+}
+
 /// Counts stay at their largest value.
 fn add(count: &mut u32, more: u32) {
     *count = count.saturating_add(more);

@@ -160,7 +160,7 @@ fn set_points_come_late() {
     // delay.
     assert_eq!(late(291, 125), [(301, 330, STOPS[2]), (401, 415, STOPS[3])]);
     // It begins after the change: what stood before the onset isn't taken back.
-    assert_eq!(late(310, 60), []);
+    assert!(late(310, 60).is_empty());
 }
 
 #[test]
@@ -168,7 +168,7 @@ fn lost_set_points_are_missed_until_the_end() {
     let lost = |first, epochs| departures(&run(fault("command-lost", &[], first, epochs)));
     assert_eq!(lost(250, 200), [(301, 449, STOPS[2])]);
     assert_eq!(lost(301, 10), [(301, 310, STOPS[2])]);
-    assert_eq!(lost(310, 50), [], "in a dwell nothing is missed");
+    assert!(lost(310, 50).is_empty(), "in a dwell nothing is missed");
 }
 
 #[test]

@@ -60,6 +60,9 @@ pub(super) fn do_step(handle: *mut c_void, time_s: f64, step_s: f64, places: &Pl
         if agreed.periods == 1 {
             let event = instance.step_period()?;
             places.fill(instance, event, false)?;
+        } else if agreed.periods == 0 {
+            let event = instance.step_to(time_s + step_s);
+            places.fill(instance, event, false)?;
         } else {
             long = Some(Long {
                 periods: agreed.periods,

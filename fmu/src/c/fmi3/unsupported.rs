@@ -3,7 +3,7 @@
 use super::enter;
 use crate::c::mode::{self, Modes, Refusal, Standard};
 use octant_fmi::fmi3::{
-    Binary, Boolean, Instance as Handle, OK, Status, String, ValueReference, signature,
+    Boolean, Instance as Handle, OK, Status, String, ValueReference, signature,
 };
 
 /// Always an error.
@@ -28,13 +28,16 @@ fn no_variables(
         if count == 0 && value_count == 0 {
             return Ok(OK);
         }
-        Err(Refusal::error(format!("there are no variables of type {of}")))
+        Err(Refusal::error(format!("there are no {of}")))
     })
 }
 
 const GET: Modes = mode::get(Standard::Fmi3);
 /// Where clocks may be asked for.
-const CLOCKS: Modes = Modes::of(&[mode::Mode::Initialization, mode::Mode::Event]);
+pub(super) const CLOCKS: Modes = Modes::of(&[mode::Mode::Initialization, mode::Mode::Event]);
+
+/// Clocks that tick when something comes, or after an interval in seconds, need no more.
+const OTHER_CLOCKS: &str = "clocks with fractions, shifts or intervals of the importer";
 
 const NO_DERIVATIVES: &str = "the model is sampled: its variables have no derivatives";
 const NO_STRUCTURE: &str = "there are no structural parameters";
@@ -112,7 +115,7 @@ refused! {
 }
 
 macro_rules! absent {
-    ($($modes:expr, $of:literal, $count:ident $(, $value_count:ident)?; $alias:ident: fn $name:ident($($argument:ident: $kind:ty),* $(,)?);)*) => {
+    ($($modes:expr, $of:expr, $count:ident $(, $value_count:ident)?; $alias:ident: fn $name:ident($($argument:ident: $kind:ty),* $(,)?);)*) => {
         export! {$(
             /// No model has variables of the type: with none given there is nothing to do.
             $alias: fn $name(i: Handle $(, $argument: $kind)*) -> Status {
@@ -125,64 +128,41 @@ macro_rules! absent {
 }
 
 absent! {
-    GET, "String", count, value_count; GetString: fn fmi3GetString(
+    GET, "variables of type String", count, value_count; GetString: fn fmi3GetString(
         references: *const ValueReference, count: usize, values: *mut String, value_count: usize,
     );
-    mode::SET, "String", count, value_count; SetString: fn fmi3SetString(
+    mode::SET, "variables of type String", count, value_count; SetString: fn fmi3SetString(
         references: *const ValueReference, count: usize, values: *const String, value_count: usize,
     );
-    GET, "Binary", count, value_count; GetBinary: fn fmi3GetBinary(
-        references: *const ValueReference,
-        count: usize,
-        sizes: *mut usize,
-        values: *mut Binary,
-        value_count: usize,
-    );
-    mode::SET, "Binary", count, value_count; SetBinary: fn fmi3SetBinary(
-        references: *const ValueReference,
-        count: usize,
-        sizes: *const usize,
-        values: *const Binary,
-        value_count: usize,
-    );
-    CLOCKS, "Clock", count; GetClock: fn fmi3GetClock(
-        references: *const ValueReference, count: usize, values: *mut Boolean,
-    );
-    CLOCKS, "Clock", count; SetClock: fn fmi3SetClock(
-        references: *const ValueReference, count: usize, values: *const Boolean,
-    );
-    CLOCKS, "Clock", count; GetIntervalDecimal: fn fmi3GetIntervalDecimal(
-        references: *const ValueReference, count: usize, intervals: *mut f64, qualifiers: *mut i32,
-    );
-    CLOCKS, "Clock", count; GetIntervalFraction: fn fmi3GetIntervalFraction(
+    CLOCKS, OTHER_CLOCKS, count; GetIntervalFraction: fn fmi3GetIntervalFraction(
         references: *const ValueReference,
         count: usize,
         counters: *mut u64,
         resolutions: *mut u64,
         qualifiers: *mut i32,
     );
-    CLOCKS, "Clock", count; GetShiftDecimal: fn fmi3GetShiftDecimal(
+    CLOCKS, OTHER_CLOCKS, count; GetShiftDecimal: fn fmi3GetShiftDecimal(
         references: *const ValueReference, count: usize, shifts: *mut f64,
     );
-    CLOCKS, "Clock", count; GetShiftFraction: fn fmi3GetShiftFraction(
+    CLOCKS, OTHER_CLOCKS, count; GetShiftFraction: fn fmi3GetShiftFraction(
         references: *const ValueReference,
         count: usize,
         counters: *mut u64,
         resolutions: *mut u64,
     );
-    CLOCKS, "Clock", count; SetIntervalDecimal: fn fmi3SetIntervalDecimal(
+    CLOCKS, OTHER_CLOCKS, count; SetIntervalDecimal: fn fmi3SetIntervalDecimal(
         references: *const ValueReference, count: usize, intervals: *const f64,
     );
-    CLOCKS, "Clock", count; SetIntervalFraction: fn fmi3SetIntervalFraction(
+    CLOCKS, OTHER_CLOCKS, count; SetIntervalFraction: fn fmi3SetIntervalFraction(
         references: *const ValueReference,
         count: usize,
         counters: *const u64,
         resolutions: *const u64,
     );
-    CLOCKS, "Clock", count; SetShiftDecimal: fn fmi3SetShiftDecimal(
+    CLOCKS, OTHER_CLOCKS, count; SetShiftDecimal: fn fmi3SetShiftDecimal(
         references: *const ValueReference, count: usize, shifts: *const f64,
     );
-    CLOCKS, "Clock", count; SetShiftFraction: fn fmi3SetShiftFraction(
+    CLOCKS, OTHER_CLOCKS, count; SetShiftFraction: fn fmi3SetShiftFraction(
         references: *const ValueReference,
         count: usize,
         counters: *const u64,

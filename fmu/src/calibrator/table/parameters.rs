@@ -536,4 +536,4 @@ const COUNT: usize = {
     count
 };
 
-pub(super) const PARAMETERS: [Variable; COUNT] = concatenated(PARTS);
+pub(crate) const PARAMETERS: [Variable; COUNT] = concatenated(PARTS);

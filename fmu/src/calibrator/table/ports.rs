@@ -168,7 +168,7 @@ const SOLUTION: [Variable; 16] = [
         .described("Number of times that the estimated parameters have changed."),
 ];
 
-pub(super) const OUTPUTS: [Variable; SOLUTION.len() + 2 * 7] =
+pub(crate) const OUTPUTS: [Variable; SOLUTION.len() + 2 * 7] =
     crate::table::concatenated(&[&SOLUTION, &ESTIMATES, &SIGMAS]);
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! `octant fmu run`.
 
 use super::super::progress::with_progress;
-use super::super::{Failure, print, print_json};
+use super::super::{Failure, print, print_json, seconds};
 use crate::fmu::OpenError;
 use crate::fmu::instance::{Instance, InstanceError, InterfaceKind, Options, Place};
 use crate::fmu::mapping::settings::{Settings, Starts};
@@ -9,7 +9,6 @@ use crate::fmu::run::input::{InputError, Inputs};
 use crate::fmu::run::output::{Outputs, Sink};
 use crate::fmu::run::{Finished, SimulateError, Span, simulate};
 use crate::run::Control;
-use crate::scenario::quantity::{Dimension, parse};
 use crate::scenario::{ScenarioError, setting_argument};
 use crate::score::verdict::Verdict;
 use clap::{Args, ValueEnum};
@@ -251,15 +250,6 @@ fn span(
         .or_else(internal)
         .unwrap_or((stop_s - start_s) / 500.0);
     Ok(Span { start_s, stop_s, step_s, tolerance: arguments.tolerance.or(default.tolerance) })
-}
-
-/// A time of the command line: a number of seconds, or a quantity.
-fn seconds(name: &str, text: &str) -> Result<f64, Failure> {
-    let number = text.trim().parse::<f64>().ok().filter(|number| number.is_finite());
-    let quantity = || parse(text).ok().filter(|quantity| quantity.is(Dimension::TIME));
-    number.or_else(|| quantity().map(|quantity| quantity.si)).ok_or_else(|| {
-        Failure::input(format!("{name}: found {text:?}, expected a time such as 10 or \"10 s\""))
-    })
 }
 
 /// What the FMU said beside results.

@@ -17,7 +17,7 @@ fn scenario(text: &str) -> Scenario {
 fn fmu_of(scenario: &Scenario) -> &Fmu {
     match &scenario.endpoint {
         scenario::Endpoint::Fmu(fmu) => fmu,
-        scenario::Endpoint::InProcess => panic!("an FMU"),
+        scenario::Endpoint::InProcess | scenario::Endpoint::Live(_) => panic!("an FMU"),
     }
 }
 

@@ -4,7 +4,7 @@ use super::describe::{STEP_S, STOP_S, TOOL, has_start};
 use super::prose::{self, Prose};
 use crate::report::number::plain;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
-use octant_fmu::table::{Causality, Kind, Model, Quantity, Variability, Variable};
+use octant_fmu::table::{Causality, Kind, Model, Quantity, Ticks, Variability, Variable};
 
 /// Which standard the page is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -41,7 +41,12 @@ impl Standard {
 }
 
 /// The page.
-pub(super) fn documentation(model: &Model, standard: Standard, icon: &str) -> String {
+pub(super) fn documentation(
+    model: &Model,
+    standard: Standard,
+    icon: &str,
+    has_reference: bool,
+) -> String {
     let identifier = format!("{}_{}", model.stem, standard.suffix());
     let prose = prose::of(model);
     html! {
@@ -64,9 +69,9 @@ pub(super) fn documentation(model: &Model, standard: Standard, icon: &str) -> St
                             p.soft { (standard.name()) " co-simulation · " (TOOL) }
                         }
                     }
-                    (contents(model))
+                    (contents(model, has_reference))
                     (sections(&prose, standard))
-                    (reference(&identifier))
+                    @if has_reference { (reference(&identifier)) }
                     h2 id="log" { "Log categories" }
                     table {
                         tbody {
@@ -94,12 +99,12 @@ const PARTS: [(Causality, &str, &str); 5] = [
     (Causality::Local, "local", "Local variables"),
 ];
 
-fn contents(model: &Model) -> Markup {
+fn contents(model: &Model, has_reference: bool) -> Markup {
     let has = |causality| model.variables.iter().any(|variable| variable.causality == causality);
     html! {
         nav {
             @for (id, title) in prose::SECTIONS { a href={ "#" (id) } { (title) } " " }
-            a href="#check" { "Check your tool" } " "
+            @if has_reference { a href="#check" { "Check your tool" } " " }
             a href="#log" { "Log categories" } " "
             @for (causality, id, title) in PARTS {
                 @if has(causality) { a href={ "#" (id) } { (title) } " " }
@@ -184,6 +189,12 @@ fn row(slot: usize, variable: &Variable, standard: Standard) -> Markup {
             @if has_start(variable) { td { (start(variable)) } }
             td {
                 (variable.description)
+                @if let Kind::Binary(binary) = variable.kind {
+                    p.soft {
+                        (binary.mime_type) ", at most " (binary.max_bytes) " bytes, at the ticks of "
+                        (binary.clock)
+                    }
+                }
                 @if let Kind::Enumeration(enumeration) = variable.kind {
                     ul {
                         @for (value, name, description) in enumeration.items {
@@ -205,6 +216,9 @@ fn kind(kind: Kind, standard: Standard) -> &'static str {
         (Standard::Fmi3, Kind::Integer) => "Int32",
         (Standard::Fmi3, Kind::Enumeration(_)) => "Enumeration",
         (_, Kind::Boolean) => "Boolean",
+        (_, Kind::Binary(_)) => "Binary",
+        (_, Kind::Clock(Ticks::Triggered)) => "Clock, triggered",
+        (_, Kind::Clock(Ticks::Countdown)) => "Clock, countdown",
     }
 }
 
@@ -256,6 +270,7 @@ fn start(variable: &Variable) -> String {
                 let item = enumeration.items.iter().find(|(item, ..)| f64::from(*item) == value);
                 item.map_or_else(|| value.to_string(), |(_, name, _)| (*name).to_owned())
             }
+            Kind::Binary(_) | Kind::Clock(_) => String::new(),
             _ => displayed(variable, value),
         }
     };

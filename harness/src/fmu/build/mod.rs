@@ -5,11 +5,13 @@
 //! | [`library`] | the shared library that goes in, and its platform |
 //! | [`describe`] | `modelDescription.xml` of both standards |
 //! | [`terminals`] | `terminalsAndIcons.xml` |
+//! | [`bus`] | what FMI-LS-BUS adds to it, and its manifest |
 //! | [`documentation`], [`prose`] | `documentation/index.html` |
 //! | [`licences`] | `documentation/licenses` |
 //! | [`element`], [`archive`] | XML and ZIP whose bytes follow from what is in them alone |
 
 mod archive;
+mod bus;
 mod describe;
 mod documentation;
 mod element;
@@ -32,6 +34,8 @@ use documentation::{Standard, documentation};
 use library::Library;
 use octant_fmu::c::{CATEGORIES, token};
 use octant_fmu::calibrator::Calibrator;
+use octant_fmu::calibrator_can::CalibratorCan;
+use octant_fmu::component::Component as _;
 use octant_fmu::plant::Plant;
 use octant_fmu::table::Model;
 use reference::Reference;
@@ -156,7 +160,9 @@ fn icons(model: &Model) -> Icons {
 /// One of our models, with what goes into its FMUs.
 struct Own {
     model: &'static Model,
-    reference: Reference,
+    /// Inputs and results that a user checks their tool with. A model on a bus has none: tables of
+    /// values have no columns for what comes with clocks.
+    reference: Option<Reference>,
 }
 
 /// The libraries, each for another platform.
@@ -188,11 +194,11 @@ fn libraries(options: &Options) -> Result<Vec<Library>, BuildError> {
     Ok(found.into_iter().map(|(_, library)| library).collect())
 }
 
-/// Our models, run with their start values.
+/// The models that are wired to a system, run with their start values.
 fn own() -> Result<[Own; 2], BuildError> {
     let references = reference::closed_loop::<Plant, Calibrator>();
     let references = references.map_err(|reason| BuildError::Model { reason })?;
-    Ok(references.map(|reference| Own { model: reference.model(), reference }))
+    Ok(references.map(|reference| Own { model: reference.model(), reference: Some(reference) }))
 }
 
 /// Builds everything; the files that were written.
@@ -227,10 +233,14 @@ pub fn build(options: &Options) -> Result<Vec<PathBuf>, BuildError> {
             }
         }
     }
+    let can = Own { model: CalibratorCan::MODEL, reference: None };
+    let name = format!("{}_{}.fmu", can.model.stem, Standard::Fmi3.suffix());
+    write(&name, fmu(&can, Standard::Fmi3, &libraries))?;
     write("octant.ssp", system::archive_of(&own, &second, &configured))?;
     if options.scenario.is_some() {
         let path = options.out.clone();
-        for (name, bytes) in configured.files(&own).map_err(failed(path))? {
+        let models = own.iter().chain([&can]).map(|own| own.model);
+        for (name, bytes) in configured.files(models).map_err(failed(path))? {
             write(&name, Ok(bytes))?;
         }
     }
@@ -256,8 +266,14 @@ fn fmu(own: &Own, standard: Standard, libraries: &[Library]) -> std::io::Result<
         let path = format!("binaries/{folder}/{identifier}.{}", library.platform.extension);
         files.push(File::new(path, library.bytes.clone()));
     }
-    files.push(File::new("documentation/index.html", documentation(model, standard, icons.svg)));
-    files.extend(reference::files(&own.reference, standard));
+    let page = documentation(model, standard, icons.svg, own.reference.is_some());
+    files.push(File::new("documentation/index.html", page));
+    if let Some(reference) = &own.reference {
+        files.extend(reference::files(reference, standard));
+    }
+    if let Some(manifest) = bus::manifest(model) {
+        files.push(File::new(bus::MANIFEST, manifest.document()?));
+    }
     files.extend(licences::files(&identifier));
     match standard {
         Standard::Fmi2 => files.push(File::new("model.png", icons.png)),
@@ -287,7 +303,7 @@ mod tests {
         let platform = library::Platform { fmi2: "linux64", fmi3: "x86_64-linux", extension: "so" };
         let libraries = [Library { bytes: b"library".to_vec(), platform }];
         let [reference, _] = reference::closed_loop::<Sample, Sample>().unwrap();
-        let own = Own { model: &sample::SAMPLE, reference };
+        let own = Own { model: &sample::SAMPLE, reference: Some(reference) };
         let bytes = fmu(&own, standard, &libraries).unwrap();
         assert_eq!(bytes, fmu(&own, standard, &libraries).unwrap());
         let mut archive = zip::ZipArchive::new(Cursor::new(bytes)).unwrap();

@@ -14,6 +14,8 @@ pub(super) const SECTIONS: [(&str, &str); 5] = [
 
 /// What is different between the models.
 pub(super) struct Prose {
+    /// One step is one sample period, and values stand in inputs and outputs.
+    is_sampled: bool,
     what: &'static [&'static str],
     time: &'static [&'static str],
     wiring: &'static [&'static str],
@@ -22,7 +24,11 @@ pub(super) struct Prose {
 
 /// The words for a model.
 pub(super) fn of(model: &Model) -> Prose {
-    if model.stem == "plant" { PLANT } else { CALIBRATOR }
+    match model.stem {
+        "plant" => PLANT,
+        _ if model.needs_clocks() => ON_CAN,
+        _ => CALIBRATOR,
+    }
 }
 
 impl Prose {
@@ -31,23 +37,16 @@ impl Prose {
         let with = |own: &'static [&'static str], more: &[&'static str]| [own, more].concat();
         [
             self.what.to_vec(),
-            with(
-                self.time,
-                &[
-                    TIME,
-                    match standard {
-                        Standard::Fmi2 => TIME_2,
-                        Standard::Fmi3 => TIME_3,
-                    },
-                ],
-            ),
-            with(
-                self.wiring,
-                &[match standard {
-                    Standard::Fmi2 => WIRING_2,
-                    Standard::Fmi3 => WIRING_3,
-                }],
-            ),
+            match (self.is_sampled, standard) {
+                (false, _) => self.time.to_vec(),
+                (true, Standard::Fmi2) => with(self.time, &[TIME, TIME_2]),
+                (true, Standard::Fmi3) => with(self.time, &[TIME, TIME_3]),
+            },
+            match (self.is_sampled, standard) {
+                (false, _) => self.wiring.to_vec(),
+                (true, Standard::Fmi2) => with(self.wiring, &[WIRING_2]),
+                (true, Standard::Fmi3) => with(self.wiring, &[WIRING_3]),
+            },
             with(self.values, &[VALUES]),
             STATES.to_vec(),
         ]
@@ -55,6 +54,7 @@ impl Prose {
 }
 
 const CALIBRATOR: Prose = Prose {
+    is_sampled: true,
     what: &[
         "The calibration core of a dual-axis rotational inertial navigation system: it commands the \
          two gimbals through a sequence of positions, estimates the errors of gyros and \
@@ -82,6 +82,7 @@ const CALIBRATOR: Prose = Prose {
 };
 
 const PLANT: Prose = Prose {
+    is_sampled: true,
     what: &[
         "Motion of the case, two gimbals, gyros and accelerometers with their errors, the reference, \
          and faults: what the core is calibrated against. It knows the truth and says it in outputs \
@@ -99,6 +100,43 @@ const PLANT: Prose = Prose {
     ],
     values: &[
         "Noise comes from the seed alone: the same seed is the same noise, whatever else changes.",
+    ],
+};
+
+const ON_CAN: Prose = Prose {
+    is_sampled: false,
+    what: &[
+        "The calibration core of a dual-axis rotational inertial navigation system as a device on a \
+         CAN bus: a network FMU of FMI-LS-BUS 1.0.0 (network abstraction, low cut). It is the same \
+         code as in the octant program, and gives the same bits.",
+        "The frames are those of octant's wire protocol, classic CAN or CAN FD, as a real bus carries \
+         them: the harness says hello, sends samples and references, and gets outputs, parameters \
+         with their standard deviations, heartbeats and status. Identifiers have 11 bits; the \
+         protocol's CAN database names every signal.",
+    ],
+    time: &[
+        "It is driven by events, and takes communication steps of any length. What comes with \
+         can.Rx_Clock is taken when the event ends, and the answer is there at once: \
+         can.Tx_Clock, a countdown clock, then has the interval 0. Between answers its interval \
+         leads to the next status (once a second) or heartbeat. A tick at which there is nothing to \
+         send has no bytes.",
+        "Event mode has to be used: without it there are no clocks, and the device hears nothing. \
+         There is no early return and no intermediate update.",
+    ],
+    wiring: &[
+        "The terminal can has the four variables of the bus. Connect it to a bus simulation, or to \
+         one other node. Without can.bus_notifications the device sends and forgets; with it, it has \
+         one frame at a time on the bus and sends it until it is confirmed, keeps error counters, \
+         tells its node state, is silent when it is off the bus, and comes back after 128 operations.",
+        "At the start it tells the bus simulation its bit rates, what to do with frames that lose the \
+         bus, and that it is error-active. What it can't read it quotes back in a Format Error. It \
+         never sleeps: a Wakeup finds it awake. Remote, extended and CAN XL frames are none of its.",
+        "The other outputs show what the core does, and are not on the bus as such.",
+    ],
+    values: &[
+        "can.Rx_Data is set while can.Rx_Clock ticks, with at most 65535 bytes. can.Tx_Data is \
+         got while can.Tx_Clock ticks, and is empty otherwise. What is more waits for the next \
+         tick, which is due at once.",
     ],
 };
 

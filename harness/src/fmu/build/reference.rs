@@ -161,5 +161,7 @@ fn cell(values: &Values, slot: usize, kind: Kind) -> String {
         Kind::Integer | Kind::Enumeration(_) => values.integer(slot).to_string(),
         Kind::Count => values.count(slot).to_string(),
         Kind::Boolean => u8::from(values.boolean(slot)).to_string(),
+        // Models that have them have no table of values.
+        Kind::Binary(_) | Kind::Clock(_) => String::new(),
     }
 }

@@ -97,6 +97,8 @@ fn parameter(variable: &Variable, value: f64) -> Element {
             Element::new("ssv:Integer").with("value", number(value))
         }
         Kind::Boolean => Element::new("ssv:Boolean").with("value", (value != 0.0).to_string()),
+        // No parameter is one.
+        Kind::Binary(_) | Kind::Clock(_) => Element::new("ssv:Binary"),
     }
 }
 
@@ -168,6 +170,8 @@ fn connector_type(variable: &Variable) -> Element {
         Kind::Real | Kind::Count => Element::new("ssc:Real").with_some("unit", unit_of(variable)),
         Kind::Integer | Kind::Enumeration(_) => Element::new("ssc:Integer"),
         Kind::Boolean => Element::new("ssc:Boolean"),
+        // SSP 1.0 has no clocks: models with them are in no system.
+        Kind::Binary(_) | Kind::Clock(_) => Element::new("ssc:Binary"),
     }
 }
 

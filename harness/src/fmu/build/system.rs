@@ -61,9 +61,12 @@ impl Configured {
 
     /// `plant_NAME.ssv`, `plant_NAME.csv` and those of the calibrator, for tools that don't read
     /// the archive.
-    pub(super) fn files(&self, own: &[Own]) -> std::io::Result<Vec<(String, Vec<u8>)>> {
+    pub(super) fn files(
+        &self,
+        models: impl Iterator<Item = &'static Model>,
+    ) -> std::io::Result<Vec<(String, Vec<u8>)>> {
         let mut files = Vec::new();
-        for Own { model, .. } in own {
+        for model in models {
             let stem = format!("{}_{}", model.stem, self.name);
             let ssv = ssp::parameter_set(model, &self.name, self.of(model)).document()?;
             files.push((format!("{stem}.ssv"), ssv));

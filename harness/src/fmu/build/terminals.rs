@@ -1,6 +1,7 @@
 //! Terminals (FMI 3.0): which variables belong together, under the same names in both models, so
 //! that a tool connects the two by dragging one line.
 
+use super::bus;
 use super::element::{Element, number};
 use octant_fmu::table::{Causality, Model, Variable};
 
@@ -58,10 +59,12 @@ pub(super) fn terminals(model: &Model) -> Element {
     let picture = Element::new("GraphicalRepresentation")
         .child(extent(Element::new("CoordinateSystem")).with("suggestedScalingFactorTo_mm", "0.1"))
         .child(extent(Element::new("Icon")));
-    Element::new("fmiTerminalsAndIcons")
-        .with("fmiVersion", "3.0")
-        .child(picture)
-        .child(Element::new("Terminals").children(side(left, -110.0)).children(side(right, 110.0)))
+    Element::new("fmiTerminalsAndIcons").with("fmiVersion", "3.0").child(picture).child(
+        Element::new("Terminals")
+            .children(bus::terminal(model, [-120.0, -10.0, -100.0, 10.0]))
+            .children(side(left, -110.0))
+            .children(side(right, 110.0)),
+    )
 }
 
 /// Inputs and outputs that belong to a terminal.
@@ -79,17 +82,21 @@ fn element(terminal: &Terminal, members: &[&Variable], place: [f64; 4]) -> Eleme
             .with("memberName", variable.name)
             .with("variableKind", "signal")
     });
-    let picture = corners(Element::new("TerminalGraphicalRepresentation"), place)
-        .with("defaultConnectionColor", "0 101 163")
-        .with("defaultConnectionStrokeSize", "1")
-        .with("iconBaseName", "terminal");
     Element::new("Terminal")
         .with("name", terminal.name)
         // Members are matched by name; a model of somebody else needn't have all of them.
         .with("matchingRule", "bus")
         .with("description", terminal.description)
         .children(members)
-        .child(picture)
+        .child(picture(place))
+}
+
+/// Where a terminal is drawn.
+pub(super) fn picture(place: [f64; 4]) -> Element {
+    corners(Element::new("TerminalGraphicalRepresentation"), place)
+        .with("defaultConnectionColor", "0 101 163")
+        .with("defaultConnectionStrokeSize", "1")
+        .with("iconBaseName", "terminal")
 }
 
 fn corners(element: Element, place: [f64; 4]) -> Element {

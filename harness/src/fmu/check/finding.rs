@@ -118,6 +118,8 @@ fn clause(rule: &Rule, standard: Option<Standard>) -> String {
     };
     match section {
         "Octant" | "" => "Octant".into(),
+        // A standard of its own.
+        _ if section.starts_with("FMI-LS-") => section.into(),
         _ => format!("{name}, {section}"),
     }
 }

@@ -16,6 +16,7 @@
 //! | `clocks` | clocks |
 //! | `structure` | outputs, derivatives, initial unknowns, dependencies |
 //! | `terminals` | terminals and icons |
+//! | `bus` | layered standards, and what is on a bus |
 //! | `files` | documentation, licence, sources |
 //! | [`binaries`] | shared libraries, read without being run |
 //! | `elf` | what only those of Linux have |
@@ -24,6 +25,7 @@
 //! | [`show`] | findings as text |
 
 pub mod binaries;
+mod bus;
 mod clocks;
 mod elf;
 mod files;
@@ -303,12 +305,22 @@ fn others(model: &Model<'_, '_>, archive: &mut Archive, findings: &mut Findings)
     files::check(model, archive, findings);
     let has = |archive: &Archive| archive.entries().iter().map(|e| e.name.clone()).collect();
     let names: std::collections::BTreeSet<String> = has(archive);
+    let manifest = match model.is_fmi2() {
+        true => None,
+        false => bus::manifests(archive, findings),
+    };
     let terminals = xml(
         (terminals::FILE, &schema::TERMINALS_AND_ICONS, &rules::TERMINALS_READABLE),
         archive,
         findings,
-        |root, _, findings| terminals::check(model, root, &|name| names.contains(name), findings),
+        |root, _, findings| {
+            terminals::check(model, root, &|name| names.contains(name), findings);
+            bus::check(model, Some(root), manifest, findings);
+        },
     );
+    if terminals.is_none() {
+        bus::check(model, None, manifest, findings);
+    }
     if terminals.is_none() && names.iter().any(|name| name.starts_with("terminalsAndIcons/")) {
         let place = Place { entry: "terminalsAndIcons/", ..Place::default() };
         let found = "a folder without terminalsAndIcons.xml";

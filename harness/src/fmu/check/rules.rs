@@ -267,6 +267,27 @@ rules! {
     TERMINALS_ICON "terminals.icon" Error "" "2.4.9.1"
         "Icons are files beside terminalsAndIcons.xml, as PNG in any case.";
 
+    LAYERED_MANIFEST "layered.manifest" Error "" "2.6"
+        "The manifest of a layered standard has its name, version and description, and lies in a folder of extra/ with its name.";
+    BUS_MANIFEST "bus.manifest" Error "" "FMI-LS-BUS 1.0.0, 2"
+        "An FMU on a bus has a bus terminal and a manifest.";
+    BUS_VERSION "bus.version" Note "" "FMI-LS-BUS 1.0.0, 2"
+        "The manifest has a version of FMI-LS-BUS whose rules are checked here.";
+    BUS_EVENT_MODE "bus.event-mode" Error "" "FMI-LS-BUS 1.0.0, 3"
+        "An FMU on a bus is one of co-simulation with event mode.";
+    BUS_MEMBERS "bus.members" Error "" "FMI-LS-BUS 1.0.0, 5.4.1"
+        "A bus terminal has the members Rx_Clock, Rx_Data, Tx_Clock and Tx_Data, with variables that no other has.";
+    BUS_VARIABLES "bus.variables" Error "" "FMI-LS-BUS 1.0.0, 5.3"
+        "Variables of a bus are binary variables with their clocks, one pair there and one back.";
+    BUS_MIME_TYPE "bus.mime-type" Error "" "FMI-LS-BUS 1.0.0, 5.3.4"
+        "The MIME type says which bus it is, the same both ways.";
+    BUS_STEP "bus.step" Warning "" "FMI-LS-BUS 1.0.0, 5.3.1.1"
+        "An FMU with a time-based clock takes communication steps of any length.";
+    BUS_CONFIGURATION "bus.configuration" Error "" "FMI-LS-BUS 1.0.0, 5.4.1.1"
+        "A configuration terminal has the name Configuration and is matched as bus.";
+    BUS_NOTIFICATIONS "bus.notifications" Error "" "FMI-LS-BUS 1.0.0, 5.5.1.3.1"
+        "BusNotifications is a Boolean parameter that starts with false; of a bus simulation it is calculated or constant.";
+
     FILES_IMPLEMENTATION "files.implementation" Error "2.3" "2.5"
         "There is a binary or there are sources.";
     FILES_DOCUMENTATION "files.documentation" Note "2.3" "2.5.1"

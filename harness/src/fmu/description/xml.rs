@@ -159,6 +159,11 @@ impl<'a, 't: 'a> Element<'a, 't> {
         self.attributes().find(|(name, _)| *name == attribute).map(|(_, value)| value)
     }
 
+    /// An attribute of a namespace.
+    pub(crate) fn text_of(self, namespace: &str, attribute: &str) -> Option<&'a str> {
+        self.node.attribute((namespace, attribute))
+    }
+
     /// What an error says of the element's place.
     pub(crate) fn place(self, attribute: Option<&str>) -> String {
         let mut place = self.name().to_owned();

@@ -146,6 +146,8 @@ fn of_model(model: &Model) -> Description {
             table::Kind::Count => Kind::UInt64,
             table::Kind::Boolean => Kind::Boolean,
             table::Kind::Enumeration(_) => Kind::Enumeration,
+            table::Kind::Binary(_) => Kind::Binary,
+            table::Kind::Clock(_) => Kind::Clock,
         };
         let causality = match of.causality {
             table::Causality::Parameter => Causality::Parameter,

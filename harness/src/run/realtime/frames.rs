@@ -1,7 +1,7 @@
 //! The real-time thread.
 
 use super::entry::{Answer, Entry};
-use crate::endpoint::{Endpoint, EndpointError};
+use crate::endpoint::{Endpoint, EndpointError, Sent};
 use crate::run::drive::{Control, Ended, RunError, over};
 use crate::run::faulted::{Behind, Faulted};
 use crate::run::unit;
@@ -20,7 +20,7 @@ const OUTSTANDING: usize = 256;
 
 /// An epoch that was sent and not answered.
 #[derive(Clone, Copy, Debug, Default)]
-struct Sent {
+struct Owed {
     epoch: Epoch,
     /// Stamp of what the source delivered in that step.
     step_ns: u64,
@@ -34,6 +34,8 @@ pub(super) struct Found {
     /// From sending a sample to having its answer.
     pub(super) answers: Lateness,
     pub(super) late_answers: u64,
+    pub(super) missed_answers: u64,
+    pub(super) not_sent: u64,
     pub(super) dropped: u64,
 }
 
@@ -43,7 +45,7 @@ pub(super) struct Frames<'a> {
     stop: &'a AtomicBool,
     found: Found,
     /// The oldest first.
-    outstanding: VecDeque<Sent>,
+    outstanding: VecDeque<Owed>,
     silence_ns: u64,
     output: Output,
     command: GimbalCommand,
@@ -61,7 +63,14 @@ impl<'a> Frames<'a> {
         Self {
             ring,
             stop,
-            found: Found { clock, answers: Lateness::new(), late_answers: 0, dropped: 0 },
+            found: Found {
+                clock,
+                answers: Lateness::new(),
+                late_answers: 0,
+                missed_answers: 0,
+                not_sent: 0,
+                dropped: 0,
+            },
             outstanding: VecDeque::with_capacity(OUTSTANDING),
             silence_ns,
             output: Output::default(),
@@ -95,7 +104,7 @@ impl<'a> Frames<'a> {
         self.found.clock.restart();
         for number in 1.. {
             if number > total {
-                return Ok(Ended::SourceEnded);
+                return self.drain(endpoint);
             }
             self.found.clock.wait();
             if control.look(number - 1) || self.stop.load(Ordering::Relaxed) {
@@ -196,17 +205,23 @@ impl<'a> Frames<'a> {
                 return Err(self.silent(endpoint));
             }
             let at = now();
-            let sent = Sent { epoch: *epoch, step_ns, at };
+            let sent = Owed { epoch: *epoch, step_ns, at };
             self.outstanding.push_back(sent);
-            if endpoint.send(epoch, &mut self.output)? {
-                clean_told = self.answered(endpoint, clean, truth, clean_told, step_ns);
-                ended = ended.or(over(&self.output));
+            match endpoint.send(epoch, &mut self.output)? {
+                Sent::Answered => {
+                    clean_told = self.answered(endpoint, clean, truth, clean_told, step_ns);
+                    ended = ended.or(over(&self.output));
+                }
+                Sent::Underway => {}
+                Sent::NotSent => {
+                    self.outstanding.pop_back();
+                    self.found.not_sent += 1;
+                }
             }
         }
         while !self.outstanding.is_empty() && ended.is_none() {
-            if !endpoint.answer(frame_end, &mut self.output)? {
-                break;
-            }
+            let Some(skipped) = endpoint.answer(frame_end, &mut self.output)? else { break };
+            self.skip(skipped);
             clean_told = self.answered(endpoint, clean, truth, clean_told, step_ns);
             ended = over(&self.output);
         }
@@ -220,6 +235,29 @@ impl<'a> Frames<'a> {
             }
         }
         Ok(ended)
+    }
+
+    /// Epochs that will have no answer.
+    fn skip(&mut self, epochs: usize) {
+        let skipped = epochs.min(self.outstanding.len());
+        self.outstanding.drain(..skipped);
+        self.found.missed_answers += skipped as u64;
+    }
+
+    /// The source has ended: what is still owed is waited for.
+    fn drain<E: Endpoint + ?Sized>(&mut self, endpoint: &mut E) -> Result<Ended, RunError> {
+        while let Some(oldest) = self.outstanding.front() {
+            let (until, clean) = (oldest.at.after(self.silence_ns), oldest.epoch);
+            let Some(skipped) = endpoint.answer(until, &mut self.output)? else {
+                return Err(self.silent(endpoint));
+            };
+            self.skip(skipped);
+            self.answered(endpoint, &clean, None, true, 0);
+            if let Some(ended) = over(&self.output) {
+                return Ok(ended);
+            }
+        }
+        Ok(Ended::SourceEnded)
     }
 
     /// Takes the answer to the oldest epoch that had none; true once the clean epoch of this frame

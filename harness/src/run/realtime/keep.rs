@@ -94,10 +94,6 @@ pub(in crate::run) fn event(kept: &super::Kept) -> Event {
     let granted = serde_json::to_value(&kept.granted).unwrap_or_default();
     Event {
         kind: "pacing".to_owned(),
-        detail: serde_json::json!({
-            "pacing": pacing,
-            "granted": granted,
-            "lateness_histogram_ns": kept.histogram,
-        }),
+        detail: serde_json::json!({ "pacing": pacing, "granted": granted }),
     }
 }

@@ -15,10 +15,10 @@ mod keep;
 use super::drive::{Control, Ended, RunError};
 use super::faulted::{Faulted, receipts_event};
 use super::watch::Watcher;
-use crate::endpoint::Endpoint;
+use crate::endpoint::{Endpoint, RemoteClock};
 use crate::recorder::Recorder;
 use crate::scenario::Realtime;
-use crate::score::summary::{Lateness, Pacing};
+use crate::score::summary::{DeviceClock, Lateness, Pacing};
 use crate::source::Source;
 use octant_realtime::lateness::Figures;
 use octant_realtime::pace::FrameClock;
@@ -33,23 +33,25 @@ const ENTRIES: usize = 8192;
 pub struct Kept {
     /// For the summary.
     pub pacing: Pacing,
-    /// Lateness of the frames: upper edges, ns, and how many.
-    pub histogram: Vec<(u64, u64)>,
     /// What the host granted the thread.
     pub granted: Granted,
 }
 
 /// Parts of a run that the frames go through.
-pub(super) struct Line<'a, S: ?Sized, E: ?Sized> {
-    pub(super) source: &'a mut S,
-    pub(super) faulted: Option<&'a mut Faulted>,
-    pub(super) endpoint: &'a mut E,
+#[derive(Debug)]
+pub struct Line<'a, S: ?Sized, E: ?Sized> {
+    /// Where samples come from.
+    pub source: &'a mut S,
+    /// What is done to them.
+    pub faulted: Option<&'a mut Faulted>,
+    /// Where the core is.
+    pub endpoint: &'a mut E,
 }
 
 /// Drives as [`drive`](super::drive()) and [`drive_faulted`](super::drive_faulted) do, by the
 /// clock, on the thread that calls: it has what the host granted until the run has ended. How time
 /// was kept is told whatever the end was.
-pub(super) fn drive_by_clock<S, E>(
+pub fn drive_by_clock<S, E>(
     settings: &Realtime,
     period_ns: u64,
     line: Line<'_, S, E>,
@@ -88,11 +90,7 @@ where
         schedule::release(&granted);
         let kept = keeper.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic));
         let last = receipts.then(|| faulted.map(|f| f.station.receipts())).flatten();
-        let time = Kept {
-            pacing: pacing(settings, &found),
-            histogram: found.clock.lateness().rows(),
-            granted,
-        };
+        let time = Kept { pacing: pacing(settings, &found, endpoint.remote_clock()), granted };
         (ended, kept.map(|()| last), time)
     });
     let ended = match kept {
@@ -109,7 +107,7 @@ where
 }
 
 /// Figures of a run for its summary.
-fn pacing(settings: &Realtime, found: &frames::Found) -> Pacing {
+fn pacing(settings: &Realtime, found: &frames::Found, clock: Option<RemoteClock>) -> Pacing {
     let report = found.clock.report();
     let of = |figures: Figures| Lateness {
         p50: figures.p50_us,
@@ -121,6 +119,9 @@ fn pacing(settings: &Realtime, found: &frames::Found) -> Pacing {
         frames: report.frames,
         period_us: report.period_us,
         lateness_us: of(report.lateness),
+        lateness_histogram_ns: (found.clock.lateness().rows().iter())
+            .map(|(edge_ns, count)| [*edge_ns, *count])
+            .collect(),
         overrun_us: settings.overrun_ns as f64 / 1e3,
         overruns: report.overruns,
         overruns_in_a_row: report.longest_row_of_overruns,
@@ -128,6 +129,14 @@ fn pacing(settings: &Realtime, found: &frames::Found) -> Pacing {
         slack_p1_us: report.slack_p1_us,
         answer_us: of(found.answers.figures()),
         late_answers: found.late_answers,
+        missed_answers: found.missed_answers,
+        not_sent: found.not_sent,
+        device_clock: clock.map(|clock| DeviceClock {
+            offset_us: clock.offset_ns / 1e3,
+            bound_us: clock.bound_ns / 1e3,
+            skew_ppm: clock.skew.map(|skew| skew * 1e6),
+            exchanges: clock.exchanges,
+        }),
         dropped_records: found.dropped,
     }
 }

@@ -7,6 +7,7 @@ mod connection;
 mod faults;
 mod fmu;
 mod instrument;
+mod link;
 mod run;
 mod source;
 mod suite;
@@ -17,6 +18,7 @@ use crate::fmu::mapping::channel::Channel;
 pub(crate) use connection::{CONNECTIONS, connection_section};
 pub(crate) use faults::{dimension, kind_section};
 pub(crate) use fmu::{ENDPOINT_FMU, ENDPOINT_MAP, SOURCE_FMU, SOURCE_MAP};
+pub(crate) use link::ENDPOINT_LINK;
 pub(crate) use run::{POSITIONS, SCENARIO};
 pub(crate) use suite::SUITE;
 

@@ -1,6 +1,7 @@
 //! The root, the site, the motion, and what is done with the results.
 
 use super::fmu::ENDPOINT_FMU;
+use super::link::ENDPOINT_LINK;
 use super::{
     Bounds, Default, Key, Kind, SCHEMA, Section, calibration, faults, instrument, key, section,
     source,
@@ -398,6 +399,10 @@ static ENDPOINT: Section = section(&[
         Kind::Uri(&[
             ("in-process", "in Octant itself"),
             ("fmu", "an FMU: Octant's calibrator, or another core: fmu:FILE"),
+            ("serial", "a device on a serial line: serial:/dev/ttyUSB0?baud=921600"),
+            ("can", "a device on a CAN bus: can:can0, can:can0?fd=1"),
+            ("slcan", "the same through an adapter: slcan:/dev/ttyACM0?bitrate=500000"),
+            ("udp", "a device on UDP: udp:HOST:PORT"),
         ]),
         Default::Value("in-process"),
         "Where the core runs. A file name is relative to the scenario, and may start with ${OCTANT_RECORDINGS}.",
@@ -407,5 +412,11 @@ static ENDPOINT: Section = section(&[
         Kind::Table(&ENDPOINT_FMU),
         Default::Derived("fmu: the defaults of its keys"),
         "How the FMU of endpoint.uri is run, and what its variables are.",
+    ),
+    key(
+        "link",
+        Kind::Table(&ENDPOINT_LINK),
+        Default::Derived("with a device: the defaults of its keys"),
+        "What is waited for how long, of the device at endpoint.uri.",
     ),
 ]);

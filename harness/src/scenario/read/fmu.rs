@@ -4,6 +4,7 @@
 //! files.
 
 use super::Reader;
+use super::live::{self, Live};
 use super::source::FileName;
 use crate::fmu::mapping::channel::Channel;
 use crate::scenario::document::{Node, Value};
@@ -19,6 +20,8 @@ pub enum Endpoint {
     InProcess,
     /// In an FMU.
     Fmu(Box<Fmu>),
+    /// At the other end of a wire.
+    Live(Box<Live>),
 }
 
 /// An FMU of a scenario.
@@ -141,8 +144,11 @@ pub(super) fn endpoint(endpoint: &Reader<'_>, sample_period_ns: u64) -> Result<E
             fmu.modes = modes(&table);
             Ok(Endpoint::Fmu(Box::new(fmu)))
         }
+        Some(_) if octant_link::Uri::is_one(uri) => {
+            Ok(Endpoint::Live(Box::new(live::live(endpoint, uri)?)))
+        }
         _ => {
-            let message = format!("found {uri:?}, expected in-process or fmu:FILE");
+            let message = format!("found {uri:?}, expected in-process, fmu:FILE or a port");
             Err(endpoint.problem("uri", message))
         }
     }

@@ -4,6 +4,7 @@
 pub(crate) mod faults;
 pub(crate) mod fmu;
 mod instrument;
+pub(crate) mod live;
 mod procedure;
 mod requirement;
 pub(crate) mod source;

@@ -11,6 +11,8 @@ mod load;
 mod reassembler;
 mod segments;
 mod slot;
+#[cfg(feature = "state")]
+mod state;
 
 pub use dbc::write as write_dbc;
 pub use frame::{Format, Frame};

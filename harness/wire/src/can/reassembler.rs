@@ -110,11 +110,11 @@ impl Counters {
 
 /// How far the message of a slot is.
 #[derive(Clone, Copy, Debug, Default)]
-struct Progress {
+pub(super) struct Progress {
     /// Segments that are there, from the first on.
-    held: usize,
+    pub(super) held: usize,
     /// The message is given up: wait for the next first segment.
-    dropped: bool,
+    pub(super) dropped: bool,
 }
 
 impl Progress {
@@ -126,10 +126,10 @@ impl Progress {
 pub struct Reassembler {
     /// Whose messages; a bit for each role.
     senders: u8,
-    format: Format,
-    progress: [Progress; Slot::ALL.len()],
-    images: [u8; Slot::ALL_IMAGES_BYTES],
-    counters: Counters,
+    pub(super) format: Format,
+    pub(super) progress: [Progress; Slot::ALL.len()],
+    pub(super) images: [u8; Slot::ALL_IMAGES_BYTES],
+    pub(super) counters: Counters,
 }
 
 impl Reassembler {

@@ -105,6 +105,8 @@ fn typed(variable: &Variable, element: usize) -> Element {
         }
         Kind::Boolean => Element::new("Boolean")
             .with_some("start", start.map(|start| if start == 0.0 { "false" } else { "true" })),
+        // FMI 2.0 has neither: a model that has them is none of its.
+        Kind::Binary(_) | Kind::Clock(_) => Element::new("String"),
     }
 }
 

@@ -7,7 +7,7 @@ use super::{
     initial_unknowns, log_categories, root, start, variability,
 };
 use octant_fmu::quantities::TIME;
-use octant_fmu::table::{Causality, Kind, Model, Variable};
+use octant_fmu::table::{Binary, Causality, Kind, Model, Ticks, Variable};
 
 /// The description.
 pub(in super::super) fn fmi3(model: &Model, token: &str) -> Element {
@@ -24,8 +24,11 @@ pub(in super::super) fn fmi3(model: &Model, token: &str) -> Element {
                 .with("providesDirectionalDerivatives", "false")
                 .with("providesAdjointDerivatives", "false")
                 .with("providesPerElementDependencies", "false")
-                .with("canHandleVariableCommunicationStepSize", "false")
-                .with("fixedInternalStepSize", number(STEP_S))
+                .with("canHandleVariableCommunicationStepSize", model.is_event_driven().to_string())
+                .with_some(
+                    "fixedInternalStepSize",
+                    (!model.is_event_driven()).then(|| number(STEP_S)),
+                )
                 .with("maxOutputDerivativeOrder", "0")
                 .with("recommendedIntermediateInputSmoothness", "0")
                 .with("providesIntermediateUpdate", "false")
@@ -63,12 +66,14 @@ fn variables(model: &Model, slots: &[usize]) -> Element {
         .with("causality", "independent")
         .with("variability", "continuous")
         .with("declaredType", TIME.name);
-    let variables = model.variables.iter().zip(slots).map(|(v, slot)| variable(v, *slot));
+    let variables = model.variables.iter().zip(slots).map(|(v, slot)| variable(model, v, *slot));
     Element::new("ModelVariables").child(time).children(variables)
 }
 
-fn variable(variable: &Variable, slot: usize) -> Element {
+fn variable(model: &Model, variable: &Variable, slot: usize) -> Element {
     let name = match variable.kind {
+        Kind::Binary(binary) => return binary_variable(model, variable, binary, slot),
+        Kind::Clock(ticks) => return clock(variable, ticks, slot),
         Kind::Real => "Float64",
         Kind::Integer => "Int32",
         Kind::Count => "UInt64",
@@ -94,7 +99,7 @@ fn variable(variable: &Variable, slot: usize) -> Element {
     element = match variable.kind {
         Kind::Real => limits(element, number).with_some("nominal", variable.nominal.map(number)),
         Kind::Integer | Kind::Count => limits(element, whole),
-        Kind::Boolean | Kind::Enumeration(_) => element,
+        Kind::Boolean | Kind::Enumeration(_) | Kind::Binary(_) | Kind::Clock(_) => element,
     };
     if has_start(variable) {
         let starts = (0..variable.slots()).map(|index| {
@@ -112,6 +117,39 @@ fn variable(variable: &Variable, slot: usize) -> Element {
         element = element.child(dimension);
     }
     element
+}
+
+/// What every variable has.
+fn named(element: &'static str, variable: &Variable, slot: usize) -> Element {
+    Element::new(element)
+        .with("name", variable.name)
+        .with("valueReference", slot.to_string())
+        .with("description", variable.description)
+        .with("causality", causality(variable))
+        .with("variability", variability(variable))
+}
+
+fn binary_variable(model: &Model, variable: &Variable, binary: &Binary, slot: usize) -> Element {
+    let clock = model.find(binary.clock).map(|(slot, _)| slot.to_string());
+    let element = named("Binary", variable, slot)
+        .with("initial", if has_start(variable) { "exact" } else { "calculated" })
+        .with_some("clocks", clock)
+        .with("mimeType", binary.mime_type)
+        .with("maxSize", binary.max_bytes.to_string());
+    if has_start(variable) {
+        return element.child(Element::new("Start").with("value", ""));
+    }
+    element
+}
+
+fn clock(variable: &Variable, ticks: Ticks, slot: usize) -> Element {
+    named("Clock", variable, slot).with(
+        "intervalVariability",
+        match ticks {
+            Ticks::Triggered => "triggered",
+            Ticks::Countdown => "countdown",
+        },
+    )
 }
 
 fn structure(model: &Model, slots: &[usize]) -> Element {

@@ -81,6 +81,8 @@ pub(super) fn has_start(variable: &Variable) -> bool {
 fn initial_unknowns(model: &Model) -> impl Iterator<Item = (usize, &Variable)> {
     model.variables.iter().enumerate().filter(|(_, variable)| {
         matches!(variable.causality, Causality::Output | Causality::CalculatedParameter)
+            // What has a value at ticks only has none before the first.
+            && !variable.is_clocked()
     })
 }
 

@@ -167,7 +167,7 @@ fn names_without_meaning_are_none() {
         "m 2 s",
         "\u{0}",
     ] {
-        assert_eq!(known(name), [], "{name}");
+        assert!(known(name).is_empty(), "{name}");
     }
 }
 

@@ -1,0 +1,424 @@
+//! The device end of a session, on messages: `README.md` of octant-wire says what is answered when.
+
+use super::controller::Controller;
+use octant_calibration::{Config, Core};
+use octant_sample::{Mode, Output, Parameters};
+use octant_state::{Reader, State, StateError, Writer, check_count};
+use octant_wire::can::{self, Counters};
+use octant_wire::message::{
+    Agreement, Bye, Capabilities, ClockTime, Condition, End, Heartbeat, Hello, Limits,
+    OutputMessage, Pacing, ParametersSegment, Ready, Reason, Restart, SampleMessage, Status,
+    TimeReply, TimeRequest, agree,
+};
+use octant_wire::requests::{Requests, Verdict};
+use octant_wire::{Kind, Message, Role, Step, Text};
+
+/// Samples that it takes before it has answered the first: it answers each at once, and the bound is
+/// what waits for the bus.
+const WINDOW: u16 = 64;
+/// Between two messages of status.
+const STATUS_NS: u64 = 1_000_000_000;
+
+/// What it can do: everything.
+const CAPABILITIES: Capabilities = Capabilities::all();
+
+/// What was answered last, to be answered again.
+#[derive(Clone, Debug, Default)]
+enum Answer {
+    #[default]
+    None,
+    Output(OutputMessage, Option<Box<[ParametersSegment; 6]>>),
+    Ready(Step),
+}
+
+/// A session.
+#[derive(Clone, Debug)]
+struct Session {
+    number: u32,
+    requests: Requests,
+    /// Sends at least so often; 0: needn't.
+    beat_ns: u64,
+    condition: Condition,
+}
+
+/// The device.
+#[derive(Clone, Debug)]
+pub(super) struct Device {
+    config: Box<Config>,
+    core: Core,
+    output: Output,
+    /// Of the parameters that were sent last.
+    revision: Option<u32>,
+    session: Option<Session>,
+    answer: Answer,
+    status_due_ns: u64,
+    beat_due_ns: u64,
+    mode: Mode,
+    remark: Option<String>,
+}
+
+/// What happened to the core.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Changed(pub bool);
+
+impl Device {
+    pub(super) fn new(config: Config) -> Result<Self, String> {
+        let core = Core::new(&config).map_err(|error| error.to_string())?;
+        let output = core.latest();
+        Ok(Self {
+            config: Box::new(config),
+            mode: output.mode,
+            output,
+            core,
+            revision: None,
+            session: None,
+            answer: Answer::None,
+            status_due_ns: 0,
+            beat_due_ns: 0,
+            remark: None,
+        })
+    }
+
+    pub(super) fn core(&self) -> &Core {
+        &self.core
+    }
+
+    pub(super) fn output(&self) -> &Output {
+        &self.output
+    }
+
+    pub(super) fn remark(&mut self) -> Option<String> {
+        self.remark.take()
+    }
+
+    fn hello(&self, session: u32, pacing: Pacing) -> Hello {
+        Hello {
+            role: Role::Device,
+            pacing,
+            session,
+            capabilities: CAPABILITIES,
+            sample_period_ns: self.config.sample_period_ns,
+            // It never takes the harness for gone, and keeps up with any period: it computes in no
+            // time.
+            limits: Limits { window: WINDOW, silence_ms: 0, shortest_period_ns: 0 },
+            configuration: [0; 32],
+            name: Text::fitting("calibrator_can"),
+            firmware: Text::fitting(concat!("octant ", env!("CARGO_PKG_VERSION"))),
+            ..Hello::default()
+        }
+    }
+
+    /// Just switched on: a harness that is in the middle of a session sees it.
+    pub(super) fn power_on(&mut self, to: &mut Controller) {
+        let hello = self.hello(0, Pacing::LockStep);
+        self.say(&Message::Hello(hello), 0, to);
+    }
+
+    fn say(&mut self, message: &Message, now_ns: u64, to: &mut Controller) {
+        // The device sends nothing that a device doesn't send.
+        if let Ok(frames) = can::segments(message, Role::Device, to.format()) {
+            frames.for_each(|frame| to.push(frame));
+        }
+        if let Some(session) = &self.session {
+            self.beat_due_ns = now_ns.saturating_add(session.beat_ns);
+        }
+    }
+
+    /// A message of the harness. True: the core is another than before.
+    pub(super) fn take(&mut self, message: &Message, now_ns: u64, to: &mut Controller) -> Changed {
+        match message {
+            Message::Hello(hello) => return self.begin(hello, now_ns, to),
+            Message::Bye(_) => self.session = None,
+            Message::TimeRequest(TimeRequest { id, harness_sent }) if self.session.is_some() => {
+                let now = ClockTime::from_ns(now_ns);
+                let reply =
+                    TimeReply { id: *id, harness_sent: *harness_sent, received: now, sent: now };
+                self.say(&Message::TimeReply(reply), now_ns, to);
+            }
+            Message::Aiding(aiding) => {
+                if let Some(session) = &mut self.session {
+                    session.requests.aiding(aiding);
+                }
+            }
+            Message::Sample(sample) => return self.sample(sample, now_ns, to),
+            Message::Restart(restart) => return self.restart(restart, now_ns, to),
+            Message::End(End { step }) => return self.end(*step, now_ns, to),
+            _ => {}
+        }
+        Changed(false)
+    }
+
+    /// A hello that only a newer version understands.
+    pub(super) fn too_new(&mut self, now_ns: u64, to: &mut Controller) {
+        let text = Text::fitting("version 1 is spoken here");
+        self.say(&Message::Bye(Bye { reason: Reason::VERSION, text }), now_ns, to);
+        self.session = None;
+    }
+
+    fn begin(&mut self, theirs: &Hello, now_ns: u64, to: &mut Controller) -> Changed {
+        // A harness draws a number that isn't 0.
+        if theirs.role != Role::Harness || theirs.session == 0 {
+            return Changed(false);
+        }
+        let ours = self.hello(theirs.session, theirs.pacing);
+        self.say(&Message::Hello(ours), now_ns, to);
+        let Agreement { session: number, pacing, .. } = match agree(&ours, theirs) {
+            Ok(agreement) => agreement,
+            Err(refusal) => {
+                self.say(&Message::Bye(refusal.bye()), now_ns, to);
+                self.session = None;
+                self.remark = Some(format!("no session: {refusal}"));
+                return Changed(false);
+            }
+        };
+        if self.session.as_ref().is_some_and(|session| session.number == number) {
+            return Changed(false);
+        }
+        let beat_ns = u64::from(theirs.limits.silence_ms) * 1_000_000 / 4;
+        let requests = Requests::new(pacing);
+        self.session = Some(Session { number, requests, beat_ns, condition: Condition::Ready });
+        self.status_due_ns = now_ns.saturating_add(STATUS_NS);
+        self.beat_due_ns = now_ns.saturating_add(beat_ns);
+        // The configuration made a core before.
+        Changed(self.anew(None).is_ok())
+    }
+
+    /// A core as at power on; its stored parameters are off by so much.
+    fn anew(&mut self, offset: Option<&Parameters>) -> Result<(), String> {
+        let mut config = Config::clone(&self.config);
+        if let Some(offset) = offset {
+            let (stored, offset) = (config.initial_parameters.to_array(), offset.to_array());
+            config.initial_parameters =
+                Parameters::from_array(&core::array::from_fn(|i| stored[i] + offset[i]));
+        }
+        self.core = Core::new(&config).map_err(|error| error.to_string())?;
+        self.output = self.core.latest();
+        self.mode = self.output.mode;
+        self.revision = None;
+        self.answer = Answer::None;
+        Ok(())
+    }
+
+    fn sample(&mut self, sample: &SampleMessage, now_ns: u64, to: &mut Controller) -> Changed {
+        let Some(session) = &mut self.session else { return Changed(false) };
+        let aiding = match session.requests.sample(sample) {
+            Verdict::Do(aiding) => aiding,
+            verdict => return self.without_step(verdict, now_ns, to),
+        };
+        session.condition = Condition::Stepping;
+        self.core.step_into(&sample.sample, aiding.as_ref(), &mut self.output);
+        self.answer_with_output(sample.step, now_ns, to)
+    }
+
+    fn end(&mut self, step: Step, now_ns: u64, to: &mut Controller) -> Changed {
+        let Some(session) = &mut self.session else { return Changed(false) };
+        match session.requests.other(step) {
+            Verdict::Do(_) => {}
+            verdict => return self.without_step(verdict, now_ns, to),
+        }
+        session.condition = Condition::Ended;
+        self.output = self.core.end_of_stream();
+        self.answer_with_output(step, now_ns, to)
+    }
+
+    fn restart(&mut self, restart: &Restart, now_ns: u64, to: &mut Controller) -> Changed {
+        let Some(session) = &mut self.session else { return Changed(false) };
+        match session.requests.other(restart.step) {
+            Verdict::Do(_) => {}
+            verdict => return self.without_step(verdict, now_ns, to),
+        }
+        session.condition = Condition::Ready;
+        if let Err(reason) = self.anew(restart.offset.as_ref()) {
+            let text = Text::fitting("the parameters make no core");
+            self.say(&Message::Bye(Bye { reason: Reason::FAILED, text }), now_ns, to);
+            self.session = None;
+            self.remark = Some(format!("no restart: {reason}"));
+            return Changed(false);
+        }
+        self.answer = Answer::Ready(restart.step);
+        self.repeat(now_ns, to);
+        Changed(true)
+    }
+
+    fn without_step(&mut self, verdict: Verdict, now_ns: u64, to: &mut Controller) -> Changed {
+        if verdict == Verdict::Again {
+            self.repeat(now_ns, to);
+        }
+        Changed(false)
+    }
+
+    fn answer_with_output(&mut self, step: Step, now_ns: u64, to: &mut Controller) -> Changed {
+        let revision = self.output.parameters_revision;
+        let follow = self.revision != Some(revision);
+        let parameters = follow.then(|| {
+            let (parameters, sigma) = (self.core.parameters(), self.core.sigma());
+            Box::new(ParametersSegment::all(step, revision, parameters, sigma))
+        });
+        self.revision = Some(revision);
+        let message =
+            OutputMessage { step, parameters_follow: follow, output: self.output, computing_ns: 0 };
+        self.answer = Answer::Output(message, parameters);
+        if self.output.mode != self.mode {
+            self.mode = self.output.mode;
+            let sequence = self.output.sequence;
+            self.remark = Some(match self.core.refusal() {
+                Some(refusal) if self.mode == Mode::Refused => {
+                    format!("refused at sample {sequence}: {refusal}")
+                }
+                _ => format!("{} from sample {sequence} on", self.mode.name()),
+            });
+        }
+        self.repeat(now_ns, to);
+        Changed(true)
+    }
+
+    /// Says the last answer.
+    fn repeat(&mut self, now_ns: u64, to: &mut Controller) {
+        let answer = core::mem::take(&mut self.answer);
+        match &answer {
+            Answer::None => {}
+            Answer::Ready(step) => self.say(&Message::Ready(Ready { step: *step }), now_ns, to),
+            Answer::Output(output, parameters) => {
+                self.say(&Message::Output(*output), now_ns, to);
+                for segment in parameters.iter().flat_map(|segments| segments.iter()) {
+                    self.say(&Message::Parameters(*segment), now_ns, to);
+                }
+            }
+        }
+        self.answer = answer;
+    }
+
+    /// When it says something by itself, ns.
+    pub(super) fn due_ns(&self) -> Option<u64> {
+        let session = self.session.as_ref()?;
+        Some(match session.beat_ns {
+            0 => self.status_due_ns,
+            _ => self.status_due_ns.min(self.beat_due_ns),
+        })
+    }
+
+    /// Says what is due by time.
+    pub(super) fn on_time(&mut self, now_ns: u64, counters: &Counters, to: &mut Controller) {
+        let Some(session) = &self.session else { return };
+        if self.status_due_ns <= now_ns {
+            let status = status(session.requests.status(), counters);
+            let late_ns = now_ns - self.status_due_ns;
+            self.status_due_ns = now_ns.saturating_add(STATUS_NS - late_ns % STATUS_NS);
+            self.say(&Message::Status(status), now_ns, to);
+        } else if session.beat_ns > 0 && self.beat_due_ns <= now_ns {
+            let heartbeat = Heartbeat {
+                step: session.requests.last(),
+                condition: session.condition,
+                queued: 0,
+                clock: ClockTime::from_ns(now_ns),
+            };
+            self.say(&Message::Heartbeat(heartbeat), now_ns, to);
+        }
+    }
+}
+
+/// Counts of steps, and those of the frames.
+fn status(steps: Status, counters: &Counters) -> Status {
+    let count = |count: u64| u32::try_from(count).unwrap_or(u32::MAX);
+    Status {
+        received: count(counters.messages),
+        lost: count(counters.orphaned),
+        damaged: count(counters.damaged()),
+        missing: count(counters.missing),
+        out_of_order: count(counters.duplicated.saturating_add(counters.disordered)),
+        unreadable: count(counters.unreadable),
+        ..steps
+    }
+}
+
+/// A message as its payload.
+fn save_message(to: &mut Writer, name: &'static str, message: &Message) {
+    to.value(name, message.payload().bytes());
+}
+
+fn load_message(
+    from: &mut Reader<'_>,
+    name: &'static str,
+    kind: Kind,
+) -> Result<Message, StateError> {
+    Message::read(kind, from.value(name)?)
+        .map_err(|error| StateError::value(name, error.to_string()))
+}
+
+impl State for Device {
+    fn save(&self, to: &mut Writer) {
+        let mut core = Vec::new();
+        self.core.save(&mut core);
+        to.value("core", &core);
+        to.value("revision", &self.revision);
+        to.value("status due", &self.status_due_ns);
+        to.value("beat due", &self.beat_due_ns);
+        let session = self.session.as_ref();
+        to.value("session", &session.map(|s| (s.number, s.beat_ns, s.condition as u8)));
+        if let Some(session) = session {
+            to.part("requests", &session.requests);
+        }
+        match &self.answer {
+            Answer::None => to.value("answer", &0_u8),
+            Answer::Ready(step) => {
+                to.value("answer", &1_u8);
+                to.value("step", &step.number());
+            }
+            Answer::Output(output, parameters) => {
+                to.value("answer", &2_u8);
+                save_message(to, "output", &Message::Output(*output));
+                to.value("parameters", &parameters.is_some());
+                for segment in parameters.iter().flat_map(|segments| segments.iter()) {
+                    save_message(to, "segment", &Message::Parameters(*segment));
+                }
+            }
+        }
+    }
+
+    fn load(&mut self, from: &mut Reader<'_>) -> Result<(), StateError> {
+        let core: Vec<u8> = from.value("core")?;
+        self.core = Core::load(&core)?;
+        self.output = self.core.latest();
+        self.mode = self.output.mode;
+        self.revision = from.value("revision")?;
+        self.status_due_ns = from.value("status due")?;
+        check_count("status due", self.status_due_ns)?;
+        self.beat_due_ns = from.value("beat due")?;
+        check_count("beat due", self.beat_due_ns)?;
+        let session: Option<(u32, u64, u8)> = from.value("session")?;
+        self.session = None;
+        if let Some((number, beat_ns, condition)) = session {
+            check_count("beat", beat_ns)?;
+            let condition = Condition::ALL.get(usize::from(condition));
+            let condition =
+                *condition.ok_or_else(|| StateError::value("session", "a condition of no kind"))?;
+            let mut requests = Requests::new(Pacing::LockStep);
+            from.part("requests", &mut requests)?;
+            self.session = Some(Session { number, requests, beat_ns, condition });
+        }
+        self.answer = match from.value::<u8>("answer")? {
+            0 => Answer::None,
+            1 => Answer::Ready(Step::new(from.value("step")?)),
+            2 => {
+                let Message::Output(output) = load_message(from, "output", Kind::Output)? else {
+                    return Err(StateError::value("output", "it is none"));
+                };
+                let mut parameters = None;
+                if from.value("parameters")? {
+                    let mut segments = Box::new([ParametersSegment::default(); 6]);
+                    for segment in segments.iter_mut() {
+                        if let Message::Parameters(read) =
+                            load_message(from, "segment", Kind::Parameters)?
+                        {
+                            *segment = read;
+                        }
+                    }
+                    parameters = Some(segments);
+                }
+                Answer::Output(output, parameters)
+            }
+            _ => return Err(StateError::value("answer", "0 to 2 is expected")),
+        };
+        Ok(())
+    }
+}

@@ -1,0 +1,153 @@
+//! Whether a line or bus carries a sample rate, before anything is sent.
+
+use crate::uri::Uri;
+use octant_wire::can::{self, Bus, Format};
+use octant_wire::serial::{Baud, LineLoad};
+use octant_wire::traffic::Traffic;
+
+/// Share of a line or bus that may be in use.
+pub const LIMIT: f64 = 0.9;
+
+/// What the traffic makes of a port.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Load {
+    /// A serial line, both ways on wires of their own.
+    Line(LineLoad),
+    /// A bus.
+    Bus(Bus, can::Load),
+    /// It has no bit rate: a pseudo terminal, UDP, a virtual bus.
+    Unlimited,
+}
+
+/// Why a port can't carry what is asked for.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum LoadError {
+    /// The line is too slow.
+    #[error(
+        "serial line at {baud} baud can't carry {rate_hz:.0} samples a second: that is {:.0} % of it \
+         ({:.0} % there, {:.0} % back), {:.0} % are allowed; expected {fits_baud} baud or more",
+        100.0 * load.from_harness.max(load.to_harness), 100.0 * load.from_harness,
+        100.0 * load.to_harness, 100.0 * LIMIT
+    )]
+    Line {
+        /// Bits a second.
+        baud: u32,
+        /// Sample rate.
+        rate_hz: f64,
+        /// What it makes of the line.
+        load: LineLoad,
+        /// A rate that carries it.
+        fits_baud: u32,
+    },
+    /// The bus is too slow.
+    #[error(transparent)]
+    Bus(#[from] can::Overload),
+}
+
+/// The load that a session in real time makes, if the port carries it. `bus` is what the interface of
+/// `can:` says of itself, where the URI says nothing.
+///
+/// # Errors
+/// If it can't.
+pub fn real_time(uri: &Uri, sample_rate_hz: f64, bus: Option<Bus>) -> Result<Load, LoadError> {
+    let traffic = Traffic::session(sample_rate_hz);
+    let bus = match uri {
+        Uri::Serial(serial) => return line(serial.baud, &traffic),
+        Uri::Pty { .. } | Uri::Udp(_) => return Ok(Load::Unlimited),
+        // The line of an adapter is USB, whatever rate it was given.
+        Uri::Slcan(slcan) => Some(slcan.bus),
+        Uri::Can(can) => named_bus(can).or(bus),
+    };
+    match bus {
+        Some(bus) => Ok(Load::Bus(bus, bus.carry(&traffic, LIMIT)?)),
+        None => Ok(Load::Unlimited),
+    }
+}
+
+/// The bus of a port: the one that its URI names, else what the interface says of itself.
+#[must_use]
+pub fn bus(uri: &Uri) -> Option<Bus> {
+    match uri {
+        Uri::Slcan(slcan) => Some(slcan.bus),
+        #[cfg(target_os = "linux")]
+        Uri::Can(can) => {
+            named_bus(can).or_else(|| crate::port::interface_bus(&can.interface, can.format))
+        }
+        #[cfg(not(target_os = "linux"))]
+        Uri::Can(can) => named_bus(can),
+        _ => None,
+    }
+}
+
+/// The bus that a URI names, where it names its rates.
+#[must_use]
+pub fn named_bus(can: &crate::uri::Can) -> Option<Bus> {
+    let nominal_bps = can.bitrate?;
+    match (can.format, can.data_bitrate) {
+        (Format::Classic, _) => Some(Bus::classic(nominal_bps)),
+        (Format::Fd, data) => Some(Bus::fd(nominal_bps, data.unwrap_or(nominal_bps))),
+    }
+}
+
+/// Common rates of serial lines.
+const BAUDS: [u32; 10] = [
+    115_200, 230_400, 460_800, 500_000, 921_600, 1_000_000, 1_500_000, 2_000_000, 3_000_000,
+    4_000_000,
+];
+
+fn line(rate: u32, traffic: &Traffic) -> Result<Load, LoadError> {
+    let most = |load: &LineLoad| load.from_harness.max(load.to_harness);
+    let load = Baud::new(rate).load(traffic);
+    if most(&load) <= LIMIT {
+        return Ok(Load::Line(load));
+    }
+    let needed = most(&load) * f64::from(rate) / LIMIT;
+    let fits = BAUDS.into_iter().find(|baud| f64::from(*baud) >= needed);
+    Err(LoadError::Line {
+        baud: rate,
+        rate_hz: traffic.samples_hz,
+        load,
+        fits_baud: fits.unwrap_or(needed.ceil() as u32),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn load(uri: &str, rate_hz: f64) -> Result<Load, String> {
+        real_time(&uri.parse().unwrap(), rate_hz, None).map_err(|error| error.to_string())
+    }
+
+    #[test]
+    fn a_line_that_is_too_slow_is_refused_with_one_that_isn_t() {
+        // 200 outputs of 150 bytes, ten bits each: 300 kbit/s and what goes beside them.
+        let refused = load("serial:/dev/ttyUSB0?baud=115200", 200.0).unwrap_err();
+        assert!(refused.contains("expected 460800 baud or more"), "{refused}");
+        assert!(load("serial:/dev/ttyUSB0?baud=460800", 200.0).is_ok());
+        assert!(load("serial:/dev/ttyUSB0?baud=921600", 1000.0).is_err());
+        assert!(load("serial:/dev/ttyUSB0?baud=2000000", 1000.0).is_ok());
+    }
+
+    #[test]
+    fn a_bus_that_is_too_slow_is_refused() {
+        let refused = load("can:can0?bitrate=500000", 200.0).unwrap_err();
+        assert!(refused.contains("classic CAN at 500 kbit/s can't carry 200"), "{refused}");
+        assert!(load("can:can0?bitrate=1000000", 200.0).is_ok());
+        assert!(load("slcan:/dev/ttyACM0?bitrate=500000", 200.0).is_err());
+        let fd = load("can:can0?fd=1&bitrate=500000&data_bitrate=2000000", 200.0).unwrap();
+        assert!(matches!(fd, Load::Bus(_, load) if load.share() < 0.3));
+        // FD without a second rate is sent at the first one.
+        assert!(load("can:can0?fd=1&bitrate=250000", 1000.0).is_err());
+    }
+
+    #[test]
+    fn what_has_no_rate_has_no_limit() {
+        for uri in ["pty:", "udp:127.0.0.1:5005", "can:vcan0"] {
+            assert_eq!(load(uri, 1000.0).unwrap(), Load::Unlimited);
+        }
+        // Of the interface, where the URI says nothing.
+        let uri = "can:can0".parse().unwrap();
+        assert!(real_time(&uri, 200.0, Some(Bus::classic(500_000))).is_err());
+    }
+}

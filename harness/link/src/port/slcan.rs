@@ -1,0 +1,304 @@
+//! CAN adapters behind a serial line that speak slcan: a line of text for each frame.
+//!
+//! `tIIILDD…` is a classic frame, `dIIILDD…` an FD frame and `bIIILDD…` one whose data is faster; each
+//! ends with a carriage return. Adapters answer `\r` (done), `\x07` (not done) and `z\r` (sent).
+
+use super::{BusEvent, Bytes, Frames, PortError, SerialLine, Trouble};
+use crate::Uri;
+use crate::uri::{self, SLCAN_BITRATES};
+use octant_wire::can::{Format, Frame};
+use std::time::{Duration, Instant};
+
+/// An adapter with its channel open.
+#[derive(Debug)]
+pub struct Slcan {
+    line: Box<dyn Bytes>,
+    format: Format,
+    text: Lines,
+    buffer: [u8; 512],
+    from: usize,
+    to: usize,
+}
+
+/// Bytes of the longest line: `b`, identifier, length, 64 bytes of data.
+const LINE_MAX: usize = 1 + 3 + 1 + 128;
+
+/// How long an adapter has for its answer to a command.
+const COMMAND_WAIT: Duration = Duration::from_millis(100);
+
+impl Slcan {
+    /// Opens the line and the channel.
+    ///
+    /// # Errors
+    /// If the line can't be opened, or the adapter refuses its bit rate.
+    pub fn open(slcan: &uri::Slcan) -> Result<Self, PortError> {
+        let line = Box::new(SerialLine::open(&slcan.serial)?);
+        Self::over(line, slcan)
+    }
+
+    /// Opens the channel of an adapter behind a line.
+    ///
+    /// # Errors
+    /// If the line goes away, or the adapter refuses its bit rate.
+    pub fn over(line: Box<dyn Bytes>, slcan: &uri::Slcan) -> Result<Self, PortError> {
+        let uri = Uri::Slcan(slcan.clone());
+        let format = slcan.bus.format();
+        let mut this =
+            Self { line, format, text: Lines::default(), buffer: [0; 512], from: 0, to: 0 };
+        // A channel that is open takes no rate; one that is closed may refuse to be closed.
+        this.command("C\r")?;
+        let code = SLCAN_BITRATES.iter().position(|rate| *rate == slcan.bus.nominal_bps);
+        let data = slcan.bus.data_bps.map(|rate| rate / 1_000_000);
+        let commands = [
+            code.map(|code| (format!("S{code}\r"), "bit rate")),
+            data.map(|code| (format!("Y{code}\r"), "bit rate of data")),
+            Some(("O\r".to_owned(), "opening of the channel")),
+        ];
+        for (command, what) in commands.into_iter().flatten() {
+            if !this.command(&command)? {
+                return Err(PortError::open(&uri, format!("the adapter refuses the {what}")));
+            }
+        }
+        Ok(this)
+    }
+
+    /// Sends a command; false: the adapter refused it. Many answer nothing.
+    fn command(&mut self, command: &str) -> Result<bool, PortError> {
+        self.line.send(command.as_bytes(), COMMAND_WAIT)?;
+        let begun = Instant::now();
+        let mut answer = [0; 64];
+        while begun.elapsed() < COMMAND_WAIT {
+            let left = COMMAND_WAIT.saturating_sub(begun.elapsed());
+            let count = self.line.receive(&mut answer, left)?;
+            for byte in &answer[..count] {
+                match byte {
+                    b'\r' => return Ok(true),
+                    0x07 => return Ok(false),
+                    _ => {}
+                }
+            }
+        }
+        Ok(true)
+    }
+}
+
+impl Drop for Slcan {
+    fn drop(&mut self) {
+        // The adapter may be gone.
+        let _ = self.line.send(b"C\r", COMMAND_WAIT);
+    }
+}
+
+impl Frames for Slcan {
+    fn send(&mut self, frame: &Frame, wait: Duration) -> Result<bool, PortError> {
+        let mut line = [0; LINE_MAX + 1];
+        let count = write_line(frame, &mut line);
+        self.line.send(&line[..count], wait)
+    }
+
+    fn receive(&mut self, wait: Duration) -> Result<Option<BusEvent>, PortError> {
+        let begun = Instant::now();
+        loop {
+            while self.from < self.to {
+                let byte = self.buffer[self.from];
+                self.from += 1;
+                if let Some(event) = self.text.push(byte) {
+                    return Ok(Some(event));
+                }
+            }
+            let left = wait.saturating_sub(begun.elapsed());
+            let count = self.line.receive(&mut self.buffer, left)?;
+            if count == 0 {
+                return Ok(None);
+            }
+            (self.from, self.to) = (0, count);
+        }
+    }
+
+    fn format(&self) -> Format {
+        self.format
+    }
+
+    fn restart(&mut self) -> Result<bool, PortError> {
+        self.line.send(b"C\r", COMMAND_WAIT)?;
+        self.line.send(b"O\r", COMMAND_WAIT)
+    }
+}
+
+/// Lengths by their code.
+const LENGTHS: [usize; 16] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 12, 16, 20, 24, 32, 48, 64];
+
+/// A frame as a line; how many bytes it has.
+fn write_line(frame: &Frame, line: &mut [u8; LINE_MAX + 1]) -> usize {
+    const DIGITS: &[u8; 16] = b"0123456789ABCDEF";
+    line[0] = match frame.format() {
+        Format::Classic => b't',
+        Format::Fd => b'b',
+    };
+    let id = usize::from(frame.id());
+    for (i, shift) in [8, 4, 0].into_iter().enumerate() {
+        line[1 + i] = DIGITS[id >> shift & 0xF];
+    }
+    let code = LENGTHS.iter().position(|length| *length == frame.data().len()).unwrap_or(0);
+    line[4] = DIGITS[code];
+    let mut at = 5;
+    for byte in frame.data() {
+        line[at] = DIGITS[usize::from(byte >> 4)];
+        line[at + 1] = DIGITS[usize::from(byte & 0xF)];
+        at += 2;
+    }
+    line[at] = b'\r';
+    at + 1
+}
+
+/// Finds frames in what an adapter says.
+#[derive(Debug)]
+struct Lines {
+    line: [u8; LINE_MAX],
+    length: usize,
+    /// The line is longer than any.
+    long: bool,
+}
+
+impl Default for Lines {
+    fn default() -> Self {
+        Self { line: [0; LINE_MAX], length: 0, long: false }
+    }
+}
+
+impl Lines {
+    fn push(&mut self, byte: u8) -> Option<BusEvent> {
+        match byte {
+            b'\r' => {
+                let long = std::mem::take(&mut self.long);
+                let length = std::mem::take(&mut self.length);
+                if long {
+                    return Some(BusEvent::Trouble(Trouble::Foreign));
+                }
+                read_line(&self.line[..length])
+            }
+            // Not done: the channel is closed, or the adapter's queue is full.
+            0x07 => {
+                self.length = 0;
+                self.long = false;
+                Some(BusEvent::Trouble(Trouble::Overrun))
+            }
+            byte => {
+                match self.line.get_mut(self.length) {
+                    Some(place) => {
+                        *place = byte;
+                        self.length += 1;
+                    }
+                    None => self.long = true,
+                }
+                None
+            }
+        }
+    }
+}
+
+/// What a line says; `None`: nothing of frames.
+fn read_line(line: &[u8]) -> Option<BusEvent> {
+    let foreign = Some(BusEvent::Trouble(Trouble::Foreign));
+    let (first, rest) = line.split_first()?;
+    let format = match first {
+        b't' => Format::Classic,
+        b'd' | b'b' => Format::Fd,
+        b'T' | b'r' | b'R' | b'D' | b'B' => return foreign,
+        // Flags of the adapter: bit 7 bus error, 5 passive, 2 warning, 3 overrun.
+        b'F' => {
+            let [high, low] = rest else { return foreign };
+            let flags = digit(*high)? << 4 | digit(*low)?;
+            return match flags {
+                0 => None,
+                flags if flags & 0x20 != 0 => Some(BusEvent::Trouble(Trouble::Passive)),
+                flags if flags & 0x08 != 0 => Some(BusEvent::Trouble(Trouble::Overrun)),
+                flags if flags & 0x80 != 0 => Some(BusEvent::Trouble(Trouble::ErrorFrame)),
+                _ => Some(BusEvent::Trouble(Trouble::Warning)),
+            };
+        }
+        // Answers to commands, and commands of another program on the line.
+        _ => return None,
+    };
+    frame(format, rest).map_or(foreign, |frame| Some(BusEvent::Frame(frame)))
+}
+
+fn frame(format: Format, rest: &[u8]) -> Option<Frame> {
+    let (head, data) = rest.split_first_chunk::<4>()?;
+    let [a, b, c, length] = head.map(|byte| digit(byte).map(u16::from));
+    let id = a? << 8 | b? << 4 | c?;
+    let length = LENGTHS[usize::from(length?)];
+    if data.len() != 2 * length {
+        return None;
+    }
+    let mut bytes = [0; 64];
+    for (byte, pair) in bytes.iter_mut().zip(data.chunks_exact(2)) {
+        *byte = digit(pair[0])? << 4 | digit(pair[1])?;
+    }
+    Frame::new(id, format, &bytes[..length])
+}
+
+fn digit(byte: u8) -> Option<u8> {
+    (byte as char).to_digit(16).map(|digit| digit as u8)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn read(text: &[u8]) -> Vec<BusEvent> {
+        let mut lines = Lines::default();
+        text.iter().filter_map(|byte| lines.push(*byte)).collect()
+    }
+
+    fn line(frame: &Frame) -> Vec<u8> {
+        let mut line = [0; LINE_MAX + 1];
+        let count = write_line(frame, &mut line);
+        line[..count].to_vec()
+    }
+
+    #[test]
+    fn frames_are_the_lines_that_the_protocol_has() {
+        let classic = Frame::new(0x123, Format::Classic, &[0x11, 0x22, 0xAF]).unwrap();
+        assert_eq!(line(&classic), b"t12331122AF\r");
+        let fd = Frame::new(0x5A0, Format::Fd, &[0xFF; 12]).unwrap();
+        assert_eq!(line(&fd), b"b5A09FFFFFFFFFFFFFFFFFFFFFFFF\r");
+        assert_eq!(read(b"t12331122af\r"), [BusEvent::Frame(classic)]);
+    }
+
+    #[test]
+    fn what_is_no_frame_of_ours_is_told_or_passed_over() {
+        let foreign = BusEvent::Trouble(Trouble::Foreign);
+        for text in [
+            &b"T0000012381122334455667788\r"[..],
+            b"r1230\r",
+            b"t12\r",
+            b"t1239\r",
+            b"t123411\r",
+            b"t12G0\r",
+            b"tFFF0\r",
+        ] {
+            assert_eq!(read(text), [foreign], "{}", String::from_utf8_lossy(text));
+        }
+        assert_eq!(read(&[b"t".as_slice(), &[b'0'; 500], b"\rt0000\r"].concat()).len(), 2);
+        assert!(read(b"\r\rz\rV1013\rN1234\rF00\r").is_empty());
+        assert_eq!(read(b"\x07"), [BusEvent::Trouble(Trouble::Overrun)]);
+        assert_eq!(read(b"F20\rF04\r").len(), 2);
+    }
+
+    proptest! {
+        #[test]
+        fn every_frame_comes_back(id in 0..0x800u16, fd: bool, code in 0..16usize, fill: u8) {
+            let format = if fd { Format::Fd } else { Format::Classic };
+            let data = vec![fill; LENGTHS[code].min(format.room())];
+            let frame = Frame::new(id, format, &data).unwrap();
+            prop_assert_eq!(read(&line(&frame)), [BusEvent::Frame(frame)]);
+        }
+
+        #[test]
+        fn any_bytes_are_taken(bytes: Vec<u8>) {
+            read(&bytes);
+        }
+    }
+}

@@ -1,0 +1,312 @@
+//! CAN interfaces of the Linux kernel.
+
+use super::{BusEvent, Frames, PortError, Trouble};
+use crate::Uri;
+use crate::uri::Can;
+use octant_wire::Role;
+use octant_wire::can::{Bus, Format, Frame, Slot};
+use rustix::event::{PollFd, PollFlags, Timespec, poll};
+use socketcan::{
+    CanAnyFrame, CanDataFrame, CanErrorFrame, CanFdFrame, CanFdSocket, CanFilter, CanInterface,
+    EmbeddedFrame, Id, Socket, SocketOptions, StandardId,
+};
+use std::io::ErrorKind;
+use std::time::{Duration, Instant};
+
+/// A CAN interface that hears what is meant for its role, and what is wrong with the bus.
+#[derive(Debug)]
+pub struct SocketCan {
+    uri: String,
+    interface: String,
+    socket: CanFdSocket,
+    format: Format,
+}
+
+/// Bits of an identifier as the kernel has it.
+const EXTENDED: u32 = 0x8000_0000;
+const REMOTE: u32 = 0x4000_0000;
+/// Format and slot of an identifier.
+const SLOT: u32 = 0x7E0;
+
+/// Bits of an error frame's identifier, and of its second byte of data: linux/can/error.h.
+mod error {
+    pub(super) const ARBITRATION: u32 = 0x02;
+    pub(super) const CONTROLLER: u32 = 0x04;
+    pub(super) const NOT_ACKNOWLEDGED: u32 = 0x20;
+    pub(super) const OFF: u32 = 0x40;
+    pub(super) const RESTARTED: u32 = 0x100;
+    pub(super) const OVERFLOW: u8 = 0x03;
+    pub(super) const WARNING: u8 = 0x0C;
+    pub(super) const PASSIVE: u8 = 0x30;
+}
+
+impl SocketCan {
+    /// Opens an interface for a role.
+    ///
+    /// # Errors
+    /// If it isn't there, is down, can't do CAN FD where that is asked for, or has another bit rate
+    /// than the URI says.
+    pub fn open(can: &Can, role: Role) -> Result<Self, PortError> {
+        let uri = Uri::Can(can.clone()).to_string();
+        let refused = |reason: String| PortError::open(&uri, reason);
+        let interface = CanInterface::open(&can.interface)
+            .map_err(|error| refused(format!("there is no such interface ({error})")))?;
+        let details = interface.details().ok();
+        if details.as_ref().is_some_and(|details| !details.is_up) {
+            return Err(refused(format!(
+                "the interface is down; ip link set {} up type can bitrate … brings it up",
+                can.interface
+            )));
+        }
+        let is_fd = |mtu| matches!(mtu, socketcan::nl::Mtu::Fd);
+        let mtu = details.and_then(|details| details.mtu);
+        if can.format == Format::Fd && mtu.is_some_and(|mtu| !is_fd(mtu)) {
+            return Err(refused(
+                "the interface carries classic CAN alone, expected one with CAN FD switched on"
+                    .to_owned(),
+            ));
+        }
+        compare(can, interface_bus(&can.interface, can.format)).map_err(refused)?;
+        let socket =
+            CanFdSocket::open(&can.interface).map_err(|error| refused(error.to_string()))?;
+        let set_up = || {
+            socket.set_nonblocking(true)?;
+            socket.set_filters(&filters(role, can.format))?;
+            socket.set_error_filter_accept_all()
+        };
+        set_up().map_err(|error: std::io::Error| refused(error.to_string()))?;
+        Ok(Self { uri, interface: can.interface.clone(), socket, format: can.format })
+    }
+
+    fn gone(&self, error: &std::io::Error) -> PortError {
+        PortError::gone(&self.uri, error)
+    }
+
+    /// Waits until a frame is there.
+    fn wait(&self, wait: Duration) -> Result<(), PortError> {
+        let timeout = Timespec {
+            tv_sec: i64::try_from(wait.as_secs()).unwrap_or(i64::MAX),
+            tv_nsec: i64::from(wait.subsec_nanos()),
+        };
+        let mut fds = [PollFd::new(&self.socket, PollFlags::IN)];
+        match poll(&mut fds, Some(&timeout)) {
+            Ok(_) | Err(rustix::io::Errno::INTR) => Ok(()),
+            Err(error) => Err(self.gone(&error.into())),
+        }
+    }
+}
+
+/// The rates of an interface's bus; `None`: it has none, like a virtual one.
+#[must_use]
+pub fn interface_bus(interface: &str, format: Format) -> Option<Bus> {
+    let interface = CanInterface::open(interface).ok()?;
+    let rate = |bps: u32| (bps > 0).then_some(bps);
+    let nominal_bps = rate(interface.bit_rate().ok()??)?;
+    let data_bps = match format {
+        Format::Classic => None,
+        Format::Fd => {
+            let timing = interface.data_bit_timing().ok().flatten();
+            Some(timing.and_then(|timing| rate(timing.bitrate)).unwrap_or(nominal_bps))
+        }
+    };
+    Some(Bus { nominal_bps, data_bps })
+}
+
+/// Whether the interface has the rates that the URI says.
+fn compare(can: &Can, found: Option<Bus>) -> Result<(), String> {
+    let Some(found) = found else { return Ok(()) };
+    let pairs = [
+        ("bitrate", can.bitrate, Some(found.nominal_bps)),
+        ("data_bitrate", can.data_bitrate, found.data_bps),
+    ];
+    for (option, said, found) in pairs {
+        if let (Some(said), Some(found)) = (said, found)
+            && said != found
+        {
+            return Err(format!("the interface has {option} {found}, expected {said}"));
+        }
+    }
+    Ok(())
+}
+
+/// What a role hears: the messages of the others.
+fn filters(role: Role, format: Format) -> Vec<CanFilter> {
+    let heard = |sender: Role| (sender == Role::Harness) != (role == Role::Harness);
+    Slot::ALL
+        .iter()
+        .filter(|slot| heard(slot.sender))
+        .map(|slot| CanFilter::new(slot.id(0, format).into(), SLOT | EXTENDED | REMOTE))
+        .collect()
+}
+
+/// What an error frame says. Drivers put several bits into one frame: the worst counts.
+fn trouble(frame: &CanErrorFrame) -> Trouble {
+    let bits = frame.error_bits();
+    let controller =
+        if bits & error::CONTROLLER != 0 { frame.data().get(1).copied().unwrap_or(0) } else { 0 };
+    if bits & error::OFF != 0 {
+        Trouble::Off
+    } else if bits & error::RESTARTED != 0 {
+        Trouble::Restarted
+    } else if controller & error::PASSIVE != 0 {
+        Trouble::Passive
+    } else if controller & error::OVERFLOW != 0 {
+        Trouble::Overrun
+    } else if controller & error::WARNING != 0 {
+        Trouble::Warning
+    } else if bits & error::NOT_ACKNOWLEDGED != 0 {
+        Trouble::NotAcknowledged
+    } else if bits & error::ARBITRATION != 0 {
+        Trouble::ArbitrationLost
+    } else {
+        Trouble::ErrorFrame
+    }
+}
+
+/// A frame of the kernel as one of ours.
+fn event(frame: &CanAnyFrame) -> BusEvent {
+    let ours = |id: Id, format: Format, data: &[u8]| match id {
+        Id::Standard(id) => Frame::new(id.as_raw(), format, data),
+        Id::Extended(_) => None,
+    };
+    let frame = match frame {
+        CanAnyFrame::Error(frame) => return BusEvent::Trouble(trouble(frame)),
+        CanAnyFrame::Remote(_) => None,
+        CanAnyFrame::Normal(frame) => ours(frame.id(), Format::Classic, frame.data()),
+        CanAnyFrame::Fd(frame) => ours(frame.id(), Format::Fd, frame.data()),
+    };
+    frame.map_or(BusEvent::Trouble(Trouble::Foreign), BusEvent::Frame)
+}
+
+/// The queue of the interface is full.
+fn is_full(error: &std::io::Error) -> bool {
+    error.kind() == ErrorKind::WouldBlock
+        || error.raw_os_error() == Some(rustix::io::Errno::NOBUFS.raw_os_error())
+}
+
+/// Time between two looks at a full queue: a frame takes about as long.
+const FULL_WAIT: Duration = Duration::from_micros(100);
+
+impl Frames for SocketCan {
+    fn send(&mut self, frame: &Frame, wait: Duration) -> Result<bool, PortError> {
+        // Our identifiers have 11 bits.
+        let Some(id) = StandardId::new(frame.id()) else { return Ok(false) };
+        let begun = Instant::now();
+        loop {
+            let written = match frame.format() {
+                Format::Classic => match CanDataFrame::new(id, frame.data()) {
+                    Some(frame) => self.socket.write_frame(&socketcan::CanFrame::Data(frame)),
+                    None => return Ok(false),
+                },
+                Format::Fd => match CanFdFrame::new(id, frame.data()) {
+                    Some(mut frame) => {
+                        frame.set_brs(true);
+                        self.socket.write_frame(&frame)
+                    }
+                    None => return Ok(false),
+                },
+            };
+            match written {
+                Ok(()) => return Ok(true),
+                Err(error) if error.kind() == ErrorKind::Interrupted => {}
+                Err(error) if is_full(&error) => {
+                    if begun.elapsed() >= wait {
+                        return Ok(false);
+                    }
+                    std::thread::sleep(FULL_WAIT);
+                }
+                Err(error) => return Err(self.gone(&error)),
+            }
+        }
+    }
+
+    fn receive(&mut self, wait: Duration) -> Result<Option<BusEvent>, PortError> {
+        let mut waited = wait.is_zero();
+        loop {
+            match self.socket.read_frame() {
+                Ok(frame) => return Ok(Some(event(&frame))),
+                Err(error) if error.kind() == ErrorKind::WouldBlock => {
+                    if std::mem::replace(&mut waited, true) {
+                        return Ok(None);
+                    }
+                    self.wait(wait)?;
+                }
+                Err(error) if error.kind() == ErrorKind::Interrupted => {}
+                Err(error) => return Err(self.gone(&error)),
+            }
+        }
+    }
+
+    fn format(&self) -> Format {
+        self.format
+    }
+
+    fn restart(&mut self) -> Result<bool, PortError> {
+        // Refused without rights, and where the interface restarts by itself (restart-ms).
+        let interface = CanInterface::open(&self.interface)
+            .map_err(|error| PortError::gone(&self.uri, error))?;
+        Ok(interface.restart().is_ok())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn error_frame(bits: u32, controller: u8) -> Trouble {
+        let frame = CanErrorFrame::new_error(bits, &[0, controller, 0, 0, 0, 0, 0, 0]).unwrap();
+        trouble(&frame)
+    }
+
+    #[test]
+    fn an_error_frame_is_the_worst_that_it_says() {
+        assert_eq!(error_frame(0x40, 0), Trouble::Off);
+        assert_eq!(error_frame(0x04, 0x20), Trouble::Passive);
+        // As the sja1000 reports it: protocol violation, bus error and controller in one frame.
+        assert_eq!(error_frame(0x8C, 0x10), Trouble::Passive);
+        assert_eq!(error_frame(0x8C, 0x08), Trouble::Warning);
+        assert_eq!(error_frame(0x88, 0x10), Trouble::ErrorFrame);
+        assert_eq!(error_frame(0x02, 0), Trouble::ArbitrationLost);
+        assert_eq!(error_frame(0x20, 0), Trouble::NotAcknowledged);
+        assert_eq!(error_frame(0x100, 0), Trouble::Restarted);
+        assert_eq!(error_frame(0x04, 0x01), Trouble::Overrun);
+    }
+
+    #[test]
+    fn a_frame_becomes_the_kernel_s_and_is_itself_again() {
+        let id = StandardId::new(0x2C3).unwrap();
+        let classic = CanAnyFrame::Normal(CanDataFrame::new(id, &[1, 2, 3]).unwrap());
+        let expected = Frame::new(0x2C3, Format::Classic, &[1, 2, 3]).unwrap();
+        assert_eq!(event(&classic), BusEvent::Frame(expected));
+        let fd = CanAnyFrame::Fd(CanFdFrame::new(id, &[7; 12]).unwrap());
+        let expected = Frame::new(0x2C3, Format::Fd, &[7; 12]).unwrap();
+        assert_eq!(event(&fd), BusEvent::Frame(expected));
+        let extended = socketcan::ExtendedId::new(0x2C3).unwrap();
+        let foreign = CanAnyFrame::Normal(CanDataFrame::new(extended, &[1]).unwrap());
+        assert_eq!(event(&foreign), BusEvent::Trouble(Trouble::Foreign));
+    }
+
+    #[test]
+    fn rates_that_differ_are_told() {
+        let uri: Uri = "can:can0?bitrate=500000".parse().unwrap();
+        let Uri::Can(can) = uri else { panic!() };
+        assert!(compare(&can, None).is_ok());
+        assert!(compare(&can, Some(Bus::classic(500_000))).is_ok());
+        let told = compare(&can, Some(Bus::classic(250_000))).unwrap_err();
+        assert_eq!(told, "the interface has bitrate 250000, expected 500000");
+    }
+
+    #[test]
+    fn each_end_hears_the_other() {
+        let heard = |role| filters(role, Format::Classic).len();
+        assert_eq!(heard(Role::Device), 8);
+        assert_eq!(heard(Role::Harness), Slot::ALL.len() - 8);
+    }
+
+    #[test]
+    fn an_interface_that_isn_t_there_is_named() {
+        let Uri::Can(can) = "can:octant9".parse().unwrap() else { panic!() };
+        let error = SocketCan::open(&can, Role::Harness).unwrap_err().to_string();
+        assert!(error.contains("can:octant9") && error.contains("no such interface"), "{error}");
+    }
+}

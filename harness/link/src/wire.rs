@@ -1,0 +1,435 @@
+//! Messages across a port, and counts of what was lost on it.
+
+use crate::port::{BusEvent, Bytes, Frames, Port, PortError, Trouble};
+use octant_wire::can::{self, Bits, Bus, Format, Reassembler};
+use octant_wire::message::{ClockTime, Message, Role};
+use octant_wire::serial::{self, Decoder, Encoder};
+use octant_wire::{Unreadable, message::Status};
+use std::time::{Duration, Instant};
+
+/// What came.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[expect(clippy::large_enum_variant, reason = "the large variant is the one that comes")]
+pub enum Incoming {
+    /// A message.
+    Message(Message),
+    /// A hello of a version that isn't spoken here.
+    Newer(u16),
+}
+
+/// What went over a wire so far, seen from one end.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Counts {
+    /// Messages sent.
+    pub sent: u64,
+    /// Messages that the port did not take whole.
+    pub not_sent: u64,
+    /// Messages received.
+    pub received: u64,
+    /// Bytes (CAN: frames) received that belong to no message.
+    pub lost: u64,
+    /// Frames (CAN: messages) that arrived damaged.
+    pub damaged: u64,
+    /// Frames (CAN: segments) that never arrived.
+    pub missing: u64,
+    /// Frames (CAN: segments) that arrived again, or after later ones.
+    pub out_of_order: u64,
+    /// Undamaged frames (CAN: messages) that could not be understood.
+    pub unreadable: u64,
+    /// Time that all CAN frames took, sent and received, in the worst case, s.
+    pub bus_s: f64,
+    /// CAN: error frames of any kind.
+    pub error_frames: u64,
+    /// CAN: how often the controller went to error-passive.
+    pub error_passive: u64,
+    /// CAN: how often the controller left the bus.
+    pub bus_off: u64,
+    /// CAN: how often it came back.
+    pub restarted: u64,
+    /// CAN: arbitrations lost, as far as the controller tells.
+    pub arbitration_lost: u64,
+}
+
+/// Messages over a port.
+#[derive(Debug)]
+pub struct Wire {
+    name: String,
+    medium: Medium,
+    begun: Instant,
+    last_sent: Option<Instant>,
+    last_received: Option<Instant>,
+    counts: Counts,
+    /// Rates of the bus, for its load.
+    bus: Option<Bus>,
+    off: bool,
+}
+
+#[derive(Debug)]
+enum Medium {
+    Bytes(Box<ByteMedium>),
+    Frames(Box<FrameMedium>),
+}
+
+#[derive(Debug)]
+struct ByteMedium {
+    port: Box<dyn Bytes>,
+    encoder: Encoder,
+    decoder: Decoder,
+    buffer: [u8; 4096],
+    /// What of the buffer isn't decoded yet.
+    from: usize,
+    to: usize,
+    /// A datagram was decoded to its last byte and is to be concluded.
+    concludes: bool,
+}
+
+#[derive(Debug)]
+struct FrameMedium {
+    port: Box<dyn Frames>,
+    reassembler: Reassembler,
+    role: Role,
+    format: Format,
+}
+
+/// Shortest time between two attempts to bring a controller back to its bus.
+const RESTART_EVERY: Duration = Duration::from_millis(100);
+
+impl Wire {
+    /// Messages over a port, seen from a role. `name` is how the port is called in errors.
+    #[must_use]
+    pub fn new(name: impl Into<String>, port: Port, role: Role) -> Self {
+        let medium = match port {
+            Port::Bytes(port) => Medium::Bytes(Box::new(ByteMedium {
+                port,
+                encoder: Encoder::new(),
+                decoder: Decoder::new(),
+                buffer: [0; 4096],
+                from: 0,
+                to: 0,
+                concludes: false,
+            })),
+            Port::Frames(port) => {
+                let others: &[Role] = match role {
+                    Role::Harness => &[Role::Device, Role::Instrument],
+                    Role::Device | Role::Instrument => &[Role::Harness],
+                };
+                let format = port.format();
+                let reassembler = Reassembler::new(others, format);
+                Medium::Frames(Box::new(FrameMedium { port, reassembler, role, format }))
+            }
+        };
+        Self {
+            name: name.into(),
+            medium,
+            begun: Instant::now(),
+            last_sent: None,
+            last_received: None,
+            counts: Counts::default(),
+            bus: None,
+            off: false,
+        }
+    }
+
+    /// Opens the port of a name.
+    ///
+    /// # Errors
+    /// If it can't be opened.
+    pub fn open(uri: &crate::Uri, role: Role) -> Result<Self, PortError> {
+        Ok(Self::new(uri.to_string(), crate::port::open(uri, role)?, role))
+    }
+
+    /// Rates of the bus, of which [`Counts::bus_s`] is computed.
+    pub fn set_bus(&mut self, bus: Bus) {
+        self.bus = Some(bus);
+    }
+
+    /// How the port is called.
+    #[must_use]
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// This end's clock.
+    #[must_use]
+    pub fn now(&self) -> ClockTime {
+        self.at(Instant::now())
+    }
+
+    /// This end's clock at an instant; 0 before the wire was there.
+    #[must_use]
+    pub fn at(&self, instant: Instant) -> ClockTime {
+        let since = instant.saturating_duration_since(self.begun).as_nanos();
+        ClockTime::from_ns(u64::try_from(since).unwrap_or(u64::MAX))
+    }
+
+    /// How long nothing was sent.
+    #[must_use]
+    pub fn quiet(&self) -> Duration {
+        self.last_sent.unwrap_or(self.begun).elapsed()
+    }
+
+    /// How long nothing intact was received.
+    #[must_use]
+    pub fn silence(&self) -> Duration {
+        self.last_received.unwrap_or(self.begun).elapsed()
+    }
+
+    /// Sends a message. False: the port did not take it whole within the time.
+    ///
+    /// # Errors
+    /// If the port is gone.
+    pub fn send(&mut self, message: &Message, wait: Duration) -> Result<bool, PortError> {
+        let now = Instant::now();
+        let clock = self.at(now);
+        self.last_sent = Some(now);
+        let taken = match &mut self.medium {
+            Medium::Bytes(medium) => {
+                let ByteMedium { port, encoder, .. } = &mut **medium;
+                port.send(encoder.encode(message, clock), wait)?
+            }
+            Medium::Frames(medium) => medium.send(message, wait, self.bus, &mut self.counts)?,
+        };
+        *(if taken { &mut self.counts.sent } else { &mut self.counts.not_sent }) += 1;
+        Ok(taken)
+    }
+
+    /// The next message within a time; with no time, what is there already.
+    ///
+    /// # Errors
+    /// If the port is gone.
+    pub fn receive(&mut self, wait: Duration) -> Result<Option<Incoming>, PortError> {
+        let until = Instant::now().checked_add(wait);
+        let mut left = wait;
+        let mut lost = 0;
+        loop {
+            let incoming = match &mut self.medium {
+                Medium::Bytes(medium) => medium.next(left)?,
+                Medium::Frames(medium) => {
+                    let next = medium.next(left, self.bus, &mut self.counts)?;
+                    match next {
+                        Next::Trouble(trouble) => {
+                            self.trouble(trouble)?;
+                            Next::Nothing
+                        }
+                        next => next,
+                    }
+                }
+            };
+            match incoming {
+                Next::Incoming(incoming) => {
+                    self.last_received = Some(Instant::now());
+                    self.counts.received += 1;
+                    return Ok(Some(incoming));
+                }
+                // A line that babbles doesn't hold up who wants to go on.
+                Next::Lost => {
+                    lost += 1;
+                    if lost % 64 == 0 && until.is_some_and(|until| Instant::now() >= until) {
+                        return Ok(None);
+                    }
+                }
+                Next::Nothing | Next::Trouble(_) => {
+                    left = match until {
+                        Some(until) => until.saturating_duration_since(Instant::now()),
+                        None => wait,
+                    };
+                    if left.is_zero() {
+                        return Ok(None);
+                    }
+                }
+            }
+        }
+    }
+
+    /// Something is wrong with the bus.
+    #[cold]
+    fn trouble(&mut self, trouble: Trouble) -> Result<(), PortError> {
+        let counts = &mut self.counts;
+        counts.error_frames += u64::from(trouble != Trouble::Foreign);
+        match trouble {
+            Trouble::Passive => counts.error_passive += 1,
+            Trouble::ArbitrationLost => counts.arbitration_lost += 1,
+            Trouble::Off => {
+                counts.bus_off += 1;
+                self.off = true;
+                if let Medium::Frames(medium) = &mut self.medium {
+                    // A controller that is switched on at once may break a bus that recovers.
+                    std::thread::sleep(RESTART_EVERY);
+                    medium.port.restart()?;
+                }
+            }
+            Trouble::Restarted => {
+                counts.restarted += 1;
+                self.off = false;
+            }
+            _ => {}
+        }
+        Ok(())
+    }
+
+    /// The controller left the bus and is not back.
+    #[must_use]
+    pub fn is_off_bus(&self) -> bool {
+        self.off
+    }
+
+    /// A session with the peer that was heard last begins or ends.
+    pub fn hold_peer(&mut self, hold: bool) {
+        if let Medium::Bytes(medium) = &mut self.medium {
+            medium.port.hold_peer(hold);
+        }
+    }
+
+    /// Another port in the place of one that is gone: numbers of frames and counts go on.
+    pub fn replace(&mut self, port: Port) {
+        match (&mut self.medium, port) {
+            (Medium::Bytes(medium), Port::Bytes(port)) => {
+                medium.port = port;
+                // What came last is a piece of a frame: a zero comes before the next.
+                medium.from = 0;
+                medium.to = 0;
+            }
+            (Medium::Frames(medium), Port::Frames(port)) => medium.port = port,
+            // Of the same name, so of the same kind.
+            _ => {}
+        }
+    }
+
+    /// What went over the wire so far.
+    #[must_use]
+    pub fn counts(&self) -> Counts {
+        let mut counts = self.counts;
+        match &self.medium {
+            Medium::Bytes(medium) => {
+                let found = medium.decoder.counters();
+                counts.lost = found.bytes_lost;
+                counts.damaged = found.damaged();
+                counts.missing = found.missing;
+                counts.out_of_order = found.behind;
+                counts.unreadable = found.unreadable;
+            }
+            Medium::Frames(medium) => {
+                let found = medium.reassembler.counters();
+                counts.lost = found.orphaned;
+                counts.damaged = found.damaged();
+                counts.missing = found.missing;
+                counts.out_of_order = found.duplicated + found.disordered;
+                counts.unreadable = found.unreadable;
+            }
+        }
+        counts
+    }
+
+    /// The part of a status that the wire knows, counted since `before`.
+    #[must_use]
+    pub fn status(&self, before: &Counts) -> Status {
+        let now = self.counts();
+        let since = |now: u64, before: u64| u32::try_from(now - before).unwrap_or(u32::MAX);
+        Status {
+            received: since(now.received, before.received),
+            lost: since(now.lost, before.lost),
+            damaged: since(now.damaged, before.damaged),
+            missing: since(now.missing, before.missing),
+            out_of_order: since(now.out_of_order, before.out_of_order),
+            unreadable: since(now.unreadable, before.unreadable),
+            ..Status::default()
+        }
+    }
+}
+
+/// What a medium found.
+enum Next {
+    Incoming(Incoming),
+    /// Something that is no message; there may be more.
+    Lost,
+    Trouble(Trouble),
+    Nothing,
+}
+
+impl ByteMedium {
+    fn next(&mut self, wait: Duration) -> Result<Next, PortError> {
+        if self.from == self.to && !self.concludes {
+            let count = self.port.receive(&mut self.buffer, wait)?;
+            if count == 0 {
+                return Ok(Next::Nothing);
+            }
+            self.from = 0;
+            self.to = count;
+            self.concludes = self.port.datagrams();
+        }
+        let mut rest = &self.buffer[self.from..self.to];
+        let event = self.decoder.next(&mut rest);
+        self.from = self.to - rest.len();
+        let event = match event {
+            None if self.concludes => {
+                self.concludes = false;
+                self.decoder.end()
+            }
+            event => event,
+        };
+        Ok(match event {
+            Some(serial::Event::Received(received)) => {
+                Next::Incoming(Incoming::Message(received.message))
+            }
+            Some(serial::Event::Lost(serial::Lost {
+                cause: serial::Cause::Unreadable(Unreadable::NewerVersion { found }),
+                ..
+            })) => Next::Incoming(Incoming::Newer(found)),
+            Some(serial::Event::Lost(_)) | None => Next::Lost,
+        })
+    }
+}
+
+/// Time of a frame on a bus, at most.
+fn frame_s(frame: &can::Frame, bus: Option<Bus>) -> f64 {
+    let Some(bus) = bus else { return 0.0 };
+    let bits: Bits = match frame.format() {
+        Format::Classic => can::classic_bits(frame.data().len()),
+        Format::Fd => can::fd_bits(frame.data().len()),
+    };
+    bits.seconds(bus)
+}
+
+impl FrameMedium {
+    fn send(
+        &mut self,
+        message: &Message,
+        wait: Duration,
+        bus: Option<Bus>,
+        counts: &mut Counts,
+    ) -> Result<bool, PortError> {
+        // Ends send what their role has identifiers for.
+        let Ok(segments) = can::segments(message, self.role, self.format) else { return Ok(false) };
+        for frame in segments {
+            if !self.port.send(&frame, wait)? {
+                return Ok(false);
+            }
+            counts.bus_s += frame_s(&frame, bus);
+        }
+        Ok(true)
+    }
+
+    fn next(
+        &mut self,
+        wait: Duration,
+        bus: Option<Bus>,
+        counts: &mut Counts,
+    ) -> Result<Next, PortError> {
+        let frame = match self.port.receive(wait)? {
+            None => return Ok(Next::Nothing),
+            Some(BusEvent::Trouble(trouble)) => return Ok(Next::Trouble(trouble)),
+            Some(BusEvent::Frame(frame)) => frame,
+        };
+        counts.bus_s += frame_s(&frame, bus);
+        Ok(match self.reassembler.receive(&frame) {
+            Some(can::Event::Received { message, .. }) => {
+                Next::Incoming(Incoming::Message(message))
+            }
+            Some(can::Event::Lost(can::Lost {
+                cause: can::Cause::Unreadable(Unreadable::NewerVersion { found }),
+                ..
+            })) => Next::Incoming(Incoming::Newer(found)),
+            Some(can::Event::Lost(_)) | None => Next::Lost,
+        })
+    }
+}

@@ -1,0 +1,171 @@
+//! Sessions over pseudo terminals and UDP: the answers are those of the core, bit for bit.
+#![cfg(unix)]
+#![allow(clippy::unwrap_used)]
+
+mod common;
+
+use common::{Served, bits, drive, facts, harness, options, sample};
+use octant_link::device::Facts;
+use octant_link::harness::{Event, Harness, Sending, SessionError};
+use octant_link::{Uri, Wire};
+use octant_sample::Output;
+use octant_wire::message::{Capabilities, Pacing, Reason, Refusal, Role};
+use std::time::{Duration, Instant};
+
+/// Ports that need no hardware.
+const URIS: [&str; 2] = ["pty:", "udp:0"];
+
+#[test]
+fn a_session_in_lock_step_is_the_core_itself() {
+    for uri in URIS {
+        let (mut served, uri) = Served::on(uri, facts());
+        let mut harness = harness(&uri);
+        assert_eq!(harness.theirs().name.as_str(), "echo");
+        drive(&mut harness, 400);
+        let counts = harness.counts();
+        assert_eq!((counts.lost, counts.damaged, counts.missing), (0, 0, 0), "{uri}");
+        drop(harness);
+        served.stop();
+        let said = served.said().join("\n");
+        assert!(said.contains("a session in lock-step began with octant"), "{said}");
+        assert!(said.contains("the session is over"), "{said}");
+    }
+}
+
+#[test]
+fn a_device_serves_one_harness_after_the_other() {
+    for uri in URIS {
+        let (_served, uri) = Served::on(uri, facts());
+        for _ in 0..3 {
+            drive(&mut harness(&uri), 40);
+        }
+    }
+}
+
+#[test]
+fn a_harness_that_is_gone_without_a_word_is_given_up() {
+    let short = Facts {
+        limits: octant_wire::message::Limits { silence_ms: 300, ..facts().limits },
+        ..facts()
+    };
+    let (served, uri) = Served::on("udp:0", short);
+    let mut first = harness(&uri);
+    let mut output = Output::default();
+    let (one, aiding) = sample(1);
+    first.step(&one, aiding.as_ref(), &mut output).unwrap();
+    // As after kill -9: nothing is said any more, nothing is closed in order.
+    std::mem::forget(first);
+    // The second one is not heard until the first is given up.
+    drive(&mut harness(&uri), 40);
+    let said = served.said().join("\n");
+    assert!(said.contains("nothing heard for 0.3 s"), "{said}");
+}
+
+#[test]
+fn two_that_don_t_fit_part_with_a_reason() {
+    let fails = |facts: Facts, change: fn(&mut octant_link::harness::Options)| {
+        let (_served, uri) = Served::on("pty:", facts);
+        let mut options = options();
+        change(&mut options);
+        Harness::open(Wire::open(&uri, Role::Harness).unwrap(), options).unwrap_err()
+    };
+    let period = fails(facts(), |options| options.sample_period_ns = 1_000_000);
+    assert!(matches!(period, SessionError::Refused { reason: Refusal::Period { .. }, .. }));
+    let other = Facts { configuration: [7; 32], ..facts() };
+    let configuration = fails(other, |options| options.configuration = [8; 32]);
+    let told = configuration.to_string();
+    assert!(told.contains("configuration 0808") && told.contains("has 0707"), "{told}");
+    let slow = Facts { capabilities: Capabilities::LOCK_STEP, ..facts() };
+    let pacing = fails(slow, |options| options.pacing = Pacing::RealTime);
+    assert!(pacing.to_string().contains("asks for real-time steps"), "{pacing}");
+}
+
+#[test]
+fn nobody_at_the_other_end_is_told_with_what_was_heard() {
+    let (near, far) = serialport::TTYPort::pair().unwrap();
+    drop(far);
+    let name = {
+        use serialport::SerialPort;
+        let (keep, far) = serialport::TTYPort::pair().unwrap();
+        let name = far.name().unwrap();
+        std::mem::forget((keep, far));
+        name
+    };
+    drop(near);
+    let uri: Uri = format!("serial:{name}").parse().unwrap();
+    let mut options = options();
+    options.patience.hello = Duration::from_millis(300);
+    let wire = Wire::open(&uri, Role::Harness).unwrap();
+    let error = Harness::open(wire, options).unwrap_err().to_string();
+    assert!(error.contains(&name) && error.contains("no hello within 0."), "{error}");
+    assert!(error.contains("nothing at all was received"), "{error}");
+}
+
+#[test]
+fn a_device_that_goes_in_the_middle_is_an_error_that_says_what_was_waited_for() {
+    for uri in URIS {
+        let (mut served, uri) = Served::on(uri, facts());
+        let mut harness = harness(&uri);
+        let mut output = Output::default();
+        let (one, aiding) = sample(1);
+        harness.step(&one, aiding.as_ref(), &mut output).unwrap();
+        served.stop();
+        let (two, aiding) = sample(2);
+        let error = harness.step(&two, aiding.as_ref(), &mut output).unwrap_err();
+        // It said bye; its pseudo terminal went with it.
+        let told = error.to_string();
+        assert!(told.contains("bye") || told.contains("went away"), "{told}");
+        if let SessionError::Bye { bye, .. } = error {
+            assert_eq!(bye.reason, Reason::STOPPED);
+        }
+    }
+}
+
+#[test]
+fn in_real_time_nothing_waits() {
+    for uri in URIS {
+        let (_served, uri) = Served::on(uri, facts());
+        let options = octant_link::harness::Options { pacing: Pacing::RealTime, ..options() };
+        let mut harness = Harness::open(Wire::open(&uri, Role::Harness).unwrap(), options).unwrap();
+        let mut echo = common::Echo::default();
+        let (mut sent, mut got, mut times) = (0, 0, 0);
+        let begun = Instant::now();
+        while got < 200 && begun.elapsed() < Duration::from_secs(60) {
+            if sent < 200 {
+                let (sample, aiding) = sample(sent + 1);
+                match harness.send_sample(&sample, aiding.as_ref()).unwrap() {
+                    Sending::Sent(_) => sent += 1,
+                    Sending::WindowFull => assert!(harness.underway() >= 16),
+                    Sending::NotTaken(_) => panic!("the port has room for a window"),
+                }
+                if sent % 50 == 0 {
+                    harness.request_time().unwrap();
+                }
+            }
+            while let Some(event) = harness.poll(Duration::ZERO).unwrap() {
+                match event {
+                    Event::Output(answer) => {
+                        got += 1;
+                        let (sample, aiding) = sample(got);
+                        let mut expected = Output::default();
+                        octant_link::device::Steps::step(
+                            &mut echo,
+                            &sample,
+                            aiding.as_ref(),
+                            &mut expected,
+                        );
+                        assert_eq!(bits(&answer.output), bits(&expected));
+                    }
+                    Event::Time(stamps) => {
+                        let found = stamps.reply.offset(stamps.harness_received);
+                        assert!(found.error_ns >= 0, "{found:?}");
+                        times += 1;
+                    }
+                    _ => {}
+                }
+            }
+        }
+        assert_eq!(got, 200, "{uri}");
+        assert!(times > 0);
+    }
+}

@@ -1,0 +1,83 @@
+//! `octant serve`: the core as a live endpoint, that a harness drives.
+
+use super::{Failure, ScenarioArguments, load};
+use crate::endpoint::ServedCore;
+use crate::run::method::{MethodError, SetupError, core_of};
+use crate::scenario::{Method, Scenario};
+use crate::score::verdict::Verdict;
+use clap::Args;
+use octant_link::Uri;
+use octant_link::device::{Notice, serve};
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+#[derive(Debug, Args)]
+pub(super) struct Arguments {
+    /// The scenario that the core is configured from, the same that the harness runs; by default one
+    /// that says nothing: everything has its default.
+    #[arg(value_name = "SCENARIO")]
+    scenario: Option<PathBuf>,
+    /// Change one key of the scenario, as the harness does.
+    #[arg(long, value_name = "KEY=VALUE")]
+    set: Vec<String>,
+    /// Where it is served: serial:PORT, can:INTERFACE, slcan:PORT, udp:PORT (on loopback),
+    /// udp:ADDRESS:PORT, or pty: for a new pseudo terminal.
+    #[arg(long, value_name = "URI")]
+    endpoint: String,
+    /// Seed of the harness's run, instead of the scenario's.
+    #[arg(long, value_name = "N")]
+    seed: Option<u64>,
+    /// Seconds without a word after which a harness is taken for gone; 0: never.
+    #[arg(long, value_name = "S", default_value_t = 5.0)]
+    silence: f64,
+}
+
+pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
+    let uri: Uri = arguments
+        .endpoint
+        .parse()
+        .map_err(|error| Failure::input(format!("failed to read --endpoint: {error}")))?;
+    let silence_ms = silence_ms(arguments.silence)?;
+    let scenario = scenario(arguments)?;
+    let seed = arguments.seed.unwrap_or(scenario.seed);
+    let core =
+        core_of(&scenario, Method::Primary, seed).map_err(|error| Failure::from(error).failed())?;
+    let mut served = ServedCore::new(&core)
+        .map_err(|error| Failure::from(MethodError::from(SetupError::Core(error))).failed())?;
+    let stop = Arc::new(AtomicBool::new(false));
+    let until = Arc::clone(&stop);
+    ctrlc::set_handler(move || until.store(true, Ordering::Relaxed))
+        .map_err(|error| Failure::bench(format!("failed to wait for Ctrl-C: {error}")))?;
+    let mut notice = |notice: &Notice| eprintln!("octant: {notice}");
+    let facts = served.facts(silence_ms);
+    serve(&uri, facts, &mut served, &mut notice, &stop)
+        .map_err(|error| Failure::bench(format!("failed to {error}")))?;
+    eprintln!("octant: stopped");
+    Ok(Verdict::Pass)
+}
+
+fn silence_ms(seconds: f64) -> Result<u16, Failure> {
+    let ms = (seconds * 1e3).round();
+    if (0.0..=f64::from(u16::MAX)).contains(&ms) {
+        return Ok(ms as u16);
+    }
+    Err(Failure::input(format!(
+        "found --silence {seconds}, expected seconds from 0 (never) to 65.535"
+    )))
+}
+
+fn scenario(arguments: &Arguments) -> Result<Scenario, Failure> {
+    match &arguments.scenario {
+        Some(path) => {
+            let arguments =
+                ScenarioArguments { scenario: path.clone(), set: arguments.set.clone() };
+            load(&arguments, &[])
+        }
+        None if arguments.set.is_empty() => {
+            Scenario::parse("schema = 1\n", "no scenario", std::path::Path::new(""), &[])
+                .map_err(Failure::input)
+        }
+        None => Err(Failure::input("--set changes a scenario, expected one with it")),
+    }
+}

@@ -1,0 +1,282 @@
+//! A core at the other end of a wire: a device on a serial line, a CAN bus or UDP.
+//!
+//! In lock-step each sample is sent, and its answer waited for and asked for again until it is there:
+//! so the outputs are those of the device's core to the last bit, however bad the line is. By the
+//! clock a sample is sent once, and what comes of it is taken when it comes.
+
+use super::{Endpoint, EndpointError, OpenError, ParameterEstimate, RemoteClock, Sent};
+use crate::scenario::{Live, Scenario};
+use crate::source::Epoch;
+use octant_calibration::Config;
+use octant_link::clock::ClockEstimator;
+use octant_link::harness::{Event, Harness, Options, Patience, Sending, SessionError};
+use octant_link::{PortError, Uri, Wire, load, port};
+use octant_realtime::clock::{HostTime, now};
+use octant_sample::parameters::PARAMETER_COUNT;
+use octant_sample::{Output, Parameters};
+use octant_wire::message::{Gathered, OutputMessage, Pacing, Reason, Role, Step};
+use std::collections::VecDeque;
+use std::time::{Duration, Instant};
+
+/// A device.
+#[derive(Debug)]
+pub struct LiveEndpoint {
+    harness: Harness,
+    uri: Uri,
+    /// How long a port that went away is waited for.
+    reconnect: Duration,
+    estimate: ParameterEstimate,
+    underway: Underway,
+}
+
+/// By the clock: what was sent and not answered.
+#[derive(Debug)]
+struct Underway {
+    steps: VecDeque<Step>,
+    /// An answer whose parameters aren't there yet.
+    held: Option<Held>,
+    clock: ClockEstimator,
+    /// When the time was asked for last.
+    asked: HostTime,
+}
+
+/// An answer, and whether parameters come after it.
+#[derive(Debug)]
+struct Held {
+    message: OutputMessage,
+    waits: bool,
+}
+
+/// From one exchange of the time to the next, ns.
+const TIME_EXCHANGE_NS: u64 = 1_000_000_000;
+
+impl LiveEndpoint {
+    /// Looks whether a device can do what a scenario asks for, before one is looked for.
+    ///
+    /// # Errors
+    /// If it can't.
+    pub fn check(scenario: &Scenario, live: &Live) -> Result<(), OpenError> {
+        match scenario.baseline {
+            Some(_) => Err(OpenError::OneMethod { uri: live.uri.to_string() }),
+            None => Ok(()),
+        }
+    }
+
+    /// Begins a session with the device of a scenario, in lock-step.
+    ///
+    /// # Errors
+    /// If nobody answers there, or what answers doesn't fit.
+    pub fn open(scenario: &Scenario, live: &Live, config: &Config) -> Result<Self, OpenError> {
+        Self::check(scenario, live)?;
+        let options = Options {
+            configuration: configuration(config),
+            patience: Patience {
+                hello: Duration::from_secs_f64(live.hello_s),
+                answer: Duration::from_secs_f64(live.answer_s),
+                repeat: Duration::from_secs_f64(live.repeat_s),
+            },
+            ..Options::lock_step(config.sample_period_ns)
+        };
+        let pacing = if scenario.realtime.by_clock { Pacing::RealTime } else { Pacing::LockStep };
+        let options = Options { pacing, ..options };
+        if scenario.realtime.by_clock {
+            let rate_hz = 1e9 / config.sample_period_ns as f64;
+            load::real_time(&live.uri, rate_hz, load::bus(&live.uri))?;
+        }
+        let mut wire = Wire::open(&live.uri, Role::Harness).map_err(SessionError::from)?;
+        if let Some(bus) = load::bus(&live.uri) {
+            wire.set_bus(bus);
+        }
+        let harness = Harness::open(wire, options)?;
+        Ok(Self {
+            harness,
+            uri: live.uri.clone(),
+            reconnect: Duration::from_secs_f64(live.reconnect_s),
+            estimate: NOTHING,
+            underway: Underway {
+                // As many as a step number can tell apart.
+                steps: VecDeque::with_capacity(1 << 14),
+                held: None,
+                clock: ClockEstimator::new(10.0),
+                asked: HostTime::default(),
+            },
+        })
+    }
+
+    /// The answer that is held, now that its parameters are there or won't come any more; with how
+    /// many samples before it will have none.
+    fn release(&mut self, output: &mut Output) -> Option<usize> {
+        let held = self.underway.held.take()?;
+        let position = self.underway.steps.iter().position(|step| *step == held.message.step)?;
+        self.underway.steps.drain(..=position);
+        *output = held.message.output;
+        // Parameters that were lost on the way: their revision is not announced.
+        output.parameters_revision = self.estimate.revision;
+        Some(position)
+    }
+
+    /// The session, for what it counted.
+    #[must_use]
+    pub fn harness(&self) -> &Harness {
+        &self.harness
+    }
+
+    /// The port went away in the middle of a step: waits for it, and asks for the answer again.
+    #[cold]
+    fn back(&mut self, error: SessionError, output: &mut Output) -> Result<(), EndpointError> {
+        let SessionError::Port(PortError::Gone { .. }) = error else { return Err(error.into()) };
+        let begun = Instant::now();
+        loop {
+            if begun.elapsed() >= self.reconnect {
+                return Err(error.into());
+            }
+            std::thread::sleep(Duration::from_millis(50));
+            let Ok(port) = port::open(&self.uri, Role::Harness) else { continue };
+            self.harness.reconnect(port, begun.elapsed())?;
+            match self.harness.step_again(output) {
+                Ok(_) => return Ok(()),
+                Err(SessionError::Port(PortError::Gone { .. })) => {}
+                Err(error) => return Err(error.into()),
+            }
+        }
+    }
+
+    fn take_parameters(&mut self) {
+        if let Some(Gathered { revision, parameters, sigma, .. }) = self.harness.parameters()
+            && (*revision != self.estimate.revision || self.estimate.sigma[0].is_nan())
+        {
+            self.estimate =
+                ParameterEstimate { revision: *revision, parameters: *parameters, sigma: *sigma };
+        }
+    }
+}
+
+const NOTHING: ParameterEstimate = ParameterEstimate {
+    revision: 0,
+    parameters: Parameters {
+        gyro_bias: [0.0; 3],
+        gyro_scale: [0.0; 3],
+        gyro_misalignment: [0.0; 6],
+        g_dependent: [0.0; 9],
+        accel_bias: [0.0; 3],
+        accel_scale: [0.0; 3],
+        accel_misalignment: [0.0; 3],
+    },
+    sigma: [f64::NAN; PARAMETER_COUNT],
+};
+
+impl Endpoint for LiveEndpoint {
+    fn step(&mut self, epoch: &Epoch, output: &mut Output) -> Result<(), EndpointError> {
+        let answer = self.harness.step(&epoch.sample, epoch.aiding.as_ref(), output);
+        if let Err(error) = answer {
+            self.back(error, output)?;
+        }
+        if output.parameters_revision != self.estimate.revision || self.estimate.sigma[0].is_nan() {
+            self.take_parameters();
+        }
+        Ok(())
+    }
+
+    fn uri(&self) -> String {
+        self.uri.to_string()
+    }
+
+    fn send(&mut self, epoch: &Epoch, _output: &mut Output) -> Result<Sent, EndpointError> {
+        let time = now();
+        if time.since(self.underway.asked) >= TIME_EXCHANGE_NS {
+            self.underway.asked = time;
+            self.harness.request_time()?;
+        }
+        Ok(match self.harness.send_sample(&epoch.sample, epoch.aiding.as_ref())? {
+            Sending::Sent(step) => {
+                self.underway.steps.push_back(step);
+                Sent::Underway
+            }
+            Sending::NotTaken(_) | Sending::WindowFull => Sent::NotSent,
+        })
+    }
+
+    fn answer(
+        &mut self,
+        until: HostTime,
+        output: &mut Output,
+    ) -> Result<Option<usize>, EndpointError> {
+        loop {
+            if self.underway.held.as_ref().is_some_and(|held| !held.waits)
+                && let Some(skipped) = self.release(output)
+            {
+                return Ok(Some(skipped));
+            }
+            let wait = Duration::from_nanos(until.since(now()));
+            let Some(event) = self.harness.poll(wait)? else {
+                // The port may have waited a little less than it was told to.
+                if now() >= until {
+                    return Ok(None);
+                }
+                continue;
+            };
+            match event {
+                Event::Output(message) => {
+                    // One that still waits waits in vain: what comes is in order.
+                    let before = self.release(output);
+                    let waits = message.parameters_follow
+                        && message.output.parameters_revision != self.estimate.revision;
+                    self.underway.held = Some(Held { message, waits });
+                    if before.is_some() {
+                        return Ok(before);
+                    }
+                }
+                Event::Parameters(_) => {
+                    self.take_parameters();
+                    if let Some(held) = &mut self.underway.held {
+                        held.waits &=
+                            held.message.output.parameters_revision != self.estimate.revision;
+                    }
+                }
+                Event::Time(stamps) => self.underway.clock.add(&stamps),
+                _ => {}
+            }
+        }
+    }
+
+    fn remote_clock(&self) -> Option<RemoteClock> {
+        let estimate = self.underway.clock.estimate()?;
+        Some(RemoteClock {
+            offset_ns: estimate.offset_ns,
+            bound_ns: estimate.bound_ns,
+            skew: estimate.skew,
+            exchanges: estimate.exchanges,
+        })
+    }
+
+    fn restart(&mut self, offset: Option<&Parameters>) -> Result<(), EndpointError> {
+        self.estimate = NOTHING;
+        self.underway.steps.clear();
+        self.underway.held = None;
+        Ok(self.harness.restart(offset)?)
+    }
+
+    fn parameters(&self) -> ParameterEstimate {
+        self.estimate
+    }
+
+    fn end_of_stream(&mut self) -> Result<Option<Output>, EndpointError> {
+        let output = self.harness.end()?;
+        self.take_parameters();
+        Ok(output)
+    }
+}
+
+impl Drop for LiveEndpoint {
+    fn drop(&mut self) {
+        self.harness.bye(Reason::DONE, "the run is over");
+    }
+}
+
+/// What both ends compare in their hello: a hash of all that the core is configured with; zeros where
+/// there is none.
+#[must_use]
+pub fn configuration(config: &Config) -> [u8; 32] {
+    // All of it are numbers and names, which are written as their bits.
+    postcard::to_stdvec(config).map_or([0; 32], |bytes| blake3::hash(&bytes).into())
+}

@@ -1,0 +1,269 @@
+//! Runs by the clock: what is computed is the same, what was late is told, and the thread of the
+//! samples allocates nothing.
+
+use octant::endpoint::{Endpoint, EndpointError, InProcess, ParameterEstimate, Sent};
+use octant::recorder::{Recorder, RecorderOptions};
+use octant::run::method::configurations;
+use octant::run::realtime::{Line, drive_by_clock};
+use octant::run::{Control, Ended, Watcher};
+use octant::scenario::{Method, Scenario};
+use octant::source::{Epoch, PlantSource};
+use octant_realtime::clock::{HostTime, now};
+use octant_sample::{Output, Parameters};
+use serde_json::Value;
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::cell::Cell;
+use std::collections::VecDeque;
+use std::path::Path;
+use std::process::Command;
+
+thread_local! {
+    /// Allocations of this thread while it is watched.
+    static COUNTED: Cell<Option<u64>> = const { Cell::new(None) };
+}
+
+struct Counting;
+
+#[allow(unsafe_code, reason = "an allocator can't be written without")]
+// SAFETY: every call goes to the system's allocator as it came.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        // A thread that ends has no cell any more, and isn't watched.
+        let _ = COUNTED.try_with(|counted| counted.set(counted.get().map(|n| n + 1)));
+        // SAFETY: the caller's promises are those that the system's allocator wants.
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
+        let _ = COUNTED.try_with(|counted| counted.set(counted.get().map(|n| n + 1)));
+        // SAFETY: the pointer came from `alloc`, which is the system's.
+        unsafe { System.dealloc(pointer, layout) }
+    }
+}
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
+
+const SECONDS: &str = "schema = 1\ntitle = \"by the clock\"\n[procedure.alignment]\nmethod = \"given\"\n\
+    [procedure.navigation]\nduration = \"2 s\"\n[imu]\nrate = \"200 Hz\"\n[record]\nsamples = \"full\"\n\
+    [realtime]\noverrun = \"10 s\"\n";
+
+const FAULTS: &str = "[[faults]]\nid = \"spike-1\"\nkind = \"spike\"\nchannels = \"gyro x\"\n\
+    amplitude = \"1000 deg/h\"\ntrigger = { at = \"0.5 s\" }\nduration = \"20 samples\"\n\
+    [[faults]]\nid = \"late-1\"\nkind = \"late-delivery\"\ndelay = \"3 samples\"\n\
+    trigger = { at = \"1 s\" }\nduration = \"20 samples\"\n";
+
+#[track_caller]
+fn ends(arguments: &[&str], status: i32) -> (String, String) {
+    let output = Command::new(env!("CARGO_BIN_EXE_octant")).args(arguments).output().unwrap();
+    let error = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(status), "{arguments:?}: {error}");
+    (String::from_utf8(output.stdout).unwrap(), error)
+}
+
+fn json(path: &Path) -> Value {
+    serde_json::from_slice(&std::fs::read(path).unwrap()).unwrap()
+}
+
+fn scenario(folder: &Path, name: &str, text: &str) -> String {
+    let path = folder.join(name);
+    std::fs::write(&path, text).unwrap();
+    path.display().to_string()
+}
+
+fn run(folder: &Path, scenario: &str, out: &str, more: &[&str], status: i32) -> Value {
+    let out = folder.join(out);
+    let arguments = [&["run", scenario, "--out", out.to_str().unwrap()], more].concat();
+    ends(&arguments, status);
+    json(&out.join("summary.json"))
+}
+
+#[test]
+fn the_clock_changes_nothing_of_what_is_computed() {
+    let folder = tempfile::tempdir().unwrap();
+    let here = folder.path();
+    for (name, faults) in [("plain", ""), ("faulted", FAULTS)] {
+        let file = scenario(here, &format!("{name}.toml"), &format!("{SECONDS}{faults}"));
+        let free = run(here, &file, &format!("{name}-free"), &[], 0);
+        let paced = run(here, &file, &format!("{name}-paced"), &["--realtime"], 0);
+        assert!(free["pacing"].is_null());
+        assert_eq!(paced["pacing"]["frames"], 400);
+        assert_eq!(paced["pacing"]["late_answers"], 0);
+        assert_eq!(paced["pacing"]["dropped_records"], 0);
+        assert_eq!(paced["stream_hash"], free["stream_hash"], "{name}");
+        assert_eq!(paced["faults"], free["faults"]);
+        assert_eq!(paced["counterfactual"], free["counterfactual"]);
+        assert_eq!(paced["navigation"], free["navigation"]);
+        let manifest = json(&here.join(format!("{name}-paced/manifest.json")));
+        let scheduling = &manifest["realtime"]["scheduling"]["outcome"];
+        assert!(scheduling == "granted" || scheduling == "refused", "{manifest}");
+        assert!(manifest["rerun"].as_str().unwrap().contains("--realtime"));
+        assert!(json(&here.join(format!("{name}-free/manifest.json")))["realtime"].is_null());
+        let report =
+            std::fs::read_to_string(here.join(format!("{name}-paced/report.html"))).unwrap();
+        assert!(report.contains("Against the clock"));
+        // What was recorded by the clock is replayed without.
+        let recording = here.join(format!("{name}-paced/recording.mcap"));
+        let (text, _) = ends(&["replay", recording.to_str().unwrap()], 0);
+        assert!(text.contains("every output is equal"), "{text}");
+    }
+}
+
+#[test]
+fn a_bench_that_was_too_late_proves_nothing() {
+    let folder = tempfile::tempdir().unwrap();
+    let here = folder.path();
+    // Nothing is earlier than a nanosecond after its deadline.
+    let text = SECONDS.replace("\"2 s\"", "\"0.1 s\"").replace("\"10 s\"", "\"1 ns\"");
+    let file = scenario(here, "late.toml", &text);
+    let summary = run(here, &file, "late", &["--realtime"], 3);
+    assert_eq!(summary["verdict"], "inconclusive");
+    assert_eq!(summary["pacing"]["overruns"], 20);
+    let reason = summary["reasons"][0].as_str().unwrap();
+    assert!(reason.starts_with("the bench was late: 20 of 20 samples left more than"), "{reason}");
+    let allowed = run(here, &file, "allowed", &["--realtime", "--set", "realtime.overruns=20"], 0);
+    assert_eq!(allowed["verdict"], "pass");
+    let p99 =
+        ["--realtime", "--set", "realtime.overruns=20", "--set", "realtime.lateness_p99=\"1 ns\""];
+    let summary = run(here, &file, "p99", &p99, 3);
+    let reason = summary["reasons"][0].as_str().unwrap();
+    assert!(reason.contains("the lateness of 99 % of the samples is"), "{reason}");
+}
+
+/// A core whose answers to some epochs are held back.
+struct Slow {
+    inside: InProcess,
+    /// Frames of the sample number for which an answer is held.
+    held: fn(u64) -> u32,
+    waiting: VecDeque<(u32, Output)>,
+    number: u64,
+    /// Samples between which the thread's allocations are counted.
+    watched: Option<(u64, u64)>,
+    counted: Option<u64>,
+}
+
+impl Slow {
+    fn new(inside: InProcess, held: fn(u64) -> u32) -> Self {
+        let waiting = VecDeque::with_capacity(1024);
+        Self { inside, held, waiting, number: 0, watched: None, counted: None }
+    }
+}
+
+impl Endpoint for Slow {
+    fn step(&mut self, epoch: &Epoch, output: &mut Output) -> Result<(), EndpointError> {
+        self.inside.step(epoch, output)
+    }
+
+    fn uri(&self) -> String {
+        "slow".to_owned()
+    }
+
+    fn send(&mut self, epoch: &Epoch, _output: &mut Output) -> Result<Sent, EndpointError> {
+        self.number += 1;
+        if let Some((from, to)) = self.watched {
+            if self.number == from {
+                COUNTED.set(Some(0));
+            }
+            if self.number == to {
+                self.counted = COUNTED.replace(None);
+            }
+        }
+        self.waiting.iter_mut().for_each(|(frames, _)| *frames = frames.saturating_sub(1));
+        let mut answer = Output::default();
+        self.inside.step(epoch, &mut answer)?;
+        self.waiting.push_back(((self.held)(self.number), answer));
+        Ok(Sent::Underway)
+    }
+
+    fn answer(
+        &mut self,
+        until: HostTime,
+        output: &mut Output,
+    ) -> Result<Option<usize>, EndpointError> {
+        if self.waiting.front().is_some_and(|(frames, _)| *frames == 0)
+            && let Some((_, answer)) = self.waiting.pop_front()
+        {
+            *output = answer;
+            return Ok(Some(0));
+        }
+        octant_realtime::clock::sleep_until(until);
+        Ok(None)
+    }
+
+    fn restart(&mut self, offset: Option<&Parameters>) -> Result<(), EndpointError> {
+        self.inside.restart(offset)
+    }
+
+    fn parameters(&self) -> ParameterEstimate {
+        self.inside.parameters()
+    }
+}
+
+fn drive(
+    held: fn(u64) -> u32,
+    more: &str,
+    watched: Option<(u64, u64)>,
+) -> (
+    Result<Ended, String>,
+    octant::run::realtime::Kept,
+    octant::recorder::RecorderSummary,
+    Option<u64>,
+) {
+    let folder = tempfile::tempdir().unwrap();
+    let path = scenario(folder.path(), "s.toml", &format!("{SECONDS}{more}"));
+    let scenario = Scenario::load(Path::new(&path), &[]).unwrap();
+    let (plant, core, _) = configurations(&scenario, Method::Primary, 1).unwrap();
+    let mut source = PlantSource::new(&plant, scenario.samples().unwrap()).unwrap();
+    let mut endpoint = Slow::new(InProcess::new(&core).unwrap(), held);
+    endpoint.watched = watched;
+    let mut recorder = Recorder::to_writer(std::io::sink(), &RecorderOptions::default()).unwrap();
+    let mut watcher = Watcher::new(0.0);
+    let line = Line { source: &mut source, faulted: None, endpoint: &mut endpoint };
+    let (ended, kept) = drive_by_clock(
+        &scenario.realtime,
+        scenario.sample_period_ns,
+        line,
+        &mut recorder,
+        &mut watcher,
+        &Control::default(),
+    );
+    let counted = endpoint.counted;
+    (ended.map_err(|error| error.to_string()), kept, recorder.finish().unwrap(), counted)
+}
+
+#[test]
+fn late_answers_are_counted_and_recorded_with_their_samples() {
+    let start = now();
+    let (ended, kept, in_time, _) = drive(|_| 0, "", None);
+    assert!(now().since(start) >= 2_000_000_000, "400 periods of 5 ms");
+    assert_eq!(ended, Ok(Ended::Done));
+    assert_eq!((kept.pacing.frames, kept.pacing.late_answers), (400, 0));
+    assert_eq!(in_time.epochs, 400);
+    // The answers to samples 100 and 101 come three frames late: those of 102 and 103 behind them.
+    let (ended, kept, late, _) = drive(|number| if number / 2 == 50 { 3 } else { 0 }, "", None);
+    assert_eq!(ended, Ok(Ended::Done));
+    assert_eq!((kept.pacing.frames, kept.pacing.late_answers), (400, 4));
+    assert_eq!(late.epochs, 400, "every answer found its sample");
+    assert_eq!(late.stream_hash, in_time.stream_hash, "the gimbals stand: nothing hangs on when");
+    assert!(kept.pacing.answer_us.max > 14_000.0, "{:?}", kept.pacing);
+    let total: u64 = kept.pacing.lateness_histogram_ns.iter().map(|[_, count]| count).sum();
+    assert_eq!(total, 400);
+}
+
+#[test]
+fn an_endpoint_that_falls_silent_ends_the_run() {
+    let held = |number| if number >= 50 { u32::MAX } else { 0 };
+    let (ended, kept, summary, _) = drive(held, "silence = \"100 ms\"\n", None);
+    let error = ended.unwrap_err();
+    assert!(error.starts_with("endpoint slow is gone: no answer to sample 50 for 0.1"), "{error}");
+    assert_eq!(summary.epochs, 49, "what was answered is recorded");
+    assert!((69..75).contains(&kept.pacing.frames), "{:?}", kept.pacing);
+}
+
+#[test]
+fn the_thread_of_the_samples_allocates_nothing() {
+    let held = |number| if number % 16 == 3 { 2 } else { 0 };
+    let (ended, _, _, counted) = drive(held, "", Some((10, 390)));
+    assert_eq!(ended, Ok(Ended::Done));
+    assert_eq!(counted, Some(0));
+}

@@ -1,0 +1,67 @@
+//! What a receiver has come to, as bytes: half messages and counts.
+
+use super::{Counters, Reassembler, Slot};
+use octant_state::{Reader, State, StateError, Writer, check_below, check_count};
+
+/// The counts in the order in which they are written.
+fn counts(counters: &mut Counters) -> [(&'static str, &mut u64); 11] {
+    let Counters {
+        frames,
+        foreign,
+        messages,
+        duplicated,
+        missing,
+        disordered,
+        orphaned,
+        incomplete,
+        mixed,
+        malformed,
+        unreadable,
+    } = counters;
+    [
+        ("frames", frames),
+        ("foreign", foreign),
+        ("messages", messages),
+        ("duplicated", duplicated),
+        ("missing", missing),
+        ("disordered", disordered),
+        ("orphaned", orphaned),
+        ("incomplete", incomplete),
+        ("mixed", mixed),
+        ("malformed", malformed),
+        ("unreadable", unreadable),
+    ]
+}
+
+impl State for Reassembler {
+    fn save(&self, to: &mut Writer) {
+        for progress in &self.progress {
+            to.value("held", &(progress.held as u8));
+            to.value("dropped", &progress.dropped);
+        }
+        to.value("images", &self.images[..]);
+        let mut counters = self.counters;
+        for (name, count) in counts(&mut counters) {
+            to.value(name, &*count);
+        }
+    }
+
+    fn load(&mut self, from: &mut Reader<'_>) -> Result<(), StateError> {
+        for (slot, progress) in Slot::ALL.iter().zip(&mut self.progress) {
+            let held: u8 = from.value("held")?;
+            check_below("held", held.into(), slot.segments(self.format) as u64)?;
+            progress.held = held.into();
+            progress.dropped = from.value("dropped")?;
+        }
+        let images: &[u8] = from.value("images")?;
+        if images.len() != self.images.len() {
+            return Err(StateError::value("images", "they have another length"));
+        }
+        self.images.copy_from_slice(images);
+        for (name, count) in counts(&mut self.counters) {
+            *count = from.value(name)?;
+            check_count(name, *count)?;
+        }
+        Ok(())
+    }
+}
