@@ -371,6 +371,7 @@ impl Wire {
 }
 
 /// What a medium found.
+#[expect(clippy::large_enum_variant, reason = "the large variant is the one that comes")]
 enum Next {
     Incoming(Incoming),
     /// Something that is no message; there may be more.
