@@ -9,7 +9,7 @@ use crate::run::assemble::{parameter_text, text};
 use crate::run::method::{MethodError, SetupError, configurations, run_as_far_as_it_goes};
 use crate::run::raw_counts;
 use crate::run::{Control, Ended, MethodRun, Recording, Run, assemble};
-use crate::scenario::{Endpoint, Method, Scenario};
+use crate::scenario::{Endpoint, Method, Scenario, Source};
 use crate::score::junit::junit;
 use crate::score::verdict::Verdict;
 use clap::Args;
@@ -151,7 +151,10 @@ fn set_up(scenario: &Scenario, method: Method, seed: u64) -> Result<(), Failure>
     let failure = |error: SetupError| Failure::from(MethodError::from(error)).failed();
     let (plant, core, _) = configurations(scenario, method, seed).map_err(failure)?;
     octant_calibration::Core::new(&core).map_err(|error| failure(error.into()))?;
-    crate::source::open(scenario, &plant).map_err(|error| failure(error.into()))?;
+    // An instrument's port is opened once too: what it sends meanwhile would be lost.
+    if !matches!(scenario.source, Source::Live(_)) {
+        crate::source::open(scenario, &plant).map_err(|error| failure(error.into()))?;
+    }
     // A device is greeted once, when the run begins: some restart when their port is opened.
     match &scenario.endpoint {
         Endpoint::Live(live) => LiveEndpoint::check(scenario, live),

@@ -175,7 +175,7 @@ pub fn configurations(
     let truth = match &scenario.source {
         SourceKind::Plant => Some(Plant::new(&plant)?.truth()),
         SourceKind::Fmu(fmu) => crate::source::fmu::truth_at_start(scenario, fmu, &plant)?,
-        SourceKind::Replay { .. } | SourceKind::Text(_) => None,
+        SourceKind::Replay { .. } | SourceKind::Text(_) | SourceKind::Live(_) => None,
     };
     let (q_nb, velocity) = match truth {
         Some(truth) => {
