@@ -245,7 +245,7 @@ fn a_harness_that_is_killed_leaves_a_device_that_serves_the_next() {
             .stderr(Stdio::null())
             .spawn()
             .unwrap();
-        grows(&out.with_extension("partial/recording.mcap"));
+        grows(&out.with_extension("partial").join("recording.mcap"));
         child.kill().unwrap();
         assert_eq!(child.wait().unwrap().code(), None, "it was killed before its end");
         let found = bench.hash(&format!("after-{i}"), &["--endpoint", &served.uri]);
