@@ -236,7 +236,7 @@ fn our_own_fmus_have_no_finding() {
     let files = build::build(&options).unwrap();
     let fmus: Vec<PathBuf> =
         files.into_iter().filter(|file| file.extension().is_some_and(|end| end == "fmu")).collect();
-    assert_eq!(fmus.len(), 4);
+    assert_eq!(fmus.len(), 5);
     for fmu in fmus {
         let report = check(&fmu).unwrap().report();
         assert!(report.findings.is_empty(), "{}", show::text(&report));

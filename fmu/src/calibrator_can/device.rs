@@ -31,11 +31,23 @@ enum Answer {
     Ready(Step),
 }
 
+/// What a status says of the bus: received, lost, damaged, missing, out of order, unreadable.
+type Counts = [u64; 6];
+
+fn counts(counters: &Counters) -> Counts {
+    let Counters { messages, orphaned, missing, duplicated, disordered, unreadable, .. } =
+        *counters;
+    let out_of_order = duplicated.saturating_add(disordered);
+    [messages, orphaned, counters.damaged(), missing, out_of_order, unreadable]
+}
+
 /// A session.
 #[derive(Clone, Debug)]
 struct Session {
     number: u32,
     requests: Requests,
+    /// What the bus had brought when it began.
+    before: Counts,
     /// Sends at least so often; 0: needn't.
     beat_ns: u64,
     condition: Condition,
@@ -125,9 +137,15 @@ impl Device {
     }
 
     /// A message of the harness. True: the core is another than before.
-    pub(super) fn take(&mut self, message: &Message, now_ns: u64, to: &mut Controller) -> Changed {
+    pub(super) fn take(
+        &mut self,
+        message: &Message,
+        now_ns: u64,
+        counters: &Counters,
+        to: &mut Controller,
+    ) -> Changed {
         match message {
-            Message::Hello(hello) => return self.begin(hello, now_ns, to),
+            Message::Hello(hello) => return self.begin(hello, now_ns, counters, to),
             Message::Bye(_) => self.session = None,
             Message::TimeRequest(TimeRequest { id, harness_sent }) if self.session.is_some() => {
                 let now = ClockTime::from_ns(now_ns);
@@ -141,7 +159,7 @@ impl Device {
                 }
             }
             Message::Sample(sample) => return self.sample(sample, now_ns, to),
-            Message::Restart(restart) => return self.restart(restart, now_ns, to),
+            Message::Restart(restart) => return self.restart(restart, now_ns, counters, to),
             Message::End(End { step }) => return self.end(*step, now_ns, to),
             _ => {}
         }
@@ -155,7 +173,13 @@ impl Device {
         self.session = None;
     }
 
-    fn begin(&mut self, theirs: &Hello, now_ns: u64, to: &mut Controller) -> Changed {
+    fn begin(
+        &mut self,
+        theirs: &Hello,
+        now_ns: u64,
+        counters: &Counters,
+        to: &mut Controller,
+    ) -> Changed {
         // A harness draws a number that isn't 0.
         if theirs.role != Role::Harness || theirs.session == 0 {
             return Changed(false);
@@ -176,7 +200,8 @@ impl Device {
         }
         let beat_ns = u64::from(theirs.limits.silence_ms) * 1_000_000 / 4;
         let requests = Requests::new(pacing);
-        self.session = Some(Session { number, requests, beat_ns, condition: Condition::Ready });
+        let (before, condition) = (counts(counters), Condition::Ready);
+        self.session = Some(Session { number, requests, before, beat_ns, condition });
         self.status_due_ns = now_ns.saturating_add(STATUS_NS);
         self.beat_due_ns = now_ns.saturating_add(beat_ns);
         // The configuration made a core before.
@@ -221,7 +246,13 @@ impl Device {
         self.answer_with_output(step, now_ns, to)
     }
 
-    fn restart(&mut self, restart: &Restart, now_ns: u64, to: &mut Controller) -> Changed {
+    fn restart(
+        &mut self,
+        restart: &Restart,
+        now_ns: u64,
+        counters: &Counters,
+        to: &mut Controller,
+    ) -> Changed {
         let Some(session) = &mut self.session else { return Changed(false) };
         match session.requests.other(restart.step) {
             Verdict::Do(_) => {}
@@ -229,6 +260,7 @@ impl Device {
         }
         session.condition = Condition::Ready;
         if let Err(reason) = self.anew(restart.offset.as_ref()) {
+            self.say_status(now_ns, counters, to);
             let text = Text::fitting("the parameters make no core");
             self.say(&Message::Bye(Bye { reason: Reason::FAILED, text }), now_ns, to);
             self.session = None;
@@ -288,6 +320,26 @@ impl Device {
         self.answer = answer;
     }
 
+    /// Counts of steps, and those of the frames, since the session began.
+    fn say_status(&mut self, now_ns: u64, counters: &Counters, to: &mut Controller) {
+        let Some(session) = &self.session else { return };
+        let (now, before) = (counts(counters), session.before);
+        let since = core::array::from_fn(|i| {
+            u32::try_from(now[i].saturating_sub(before[i])).unwrap_or(u32::MAX)
+        });
+        let [received, lost, damaged, missing, out_of_order, unreadable] = since;
+        let status = Status {
+            received,
+            lost,
+            damaged,
+            missing,
+            out_of_order,
+            unreadable,
+            ..session.requests.status()
+        };
+        self.say(&Message::Status(status), now_ns, to);
+    }
+
     /// When it says something by itself, ns.
     pub(super) fn due_ns(&self) -> Option<u64> {
         let session = self.session.as_ref()?;
@@ -301,10 +353,9 @@ impl Device {
     pub(super) fn on_time(&mut self, now_ns: u64, counters: &Counters, to: &mut Controller) {
         let Some(session) = &self.session else { return };
         if self.status_due_ns <= now_ns {
-            let status = status(session.requests.status(), counters);
             let late_ns = now_ns - self.status_due_ns;
             self.status_due_ns = now_ns.saturating_add(STATUS_NS - late_ns % STATUS_NS);
-            self.say(&Message::Status(status), now_ns, to);
+            self.say_status(now_ns, counters, to);
         } else if session.beat_ns > 0 && self.beat_due_ns <= now_ns {
             let heartbeat = Heartbeat {
                 step: session.requests.last(),
@@ -314,20 +365,6 @@ impl Device {
             };
             self.say(&Message::Heartbeat(heartbeat), now_ns, to);
         }
-    }
-}
-
-/// Counts of steps, and those of the frames.
-fn status(steps: Status, counters: &Counters) -> Status {
-    let count = |count: u64| u32::try_from(count).unwrap_or(u32::MAX);
-    Status {
-        received: count(counters.messages),
-        lost: count(counters.orphaned),
-        damaged: count(counters.damaged()),
-        missing: count(counters.missing),
-        out_of_order: count(counters.duplicated.saturating_add(counters.disordered)),
-        unreadable: count(counters.unreadable),
-        ..steps
     }
 }
 
@@ -356,6 +393,7 @@ impl State for Device {
         let session = self.session.as_ref();
         to.value("session", &session.map(|s| (s.number, s.beat_ns, s.condition as u8)));
         if let Some(session) = session {
+            to.value("before", &session.before);
             to.part("requests", &session.requests);
         }
         match &self.answer {
@@ -392,9 +430,10 @@ impl State for Device {
             let condition = Condition::ALL.get(usize::from(condition));
             let condition =
                 *condition.ok_or_else(|| StateError::value("session", "a condition of no kind"))?;
+            let before: Counts = from.value("before")?;
             let mut requests = Requests::new(Pacing::LockStep);
             from.part("requests", &mut requests)?;
-            self.session = Some(Session { number, requests, beat_ns, condition });
+            self.session = Some(Session { number, requests, before, beat_ns, condition });
         }
         self.answer = match from.value::<u8>("answer")? {
             0 => Answer::None,

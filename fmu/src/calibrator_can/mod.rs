@@ -131,7 +131,8 @@ impl CalibratorCan {
         };
         match self.reassembler.receive(&frame) {
             Some(Event::Received { message, .. }) => {
-                self.device.take(&message, now_ns, &mut self.controller)
+                let counters = self.reassembler.counters();
+                self.device.take(&message, now_ns, counters, &mut self.controller)
             }
             Some(Event::Lost(lost)) => {
                 if let Cause::Unreadable(Unreadable::NewerVersion { .. }) = lost.cause {

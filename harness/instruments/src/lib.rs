@@ -9,6 +9,8 @@
 //! [`Sampler`] makes [`octant_sample::Sample`]s of readings: the axes of the unit turned to those of
 //! the body, increments counted with their remainders carried, sequence and time without roll-over.
 //!
+//! [`align`] finds how a unit's clock stands against the host's, from stamps and arrivals alone.
+//!
 //! # Axes
 //! A reading is in the axes of the unit, right-handed, as its maker marks them on the housing: a
 //! rotation is positive by the right-hand rule, and the velocity is the integral of specific force, so
@@ -22,6 +24,7 @@
 #[cfg(feature = "dbc")]
 extern crate std;
 
+pub mod align;
 pub mod any;
 #[cfg(feature = "dbc")]
 pub mod dbc;

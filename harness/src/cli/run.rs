@@ -106,6 +106,7 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         ("calibration", primary.table.clone()),
         ("baseline", baseline.as_ref().and_then(|b| b.table.clone())),
     ];
+    let link = primary.link.clone();
     let realtime = primary.kept.as_ref().map(|kept| kept.granted.clone());
     let refused = primary.calibration.as_ref().is_some_and(|c| c.refused.is_some());
     let estimate = primary.watcher.last_parameters.map(|e| e.parameters).filter(|_| !refused);
@@ -122,6 +123,7 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         ended: SystemTime::now(),
         command_line: rerun(arguments, seed),
         fmus,
+        link,
         realtime,
     };
     let raw = estimate.map_or(String::new(), |e| raw_counts::text(&scenario.source, &e));

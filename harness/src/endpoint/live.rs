@@ -62,10 +62,14 @@ impl LiveEndpoint {
     /// # Errors
     /// If it can't.
     pub fn check(scenario: &Scenario, live: &Live) -> Result<(), OpenError> {
-        match scenario.baseline {
-            Some(_) => Err(OpenError::OneMethod { uri: live.uri.to_string() }),
-            None => Ok(()),
+        if scenario.baseline.is_some() {
+            return Err(OpenError::OneMethod { uri: live.uri.to_string() });
         }
+        if scenario.realtime.by_clock {
+            let rate_hz = 1e9 / scenario.sample_period_ns as f64;
+            load::real_time(&live.uri, rate_hz, load::bus(&live.uri))?;
+        }
+        Ok(())
     }
 
     /// Begins a session with the device of a scenario, in lock-step.
@@ -85,10 +89,6 @@ impl LiveEndpoint {
         };
         let pacing = if scenario.realtime.by_clock { Pacing::RealTime } else { Pacing::LockStep };
         let options = Options { pacing, ..options };
-        if scenario.realtime.by_clock {
-            let rate_hz = 1e9 / config.sample_period_ns as f64;
-            load::real_time(&live.uri, rate_hz, load::bus(&live.uri))?;
-        }
         let mut port = port::open(&live.uri, Role::Harness).map_err(SessionError::from)?;
         if scenario.faults.iter().any(|fault| fault.spec.kind.acts == Acts::Wire) {
             port = octant_link::fault::around(port);

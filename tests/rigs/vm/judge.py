@@ -33,13 +33,13 @@ said = [
     if line.startswith("RIG ")
 ]
 expected = {name: hash_of(name) for name in ("lockstep", "short")}
-scenario_of = {"vcan-classic": "lockstep", "vcan-fd": "lockstep"}
+scenario_of = {"vcan-fd": "lockstep"}
 seen = set()
 for line in said:
     if line.startswith("run "):
         _, name, status, found, start, end = line.split()
         seen.add(name)
-        samples = 120_000 if scenario_of.get(name) else 24_000
+        samples = 120_000 if scenario_of.get(name) else 10_000
         seconds = float(end) - float(start)
         check(
             f"{name}: status {status}",
@@ -65,16 +65,19 @@ dump = "".join(line[5:] for line in said if line.startswith("dump "))
 lines = gzip.decompress(base64.b64decode(dump)).decode().splitlines()
 database = cantools.database.load_file("fixtures/can/octant.dbc", strict=True)
 known = {message.frame_id: message for message in database.messages}
-decoded, foreign, roll = 0, 0, set()
+decoded, foreign = 0, 0
 for line in lines:
     match = re.fullmatch(r"\(\S+\) vcan1 ([0-9A-F]+)#([0-9A-F]*|R\d*)", line)
     frame, data = int(match[1], 16), match[2]
     if data.startswith("R") or frame not in known:
         foreign += 1
         continue
-    fields = known[frame].decode(bytes.fromhex(data), decode_choices=False)
-    decoded += 1
-    roll.update(value for name, value in fields.items() if name.endswith("roll"))
+    bytes_of = bytes.fromhex(data)
+    if len(bytes_of) != known[frame].length:
+        foreign += 1
+        continue
+    fields = known[frame].decode(bytes_of, decode_choices=False)
+    decoded += bool(fields)
 check("cantools reads what candump saw", decoded > 10_000, f"{decoded} frames")
 check("frames of others were among them", foreign > 10, f"{foreign} frames")
 

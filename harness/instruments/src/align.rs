@@ -1,0 +1,265 @@
+//! The clock of a unit against that of the host, from what only comes one way.
+//!
+//! A reading that was stamped `s` arrives at `a = s·(1 + skew) + offset + delay`, and the delay is never less
+//! than the least that the line takes. So the points (s, a − s) lie above a line, and touch it now and then:
+//! the lower envelope. Kept are the corners of the lower convex hull of all points, and the edge of it under
+//! the middle of the points is the line: of all lines below all points the one that lies closest to them.
+//! One late reading, or a thousand, doesn't move it.
+//!
+//! A clock whose rate changes (with its temperature) has no such line: take a new [`Alignment`] for each
+//! stretch of time in which it is steady.
+//!
+//! What can't be known from one way is the least delay itself: it is part of the offset. For a serial line that
+//! is the time of a frame and what the unit takes to make it.
+
+/// Corners that are kept. A steady clock with jitter has about twenty.
+const CORNERS: usize = 128;
+
+/// A point: seconds since the first stamp, and what the arrival was behind the stamp beyond that of the first
+/// one, in ns.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Point {
+    at_s: f64,
+    behind_ns: f64,
+}
+
+/// What is known of a unit's clock.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Estimate {
+    /// Stamp to which the offset belongs: the first one.
+    pub origin_ns: u64,
+    /// Host time at that stamp, with the least delay, ns.
+    pub offset_ns: f64,
+    /// By how much host time goes faster than the unit's: 1e-6 is a microsecond a second. `None` until
+    /// there are two points far enough apart.
+    pub skew: Option<f64>,
+    /// Time between the first and the last stamp, s.
+    pub span_s: f64,
+    /// Readings that were taken.
+    pub readings: u64,
+    /// Readings whose stamp wasn't after the one before, and were not.
+    pub behind: u64,
+}
+
+impl Estimate {
+    /// Host time of a stamp, ns: when its reading would have arrived at the earliest.
+    #[must_use]
+    pub fn host_ns(&self, stamp_ns: u64) -> f64 {
+        let since = stamp_ns as f64 - self.origin_ns as f64;
+        self.offset_ns + since * (1.0 + self.skew.unwrap_or(0.0))
+    }
+}
+
+/// Finds offset and skew of a unit's clock. It takes no memory while it does.
+#[derive(Clone, Debug)]
+pub struct Alignment {
+    /// First stamp, and how far its arrival was behind it.
+    origin: Option<(u64, i128)>,
+    last_ns: u64,
+    /// Corners of the lower hull, from left to right.
+    hull: [Point; CORNERS],
+    corners: usize,
+    /// Sum of the times of all points, s.
+    sum_s: f64,
+    readings: u64,
+    behind: u64,
+}
+
+impl Default for Alignment {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl Alignment {
+    /// Before the first reading.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self {
+            origin: None,
+            last_ns: 0,
+            hull: [Point { at_s: 0.0, behind_ns: 0.0 }; CORNERS],
+            corners: 0,
+            sum_s: 0.0,
+            readings: 0,
+            behind: 0,
+        }
+    }
+
+    /// Takes a stamp of the unit and the host's time of its arrival.
+    pub fn add(&mut self, stamp_ns: u64, arrival_ns: u64) {
+        let behind = i128::from(arrival_ns) - i128::from(stamp_ns);
+        if self.origin.is_some() && stamp_ns <= self.last_ns {
+            self.behind += 1;
+            return;
+        }
+        let (first_ns, first_behind) = *self.origin.get_or_insert((stamp_ns, behind));
+        self.last_ns = stamp_ns;
+        self.readings += 1;
+        // Differences are small: exact in f64.
+        let at_s = (stamp_ns - first_ns) as f64 * 1e-9;
+        let point = Point { at_s, behind_ns: (behind - first_behind) as f64 };
+        self.sum_s += at_s;
+        while self.corners >= 2
+            && !turns_up(self.hull[self.corners - 2], self.hull[self.corners - 1], point)
+        {
+            self.corners -= 1;
+        }
+        if self.corners == CORNERS {
+            self.drop_a_corner();
+        }
+        self.hull[self.corners] = point;
+        self.corners += 1;
+    }
+
+    /// The corner that the hull misses least goes.
+    fn drop_a_corner(&mut self) {
+        let mut least = (f64::INFINITY, 1);
+        for index in 1..self.corners - 1 {
+            let [a, b, c] = [self.hull[index - 1], self.hull[index], self.hull[index + 1]];
+            let area = (b.at_s - a.at_s) * (c.behind_ns - a.behind_ns)
+                - (c.at_s - a.at_s) * (b.behind_ns - a.behind_ns);
+            if area < least.0 {
+                least = (area, index);
+            }
+        }
+        self.hull.copy_within(least.1 + 1..self.corners, least.1);
+        self.corners -= 1;
+    }
+
+    /// What is known; `None` before the first reading.
+    #[must_use]
+    pub fn estimate(&self) -> Option<Estimate> {
+        let (origin_ns, first_behind) = self.origin?;
+        let hull = &self.hull[..self.corners];
+        let middle_s = self.sum_s / self.readings as f64;
+        let edge = hull.windows(2).find(|edge| edge[1].at_s >= middle_s);
+        let (skew, behind_ns) = match edge {
+            Some([from, to]) => {
+                let slope = (to.behind_ns - from.behind_ns) / (to.at_s - from.at_s);
+                // ns a second.
+                (Some(slope * 1e-9), from.behind_ns - slope * from.at_s)
+            }
+            _ => (None, hull.first()?.behind_ns),
+        };
+        Some(Estimate {
+            origin_ns,
+            offset_ns: origin_ns as f64 + first_behind as f64 + behind_ns,
+            skew,
+            span_s: (self.last_ns - origin_ns) as f64 * 1e-9,
+            readings: self.readings,
+            behind: self.behind,
+        })
+    }
+}
+
+/// From `a` over `b` to `c` the way turns up.
+fn turns_up(a: Point, b: Point, c: Point) -> bool {
+    (b.at_s - a.at_s) * (c.behind_ns - a.behind_ns)
+        > (c.at_s - a.at_s) * (b.behind_ns - a.behind_ns)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const OFFSET_NS: i64 = 7_000_000_123;
+    const LEAST_NS: i64 = 850_000;
+
+    /// Readings at 200 Hz by a clock that is slow by `skew`, delayed by what `delay` says beyond the least.
+    fn align(skew: f64, seconds: u64, delay: impl Fn(u64) -> i64) -> Alignment {
+        let mut alignment = Alignment::new();
+        for number in 0..seconds * 200 {
+            let stamp = 1_000_000_000 + number * 5_000_000;
+            let drift = (skew * (number * 5_000_000) as f64) as i64;
+            let arrival = stamp as i64 + OFFSET_NS + drift + LEAST_NS + delay(number);
+            alignment.add(stamp, arrival as u64);
+        }
+        alignment
+    }
+
+    fn check(estimate: Estimate, skew: f64, offset_within_ns: f64, skew_within: f64) {
+        let expected = (1_000_000_000 + OFFSET_NS + LEAST_NS) as f64;
+        let off = estimate.offset_ns - expected;
+        assert!(off.abs() <= offset_within_ns, "offset off by {off} ns");
+        let off = estimate.skew.unwrap() - skew;
+        assert!(off.abs() <= skew_within, "skew off by {off}");
+    }
+
+    #[test]
+    fn without_jitter_it_is_the_line_itself() {
+        for skew in [0.0, 25e-6, -100e-6] {
+            // Nanoseconds are cut: a nanosecond over the span.
+            let estimate = align(skew, 600, |_| 0).estimate().unwrap();
+            check(estimate, skew, 2.0, 2e-9 / 100.0);
+            let stamp = 1_000_000_000 + 500_000_000_000;
+            let host = estimate.host_ns(stamp);
+            let expected = stamp as f64 * 1.0 + (OFFSET_NS + LEAST_NS) as f64 + skew * 500e9;
+            assert!((host - expected).abs() < 10.0, "{host} {expected}");
+        }
+    }
+
+    /// One reading in seven takes the least delay; the others up to 30 ms, and a second of the time
+    /// everything is late by 100 ms: the line is the same.
+    #[test]
+    fn what_is_late_does_not_move_it() {
+        let late = |number: u64| {
+            let jitter = (number.wrapping_mul(2_654_435_761) >> 7) % 30_000_000;
+            let stalled = (20_000..20_200).contains(&number);
+            match (stalled, number % 7) {
+                (true, _) => 100_000_000,
+                (_, 0) => 0,
+                _ => jitter as i64,
+            }
+        };
+        let estimate = align(40e-6, 300, late).estimate().unwrap();
+        check(estimate, 40e-6, 2.0, 1e-10);
+        assert_eq!((estimate.readings, estimate.behind), (60_000, 0));
+        assert!((estimate.span_s - 299.995).abs() < 1e-9);
+    }
+
+    /// A delay of up to a millisecond, of which the least of many is small: the line is below all points, and
+    /// stays so when the clock isn't steady and there are more corners than are kept.
+    #[test]
+    fn it_is_below_all_points() {
+        let jitter = |number: u64| ((number.wrapping_mul(2_654_435_761) >> 9) % 1_000_000) as i64;
+        let alignment = align(-10e-6, 120, jitter);
+        let estimate = alignment.estimate().unwrap();
+        check(estimate, -10e-6, 20_000.0, 2e-7);
+        for number in 0..24_000u64 {
+            let stamp = 1_000_000_000 + number * 5_000_000;
+            let drift = (-10e-6 * (number * 5_000_000) as f64) as i64;
+            let arrival = stamp as i64 + OFFSET_NS + drift + LEAST_NS + jitter(number);
+            assert!(estimate.host_ns(stamp) <= arrival as f64 + 1.0);
+        }
+    }
+
+    #[test]
+    fn at_the_beginning_there_is_an_offset_alone() {
+        let mut alignment = Alignment::new();
+        assert_eq!(alignment.estimate(), None);
+        alignment.add(5_000, 9_000);
+        let estimate = alignment.estimate().unwrap();
+        assert_eq!((estimate.offset_ns, estimate.skew), (9_000.0, None));
+        // A second one gives a skew: 2 µs less a millisecond later.
+        alignment.add(1_005_000, 1_007_000);
+        let estimate = alignment.estimate().unwrap();
+        assert_eq!(estimate.offset_ns, 9_000.0);
+        assert!((estimate.skew.unwrap() + 2e-3).abs() < 1e-12);
+        alignment.add(4_000, 9_000);
+        assert_eq!(alignment.estimate().unwrap().behind, 1);
+    }
+
+    #[test]
+    fn more_corners_than_are_kept() {
+        let mut alignment = Alignment::new();
+        // A parabola: every point is a corner.
+        for number in 0..1000u64 {
+            alignment.add(number * 1_000_000_000, number * 1_000_000_000 + number * number);
+        }
+        let estimate = alignment.estimate().unwrap();
+        // The tangent in the middle: 2·499.5 ns a second.
+        assert!((estimate.skew.unwrap() - 999e-9).abs() < 20e-9, "{estimate:?}");
+        assert_eq!(alignment.corners, CORNERS);
+    }
+}

@@ -1,0 +1,336 @@
+//! Command languages: what is sent, and what comes back.
+//!
+//! A language is a table of patterns in TOML (`dialects/aerotech-ensemble.toml` is one). A pattern is a line
+//! with fields in braces: `{axis}` the name of the axis in the language, `{angle}`, `{rate}`,
+//! `{acceleration}` numbers in its units, `{ms}` milliseconds, `{bits}` and `{fault}` integers, decimal or
+//! with `0x`, `{moving}`, `{homed}`, `{enabled}` 0 or 1, `{any}` whatever text.
+
+mod pattern;
+
+pub(crate) use pattern::{Field, Fields, Pattern};
+
+use crate::{Axis, Error};
+use std::collections::BTreeMap;
+
+/// A command of the table.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Command {
+    Begin,
+    Enable,
+    Goto,
+    Rate,
+    Stop,
+    Home,
+    Feed,
+}
+
+/// A question for the status, and its reply.
+#[derive(Clone, Debug)]
+pub(crate) struct Question {
+    pub(crate) send: Pattern,
+    pub(crate) reply: Pattern,
+}
+
+/// Which bits of `{bits}` say what.
+#[derive(Clone, Copy, Debug, Default, serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Bits {
+    pub(crate) enabled: Option<u32>,
+    pub(crate) homed: Option<u32>,
+    pub(crate) moving: Option<u32>,
+}
+
+/// A command language.
+#[derive(Clone, Debug)]
+pub struct Dialect {
+    pub(crate) name: String,
+    pub(crate) end: String,
+    pub(crate) decimals: usize,
+    /// Radians of a unit of angle; rad/s of a unit of rate; rad/s² of one of acceleration.
+    pub(crate) units: [f64; 3],
+    pub(crate) done: Option<Pattern>,
+    pub(crate) refused: Vec<Pattern>,
+    pub(crate) axes: [String; 2],
+    pub(crate) commands: Vec<(Command, Vec<Pattern>)>,
+    pub(crate) status: Vec<Question>,
+    pub(crate) bits: Bits,
+}
+
+#[derive(serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Raw {
+    name: String,
+    end: String,
+    decimals: usize,
+    angle: String,
+    rate: String,
+    acceleration: String,
+    done: Option<String>,
+    #[serde(default)]
+    refused: Vec<String>,
+    axes: RawAxes,
+    commands: RawCommands,
+    watchdog: Option<RawWatchdog>,
+    status: Vec<RawQuestion>,
+    #[serde(default)]
+    bits: Bits,
+}
+
+#[derive(serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RawAxes {
+    azimuth: String,
+    roll: String,
+}
+
+#[derive(serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RawCommands {
+    #[serde(default)]
+    begin: Vec<String>,
+    #[serde(default)]
+    enable: Vec<String>,
+    goto: Vec<String>,
+    #[serde(default)]
+    rate: Vec<String>,
+    stop: Vec<String>,
+    #[serde(default)]
+    home: Vec<String>,
+}
+
+#[derive(serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RawWatchdog {
+    feed: Vec<String>,
+}
+
+#[derive(serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RawQuestion {
+    send: String,
+    reply: String,
+}
+
+impl Dialect {
+    /// Aerotech's Ensemble controllers.
+    ///
+    /// # Errors
+    /// Never: it is tested. The table comes with the program.
+    pub fn aerotech_ensemble() -> Result<Self, Error> {
+        let text = include_str!("../../dialects/aerotech-ensemble.toml");
+        Self::parse("dialects/aerotech-ensemble.toml", text)
+    }
+
+    /// Reads a table of patterns; `file` is its name, for messages.
+    ///
+    /// # Errors
+    /// If it is none: with file, and line or key.
+    pub fn parse(file: &str, text: &str) -> Result<Self, Error> {
+        let raw: Raw = toml::from_str(text).map_err(|error| {
+            let line = error.span().map(|span| 1 + text[..span.start].matches('\n').count());
+            let place = line.map_or_else(|| file.into(), |line| format!("{file}:{line}"));
+            Error::Dialect { place, what: error.message().trim().into() }
+        })?;
+        let wrong =
+            |key: &str, what: String| Error::Dialect { place: format!("{file}: {key}"), what };
+        let unit = |key: &str, found: &str, known: &[(&str, f64)]| {
+            known.iter().find(|(name, _)| *name == found).map(|(_, unit)| *unit).ok_or_else(|| {
+                let names: Vec<&str> = known.iter().map(|(name, _)| *name).collect();
+                wrong(key, format!("`{found}` is no unit, expected is one of {}", names.join(", ")))
+            })
+        };
+        let degree = 1f64.to_radians();
+        let units = [
+            unit(
+                "angle",
+                &raw.angle,
+                &[("deg", degree), ("rad", 1.0), ("arcsec", degree / 3600.0)],
+            )?,
+            unit(
+                "rate",
+                &raw.rate,
+                &[("deg/s", degree), ("deg/min", degree / 60.0), ("rad/s", 1.0)],
+            )?,
+            unit("acceleration", &raw.acceleration, &[("deg/s2", degree), ("rad/s2", 1.0)])?,
+        ];
+        if raw.end.is_empty() {
+            return Err(wrong(
+                "end",
+                "it is empty, expected are the characters that end a line".into(),
+            ));
+        }
+        if raw.decimals > 12 {
+            return Err(wrong("decimals", format!("{} is more than 12", raw.decimals)));
+        }
+        if raw.axes.azimuth == raw.axes.roll || raw.axes.azimuth.is_empty() {
+            return Err(wrong("axes", "the two axes need names, and different ones".into()));
+        }
+        let patterns = |key: &str, texts: &[String]| -> Result<Vec<Pattern>, Error> {
+            let parse = |text: &String| {
+                if text.contains(&raw.end) {
+                    return Err(wrong(key, format!("`{text}` holds the end of a line")));
+                }
+                Pattern::parse(text).map_err(|what| wrong(key, what))
+            };
+            texts.iter().map(parse).collect()
+        };
+        let commands = &raw.commands;
+        let feed = raw.watchdog.map(|watchdog| watchdog.feed).unwrap_or_default();
+        let mut all = Vec::new();
+        for (command, key, texts, needs) in [
+            (Command::Begin, "commands.begin", &commands.begin, None),
+            (Command::Enable, "commands.enable", &commands.enable, Some(Field::Axis)),
+            (Command::Goto, "commands.goto", &commands.goto, Some(Field::Angle)),
+            (Command::Rate, "commands.rate", &commands.rate, Some(Field::Rate)),
+            (Command::Stop, "commands.stop", &commands.stop, None),
+            (Command::Home, "commands.home", &commands.home, None),
+            (Command::Feed, "watchdog.feed", &feed, Some(Field::Ms)),
+        ] {
+            let patterns = patterns(key, texts)?;
+            if let Some(needed) = needs
+                && !patterns.is_empty()
+                && !patterns.iter().any(|pattern| pattern.has(needed))
+            {
+                return Err(wrong(key, format!("no line of it has a field {{{}}}", needed.name())));
+            }
+            all.push((command, patterns));
+        }
+        for (needed, key) in [(Command::Goto, "commands.goto"), (Command::Stop, "commands.stop")] {
+            if all.iter().any(|(command, lines)| *command == needed && lines.is_empty()) {
+                return Err(wrong(key, "it is empty: every table can do this".into()));
+            }
+        }
+        let mut status = Vec::new();
+        for (number, question) in raw.status.iter().enumerate() {
+            let key = format!("status {}", number + 1);
+            let mut both = patterns(&key, &[question.send.clone(), question.reply.clone()])?;
+            let (Some(reply), Some(send)) = (both.pop(), both.pop()) else { continue };
+            status.push(Question { send, reply });
+        }
+        if !status.iter().any(|question| question.reply.has(Field::Angle)) {
+            return Err(wrong("status", "no reply has a field {angle}".into()));
+        }
+        let done = raw.done.as_ref().map(|done| patterns("done", std::slice::from_ref(done)));
+        Ok(Self {
+            done: done.transpose()?.and_then(|mut patterns| patterns.pop()),
+            refused: patterns("refused", &raw.refused)?,
+            name: raw.name,
+            end: raw.end,
+            decimals: raw.decimals,
+            units,
+            axes: [raw.axes.azimuth, raw.axes.roll],
+            commands: all,
+            status,
+            bits: raw.bits,
+        })
+    }
+
+    /// Its name.
+    #[must_use]
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// The lines of a command.
+    pub(crate) fn lines(&self, command: Command) -> &[Pattern] {
+        let found = self.commands.iter().find(|(one, _)| *one == command);
+        found.map_or(&[], |(_, lines)| lines)
+    }
+
+    /// Values as the language writes them.
+    pub(crate) fn write(&self, values: &Values) -> Fields {
+        let mut fields: Fields = BTreeMap::new();
+        let mut number = |field, value: Option<f64>, unit: f64| {
+            if let Some(value) = value {
+                let text = format!("{:.*}", self.decimals, value / unit);
+                // Minus nothing is nothing.
+                let zero = text.trim_start_matches('-').bytes().all(|c| c == b'0' || c == b'.');
+                fields.insert(field, if zero { text.trim_start_matches('-').into() } else { text });
+            }
+        };
+        let [angle, rate, acceleration] = self.units;
+        number(Field::Angle, values.angle_rad, angle);
+        number(Field::Rate, values.rate_radps, rate);
+        number(Field::Acceleration, values.acceleration_radps2, acceleration);
+        let mut text =
+            |field, value: Option<String>| value.map(|value| fields.insert(field, value));
+        text(Field::Axis, values.axis.map(|axis| self.axes[axis.index()].clone()));
+        for (field, value) in [
+            (Field::Ms, values.ms),
+            (Field::Bits, values.bits),
+            (Field::Fault, values.fault),
+            (Field::Moving, values.moving.map(u32::from)),
+            (Field::Homed, values.homed.map(u32::from)),
+            (Field::Enabled, values.enabled.map(u32::from)),
+        ] {
+            text(field, value.map(|value| value.to_string()));
+        }
+        fields
+    }
+
+    /// What the fields of a line say; `None`: a number that is none.
+    pub(crate) fn read(&self, fields: &Fields) -> Option<Values> {
+        let mut values = Values::default();
+        let [angle, rate, acceleration] = self.units;
+        for (field, text) in fields {
+            let number = |unit: f64| {
+                text.trim().parse::<f64>().ok().filter(|value| value.is_finite()).map(|v| v * unit)
+            };
+            let integer = || {
+                let text = text.trim();
+                match text.strip_prefix("0x").or(text.strip_prefix("0X")) {
+                    Some(digits) => u32::from_str_radix(digits, 16).ok(),
+                    None => text.parse().ok(),
+                }
+            };
+            let flag = || integer().filter(|value| *value <= 1).map(|value| value == 1);
+            match field {
+                Field::Axis => {
+                    let index = self.axes.iter().position(|name| name == text.trim())?;
+                    values.axis = Some(Axis::ALL[index]);
+                }
+                Field::Angle => values.angle_rad = Some(number(angle)?),
+                Field::Rate => values.rate_radps = Some(number(rate)?),
+                Field::Acceleration => values.acceleration_radps2 = Some(number(acceleration)?),
+                Field::Ms => values.ms = Some(integer()?),
+                Field::Bits => values.bits = Some(integer()?),
+                Field::Fault => values.fault = Some(integer()?),
+                Field::Moving => values.moving = Some(flag()?),
+                Field::Homed => values.homed = Some(flag()?),
+                Field::Enabled => values.enabled = Some(flag()?),
+                Field::Any => {}
+            }
+        }
+        Some(values)
+    }
+
+    /// The bytes that stop the table whatever was being sent: an end of a line first, for a line that
+    /// was cut in the middle.
+    pub(crate) fn emergency(&self) -> Vec<u8> {
+        let mut bytes = self.end.clone().into_bytes();
+        for axis in Axis::ALL {
+            let fields = self.write(&Values { axis: Some(axis), ..Values::default() });
+            for line in self.lines(Command::Stop) {
+                // A stop has no other field than the axis.
+                bytes.extend(line.write(&fields).unwrap_or_default().into_bytes());
+                bytes.extend(self.end.as_bytes());
+            }
+        }
+        bytes
+    }
+}
+
+/// What stands in a line.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Values {
+    pub(crate) axis: Option<Axis>,
+    pub(crate) angle_rad: Option<f64>,
+    pub(crate) rate_radps: Option<f64>,
+    pub(crate) acceleration_radps2: Option<f64>,
+    pub(crate) ms: Option<u32>,
+    pub(crate) bits: Option<u32>,
+    pub(crate) fault: Option<u32>,
+    pub(crate) moving: Option<bool>,
+    pub(crate) homed: Option<bool>,
+    pub(crate) enabled: Option<bool>,
+}

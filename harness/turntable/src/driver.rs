@@ -1,0 +1,382 @@
+//! A table behind a command language.
+
+use crate::dialect::{Command, Fields, Pattern, Values};
+use crate::{
+    Axis, AxisStatus, Dialect, EmergencyStop, Error, Guard, Limits, Port, Status, Turntable,
+};
+use std::io;
+use std::time::{Duration, Instant};
+
+/// The longest line that is listened to.
+const MAX_LINE_BYTES: usize = 4096;
+/// How long one read waits: how soon a driver notices that time is up.
+const WAIT: Duration = Duration::from_millis(10);
+/// How often a question is asked whose reply was nonsense.
+const ASKED: u32 = 3;
+
+/// How a table is driven.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Settings {
+    /// How far and how fast it may turn.
+    pub limits: Limits,
+    /// How long a reply is waited for.
+    pub reply_within: Duration,
+    /// After which silence the controller stops the table by itself; `None`: it isn't told to.
+    pub watchdog: Option<Duration>,
+}
+
+/// Drives a table. When it is dropped the table is stopped.
+pub struct Driver<P: Port> {
+    port: P,
+    name: String,
+    dialect: Dialect,
+    settings: Settings,
+    stop: EmergencyStop,
+    guard: Option<Guard>,
+    /// Bytes of a reply that has not come whole.
+    pending: Vec<u8>,
+    /// A reply that nobody waits for may still come.
+    stale: bool,
+}
+
+impl<P: Port> Driver<P> {
+    /// Takes a table over: enables its drives, starts its watchdog, and asks where it is. `name` is that
+    /// of the port, for messages.
+    ///
+    /// # Errors
+    /// If the limits can't be kept, the language has no watchdog though one is asked for, or the table
+    /// doesn't answer.
+    pub fn new(
+        mut port: P,
+        name: &str,
+        dialect: Dialect,
+        settings: Settings,
+    ) -> Result<Self, Error> {
+        settings.limits.check()?;
+        let gone = |reason| Error::Gone { port: name.to_owned(), reason };
+        port.set_wait(WAIT).map_err(gone)?;
+        let stop = EmergencyStop::new(port.writer().map_err(gone)?, dialect.emergency());
+        let lacking = settings.watchdog.is_some() && dialect.lines(Command::Feed).is_empty();
+        if lacking {
+            return Err(Error::Lacking { dialect: dialect.name, what: "watchdog" });
+        }
+        let mut driver = Self {
+            port,
+            name: name.into(),
+            dialect,
+            settings,
+            stop,
+            guard: None,
+            pending: Vec::new(),
+            stale: true,
+        };
+        driver.command(Command::Begin, &Values::default())?;
+        for axis in Axis::ALL {
+            driver.command(Command::Enable, &Values { axis: Some(axis), ..Values::default() })?;
+        }
+        driver.feed()?;
+        driver.status()?;
+        Ok(driver)
+    }
+
+    /// Starts a guard: a process that stops the table when this one dies or is silent for a time.
+    /// `program` is one that calls [`crate::run_guard`].
+    ///
+    /// # Errors
+    /// If it can't be started.
+    #[cfg(unix)]
+    pub fn guard(
+        &mut self,
+        program: &mut std::process::Command,
+        silence: Duration,
+    ) -> Result<(), Error> {
+        let line = self.port.duplicate();
+        let line = line.map_err(|reason| Error::Gone { port: self.name.clone(), reason })?;
+        self.guard = Some(Guard::spawn(program, line, &self.dialect.emergency(), silence)?);
+        Ok(())
+    }
+
+    /// There are no guards here: what is left is the controller's watchdog.
+    ///
+    /// # Errors
+    /// Always.
+    #[cfg(not(unix))]
+    pub fn guard(&mut self, _: &mut std::process::Command, _: Duration) -> Result<(), Error> {
+        let reason =
+            "a process can't be given a port on this system: use the controller's watchdog";
+        Err(Error::Guard { reason: reason.into() })
+    }
+
+    /// Tells the controller's watchdog and the guard that the harness is there. To be called more
+    /// often than their silence; [`crate::Supervisor`] does.
+    ///
+    /// # Errors
+    /// If the controller doesn't take it, or the guard is gone.
+    pub fn feed(&mut self) -> Result<(), Error> {
+        if let Some(guard) = &mut self.guard {
+            guard.alive()?;
+        }
+        if let Some(silence) = self.settings.watchdog {
+            let ms = u32::try_from(silence.as_millis()).unwrap_or(u32::MAX);
+            self.command(Command::Feed, &Values { ms: Some(ms), ..Values::default() })?;
+        }
+        Ok(())
+    }
+
+    /// Brakes the table, waits until it rests, and takes watchdog and guard back. The end of its use: the
+    /// table stays where it is.
+    ///
+    /// # Errors
+    /// If it doesn't come to rest: it has been told to stop in every way then.
+    pub fn finish(mut self) -> Result<(), Error> {
+        self.stop()?;
+        let limits = self.settings.limits;
+        let longest = limits.axes.iter().map(|axis| axis.rate_radps / axis.acceleration_radps2);
+        let until = Instant::now()
+            + Duration::from_secs_f64(longest.fold(0.0, f64::max).min(3600.0))
+            + self.settings.reply_within;
+        loop {
+            let status = self.status()?;
+            if status.axes.iter().all(|axis| axis.moving != Some(true)) {
+                break;
+            }
+            if Instant::now() > until {
+                let why = "it did not come to rest at the end".to_owned();
+                self.stop.trip(&why);
+                return Err(Error::Stopped { why });
+            }
+            self.feed()?;
+            std::thread::sleep(WAIT);
+        }
+        if self.settings.watchdog.is_some() {
+            self.command(Command::Feed, &Values { ms: Some(0), ..Values::default() })?;
+        }
+        if let Some(guard) = self.guard.take() {
+            guard.release()?;
+        }
+        Ok(())
+    }
+
+    /// Sends the lines of a command, and hears that each was done.
+    fn command(&mut self, command: Command, values: &Values) -> Result<(), Error> {
+        let fields = self.dialect.write(values);
+        for pattern in self.dialect.lines(command).to_vec() {
+            let sent = self.filled(&pattern, &fields)?;
+            match self.dialect.done.clone() {
+                Some(done) => drop(self.exchange(&sent, &done)?),
+                None => self.send(&sent)?,
+            }
+        }
+        Ok(())
+    }
+
+    fn filled(&self, pattern: &Pattern, fields: &Fields) -> Result<String, Error> {
+        pattern.write(fields).ok_or_else(|| Error::Dialect {
+            place: self.dialect.name.clone(),
+            what: format!("`{}` has a field that its command doesn't have", pattern.text()),
+        })
+    }
+
+    /// Sends a line and reads its reply.
+    fn exchange(&mut self, sent: &str, expected: &Pattern) -> Result<Fields, Error> {
+        self.send(sent)?;
+        let reply = self.line(sent)?;
+        if let Some(fields) = expected.read(&reply) {
+            return Ok(fields);
+        }
+        if self.dialect.refused.iter().any(|refused| refused.read(&reply).is_some()) {
+            return Err(Error::Refused { port: self.name.clone(), sent: sent.into(), reply });
+        }
+        self.stale = true;
+        Err(self.nonsense(sent, reply, expected))
+    }
+
+    fn nonsense(&self, sent: &str, reply: String, expected: &Pattern) -> Error {
+        let (port, expected) = (self.name.clone(), expected.text().to_owned());
+        Error::Nonsense { port, sent: sent.into(), reply, expected }
+    }
+
+    fn send(&mut self, line: &str) -> Result<(), Error> {
+        // Replies to an emergency stop were nobody's.
+        if self.stale || self.stop.is_tripped() {
+            self.drain()?;
+        }
+        let bytes = format!("{line}{}", self.dialect.end);
+        let written = self.port.write_all(bytes.as_bytes()).and_then(|()| self.port.flush());
+        written.map_err(|reason| Error::Gone { port: self.name.clone(), reason })
+    }
+
+    /// Throws away what came uncalled for, until nothing comes for a moment.
+    fn drain(&mut self) -> Result<(), Error> {
+        self.pending.clear();
+        let until = Instant::now() + self.settings.reply_within;
+        while Instant::now() < until && self.receive()? > 0 {
+            self.pending.clear();
+        }
+        self.pending.clear();
+        self.stale = false;
+        Ok(())
+    }
+
+    /// Bytes that came within [`WAIT`].
+    fn receive(&mut self) -> Result<usize, Error> {
+        let mut bytes = [0; 512];
+        let gone = |reason| Error::Gone { port: self.name.clone(), reason };
+        match self.port.read(&mut bytes) {
+            Ok(0) => Err(gone(io::ErrorKind::UnexpectedEof.into())),
+            Ok(count) => {
+                self.pending.extend(&bytes[..count]);
+                Ok(count)
+            }
+            Err(error) => match error.kind() {
+                io::ErrorKind::TimedOut
+                | io::ErrorKind::WouldBlock
+                | io::ErrorKind::Interrupted => Ok(0),
+                _ => Err(gone(error)),
+            },
+        }
+    }
+
+    /// The next line.
+    fn line(&mut self, sent: &str) -> Result<String, Error> {
+        let until = Instant::now() + self.settings.reply_within;
+        loop {
+            let end = self.dialect.end.as_bytes();
+            if let Some(at) = self.pending.windows(end.len()).position(|window| window == end) {
+                let line = String::from_utf8_lossy(&self.pending[..at]).into_owned();
+                self.pending.drain(..at + end.len());
+                return Ok(line);
+            }
+            if self.pending.len() > MAX_LINE_BYTES {
+                self.stale = true;
+                let mut reply = String::from_utf8_lossy(&self.pending[..40]).into_owned();
+                reply.push_str("… without an end");
+                let any = Pattern::parse("{any}").unwrap_or_else(|_| unreachable!());
+                return Err(self.nonsense(sent, reply, &any));
+            }
+            if Instant::now() > until {
+                self.stale = true;
+                let (port, within) = (self.name.clone(), self.settings.reply_within);
+                return Err(Error::Silent { port, sent: sent.into(), within });
+            }
+            self.receive()?;
+        }
+    }
+
+    /// Asks a question until it has an answer that makes sense.
+    fn ask(&mut self, sent: &str, expected: &Pattern) -> Result<Values, Error> {
+        let mut asked = 1;
+        loop {
+            let result = self.exchange(sent, expected).and_then(|fields| {
+                self.dialect.read(&fields).ok_or_else(|| {
+                    let reply = expected.write(&fields).unwrap_or_default();
+                    self.nonsense(sent, reply, expected)
+                })
+            });
+            match result {
+                Err(Error::Nonsense { .. }) if asked < ASKED => {
+                    self.stale = true;
+                    asked += 1;
+                }
+                result => return result,
+            }
+        }
+    }
+}
+
+impl<P: Port> Turntable for Driver<P> {
+    fn goto(&mut self, axis: Axis, angle_rad: f64, rate_radps: Option<f64>) -> Result<(), Error> {
+        self.stop.check()?;
+        let limits = *self.settings.limits.of(axis);
+        let rate = rate_radps.unwrap_or(limits.rate_radps);
+        self.settings.limits.angle(axis, angle_rad)?;
+        self.settings.limits.rate(axis, rate)?;
+        if rate <= 0.0 {
+            let (found, most) = (rate.to_degrees(), limits.rate_radps.to_degrees());
+            return Err(Error::Rate { axis, found, most });
+        }
+        let values = Values {
+            axis: Some(axis),
+            angle_rad: Some(angle_rad),
+            rate_radps: Some(rate),
+            acceleration_radps2: Some(limits.acceleration_radps2),
+            ..Values::default()
+        };
+        self.command(Command::Goto, &values)
+    }
+
+    fn rate(&mut self, axis: Axis, rate_radps: f64) -> Result<(), Error> {
+        self.stop.check()?;
+        self.settings.limits.rate(axis, rate_radps)?;
+        if self.dialect.lines(Command::Rate).is_empty() {
+            let dialect = self.dialect.name.clone();
+            return Err(Error::Lacking { dialect, what: "command for a rate" });
+        }
+        let values = Values {
+            axis: Some(axis),
+            rate_radps: Some(rate_radps),
+            acceleration_radps2: Some(self.settings.limits.of(axis).acceleration_radps2),
+            ..Values::default()
+        };
+        self.command(Command::Rate, &values)
+    }
+
+    fn stop(&mut self) -> Result<(), Error> {
+        let mut result = Ok(());
+        for axis in Axis::ALL {
+            let values = Values { axis: Some(axis), ..Values::default() };
+            // The second one is told to stop whatever the first one said.
+            result = result.and(self.command(Command::Stop, &values));
+        }
+        if let Err(error) = &result {
+            self.stop.trip(&format!("it did not stop when it was told to: {error}"));
+        }
+        result
+    }
+
+    fn home(&mut self, axis: Axis) -> Result<(), Error> {
+        self.stop.check()?;
+        if self.dialect.lines(Command::Home).is_empty() {
+            let dialect = self.dialect.name.clone();
+            return Err(Error::Lacking { dialect, what: "command for homing" });
+        }
+        self.command(Command::Home, &Values { axis: Some(axis), ..Values::default() })
+    }
+
+    fn status(&mut self) -> Result<Status, Error> {
+        let mut status = Status::default();
+        for axis in Axis::ALL {
+            let fields = self.dialect.write(&Values { axis: Some(axis), ..Values::default() });
+            let mut found = AxisStatus::default();
+            for question in self.dialect.status.clone() {
+                let sent = self.filled(&question.send, &fields)?;
+                let values = self.ask(&sent, &question.reply)?;
+                let bit = |bit: Option<u32>| Some(values.bits?.checked_shr(bit?)? & 1 == 1);
+                let bits = self.dialect.bits;
+                found.angle_rad = values.angle_rad.unwrap_or(found.angle_rad);
+                found.rate_radps = values.rate_radps.or(found.rate_radps);
+                found.moving = values.moving.or(bit(bits.moving)).or(found.moving);
+                found.homed = values.homed.or(bit(bits.homed)).or(found.homed);
+                found.enabled = values.enabled.or(bit(bits.enabled)).or(found.enabled);
+                found.fault = values.fault.or(found.fault);
+            }
+            status.axes[axis.index()] = found;
+        }
+        Ok(status)
+    }
+
+    fn limits(&self) -> &Limits {
+        &self.settings.limits
+    }
+
+    fn emergency(&self) -> EmergencyStop {
+        self.stop.clone()
+    }
+}
+
+impl<P: Port> Drop for Driver<P> {
+    fn drop(&mut self) {
+        // After `finish` it rests, and a table at rest isn't hurt by being stopped.
+        self.stop.trip("its driver is gone");
+    }
+}

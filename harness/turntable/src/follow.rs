@@ -1,0 +1,54 @@
+//! The core's commands to a table.
+
+use crate::{Axis, Error, Status, Turntable};
+use octant_sample::{GimbalAngles, GimbalCommand};
+
+/// Moves a table to where the core wants the gimbals.
+///
+/// The core repeats its set point in every output: the table is told when it changes. A set point that the
+/// table refused is told again with the next output.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Follower {
+    told: [Option<i32>; 2],
+}
+
+impl Follower {
+    /// Nothing told yet.
+    #[must_use]
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Passes a command on. Whether the table was told anything.
+    ///
+    /// # Errors
+    /// If the table doesn't do it.
+    pub fn command(
+        &mut self,
+        table: &mut impl Turntable,
+        command: &GimbalCommand,
+    ) -> Result<bool, Error> {
+        let target = command.target;
+        let mut any = false;
+        for (axis, count, angle_rad) in [
+            (Axis::Azimuth, target.azimuth, target.azimuth_rad()),
+            (Axis::Roll, target.roll, target.roll_rad()),
+        ] {
+            if self.told[axis.index()] != Some(count) {
+                table.goto(axis, angle_rad, None)?;
+                self.told[axis.index()] = Some(count);
+                any = true;
+            }
+        }
+        Ok(any)
+    }
+}
+
+impl Status {
+    /// The angles as a sample has them.
+    #[must_use]
+    pub fn gimbal(&self) -> GimbalAngles {
+        let [azimuth, roll] = self.axes;
+        GimbalAngles::from_rad(azimuth.angle_rad, roll.angle_rad)
+    }
+}

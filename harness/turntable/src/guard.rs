@@ -1,0 +1,160 @@
+//! A process that stops the table when the harness can't.
+//!
+//! The guard has the port as its standard output and a pipe from the harness as its input. Down the pipe come
+//! the bytes that stop the table, then a byte now and then, then a farewell. When the pipe ends without it
+//! (whatever ended the harness, SIGKILL too), or nothing comes for too long (it hangs), the guard writes the
+//! bytes. It is in a process group of its own: an interrupt from the terminal doesn't reach it.
+//!
+//! What it can't do: stop a table whose line is cut, or whose computer lost its power or was killed with
+//! all its processes. That is for the watchdog of the controller.
+
+use crate::Error;
+use std::io::{self, Read, Write};
+use std::process::{Child, ChildStdin, ExitCode};
+use std::sync::mpsc::{self, RecvTimeoutError};
+use std::time::Duration;
+
+const ALIVE: u8 = b'.';
+const FAREWELL: u8 = b'q';
+/// No table needs more to be stopped.
+const MAX_BYTES: u32 = 65_536;
+
+fn failed(reason: impl ToString) -> Error {
+    Error::Guard { reason: reason.to_string() }
+}
+
+/// The guard, as the harness has it. Dropped without a farewell it stops the table.
+#[derive(Debug)]
+pub struct Guard {
+    child: Child,
+    pipe: Option<ChildStdin>,
+}
+
+impl Guard {
+    /// Starts a guard on a handle of the port.
+    #[cfg(unix)]
+    pub(crate) fn spawn(
+        program: &mut std::process::Command,
+        line: std::os::fd::OwnedFd,
+        bytes: &[u8],
+        silence: Duration,
+    ) -> Result<Self, Error> {
+        use std::os::unix::process::CommandExt;
+        use std::process::Stdio;
+        let mut child = program
+            .stdin(Stdio::piped())
+            .stdout(Stdio::from(line))
+            .process_group(0)
+            .spawn()
+            .map_err(failed)?;
+        let mut pipe = child.stdin.take();
+        let silence_ms = u32::try_from(silence.as_millis()).unwrap_or(u32::MAX);
+        let mut head = Vec::new();
+        head.extend(silence_ms.to_le_bytes());
+        head.extend((bytes.len() as u32).to_le_bytes());
+        head.extend(bytes);
+        let written = pipe.as_mut().map(|pipe| pipe.write_all(&head).and_then(|()| pipe.flush()));
+        written.unwrap_or(Err(io::ErrorKind::BrokenPipe.into())).map_err(failed)?;
+        Ok(Self { child, pipe })
+    }
+
+    /// The harness is there.
+    pub(crate) fn alive(&mut self) -> Result<(), Error> {
+        if let Some(status) = self.child.try_wait().map_err(failed)? {
+            return Err(failed(format!("it ended: {status}")));
+        }
+        let pipe = self.pipe.as_mut().ok_or_else(|| failed("it was let go"))?;
+        pipe.write_all(&[ALIVE]).map_err(failed)
+    }
+
+    /// The table rests and isn't used any more.
+    pub(crate) fn release(mut self) -> Result<(), Error> {
+        if let Some(mut pipe) = self.pipe.take() {
+            pipe.write_all(&[FAREWELL]).map_err(failed)?;
+        }
+        self.child.wait().map_err(failed)?;
+        Ok(())
+    }
+}
+
+impl Drop for Guard {
+    fn drop(&mut self) {
+        // The pipe ends: without a farewell the guard stops the table, and ends.
+        drop(self.pipe.take());
+        let _ = self.child.wait();
+    }
+}
+
+/// What the guard does, from its standard input to its standard output. A program that is given to
+/// [`crate::Driver::guard`] calls this and nothing else. Fails if it had to stop the table.
+#[must_use]
+pub fn run_guard() -> ExitCode {
+    match guard(io::stdin(), &mut io::stdout()) {
+        Ok(true) => ExitCode::SUCCESS,
+        Ok(false) | Err(_) => ExitCode::FAILURE,
+    }
+}
+
+/// Whether there was a farewell.
+fn guard(mut input: impl Read + Send + 'static, line: &mut impl Write) -> io::Result<bool> {
+    let mut head = [0; 8];
+    input.read_exact(&mut head)?;
+    let number =
+        |at: usize| u32::from_le_bytes([head[at], head[at + 1], head[at + 2], head[at + 3]]);
+    let (silence_ms, length) = (number(0), number(4).min(MAX_BYTES));
+    let mut bytes = vec![0; length as usize];
+    input.read_exact(&mut bytes)?;
+    let (sender, receiver) = mpsc::channel();
+    std::thread::spawn(move || {
+        let mut buffer = [0; 64];
+        loop {
+            let heard = input.read(&mut buffer).unwrap_or(0);
+            if sender.send(buffer[..heard].to_vec()).is_err() || heard == 0 {
+                return;
+            }
+        }
+    });
+    let silence = Duration::from_millis(silence_ms.into());
+    loop {
+        let heard = if silence_ms == 0 {
+            receiver.recv().map_err(|_| RecvTimeoutError::Disconnected)
+        } else {
+            receiver.recv_timeout(silence)
+        };
+        match heard {
+            Ok(heard) if heard.contains(&FAREWELL) => return Ok(true),
+            Ok(heard) if !heard.is_empty() => {}
+            // Ended without a farewell, or silent: once more after a moment, for a line that loses bytes.
+            _ => {
+                let first = line.write_all(&bytes).and_then(|()| line.flush());
+                std::thread::sleep(Duration::from_millis(50));
+                line.write_all(&bytes).and_then(|()| line.flush()).or(first)?;
+                return Ok(false);
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn run(farewell: bool) -> (bool, Vec<u8>) {
+        let mut input = Vec::new();
+        input.extend(0u32.to_le_bytes());
+        input.extend(4u32.to_le_bytes());
+        input.extend(b"STO\n..");
+        if farewell {
+            input.push(FAREWELL);
+        }
+        let mut line = Vec::new();
+        let well = guard(io::Cursor::new(input), &mut line).unwrap();
+        (well, line)
+    }
+
+    #[test]
+    fn it_stops_the_table_unless_it_was_told_farewell() {
+        assert_eq!(run(true), (true, Vec::new()));
+        assert_eq!(run(false), (false, b"STO\nSTO\n".to_vec()));
+    }
+}

@@ -1,0 +1,85 @@
+//! How far and how fast a table may turn.
+
+use crate::{Axis, Error};
+
+/// Limits of an axis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AxisLimits {
+    /// Least angle, rad; −∞: none.
+    pub least_rad: f64,
+    /// Greatest angle, rad; ∞: none.
+    pub most_rad: f64,
+    /// Largest rate, rad/s.
+    pub rate_radps: f64,
+    /// Acceleration of its moves, rad/s².
+    pub acceleration_radps2: f64,
+}
+
+/// Limits of a table.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Limits {
+    /// Of azimuth and roll.
+    pub axes: [AxisLimits; 2],
+}
+
+impl Limits {
+    /// Of one axis.
+    #[must_use]
+    pub fn of(&self, axis: Axis) -> &AxisLimits {
+        &self.axes[axis.index()]
+    }
+
+    /// They can be kept.
+    pub(crate) fn check(&self) -> Result<(), Error> {
+        for axis in Axis::ALL {
+            let AxisLimits { least_rad, most_rad, rate_radps, acceleration_radps2 } =
+                *self.of(axis);
+            let positive = |number: f64| number.is_finite() && number > 0.0;
+            if !(least_rad < most_rad && positive(rate_radps) && positive(acceleration_radps2)) {
+                return Err(Error::Limits { axis });
+            }
+        }
+        Ok(())
+    }
+
+    /// An angle to which the axis may go.
+    pub(crate) fn angle(&self, axis: Axis, angle_rad: f64) -> Result<(), Error> {
+        let limits = self.of(axis);
+        // A NaN is in no range.
+        if (limits.least_rad..=limits.most_rad).contains(&angle_rad) && angle_rad.is_finite() {
+            return Ok(());
+        }
+        Err(Error::Angle {
+            axis,
+            degrees: angle_rad.to_degrees(),
+            least: limits.least_rad.to_degrees(),
+            most: limits.most_rad.to_degrees(),
+        })
+    }
+
+    /// A rate with which the axis may turn.
+    pub(crate) fn rate(&self, axis: Axis, rate_radps: f64) -> Result<(), Error> {
+        let most = self.of(axis).rate_radps;
+        if rate_radps.abs() <= most {
+            return Ok(());
+        }
+        Err(Error::Rate { axis, found: rate_radps.to_degrees(), most: most.to_degrees() })
+    }
+
+    /// The axis comes to rest within its limits if it is braked within a time.
+    pub(crate) fn can_stop(
+        &self,
+        axis: Axis,
+        angle_rad: f64,
+        rate_radps: f64,
+        within_s: f64,
+    ) -> Result<(), Error> {
+        let brake = rate_radps.abs() / (2.0 * self.of(axis).acceleration_radps2);
+        let at_rest = angle_rad + rate_radps * (within_s + brake);
+        // Outside and on the way back is no reason to stop.
+        let limits = self.of(axis);
+        let outward = (rate_radps > 0.0 && at_rest > limits.most_rad)
+            || (rate_radps < 0.0 && at_rest < limits.least_rad);
+        if outward { self.angle(axis, at_rest) } else { Ok(()) }
+    }
+}

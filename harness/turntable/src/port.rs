@@ -1,0 +1,121 @@
+//! Ports that lead to a table.
+
+use crate::Error;
+use std::io::{self, Read, Write};
+use std::net::TcpStream;
+use std::time::Duration;
+
+/// A line to a controller.
+pub trait Port: Read + Write + Send {
+    /// Another handle for writing, which works while this one is in use.
+    ///
+    /// # Errors
+    /// If there is none.
+    fn writer(&self) -> io::Result<Box<dyn Write + Send>>;
+
+    /// How long a read waits at most; then it says `TimedOut` or `WouldBlock`. A write doesn't wait longer.
+    ///
+    /// # Errors
+    /// If it can't be set.
+    fn set_wait(&mut self, wait: Duration) -> io::Result<()>;
+
+    /// Another handle, to be handed to the guard.
+    ///
+    /// # Errors
+    /// If there is none.
+    #[cfg(unix)]
+    fn duplicate(&self) -> io::Result<std::os::fd::OwnedFd>;
+}
+
+impl Port for TcpStream {
+    fn writer(&self) -> io::Result<Box<dyn Write + Send>> {
+        Ok(Box::new(self.try_clone()?))
+    }
+
+    fn set_wait(&mut self, wait: Duration) -> io::Result<()> {
+        self.set_read_timeout(Some(wait))?;
+        self.set_write_timeout(Some(wait.max(Duration::from_millis(100))))
+    }
+
+    #[cfg(unix)]
+    fn duplicate(&self) -> io::Result<std::os::fd::OwnedFd> {
+        Ok(self.try_clone()?.into())
+    }
+}
+
+#[cfg(unix)]
+impl Port for serialport::TTYPort {
+    fn writer(&self) -> io::Result<Box<dyn Write + Send>> {
+        Ok(Box::new(self.try_clone_native()?))
+    }
+
+    fn set_wait(&mut self, wait: Duration) -> io::Result<()> {
+        Ok(serialport::SerialPort::set_timeout(self, wait)?)
+    }
+
+    #[allow(unsafe_code, reason = "the serial port gives its handle as a number only")]
+    fn duplicate(&self) -> io::Result<std::os::fd::OwnedFd> {
+        use std::os::fd::{FromRawFd, IntoRawFd};
+        let raw = self.try_clone_native()?.into_raw_fd();
+        // SAFETY: the clone gave its handle away with `into_raw_fd`: it is open, and nobody else has it.
+        Ok(unsafe { std::os::fd::OwnedFd::from_raw_fd(raw) })
+    }
+}
+
+#[cfg(windows)]
+impl Port for serialport::COMPort {
+    fn writer(&self) -> io::Result<Box<dyn Write + Send>> {
+        Ok(Box::new(serialport::SerialPort::try_clone(self)?))
+    }
+
+    fn set_wait(&mut self, wait: Duration) -> io::Result<()> {
+        Ok(serialport::SerialPort::set_timeout(self, wait)?)
+    }
+}
+
+impl Port for Box<dyn Port> {
+    fn writer(&self) -> io::Result<Box<dyn Write + Send>> {
+        (**self).writer()
+    }
+
+    fn set_wait(&mut self, wait: Duration) -> io::Result<()> {
+        (**self).set_wait(wait)
+    }
+
+    #[cfg(unix)]
+    fn duplicate(&self) -> io::Result<std::os::fd::OwnedFd> {
+        (**self).duplicate()
+    }
+}
+
+/// Opens `tcp:HOST:PORT` or `serial:DEVICE?baud=RATE` (8N1, exclusive; without a rate 115200).
+///
+/// # Errors
+/// If it is no such address, or can't be opened.
+pub fn open(uri: &str) -> Result<Box<dyn Port>, Error> {
+    let failed = |reason: String| Error::Open { port: uri.into(), reason };
+    if let Some(address) = uri.strip_prefix("tcp:") {
+        let stream = TcpStream::connect(address).map_err(|error| failed(error.to_string()))?;
+        stream.set_nodelay(true).map_err(|error| failed(error.to_string()))?;
+        return Ok(Box::new(stream));
+    }
+    let Some(serial) = uri.strip_prefix("serial:") else {
+        return Err(failed("this is no address of a table".into()));
+    };
+    let (device, baud) = match serial.split_once('?') {
+        None => (serial, 115_200),
+        Some((device, query)) => {
+            let rate = query.strip_prefix("baud=").and_then(|rate| rate.parse().ok());
+            (device, rate.ok_or_else(|| failed(format!("`{query}` is no baud=RATE")))?)
+        }
+    };
+    let builder = serialport::new(device, baud).timeout(Duration::from_millis(20));
+    let port = builder.open_native().map_err(|error| failed(error.to_string()))?;
+    // Some drivers give another rate without a word.
+    match serialport::SerialPort::baud_rate(&port) {
+        Ok(found) if found != baud => {
+            Err(failed(format!("the line runs at {found} baud, not {baud}")))
+        }
+        _ => Ok(Box::new(port)),
+    }
+}

@@ -1,0 +1,260 @@
+//! What a controller does with a line.
+
+use crate::dialect::{Command, Fields, Pattern, Values};
+use crate::{Axis, Dialect};
+use octant_plant::config::Turntable;
+use octant_plant::table::{self, Table};
+
+/// How it behaves.
+#[derive(Clone, Debug, PartialEq, Eq, Default)]
+pub enum Behaviour {
+    /// As it should.
+    #[default]
+    Well,
+    /// It does what it is told and answers nothing.
+    Silent,
+    /// It answers this, whatever it was asked.
+    Nonsense(String),
+    /// It doesn't listen: a line is neither done nor answered.
+    Deaf,
+    /// The line is cut.
+    HangUp,
+}
+
+/// A simulated controller. Times are nanoseconds since it was switched on.
+#[derive(Debug)]
+pub struct Controller {
+    dialect: Dialect,
+    table: Table,
+    /// Largest angle of either axis, either way: its end switches.
+    end_rad: f64,
+    /// How fast it looks for its reference.
+    home_radps: f64,
+    enabled: [bool; 2],
+    homed: [bool; 2],
+    fault: [u32; 2],
+    /// What the lines of a command have said so far.
+    context: Values,
+    watchdog_ns: Option<u64>,
+    fed_ns: u64,
+    behaviour: Behaviour,
+    log: Vec<String>,
+}
+
+/// Fault word of an axis that ran into its end.
+const FAULT_END: u32 = 0x4;
+/// Fault word of an axis whose watchdog stopped it.
+const FAULT_WATCHDOG: u32 = 0x100;
+
+fn plant(axis: Axis) -> table::Axis {
+    match axis {
+        Axis::Azimuth => table::Axis::Azimuth,
+        Axis::Roll => table::Axis::Roll,
+    }
+}
+
+impl Controller {
+    /// A controller of a table at rest at zero, its drives off. `end_rad`: where the end switches are.
+    #[must_use]
+    pub fn new(dialect: Dialect, config: &Turntable, end_rad: f64) -> Self {
+        Self {
+            dialect,
+            table: Table::new(config),
+            end_rad,
+            home_radps: config.rate_radps / 6.0,
+            enabled: [false; 2],
+            homed: [false; 2],
+            fault: [0; 2],
+            context: Values::default(),
+            watchdog_ns: None,
+            fed_ns: 0,
+            behaviour: Behaviour::Well,
+            log: Vec::new(),
+        }
+    }
+
+    /// The characters that end a line.
+    #[must_use]
+    pub fn end(&self) -> &str {
+        &self.dialect.end
+    }
+
+    /// From now on it behaves like this.
+    pub fn behave(&mut self, behaviour: Behaviour) {
+        self.behaviour = behaviour;
+    }
+
+    /// How it behaves.
+    #[must_use]
+    pub fn behaviour(&self) -> &Behaviour {
+        &self.behaviour
+    }
+
+    /// The lines that it heard, as they came.
+    #[must_use]
+    pub fn log(&self) -> &[String] {
+        &self.log
+    }
+
+    /// Where an axis really is.
+    #[must_use]
+    pub fn motion(&self, axis: Axis, now_ns: u64) -> table::AxisMotion {
+        self.table.motion(plant(axis), now_ns)
+    }
+
+    /// Time goes on: end switches and watchdog act.
+    pub fn tick(&mut self, now_ns: u64) {
+        for axis in Axis::ALL {
+            let motion = self.motion(axis, now_ns);
+            let outward =
+                motion.angle_rad.abs() > self.end_rad && motion.angle_rad * motion.rate_radps > 0.0;
+            if outward {
+                self.fault[axis.index()] |= FAULT_END;
+                self.halt(axis, now_ns);
+            }
+        }
+        if let Some(silence) = self.watchdog_ns
+            && now_ns.saturating_sub(self.fed_ns) > silence
+        {
+            self.watchdog_ns = None;
+            for axis in Axis::ALL {
+                self.fault[axis.index()] |= FAULT_WATCHDOG;
+                self.halt(axis, now_ns);
+            }
+        }
+    }
+
+    fn halt(&mut self, axis: Axis, now_ns: u64) {
+        self.table.run_on(plant(axis), 0.0, now_ns);
+    }
+
+    /// Hears a line; what it answers.
+    pub fn line(&mut self, line: &str, now_ns: u64) -> Option<String> {
+        self.tick(now_ns);
+        if line.is_empty() || self.behaviour == Behaviour::Deaf {
+            return None;
+        }
+        self.log.push(line.into());
+        let reply = self.understood(line, now_ns);
+        match &self.behaviour {
+            Behaviour::Well => reply,
+            Behaviour::Nonsense(nonsense) => Some(nonsense.clone()),
+            Behaviour::Silent | Behaviour::Deaf | Behaviour::HangUp => None,
+        }
+    }
+
+    fn understood(&mut self, line: &str, now_ns: u64) -> Option<String> {
+        for question in &self.dialect.status {
+            let asked = question.send.read(line).and_then(|fields| self.dialect.read(&fields));
+            if let Some(asked) = asked {
+                let axis = asked.axis.unwrap_or(Axis::Azimuth);
+                return question.reply.write(&self.dialect.write(&self.state(axis, now_ns)));
+            }
+        }
+        let found = self.dialect.commands.iter().find_map(|(command, lines)| {
+            lines.iter().enumerate().find_map(|(index, pattern)| {
+                let values = self.dialect.read(&pattern.read(line)?)?;
+                Some((*command, index + 1 == lines.len(), values))
+            })
+        });
+        let Some((command, last, values)) = found else { return self.refusal() };
+        let context = &mut self.context;
+        context.axis = values.axis.or(context.axis);
+        context.angle_rad = values.angle_rad.or(context.angle_rad);
+        context.rate_radps = values.rate_radps.or(context.rate_radps);
+        context.ms = values.ms.or(context.ms);
+        if last && !self.done(command, now_ns) {
+            return self.refusal();
+        }
+        self.dialect.done.as_ref().and_then(|done| done.write(&Fields::new()))
+    }
+
+    fn refusal(&self) -> Option<String> {
+        let refused = self.dialect.refused.first()?;
+        let empty = Fields::from([(crate::dialect::Field::Any, String::new())]);
+        refused.write(&empty)
+    }
+
+    /// Does a command; whether it can.
+    fn done(&mut self, command: Command, now_ns: u64) -> bool {
+        let context = std::mem::take(&mut self.context);
+        let axis = context.axis;
+        let ready = |axis: Axis| self.enabled[axis.index()] && self.fault[axis.index()] == 0;
+        match command {
+            Command::Begin => true,
+            Command::Enable => axis.is_some_and(|axis| {
+                self.enabled[axis.index()] = true;
+                self.fault[axis.index()] = 0;
+                true
+            }),
+            Command::Goto => match (axis, context.angle_rad) {
+                (Some(axis), Some(angle)) if ready(axis) && angle.abs() <= self.end_rad => {
+                    let rate = context.rate_radps.unwrap_or(f64::INFINITY);
+                    self.table.go_to(plant(axis), angle, rate, now_ns);
+                    true
+                }
+                _ => false,
+            },
+            Command::Rate => match (axis, context.rate_radps) {
+                (Some(axis), Some(rate)) if ready(axis) => {
+                    self.table.run_on(plant(axis), rate, now_ns);
+                    true
+                }
+                _ => false,
+            },
+            Command::Stop => {
+                // A language that stops both with one line names none.
+                for one in Axis::ALL {
+                    if axis.is_none_or(|axis| axis == one) {
+                        self.halt(one, now_ns);
+                    }
+                }
+                true
+            }
+            Command::Home => axis.filter(|axis| ready(*axis)).is_some_and(|axis| {
+                self.table.go_to(plant(axis), 0.0, self.home_radps, now_ns);
+                self.homed[axis.index()] = true;
+                true
+            }),
+            Command::Feed => {
+                let ms = context.ms.unwrap_or(0);
+                self.fed_ns = now_ns;
+                self.watchdog_ns = (ms > 0).then_some(u64::from(ms) * 1_000_000);
+                true
+            }
+        }
+    }
+
+    /// All that it knows of an axis.
+    fn state(&self, axis: Axis, now_ns: u64) -> Values {
+        let motion = self.motion(axis, now_ns);
+        let index = axis.index();
+        let mut bits = 0;
+        for (bit, set) in [
+            (self.dialect.bits.enabled, self.enabled[index]),
+            (self.dialect.bits.homed, self.homed[index]),
+            (self.dialect.bits.moving, motion.moves),
+        ] {
+            bits |= bit.and_then(|bit| u32::from(set).checked_shl(bit)).unwrap_or(0);
+        }
+        Values {
+            axis: Some(axis),
+            angle_rad: Some(motion.angle_rad),
+            rate_radps: Some(motion.rate_radps),
+            bits: Some(bits),
+            fault: Some(self.fault[index]),
+            moving: Some(motion.moves),
+            homed: Some(self.homed[index]),
+            enabled: Some(self.enabled[index]),
+            ..Values::default()
+        }
+    }
+
+    /// Patterns of the language, for who wants to say them.
+    #[must_use]
+    pub fn language(&self) -> Vec<String> {
+        let commands = self.dialect.commands.iter().flat_map(|(_, lines)| lines);
+        let questions = self.dialect.status.iter().map(|question| &question.send);
+        commands.chain(questions).map(Pattern::text).map(Into::into).collect()
+    }
+}

@@ -1,0 +1,181 @@
+//! Somebody who looks at the table all the time.
+
+use crate::{Axis, Driver, EmergencyStop, Error, Limits, Port, Status, Turntable};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::thread::JoinHandle;
+use std::time::{Duration, Instant};
+
+/// How much faster than its limit an axis may be read: rates are noisy.
+const RATE_SLACK: f64 = 1.1;
+
+struct Shared<P: Port> {
+    driver: Mutex<Driver<P>>,
+    last: Mutex<Option<Status>>,
+    /// Why it stopped the table.
+    fault: Mutex<Option<String>>,
+    ends: AtomicBool,
+}
+
+/// A table under supervision.
+///
+/// A thread asks for its status many times a second, feeds watchdog and guard, and stops the table
+/// where an axis could not come to rest within its limits any more, is faster than it may, reports a
+/// fault, or where the table answers nothing or nonsense. Then nothing moves any more: see
+/// [`EmergencyStop`].
+pub struct Supervisor<P: Port + 'static> {
+    shared: Arc<Shared<P>>,
+    thread: Option<JoinHandle<()>>,
+    limits: Limits,
+    stop: EmergencyStop,
+}
+
+fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+impl<P: Port + 'static> Supervisor<P> {
+    /// Begins to look at a table, so often.
+    ///
+    /// # Errors
+    /// If the thread can't be started.
+    pub fn new(driver: Driver<P>, period: Duration) -> Result<Self, Error> {
+        let (limits, stop) = (*driver.limits(), driver.emergency());
+        let shared = Arc::new(Shared {
+            driver: Mutex::new(driver),
+            last: Mutex::new(None),
+            fault: Mutex::new(None),
+            ends: AtomicBool::new(false),
+        });
+        let (watched, trips) = (Arc::clone(&shared), stop.clone());
+        let thread = std::thread::Builder::new()
+            .name("table".into())
+            .spawn(move || watch(&watched, &trips, period))
+            .map_err(|error| Error::Guard { reason: error.to_string() })?;
+        Ok(Self { shared, thread: Some(thread), limits, stop })
+    }
+
+    /// What the table said last.
+    #[must_use]
+    pub fn last(&self) -> Option<Status> {
+        *locked(&self.shared.last)
+    }
+
+    /// Why it stopped the table, if it did.
+    #[must_use]
+    pub fn fault(&self) -> Option<String> {
+        locked(&self.shared.fault).clone()
+    }
+
+    /// Brakes the table and gives its driver back.
+    ///
+    /// # Errors
+    /// If the table doesn't stop.
+    pub fn finish(mut self) -> Result<(), Error> {
+        self.end();
+        let shared = Arc::clone(&self.shared);
+        drop(self);
+        // The thread has ended, and this is the last one.
+        match Arc::into_inner(shared) {
+            Some(shared) => {
+                shared.driver.into_inner().unwrap_or_else(PoisonError::into_inner).finish()
+            }
+            None => Ok(()),
+        }
+    }
+
+    fn end(&mut self) {
+        self.shared.ends.store(true, Ordering::SeqCst);
+        if let Some(thread) = self.thread.take() {
+            let _ = thread.join();
+        }
+    }
+}
+
+impl<P: Port + 'static> Drop for Supervisor<P> {
+    fn drop(&mut self) {
+        // The driver is dropped after the thread has ended, and stops the table.
+        self.end();
+    }
+}
+
+fn watch<P: Port>(shared: &Shared<P>, stop: &EmergencyStop, period: Duration) {
+    let mut before = None;
+    while !shared.ends.load(Ordering::SeqCst) {
+        let looked = {
+            let mut driver = locked(&shared.driver);
+            driver.feed().and_then(|()| look(&mut *driver, before, period))
+        };
+        match looked {
+            Ok(status) => {
+                before = Some((Instant::now(), status));
+                *locked(&shared.last) = Some(status);
+            }
+            Err(error) => {
+                let why = error.to_string();
+                stop.trip(&why);
+                *locked(&shared.fault) = Some(why);
+                return;
+            }
+        }
+        std::thread::sleep(period);
+    }
+}
+
+/// Asks a table where it is, and whether that is well.
+fn look(
+    table: &mut impl Turntable,
+    before: Option<(Instant, Status)>,
+    period: Duration,
+) -> Result<Status, Error> {
+    let status = table.status()?;
+    let limits = *table.limits();
+    for axis in Axis::ALL {
+        let found = status.of(axis);
+        if let Some(fault) = found.fault.filter(|fault| *fault != 0) {
+            return Err(Error::Fault { axis, fault });
+        }
+        // From where it was, if the language doesn't say it.
+        let rate = found.rate_radps.unwrap_or_else(|| match before {
+            Some((then, status)) => {
+                let passed_s = then.elapsed().as_secs_f64().max(1e-3);
+                (found.angle_rad - status.of(axis).angle_rad) / passed_s
+            }
+            None => 0.0,
+        });
+        limits.rate(axis, rate / RATE_SLACK)?;
+        // Until it is looked at again twice over.
+        limits.can_stop(axis, found.angle_rad, rate, 2.0 * period.as_secs_f64())?;
+    }
+    Ok(status)
+}
+
+impl<P: Port + 'static> Turntable for Supervisor<P> {
+    fn goto(&mut self, axis: Axis, angle_rad: f64, rate_radps: Option<f64>) -> Result<(), Error> {
+        locked(&self.shared.driver).goto(axis, angle_rad, rate_radps)
+    }
+
+    fn rate(&mut self, axis: Axis, rate_radps: f64) -> Result<(), Error> {
+        locked(&self.shared.driver).rate(axis, rate_radps)
+    }
+
+    fn stop(&mut self) -> Result<(), Error> {
+        locked(&self.shared.driver).stop()
+    }
+
+    fn home(&mut self, axis: Axis) -> Result<(), Error> {
+        locked(&self.shared.driver).home(axis)
+    }
+
+    fn status(&mut self) -> Result<Status, Error> {
+        locked(&self.shared.driver).status()
+    }
+
+    fn limits(&self) -> &Limits {
+        &self.limits
+    }
+
+    fn emergency(&self) -> EmergencyStop {
+        self.stop.clone()
+    }
+}

@@ -1,0 +1,115 @@
+//! What the tests share.
+#![allow(dead_code)]
+
+use octant_plant::config::Turntable as Config;
+use octant_turntable::simulate::{Controller, Server};
+use octant_turntable::{Axis, AxisLimits, Dialect, Driver, Limits, Port, Settings, open};
+use std::time::{Duration, Instant};
+
+/// A language that nobody speaks: another end of line, degrees a minute, one line of status without a
+/// rate, one stop for both axes.
+pub(crate) const INVENTED: &str = r#"
+name = "invented"
+end = "\r\n"
+decimals = 5
+angle = "deg"
+rate = "deg/min"
+acceleration = "deg/s2"
+done = "OK"
+refused = ["ERR {any}"]
+
+[axes]
+azimuth = "INNER"
+roll = "OUTER"
+
+[commands]
+enable = ["{axis}:ON"]
+goto = ["{axis}:ACC {acceleration}", "{axis}:SPD {rate}", "{axis}:MOVE {angle}"]
+rate = ["{axis}:ACC {acceleration}", "{axis}:JOG {rate}"]
+stop = ["HALT"]
+home = ["{axis}:HOME"]
+
+[watchdog]
+feed = ["WD {ms}"]
+
+[[status]]
+send = "{axis}:ST?"
+reply = "ST {angle} {moving} {homed} {enabled} {fault}"
+"#;
+
+pub(crate) fn ensemble() -> Dialect {
+    Dialect::aerotech_ensemble().unwrap()
+}
+
+pub(crate) fn invented() -> Dialect {
+    Dialect::parse("invented.toml", INVENTED).unwrap()
+}
+
+pub(crate) fn degrees(angle: f64) -> f64 {
+    angle.to_radians()
+}
+
+pub(crate) fn controller(dialect: Dialect) -> Controller {
+    let config = Config {
+        rate_radps: degrees(30.0),
+        acceleration_radps2: degrees(30.0),
+        encoder_sigma_rad: 0.0,
+        non_orthogonality_rad: 0.0,
+        backlash_rad: 0.0,
+    };
+    Controller::new(dialect, &config, degrees(400.0))
+}
+
+pub(crate) fn settings() -> Settings {
+    let axis = AxisLimits {
+        least_rad: degrees(-185.0),
+        most_rad: degrees(365.0),
+        rate_radps: degrees(20.0),
+        acceleration_radps2: degrees(30.0),
+    };
+    Settings {
+        limits: Limits { axes: [axis; 2] },
+        reply_within: Duration::from_secs(5),
+        watchdog: None,
+    }
+}
+
+/// A simulated controller on TCP whose time goes ten times as fast as ours.
+pub(crate) fn tcp(dialect: Dialect) -> (Server, String) {
+    tcp_at(dialect, 10.0)
+}
+
+/// A simulated controller on TCP whose time goes so many times as fast as ours.
+pub(crate) fn tcp_at(dialect: Dialect, speed: f64) -> (Server, String) {
+    let server = Server::tcp(controller(dialect), "127.0.0.1:0", speed).unwrap();
+    let name = format!("tcp:{}", server.address().unwrap());
+    (server, name)
+}
+
+pub(crate) fn drive(name: &str, dialect: Dialect, settings: Settings) -> Driver<Box<dyn Port>> {
+    Driver::new(open(name).unwrap(), name, dialect, settings).unwrap()
+}
+
+/// Waits for what has to come, long enough for any machine.
+pub(crate) fn wait_for(what: &str, mut come: impl FnMut() -> bool) {
+    let until = Instant::now() + Duration::from_secs(60);
+    while !come() {
+        assert!(Instant::now() < until, "{what} did not come");
+        std::thread::sleep(Duration::from_millis(5));
+    }
+}
+
+/// The table really turns.
+pub(crate) fn turns(server: &Server, axis: Axis) -> bool {
+    server.with(|controller, now_ns| controller.motion(axis, now_ns).rate_radps != 0.0)
+}
+
+/// The table really rests, both axes.
+pub(crate) fn rests(server: &Server) -> bool {
+    Axis::ALL.iter().all(|axis| !turns(server, *axis))
+}
+
+/// Where the table really is, degrees.
+pub(crate) fn angle(server: &Server, axis: Axis) -> f64 {
+    server.with(|controller, now_ns| controller.motion(axis, now_ns).angle_rad.to_degrees())
+}

@@ -1,0 +1,391 @@
+//! Drivers against simulated controllers: moves, limits, what goes wrong.
+#![allow(clippy::unwrap_used)]
+
+mod common;
+
+use common::*;
+use octant_sample::{GimbalAngles, GimbalCommand};
+use octant_turntable::simulate::{Behaviour, Server};
+use octant_turntable::{
+    Axis, Dialect, Driver, Error, Follower, Port, Settings, Supervisor, Turntable,
+};
+use std::collections::VecDeque;
+use std::io::{self, Read, Write};
+use std::sync::{Arc, Mutex};
+use std::time::Duration;
+
+/// All that a table does, in a language.
+fn all_it_does(server: &Server, mut table: impl Turntable) {
+    for axis in Axis::ALL {
+        let status = *table.status().unwrap().of(axis);
+        assert_eq!(
+            (status.enabled, status.moving, status.fault),
+            (Some(true), Some(false), Some(0))
+        );
+    }
+    table.goto(Axis::Roll, degrees(30.0), None).unwrap();
+    wait_for("the end of the move", || {
+        table.status().unwrap().of(Axis::Roll).moving == Some(false)
+    });
+    assert!((angle(server, Axis::Roll) - 30.0).abs() < 1e-5);
+    let status = table.status().unwrap();
+    assert!((status.of(Axis::Roll).angle_rad - degrees(30.0)).abs() < 1e-6);
+    assert_eq!(status.of(Axis::Azimuth).angle_rad, 0.0);
+
+    table.rate(Axis::Azimuth, degrees(-12.0)).unwrap();
+    wait_for("the rate", || {
+        let really = server.with(|c, now_ns| c.motion(Axis::Azimuth, now_ns).rate_radps);
+        (really - degrees(-12.0)).abs() < 1e-9
+    });
+    if let Some(rate) = table.status().unwrap().of(Axis::Azimuth).rate_radps {
+        assert!((rate - degrees(-12.0)).abs() < 1e-6);
+    }
+    table.stop().unwrap();
+    wait_for("rest", || rests(server));
+    // Back to where it was, and home.
+    table.goto(Axis::Roll, degrees(30.0), Some(degrees(1.0))).unwrap();
+    assert_eq!(table.status().unwrap().of(Axis::Roll).homed, Some(false));
+    table.home(Axis::Roll).unwrap();
+    wait_for("home", || {
+        let status = *table.status().unwrap().of(Axis::Roll);
+        status.homed == Some(true) && status.moving == Some(false)
+    });
+    assert!(angle(server, Axis::Roll).abs() < 1e-5);
+}
+
+#[test]
+fn two_languages_over_tcp() {
+    for dialect in [ensemble(), invented()] {
+        let (server, name) = tcp(dialect.clone());
+        let driver = drive(&name, dialect, settings());
+        all_it_does(&server, driver);
+    }
+}
+
+#[test]
+fn supervised() {
+    for dialect in [ensemble(), invented()] {
+        // In our time: one of the languages doesn't say a rate, and it is seen by the angles.
+        let (server, name) = tcp_at(dialect.clone(), 1.0);
+        let watched = Settings { watchdog: Some(Duration::from_secs(20)), ..settings() };
+        let driver = drive(&name, dialect, watched);
+        let table = Supervisor::new(driver, Duration::from_millis(10)).unwrap();
+        all_it_does(&server, table);
+        wait_for("rest after the end", || rests(&server));
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn two_languages_over_a_pseudo_terminal() {
+    for dialect in [ensemble(), invented()] {
+        let (master, slave) = serialport::TTYPort::pair().unwrap();
+        let server = Server::line(controller(dialect.clone()), master, 10.0).unwrap();
+        let driver = Driver::new(slave, "pty", dialect, settings()).unwrap();
+        all_it_does(&server, driver);
+    }
+}
+
+/// A port that answers what it was told to, and keeps what was sent.
+#[derive(Clone, Default)]
+struct Script {
+    sent: Arc<Mutex<Vec<u8>>>,
+    replies: Arc<Mutex<VecDeque<u8>>>,
+}
+
+impl Read for Script {
+    fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
+        let mut replies = self.replies.lock().unwrap();
+        let count = replies.len().min(bytes.len());
+        for byte in &mut bytes[..count] {
+            *byte = replies.pop_front().unwrap();
+        }
+        if count > 0 { Ok(count) } else { Err(io::ErrorKind::TimedOut.into()) }
+    }
+}
+
+impl Write for Script {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.sent.lock().unwrap().extend(bytes);
+        let mut replies = self.replies.lock().unwrap();
+        // What an Ensemble controller says.
+        let line = String::from_utf8_lossy(bytes).into_owned();
+        let reply = match line.trim_end() {
+            "AXISSTATUS(@0)" => "%7\n",
+            "AXISSTATUS(@1)" => "%11\n",
+            "PFBKPROG(@0)" => "%-0.25\n",
+            "PFBKPROG(@1)" => "%180.5\n",
+            "VFBK(@0)" | "AXISFAULT(@0)" | "AXISFAULT(@1)" => "%0\n",
+            "VFBK(@1)" => "%-3\n",
+            _ => "%\n",
+        };
+        replies.extend(reply.bytes());
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}
+
+impl Port for Script {
+    fn writer(&self) -> io::Result<Box<dyn Write + Send>> {
+        Ok(Box::new(self.clone()))
+    }
+
+    fn set_wait(&mut self, _: Duration) -> io::Result<()> {
+        Ok(())
+    }
+
+    #[cfg(unix)]
+    fn duplicate(&self) -> io::Result<std::os::fd::OwnedFd> {
+        Err(io::ErrorKind::Unsupported.into())
+    }
+}
+
+/// The lines that an Ensemble controller is sent, letter by letter, and what its replies mean.
+#[test]
+fn ensemble_to_the_letter() {
+    let script = Script::default();
+    let sent = Arc::clone(&script.sent);
+    let said = move || String::from_utf8(std::mem::take(&mut *sent.lock().unwrap())).unwrap();
+    let watched = Settings { watchdog: Some(Duration::from_millis(500)), ..settings() };
+    let mut driver = Driver::new(script, "script", ensemble(), watched).unwrap();
+    let questions = "AXISSTATUS(@0)\nPFBKPROG(@0)\nVFBK(@0)\nAXISFAULT(@0)\n\
+                     AXISSTATUS(@1)\nPFBKPROG(@1)\nVFBK(@1)\nAXISFAULT(@1)\n";
+    let beginning = "WAIT MODE NOWAIT\nFAULTACK @0\nENABLE @0\nRAMP MODE @0 RATE\n\
+                     FAULTACK @1\nENABLE @1\nRAMP MODE @1 RATE\nIGLOBAL(34) = 500\n";
+    assert_eq!(said(), format!("{beginning}{questions}"));
+    let status = driver.status().unwrap();
+    said();
+    let [azimuth, roll] = status.axes;
+    // 7: enabled, homed, in position; 11: enabled, homed, moving.
+    assert_eq!(
+        (azimuth.enabled, azimuth.homed, azimuth.moving),
+        (Some(true), Some(true), Some(false))
+    );
+    assert_eq!((roll.enabled, roll.homed, roll.moving), (Some(true), Some(true), Some(true)));
+    assert_eq!((azimuth.angle_rad, roll.rate_radps), (degrees(-0.25), Some(-3.0 * degrees(1.0))));
+    driver.goto(Axis::Roll, degrees(180.5), Some(degrees(10.0))).unwrap();
+    assert_eq!(said(), "ABS\nRAMP RATE 30.000000\nLINEAR @1 180.500000 F10.000000\n");
+    driver.rate(Axis::Azimuth, degrees(-7.5)).unwrap();
+    assert_eq!(said(), "RAMP RATE @0 30.000000\nFREERUN @0 -7.500000\n");
+    driver.rate(Axis::Azimuth, -0.0).unwrap();
+    assert_eq!(said(), "RAMP RATE @0 30.000000\nFREERUN @0 0.000000\n");
+    driver.home(Axis::Azimuth).unwrap();
+    assert_eq!(said(), "IGLOBAL(32) = 1\nIGLOBAL(33) = 0\nPROGRAM RUN 5, \"HomeAsync.bcx\"\n");
+    driver.stop().unwrap();
+    assert_eq!(said(), "ABORT @0\nABORT @1\n");
+    driver.emergency().trip("test");
+    assert_eq!(said(), "\nABORT @0\nABORT @1\n\nABORT @0\nABORT @1\n");
+}
+
+#[test]
+fn beyond_the_limits_nothing_is_sent() {
+    let (server, name) = tcp(ensemble());
+    let mut driver = drive(&name, ensemble(), settings());
+    let heard = || server.with(|controller, _| controller.log().len());
+    let before = heard();
+    let say = |result: Result<(), Error>| result.unwrap_err().to_string();
+    assert_eq!(
+        say(driver.goto(Axis::Roll, degrees(365.1), None)),
+        "roll 365.1000° is beyond its limits, -185° to 365°"
+    );
+    assert_eq!(
+        say(driver.goto(Axis::Azimuth, degrees(10.0), Some(degrees(21.0)))),
+        "azimuth at 21.0000 °/s is faster than its limit, 20° to 20°"
+            .replace("20° to 20°", "20 °/s")
+    );
+    assert!(matches!(driver.rate(Axis::Roll, degrees(-20.1)), Err(Error::Rate { .. })));
+    for nonsense in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+        assert!(matches!(driver.goto(Axis::Roll, nonsense, None), Err(Error::Angle { .. })));
+        assert!(matches!(driver.goto(Axis::Roll, 0.0, Some(nonsense)), Err(Error::Rate { .. })));
+        assert!(matches!(driver.rate(Axis::Roll, nonsense), Err(Error::Rate { .. })));
+    }
+    assert!(matches!(driver.goto(Axis::Roll, 0.0, Some(0.0)), Err(Error::Rate { .. })));
+    assert_eq!(heard(), before);
+    let mut unkept = settings();
+    unkept.limits.axes[1].rate_radps = f64::NAN;
+    let error = Driver::new(octant_turntable::open(&name).unwrap(), "x", ensemble(), unkept);
+    assert!(error.err().unwrap().to_string().starts_with("the limits of roll can't be kept"));
+}
+
+/// Turned on with a rate, the table comes to rest before its soft limit, though its language may not even
+/// say how fast it is.
+#[test]
+fn a_rate_ends_at_the_soft_limit() {
+    for dialect in [ensemble(), invented()] {
+        // In our time: what is looked at is as old as it is on a real line.
+        let (server, name) = tcp_at(dialect.clone(), 1.0);
+        let mut near = settings();
+        near.limits.axes[0].most_rad = degrees(25.0);
+        let driver = drive(&name, dialect, near);
+        let mut table = Supervisor::new(driver, Duration::from_millis(20)).unwrap();
+        table.rate(Axis::Azimuth, degrees(20.0)).unwrap();
+        wait_for("the stop", || table.emergency().is_tripped());
+        wait_for("rest", || rests(&server));
+        let at = angle(&server, Axis::Azimuth);
+        assert!((5.0..25.0).contains(&at), "{at}");
+        let fault = table.fault().unwrap();
+        assert!(fault.starts_with("azimuth ") && fault.contains("beyond its limits"), "{fault}");
+        // Until somebody has looked at it.
+        let error = table.goto(Axis::Azimuth, 0.0, None).unwrap_err().to_string();
+        assert!(error.starts_with("the table was stopped: azimuth"), "{error}");
+        table.emergency().reset();
+        table.goto(Axis::Azimuth, 0.0, None).unwrap();
+        wait_for("the way back", || angle(&server, Axis::Azimuth).abs() < 1e-5);
+    }
+}
+
+#[test]
+fn nonsense_is_not_believed() {
+    let (server, name) = tcp(ensemble());
+    let mut quick = settings();
+    quick.reply_within = Duration::from_millis(300);
+    let mut driver = drive(&name, ensemble(), quick);
+    let behave = |behaviour| server.with(|controller, _| controller.behave(behaviour));
+    behave(Behaviour::Nonsense("%twelve".into()));
+    let error = driver.status().unwrap_err().to_string();
+    assert_eq!(
+        error,
+        format!("{name}: `%twelve` is no reply to `AXISSTATUS(@0)`, expected is `%{{bits}}`")
+    );
+    behave(Behaviour::Nonsense("!".into()));
+    let error = driver.goto(Axis::Roll, 0.5, None).unwrap_err().to_string();
+    assert_eq!(error, format!("{name}: the controller refused `ABS` with `!`"));
+    behave(Behaviour::Nonsense("x".repeat(9000)));
+    let error = driver.home(Axis::Roll).unwrap_err();
+    assert!(matches!(error, Error::Nonsense { .. }), "{error}");
+    behave(Behaviour::Silent);
+    let error = driver.status().unwrap_err().to_string();
+    assert_eq!(error, format!("{name}: no reply to `AXISSTATUS(@0)` within 300ms"));
+    assert!(!driver.emergency().is_tripped());
+    // A stop that isn't answered is made sure of.
+    assert!(driver.stop().is_err());
+    assert!(driver.emergency().is_tripped());
+    // It comes back: what it said meanwhile isn't taken for replies.
+    behave(Behaviour::Well);
+    driver.emergency().reset();
+    let status = driver.status().unwrap();
+    assert_eq!(status.of(Axis::Azimuth).fault, Some(0));
+}
+
+#[test]
+fn a_lost_port_is_said() {
+    let (server, name) = tcp(ensemble());
+    let mut driver = drive(&name, ensemble(), settings());
+    server.with(|controller, _| controller.behave(Behaviour::HangUp));
+    let error = driver.status().unwrap_err();
+    assert!(matches!(error, Error::Gone { .. }), "{error}");
+    assert!(error.to_string().starts_with(&format!("{name} went away: ")), "{error}");
+    drop(server);
+    let error = octant_turntable::open(&name).err().unwrap().to_string();
+    assert!(error.starts_with(&format!("open {name}: ")), "{error}");
+    for wrong in ["can:can0", "serial:/dev/null?speed=3", "serial:/no/such/device", "tcp:nowhere"] {
+        assert!(matches!(octant_turntable::open(wrong), Err(Error::Open { .. })), "{wrong}");
+    }
+}
+
+#[test]
+fn a_table_of_patterns_that_is_none() {
+    let wrong = |from: &str, to: &str| {
+        let text = INVENTED.replace(from, to);
+        assert_ne!(text, INVENTED, "{from}");
+        Dialect::parse("invented.toml", &text).unwrap_err().to_string()
+    };
+    assert_eq!(
+        wrong("MOVE {angle}", "MOVE {angel}"),
+        "invented.toml: commands.goto: `{axis}:MOVE {angel}` has a field {angel}, known are axis, angle, \
+         rate, acceleration, ms, bits, fault, moving, homed, enabled, any"
+    );
+    assert_eq!(
+        wrong("MOVE {angle}", "MOVE"),
+        "invented.toml: commands.goto: no line of it has a field {angle}"
+    );
+    assert_eq!(
+        wrong("\"deg/min\"", "\"rpm\""),
+        "invented.toml: rate: `rpm` is no unit, expected is one of deg/s, deg/min, rad/s"
+    );
+    assert_eq!(
+        wrong("[\"HALT\"]", "[]"),
+        "invented.toml: commands.stop: it is empty: every table can do this"
+    );
+    assert_eq!(
+        wrong("ST {angle} {moving}", "ST {angle}{moving}"),
+        "invented.toml: status 1: `ST {angle}{moving} {homed} {enabled} {fault}` has two fields without a \
+         character between them"
+    );
+    assert_eq!(
+        wrong("\"WD {ms}\"", "\"WD {ms\""),
+        "invented.toml: watchdog.feed: `WD {ms` has a { without its }"
+    );
+    let hone = wrong("home =", "hone =");
+    assert!(hone.starts_with("invented.toml:20: unknown field `hone`"), "{hone}");
+    let without = INVENTED.replace("[watchdog]\nfeed = [\"WD {ms}\"]", "");
+    let dialect = Dialect::parse("invented.toml", &without).unwrap();
+    let (_server, name) = tcp(dialect.clone());
+    let watched = Settings { watchdog: Some(Duration::from_secs(1)), ..settings() };
+    let error = Driver::new(octant_turntable::open(&name).unwrap(), &name, dialect, watched).err();
+    assert_eq!(error.unwrap().to_string(), "the command language `invented` has no watchdog");
+}
+
+proptest::proptest! {
+    /// A controller hears anything and goes on.
+    #[test]
+    fn any_line(lines in proptest::collection::vec("\\PC{0,40}", 0..30)) {
+        for dialect in [ensemble(), invented()] {
+            let mut controller = controller(dialect);
+            for (number, line) in lines.iter().enumerate() {
+                controller.line(line, number as u64 * 1_000_000);
+            }
+        }
+    }
+
+    /// A table of patterns with some characters changed is read or refused.
+    #[test]
+    fn a_damaged_table_of_patterns(strikes in proptest::collection::vec((proptest::prelude::any::<proptest::sample::Index>(), 32u8..127), 1..6)) {
+        let mut bytes = INVENTED.as_bytes().to_vec();
+        for (at, byte) in strikes {
+            let at = at.index(bytes.len());
+            bytes[at] = byte;
+        }
+        if let Ok(dialect) = Dialect::parse("damaged.toml", std::str::from_utf8(&bytes).unwrap()) {
+            let mut controller = controller(dialect);
+            controller.line("INNER:MOVE 3", 5);
+            controller.line("INNER:ST?", 6);
+        }
+    }
+}
+
+#[test]
+fn the_core_moves_the_table() {
+    let (server, name) = tcp(ensemble());
+    let mut driver = drive(&name, ensemble(), settings());
+    let mut follower = Follower::new();
+    let target = GimbalAngles::from_rad(degrees(90.0), degrees(-45.0));
+    let command = GimbalCommand { target };
+    assert!(follower.command(&mut driver, &command).unwrap());
+    let heard = server.with(|controller, _| controller.log().len());
+    // The same set point in every output after it.
+    for _ in 0..100 {
+        assert!(!follower.command(&mut driver, &command).unwrap());
+    }
+    assert_eq!(server.with(|controller, _| controller.log().len()), heard);
+    wait_for("the position", || {
+        let found = driver.status().unwrap().gimbal();
+        // Six decimals of a degree, in counts of 2⁻²⁷ rad.
+        (found.azimuth - target.azimuth).abs() <= 3 && (found.roll - target.roll).abs() <= 3
+    });
+    // One gimbal at a time.
+    let lines = server.with(|controller, _| controller.log().len());
+    let on = GimbalCommand { target: GimbalAngles { azimuth: 0, ..target } };
+    assert!(follower.command(&mut driver, &on).unwrap());
+    let told = server.with(|controller, _| controller.log()[lines..].to_vec());
+    assert!(told.iter().any(|line| line.starts_with("LINEAR @0 0.000000")), "{told:?}");
+    assert!(!told.iter().any(|line| line.starts_with("LINEAR @1")), "{told:?}");
+    // Beyond the limits it is refused, and said again each time.
+    let far = GimbalCommand { target: GimbalAngles::from_rad(degrees(400.0), degrees(-45.0)) };
+    for _ in 0..2 {
+        assert!(matches!(follower.command(&mut driver, &far), Err(Error::Angle { .. })));
+    }
+}

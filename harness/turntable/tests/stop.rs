@@ -1,0 +1,181 @@
+//! The table stops: when the harness ends, is killed or hangs, and when the line is cut.
+#![allow(clippy::unwrap_used)]
+
+mod common;
+
+use common::*;
+use octant_turntable::simulate::Behaviour;
+use octant_turntable::{Axis, Settings, Supervisor, Turntable};
+use std::time::Duration;
+
+#[test]
+fn a_dropped_driver_stops_it() {
+    let (server, name) = tcp(ensemble());
+    let mut driver = drive(&name, ensemble(), settings());
+    driver.rate(Axis::Roll, degrees(1.0)).unwrap();
+    wait_for("the rate", || turns(&server, Axis::Roll));
+    drop(driver);
+    wait_for("rest", || rests(&server));
+}
+
+#[test]
+fn whoever_has_the_stop_can_trip_it() {
+    let (server, name) = tcp(ensemble());
+    let mut driver = drive(&name, ensemble(), settings());
+    let stop = driver.emergency();
+    driver.rate(Axis::Azimuth, degrees(1.0)).unwrap();
+    driver.goto(Axis::Roll, degrees(300.0), None).unwrap();
+    wait_for("both", || Axis::ALL.iter().all(|axis| turns(&server, *axis)));
+    // From another thread, while the driver is busy asking.
+    let tripping = std::thread::spawn(move || stop.trip("the button"));
+    for _ in 0..20 {
+        driver.status().unwrap();
+    }
+    assert!(tripping.join().unwrap());
+    wait_for("rest", || rests(&server));
+    assert!(driver.goto(Axis::Roll, 0.0, None).is_err());
+    // To stop it is always allowed.
+    driver.stop().unwrap();
+}
+
+/// The line is dead both ways: only the controller can stop the table.
+#[test]
+fn the_watchdog_stops_it_when_nothing_is_heard() {
+    for behaviour in [Behaviour::Deaf, Behaviour::HangUp] {
+        let (server, name) = tcp(ensemble());
+        let mut watched = Settings { watchdog: Some(Duration::from_secs(4)), ..settings() };
+        watched.reply_within = Duration::from_millis(500);
+        let driver = drive(&name, ensemble(), watched);
+        let mut table = Supervisor::new(driver, Duration::from_millis(10)).unwrap();
+        table.rate(Axis::Azimuth, degrees(2.0)).unwrap();
+        wait_for("the rate", || turns(&server, Axis::Azimuth));
+        server.with(|controller, _| controller.behave(behaviour.clone()));
+        wait_for("rest", || rests(&server));
+        wait_for("the fault", || table.fault().is_some());
+        // It was heard that it isn't well: nothing is moved any more.
+        assert!(table.goto(Axis::Azimuth, 0.0, None).is_err());
+    }
+}
+
+#[test]
+fn a_silent_controller_is_told_to_stop() {
+    let (server, name) = tcp(ensemble());
+    let mut quick = settings();
+    quick.reply_within = Duration::from_millis(200);
+    let driver = drive(&name, ensemble(), quick);
+    let mut table = Supervisor::new(driver, Duration::from_millis(10)).unwrap();
+    table.rate(Axis::Roll, degrees(1.0)).unwrap();
+    wait_for("the rate", || turns(&server, Axis::Roll));
+    server.with(|controller, _| controller.behave(Behaviour::Silent));
+    // Without a word from it, and without a watchdog.
+    wait_for("rest", || rests(&server));
+    wait_for("the fault", || table.fault().is_some());
+    assert!(table.fault().unwrap().contains("no reply to"));
+}
+
+#[test]
+fn the_end_leaves_it_at_rest() {
+    let (server, name) = tcp(ensemble());
+    let watched = Settings { watchdog: Some(Duration::from_secs(30)), ..settings() };
+    let driver = drive(&name, ensemble(), watched);
+    let mut table = Supervisor::new(driver, Duration::from_millis(10)).unwrap();
+    table.rate(Axis::Roll, degrees(5.0)).unwrap();
+    wait_for("the rate", || turns(&server, Axis::Roll));
+    table.finish().unwrap();
+    assert!(rests(&server));
+    // The watchdog was taken back: no fault comes after its time.
+    assert!(
+        server.with(|controller, _| controller.log().iter().any(|line| line == "IGLOBAL(34) = 0"))
+    );
+}
+
+#[cfg(unix)]
+mod processes {
+    use super::*;
+    use std::process::{Child, Command, Stdio};
+
+    const ADDRESS: &str = "OCTANT_TABLE_UNDER_TEST";
+    const GUARDED: &str = "OCTANT_TABLE_GUARDED";
+
+    /// The harness of the tests below, in a process of its own: turns the table until it is ended.
+    #[test]
+    #[ignore = "run by the other tests"]
+    fn harness() {
+        let Ok(name) = std::env::var(ADDRESS) else { return };
+        octant_turntable::on_signals().unwrap();
+        let mut driver = drive(&name, ensemble(), settings());
+        if std::env::var_os(GUARDED).is_some() {
+            let mut program = Command::new(env!("CARGO_BIN_EXE_octant-turntable"));
+            driver.guard(program.arg("guard"), Duration::from_secs(1)).unwrap();
+        }
+        driver.rate(Axis::Roll, degrees(0.5)).unwrap();
+        loop {
+            driver.feed().unwrap();
+            std::thread::sleep(Duration::from_millis(50));
+        }
+    }
+
+    fn start(name: &str, guarded: bool) -> Child {
+        let mut command = Command::new(std::env::current_exe().unwrap());
+        command.args(["--exact", "processes::harness", "--ignored", "--nocapture"]);
+        command.env(ADDRESS, name).stdout(Stdio::null()).stderr(Stdio::null());
+        if guarded {
+            command.env(GUARDED, "1");
+        }
+        command.spawn().unwrap()
+    }
+
+    fn signal(child: &Child, signal: &str) {
+        let status = Command::new("kill").args([signal, &child.id().to_string()]).status().unwrap();
+        assert!(status.success());
+    }
+
+    fn ended_by(signal_name: &str, guarded: bool) {
+        let (server, name) = tcp(ensemble());
+        let mut child = start(&name, guarded);
+        wait_for("the rate", || turns(&server, Axis::Roll));
+        // The guard was there before: it is started before the table turns.
+        signal(&child, signal_name);
+        wait_for("rest", || rests(&server));
+        if signal_name == "-STOP" {
+            signal(&child, "-KILL");
+        }
+        let status = child.wait().unwrap();
+        assert!(!status.success());
+    }
+
+    #[test]
+    fn signals_stop_it() {
+        for name in ["-TERM", "-INT", "-HUP", "-QUIT"] {
+            ended_by(name, false);
+        }
+    }
+
+    #[test]
+    fn the_guard_stops_it_when_the_harness_is_killed() {
+        ended_by("-KILL", true);
+    }
+
+    #[test]
+    fn the_guard_stops_it_when_the_harness_hangs() {
+        ended_by("-STOP", true);
+    }
+
+    #[test]
+    fn by_hand() {
+        let (server, name) = tcp(ensemble());
+        let mut child = start(&name, false);
+        wait_for("the rate", || turns(&server, Axis::Roll));
+        signal(&child, "-KILL");
+        child.wait().unwrap();
+        // Without guard and watchdog it goes on.
+        assert!(turns(&server, Axis::Roll));
+        let program = env!("CARGO_BIN_EXE_octant-turntable");
+        let status = Command::new(program).args(["stop", &name]).status().unwrap();
+        assert!(status.success());
+        wait_for("rest", || rests(&server));
+        let status =
+            Command::new(program).args(["stop", "tcp:127.0.0.1:1"]).stderr(Stdio::null()).status();
+        assert_eq!(status.unwrap().code(), Some(4));
+    }
+}
