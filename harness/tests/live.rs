@@ -214,13 +214,8 @@ fn a_device_that_is_killed_is_an_error_of_the_bench() {
             .stderr(Stdio::piped())
             .spawn()
             .unwrap();
-        // In the middle of the run.
-        let recording = bench.folder.path().join(format!("killed-{i}.partial/recording.mcap"));
-        let begun = Instant::now();
-        while std::fs::metadata(&recording).map_or(0, |about| about.len()) < 100_000 {
-            assert!(begun.elapsed() < Duration::from_secs(60), "the run doesn't get on");
-            std::thread::sleep(Duration::from_millis(5));
-        }
+        let recording = format!("killed-{i}.partial/recording.mcap");
+        grows(&bench.folder.path().join(recording));
         served.signal("-KILL");
         let mut said = String::new();
         child.stderr.take().unwrap().read_to_string(&mut said).unwrap();
@@ -237,25 +232,33 @@ fn a_device_that_is_killed_is_an_error_of_the_bench() {
 
 #[test]
 fn a_harness_that_is_killed_leaves_a_device_that_serves_the_next() {
-    let bench = Bench::new(SHORT);
+    let bench = Bench::new(&SHORT.replace("\"5 s\"", "\"60 s\""));
     let expected = bench.hash("in-process", &[]);
     for (i, endpoint) in ["pty:", "udp:0"].into_iter().enumerate() {
         let served = Served::new(endpoint, &bench.scenario);
+        let out = bench.folder.path().join(format!("killed-{i}"));
         let mut child = Command::new(OCTANT)
-            .args(["run", "--out"])
-            .arg(bench.folder.path().join(format!("killed-{i}")))
-            .args(["--endpoint", &served.uri])
-            .arg(LOCKSTEP)
-            .args(["--set", "seed=3"])
+            .args(["run", "--endpoint", &served.uri, "--out"])
+            .arg(&out)
+            .arg(&bench.scenario)
             .stdout(Stdio::null())
             .stderr(Stdio::null())
             .spawn()
             .unwrap();
-        std::thread::sleep(Duration::from_millis(300));
-        let _ = child.kill();
-        child.wait().unwrap();
+        grows(&out.with_extension("partial").join("recording.mcap"));
+        child.kill().unwrap();
+        assert_eq!(child.wait().unwrap().code(), None, "it was killed before its end");
         let found = bench.hash(&format!("after-{i}"), &["--endpoint", &served.uri]);
         assert_eq!(found, expected, "{endpoint}");
+    }
+}
+
+/// Waits until a recording is in its middle.
+fn grows(recording: &Path) {
+    let begun = Instant::now();
+    while std::fs::metadata(recording).map_or(0, |about| about.len()) < 100_000 {
+        assert!(begun.elapsed() < Duration::from_secs(60), "the run doesn't get on");
+        std::thread::sleep(Duration::from_millis(5));
     }
 }
 
