@@ -1,0 +1,66 @@
+//! How it came to this: drift, NIS and lateness over run time.
+
+use super::SOFT;
+use crate::report::number::significant;
+use crate::watch::series::Series;
+use crate::watch::state::State;
+use ratatui::Frame;
+use ratatui::layout::{Constraint, Layout, Rect};
+use ratatui::style::{Color, Style};
+use ratatui::symbols::Marker;
+use ratatui::text::{Line, Span};
+use ratatui::widgets::{Axis, Block, Chart, Dataset, GraphType, Paragraph};
+
+/// A curve with its name.
+type Curve<'a> = (&'static str, &'a Series, Color);
+
+pub(super) fn draw(frame: &mut Frame<'_>, area: Rect, state: &State) {
+    let drift = [
+        ("latitude", &state.latitude, Color::Cyan),
+        ("longitude", &state.longitude, Color::Magenta),
+    ];
+    let nis = [("NIS", &state.nis_series, Color::Green)];
+    let late = [("late", &state.lateness, Color::Yellow)];
+    let paced = state.about.by_clock || state.pace.is_some();
+    let parts = if paced { 3 } else { 2 };
+    let areas = Layout::vertical(vec![Constraint::Ratio(1, parts); parts as usize]).split(area);
+    draw_curves(frame, areas[0], " Latitude and longitude error, arcmin, over hours ", &drift);
+    draw_curves(frame, areas[1], " NIS (3 is right) over hours ", &nis);
+    if paced {
+        draw_curves(frame, areas[2], " Largest lateness of each second, µs, over hours ", &late);
+    }
+}
+
+fn draw_curves(frame: &mut Frame<'_>, area: Rect, title: &str, curves: &[Curve<'_>]) {
+    let block = Block::bordered().title(title);
+    let points = || curves.iter().flat_map(|(_, series, _)| series.points());
+    if points().nth(1).is_none() {
+        let nothing = Line::styled("nothing to draw yet", SOFT);
+        frame.render_widget(Paragraph::new(nothing).block(block), area);
+        return;
+    }
+    let bounds = |of: fn(&(f64, f64)) -> f64| {
+        let values = points().map(of);
+        values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| [low.min(v), high.max(v)])
+    };
+    let axis = |bounds: [f64; 2]| {
+        let labels = [bounds[0], (bounds[0] + bounds[1]) / 2.0, bounds[1]];
+        Axis::default()
+            .style(SOFT)
+            .bounds(bounds)
+            .labels(labels.map(|value| Span::raw(significant(value, 3))))
+    };
+    let (x, y) = (bounds(|point| point.0), bounds(|point| point.1));
+    // A line that is flat has no height.
+    let y = if y[1] > y[0] { y } else { [y[0] - 1.0, y[1] + 1.0] };
+    let datasets = curves.iter().map(|(name, series, color)| {
+        Dataset::default()
+            .name(*name)
+            .marker(Marker::Braille)
+            .graph_type(GraphType::Line)
+            .style(Style::new().fg(*color))
+            .data(series.points())
+    });
+    let chart = Chart::new(datasets.collect()).block(block).x_axis(axis(x)).y_axis(axis(y));
+    frame.render_widget(chart, area);
+}
