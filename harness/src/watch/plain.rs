@@ -3,6 +3,7 @@
 use super::follow::{Follow, Stage};
 use super::state::{FaultState, State};
 use crate::report::number::{fixed, significant};
+use crate::score::verdict::Verdict;
 use octant_sample::Mode;
 use octant_sample::parameters::{Group, NAMES};
 use std::fmt::Write as _;
@@ -135,6 +136,9 @@ pub fn end(follow: &Follow) -> String {
             let mut text = format!("{}: {}\n", summary.scenario, summary.verdict.name());
             for reason in &summary.reasons {
                 let _ = writeln!(text, "  {reason}");
+            }
+            for met in summary.requirements.iter().filter(|r| r.verdict == Verdict::Pass) {
+                let _ = writeln!(text, "  {}", met.sentence());
             }
             text
         }

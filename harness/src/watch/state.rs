@@ -142,8 +142,10 @@ pub struct State {
     pub parameters: Option<(u64, Box<ParameterEstimate>)>,
     /// Where truth is recorded: the error of the last output.
     pub drift: Option<Drift>,
-    /// The largest errors in the present mode.
+    /// The largest errors since the last calibration or navigation began.
     pub largest: Drift,
+    /// Which of them that is.
+    pub largest_while: Option<Mode>,
     /// Where there were measurements.
     pub nis: Option<Nis>,
     /// What the core has reported, in the order of the flags.
@@ -222,7 +224,11 @@ impl State {
     fn output(&mut self, time_ns: u64, output: &Output) {
         if self.mode() != Some(output.mode) {
             self.mode_since_ns = time_ns;
-            self.largest = Drift::default();
+            // The end of a navigation is a part of it.
+            if output.mode != Mode::Done {
+                self.largest = Drift::default();
+                self.largest_while = Some(output.mode);
+            }
         }
         self.output = Some(*output);
         // The drift is of the output with which truth comes.

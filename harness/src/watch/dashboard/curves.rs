@@ -1,7 +1,7 @@
 //! How it came to this: drift, NIS and lateness over run time.
 
 use super::SOFT;
-use crate::report::number::significant;
+use crate::report::number::{decimals_for, fixed};
 use crate::watch::series::Series;
 use crate::watch::state::State;
 use ratatui::Frame;
@@ -12,28 +12,41 @@ use ratatui::text::{Line, Span};
 use ratatui::widgets::{Axis, Block, Chart, Dataset, GraphType, Paragraph};
 
 /// A curve with its name.
-type Curve<'a> = (&'static str, &'a Series, Color);
+type Curve<'a> = (&'static str, &'a Series, Color, GraphType);
 
 pub(super) fn draw(frame: &mut Frame<'_>, area: Rect, state: &State) {
     let drift = [
-        ("latitude", &state.latitude, Color::Cyan),
-        ("longitude", &state.longitude, Color::Magenta),
+        ("latitude", &state.latitude, Color::Cyan, GraphType::Line),
+        ("longitude", &state.longitude, Color::Magenta, GraphType::Line),
     ];
-    let nis = [("NIS", &state.nis_series, Color::Green)];
-    let late = [("late", &state.lateness, Color::Yellow)];
+    let nis = [("NIS", &state.nis_series, Color::Green, GraphType::Scatter)];
+    let late = [("late", &state.lateness, Color::Yellow, GraphType::Line)];
+    let hours = state.time_ns as f64 / 3.6e12;
     let paced = state.about.by_clock || state.pace.is_some();
     let parts = if paced { 3 } else { 2 };
     let areas = Layout::vertical(vec![Constraint::Ratio(1, parts); parts as usize]).split(area);
-    draw_curves(frame, areas[0], " Latitude and longitude error, arcmin, over hours ", &drift);
-    draw_curves(frame, areas[1], " NIS (3 is right) over hours ", &nis);
+    draw_curves(
+        frame,
+        areas[0],
+        " Latitude and longitude error, arcmin, over hours ",
+        hours,
+        &drift,
+    );
+    draw_curves(frame, areas[1], " NIS (3 is right) over hours ", hours, &nis);
     if paced {
-        draw_curves(frame, areas[2], " Largest lateness of each second, µs, over hours ", &late);
+        draw_curves(
+            frame,
+            areas[2],
+            " Largest lateness of each second, µs, over hours ",
+            hours,
+            &late,
+        );
     }
 }
 
-fn draw_curves(frame: &mut Frame<'_>, area: Rect, title: &str, curves: &[Curve<'_>]) {
+fn draw_curves(frame: &mut Frame<'_>, area: Rect, title: &str, hours: f64, curves: &[Curve<'_>]) {
     let block = Block::bordered().title(title);
-    let points = || curves.iter().flat_map(|(_, series, _)| series.points());
+    let points = || curves.iter().flat_map(|(_, series, ..)| series.points());
     if points().nth(1).is_none() {
         let nothing = Line::styled("nothing to draw yet", SOFT);
         frame.render_widget(Paragraph::new(nothing).block(block), area);
@@ -45,19 +58,22 @@ fn draw_curves(frame: &mut Frame<'_>, area: Rect, title: &str, curves: &[Curve<'
     };
     let axis = |bounds: [f64; 2]| {
         let labels = [bounds[0], (bounds[0] + bounds[1]) / 2.0, bounds[1]];
+        let decimals = decimals_for(bounds[1] - bounds[0], 3);
         Axis::default()
             .style(SOFT)
             .bounds(bounds)
-            .labels(labels.map(|value| Span::raw(significant(value, 3))))
+            .labels(labels.map(|value| Span::raw(fixed(value, decimals))))
     };
-    let (x, y) = (bounds(|point| point.0), bounds(|point| point.1));
+    // From the start of the run, so that the curves stand above each other.
+    let x = [0.0, hours.max(f64::MIN_POSITIVE)];
+    let y = bounds(|point| point.1);
     // A line that is flat has no height.
     let y = if y[1] > y[0] { y } else { [y[0] - 1.0, y[1] + 1.0] };
-    let datasets = curves.iter().map(|(name, series, color)| {
+    let datasets = curves.iter().map(|(name, series, color, graph)| {
         Dataset::default()
             .name(*name)
             .marker(Marker::Braille)
-            .graph_type(GraphType::Line)
+            .graph_type(*graph)
             .style(Style::new().fg(*color))
             .data(series.points())
     });

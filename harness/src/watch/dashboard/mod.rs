@@ -81,7 +81,7 @@ fn draw_head(frame: &mut Frame<'_>, area: Rect, follow: &Follow) {
     let about = &follow.state.about;
     let title = if about.title.is_empty() { "–" } else { &about.title };
     let place = follow.place.folder().display().to_string();
-    let right = u16::try_from(place.chars().count()).unwrap_or(u16::MAX).min(area.width / 2);
+    let right = u16::try_from(place.chars().count() + 2).unwrap_or(u16::MAX).min(area.width / 2);
     let [left, right] =
         Layout::horizontal([Constraint::Min(0), Constraint::Length(right)]).areas(area);
     let method = match &about.unread {
@@ -105,6 +105,8 @@ fn draw_gauge(frame: &mut Frame<'_>, area: Rect, follow: &Follow) {
     let gauge = LineGauge::default()
         .ratio(state.done().unwrap_or(0.0).clamp(0.0, 1.0))
         .label(label)
+        .filled_symbol("━")
+        .unfilled_symbol("─")
         .filled_style(Style::new().fg(Color::Cyan))
         .unfilled_style(SOFT);
     frame.render_widget(gauge, area);

@@ -36,14 +36,14 @@ pub(super) fn draw(frame: &mut Frame<'_>, area: Rect, state: &State) {
             for i in three {
                 line.extend(one(*i, group, estimate, state.about.truth.as_ref()));
             }
-            line.push_span(Span::styled(if k == 0 { group.unit() } else { "" }, SOFT));
+            line.push_span(Span::styled(if k == 0 { unit(group) } else { "" }, SOFT));
             lines.push(line);
         }
     }
     frame.render_widget(Paragraph::new(lines).block(block.title(title)), area);
 }
 
-/// Twenty-six columns: axis, value, σ.
+/// Twenty-five columns: axis, value, σ.
 fn one(
     i: usize,
     group: Group,
@@ -57,7 +57,7 @@ fn one(
     let axis = Span::styled(format!("{axis:>3} "), SOFT);
     if !(sigma > 0.0) {
         let text = format!("{:>9}", fixed(value / unit, 4));
-        return [axis, Span::raw(text), Span::styled(format!("{:>12} ", "not est."), SOFT)];
+        return [axis, Span::raw(text), Span::styled(format!("{:>11} ", "not est."), SOFT)];
     }
     let decimals = decimals_for(sigma / unit, 2).min(6);
     let off = truth.map_or(0.0, |truth| (value - truth.to_array()[i]) / sigma);
@@ -65,7 +65,7 @@ fn one(
     [
         axis,
         Span::styled(format!("{:>9}", fixed(value / unit, decimals)), style),
-        Span::styled(format!(" ±{:<10} ", fixed(sigma / unit, decimals)), SOFT),
+        Span::styled(format!(" ±{:<9} ", fixed(sigma / unit, decimals)), SOFT),
     ]
 }
 
@@ -80,6 +80,14 @@ fn beyond(estimate: &ParameterEstimate, truth: &Parameters) -> String {
     match worst {
         Some((off, i)) => format!("{} is {} σ off, the worst", NAMES[i], fixed(off, 1)),
         None => "none is estimated".to_owned(),
+    }
+}
+
+/// As the field writes it.
+const fn unit(group: Group) -> &'static str {
+    match group {
+        Group::AccelBias => "µg",
+        other => other.unit(),
     }
 }
 
