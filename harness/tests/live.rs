@@ -21,8 +21,6 @@ seed = 3
 [procedure.calibration]
 duration = "20 s"
 stops = [{ azimuth = "0 deg", roll = "0 deg" }, { azimuth = "0 deg", roll = "45 deg" }]
-[procedure.alignment]
-duration = "4 s"
 [procedure.navigation]
 duration = "5 s"
 [record]
@@ -205,29 +203,24 @@ fn a_plug_that_is_pulled_ends_the_run_or_is_waited_for() {
 #[test]
 fn a_device_that_is_killed_is_an_error_of_the_bench() {
     let bench = Bench::new(&std::fs::read_to_string(LOCKSTEP).unwrap());
-    for endpoint in ["pty:", "udp:0"] {
+    for (i, endpoint) in ["pty:", "udp:0"].into_iter().enumerate() {
         let served = Served::new(endpoint, &bench.scenario);
         let mut child = Command::new(OCTANT)
-            .args(["run", "--force", "--out"])
-            .arg(bench.folder.path().join("killed"))
+            .args(["run", "--out"])
+            .arg(bench.folder.path().join(format!("killed-{i}")))
             .args(["--set", "endpoint.link.answer=1 s", "--endpoint", &served.uri])
             .arg(&bench.scenario)
             .stdout(Stdio::null())
             .stderr(Stdio::piped())
             .spawn()
             .unwrap();
-        // In the middle of the run.
-        let recording = bench.folder.path().join("killed.partial/recording.mcap");
-        let begun = Instant::now();
-        while std::fs::metadata(&recording).map_or(0, |about| about.len()) < 100_000 {
-            assert!(begun.elapsed() < Duration::from_secs(60), "the run doesn't get on");
-            std::thread::sleep(Duration::from_millis(5));
-        }
+        let recording = format!("killed-{i}.partial/recording.mcap");
+        grows(&bench.folder.path().join(recording));
         served.signal("-KILL");
         let mut said = String::new();
         child.stderr.take().unwrap().read_to_string(&mut said).unwrap();
         assert_eq!(child.wait().unwrap().code(), Some(4), "{said}");
-        let partial = bench.folder.path().join("killed.partial/summary.json");
+        let partial = bench.folder.path().join(format!("killed-{i}.partial/summary.json"));
         let text = std::fs::read_to_string(partial).unwrap();
         let summary: Value = serde_json::from_str(&text).unwrap();
         assert_eq!(summary["verdict"], "error");
@@ -239,25 +232,33 @@ fn a_device_that_is_killed_is_an_error_of_the_bench() {
 
 #[test]
 fn a_harness_that_is_killed_leaves_a_device_that_serves_the_next() {
-    let bench = Bench::new(SHORT);
+    let bench = Bench::new(&SHORT.replace("\"5 s\"", "\"60 s\""));
     let expected = bench.hash("in-process", &[]);
     for (i, endpoint) in ["pty:", "udp:0"].into_iter().enumerate() {
         let served = Served::new(endpoint, &bench.scenario);
+        let out = bench.folder.path().join(format!("killed-{i}"));
         let mut child = Command::new(OCTANT)
-            .args(["run", "--out"])
-            .arg(bench.folder.path().join(format!("killed-{i}")))
-            .args(["--endpoint", &served.uri])
-            .arg(LOCKSTEP)
-            .args(["--set", "seed=3"])
+            .args(["run", "--endpoint", &served.uri, "--out"])
+            .arg(&out)
+            .arg(&bench.scenario)
             .stdout(Stdio::null())
             .stderr(Stdio::null())
             .spawn()
             .unwrap();
-        std::thread::sleep(Duration::from_millis(300));
-        let _ = child.kill();
-        child.wait().unwrap();
+        grows(&out.with_extension("partial").join("recording.mcap"));
+        child.kill().unwrap();
+        assert_eq!(child.wait().unwrap().code(), None, "it was killed before its end");
         let found = bench.hash(&format!("after-{i}"), &["--endpoint", &served.uri]);
         assert_eq!(found, expected, "{endpoint}");
+    }
+}
+
+/// Waits until a recording is in its middle.
+fn grows(recording: &Path) {
+    let begun = Instant::now();
+    while std::fs::metadata(recording).map_or(0, |about| about.len()) < 100_000 {
+        assert!(begun.elapsed() < Duration::from_secs(60), "the run doesn't get on");
+        std::thread::sleep(Duration::from_millis(5));
     }
 }
 
@@ -275,10 +276,15 @@ fn what_does_not_fit_is_refused_before_anything_is_stepped() {
     };
     let said = refused(&["--set", "site.latitude=40 deg"], 2);
     assert!(said.contains("give both the same scenario"), "{said}");
-    let said = refused(&["--set", "sample_rate=100 Hz"], 2);
+    let said = refused(&["--set", "imu.rate=100 Hz"], 2);
     assert!(said.contains("sample period"), "{said}");
-    let said = refused(&["--set", "baseline.positions=six"], 2);
-    assert!(said.contains("a second method") || said.contains("second method"), "{said}");
+    // A scenario with a baseline, which a device has no second core for.
+    let quick = concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/scenarios/quick.toml");
+    let output = bench.run(Path::new(quick), "quick", &["--endpoint", &served.uri]);
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(2), "{said}");
+    assert!(said.contains("which the scenario's [baseline] asks for"), "{said}");
+    assert!(!bench.folder.path().join("quick.partial").exists(), "nothing was begun");
     let nobody = ["--endpoint", "udp:127.0.0.1:9", "--set", "endpoint.link.hello=300 ms"];
     let output = bench.run(&bench.scenario, "nobody", &nobody);
     let said = String::from_utf8_lossy(&output.stderr).into_owned();

@@ -132,9 +132,25 @@ fn the_sigma_has_the_unit_of_its_reference() {
 }
 
 #[test]
-fn what_this_version_has_not_is_said() {
-    let (.., message) = problem(&format!("{HEAD}[endpoint]\nuri = \"serial:/dev/ttyS0\"\n"));
-    assert_says(&message, &["found \"serial:/dev/ttyS0\"", "possible: in-process, fmu"]);
+fn what_is_said_about_a_port_is_checked_before_it_is_opened() {
+    let port = |uri: &str| problem(&format!("{HEAD}[endpoint]\nuri = {uri:?}\n"));
+    let (.., message) = port("seral:/dev/ttyS0");
+    assert_says(&message, &["found \"seral:/dev/ttyS0\"", "did you mean \"serial\"?"]);
+    let (_, path, message) = port("serial:/dev/ttyS0?boud=9600");
+    assert_eq!(path, "endpoint.uri");
+    assert_says(&message, &["found option \"boud\" of serial:", "expected baud?"]);
+    let (.., message) = port("slcan:/dev/ttyACM0");
+    assert_says(&message, &["found bitrate=nothing", "slcan has a command for no other"]);
+    let link = |more: &str| {
+        problem(&format!(
+            "{HEAD}[endpoint]\nuri = \"udp:localhost:5005\"\n[endpoint.link]\n{more}\n"
+        ))
+    };
+    let (_, path, message) = link("repeat = \"6 s\"");
+    assert_eq!(path, "endpoint.link.repeat");
+    assert_says(&message, &["given up before it is asked for again"]);
+    let (.., message) = problem(&format!("{HEAD}[endpoint.link]\nanswer = \"1 s\"\n"));
+    assert_says(&message, &["without effect", "endpoint.uri names no device"]);
 }
 
 #[test]

@@ -124,6 +124,8 @@ def harness(folder, scenario, line, more=(), out=None):
 def recorded(path):
     """Seconds of samples in a recording, however it ended, and its events."""
     last, events = 0, []
+    if not path.exists():
+        return 0.0, ["there is no recording"]
     try:
         with open(path, "rb") as file:
             for _, channel, message in NonSeekingReader(file).iter_messages(log_time_order=False):
@@ -359,7 +361,7 @@ class Bench:
             self.expect(wait(self.device, 5) in (0, 4), "the device ends on SIGINT")
             self.line.close()
             if mounted:
-                subprocess.run(["umount", small], check=False)
+                subprocess.run(["umount", small], check=True)
             if self.failed:
                 print(self.said, (folder / "serve.log").read_text(), sep="\n--\n")
             return f"{took:.1f} s"

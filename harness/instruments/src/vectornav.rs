@@ -45,6 +45,22 @@ const FIELD_BYTES: [[u8; 15]; 7] = [
 /// All fields of all groups, the header and the CRC.
 const MAX_BYTES: usize = 1280;
 
+const _: () = assert!(longest() <= MAX_BYTES);
+
+/// Bytes of a frame with every field.
+const fn longest() -> usize {
+    let (mut bytes, mut group) = (MAX_HEADER_BYTES + 2, 0);
+    while group < FIELD_BYTES.len() {
+        let mut field = 0;
+        while field < FIELD_BYTES[group].len() {
+            bytes += FIELD_BYTES[group][field] as usize;
+            field += 1;
+        }
+        group += 1;
+    }
+    bytes
+}
+
 /// The longest header: every group.
 const MAX_HEADER_BYTES: usize = 2 + 2 * FIELD_BYTES.len();
 

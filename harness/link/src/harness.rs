@@ -767,10 +767,8 @@ fn say_hello(
             let left = patience.repeat.saturating_sub(asked_at.elapsed());
             match wire.receive(left)? {
                 // Nothing protects the version of a hello on a bus: it has to be said twice.
-                Some(Incoming::Newer(found)) => {
-                    if newer_seen.replace(found) == Some(found) {
-                        return Err(newer(wire, found));
-                    }
+                Some(Incoming::Newer(found)) if newer_seen.replace(found) == Some(found) => {
+                    return Err(newer(wire, found));
                 }
                 Some(Incoming::Message(Message::Hello(theirs)))
                     if theirs.session == ours.session =>

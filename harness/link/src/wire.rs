@@ -62,7 +62,8 @@ pub struct Wire {
     counts: Counts,
     /// Rates of the bus, for its load.
     bus: Option<Bus>,
-    off: bool,
+    /// The controller is off the bus: since when, or since it was last told to come back.
+    off: Option<Instant>,
 }
 
 #[derive(Debug)]
@@ -127,7 +128,7 @@ impl Wire {
             last_received: None,
             counts: Counts::default(),
             bus: None,
-            off: false,
+            off: None,
         }
     }
 
@@ -203,13 +204,17 @@ impl Wire {
         let mut left = wait;
         let mut lost = 0;
         loop {
+            if let Some(since) = self.off {
+                self.back_on_bus(since)?;
+                left = left.min(RESTART_EVERY);
+            }
             let incoming = match &mut self.medium {
                 Medium::Bytes(medium) => medium.next(left)?,
                 Medium::Frames(medium) => {
                     let next = medium.next(left, self.bus, &mut self.counts)?;
                     match next {
                         Next::Trouble(trouble) => {
-                            self.trouble(trouble)?;
+                            self.trouble(trouble);
                             Next::Nothing
                         }
                         next => next,
@@ -244,7 +249,7 @@ impl Wire {
 
     /// Something is wrong with the bus.
     #[cold]
-    fn trouble(&mut self, trouble: Trouble) -> Result<(), PortError> {
+    fn trouble(&mut self, trouble: Trouble) {
         let counts = &mut self.counts;
         counts.error_frames += u64::from(trouble != Trouble::Foreign);
         match trouble {
@@ -252,18 +257,25 @@ impl Wire {
             Trouble::ArbitrationLost => counts.arbitration_lost += 1,
             Trouble::Off => {
                 counts.bus_off += 1;
-                self.off = true;
-                if let Medium::Frames(medium) = &mut self.medium {
-                    // A controller that is switched on at once may break a bus that recovers.
-                    std::thread::sleep(RESTART_EVERY);
-                    medium.port.restart()?;
-                }
+                // A controller that is switched on at once may break a bus that recovers.
+                self.off = Some(Instant::now());
             }
             Trouble::Restarted => {
                 counts.restarted += 1;
-                self.off = false;
+                self.off = None;
             }
             _ => {}
+        }
+    }
+
+    /// The controller left the bus: tries now and then to bring it back.
+    #[cold]
+    fn back_on_bus(&mut self, since: Instant) -> Result<(), PortError> {
+        if since.elapsed() >= RESTART_EVERY
+            && let Medium::Frames(medium) = &mut self.medium
+        {
+            medium.port.restart()?;
+            self.off = Some(Instant::now());
         }
         Ok(())
     }
@@ -271,7 +283,7 @@ impl Wire {
     /// The controller left the bus and is not back.
     #[must_use]
     pub fn is_off_bus(&self) -> bool {
-        self.off
+        self.off.is_some()
     }
 
     /// A session with the peer that was heard last begins or ends.
@@ -295,7 +307,7 @@ impl Wire {
             }
             Medium::Frames(medium) => medium.port.reopen()?,
         }
-        self.off = false;
+        self.off = None;
         Ok(())
     }
 
@@ -359,6 +371,7 @@ impl Wire {
 }
 
 /// What a medium found.
+#[expect(clippy::large_enum_variant, reason = "the large variant is the one that comes")]
 enum Next {
     Incoming(Incoming),
     /// Something that is no message; there may be more.

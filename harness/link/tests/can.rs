@@ -18,10 +18,14 @@ use std::time::Duration;
 /// One bus, one session at a time.
 static BUS: Mutex<()> = Mutex::new(());
 
-/// The interface with options, where there is one.
-fn bus(options: &str) -> Option<String> {
+/// The interface with options, where there is one; and that of the device, which is another one of the
+/// same bus where `OCTANT_CAN_FAR` names it.
+fn bus(options: &str) -> Option<[String; 2]> {
     match std::env::var("OCTANT_CAN") {
-        Ok(interface) => Some(format!("can:{interface}{options}")),
+        Ok(near) => {
+            let far = std::env::var("OCTANT_CAN_FAR").unwrap_or_else(|_| near.clone());
+            Some([near, far].map(|interface| format!("can:{interface}{options}")))
+        }
         Err(_) => {
             println!("skipped: OCTANT_CAN names no interface");
             None
@@ -29,9 +33,9 @@ fn bus(options: &str) -> Option<String> {
     }
 }
 
-fn session(uri: &str) {
+fn session([uri, far]: [String; 2]) {
     let _alone = BUS.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-    let (mut served, _) = Served::on(uri, facts());
+    let (mut served, _) = Served::on(&far, facts());
     let uri: Uri = uri.parse().unwrap();
     let mut harness = common::harness(&uri);
     drive(&mut harness, 400);
@@ -44,7 +48,7 @@ fn session(uri: &str) {
 #[test]
 fn classic_can_carries_a_session() {
     if let Some(uri) = bus("") {
-        session(&uri);
+        session(uri);
     }
 }
 
@@ -55,15 +59,15 @@ fn can_fd_carries_a_session() {
         return;
     }
     if let Some(uri) = bus("?fd=1") {
-        session(&uri);
+        session(uri);
     }
 }
 
 #[test]
 fn a_bus_with_faults_carries_a_session() {
-    let Some(name) = bus("") else { return };
+    let Some([name, far]) = bus("") else { return };
     let _alone = BUS.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-    let (mut served, _) = Served::on(&name, facts());
+    let (mut served, _) = Served::on(&far, facts());
     let uri: Uri = name.parse().unwrap();
     let port = around(port::open(&uri, Role::Harness).unwrap());
     let patience = Patience { repeat: Duration::from_millis(10), ..options().patience };

@@ -24,6 +24,7 @@ struct Scripted {
 }
 
 /// What a script says to a message.
+#[allow(clippy::large_enum_variant)]
 enum Say {
     Message(Message),
     Bytes(Vec<u8>),

@@ -10,7 +10,7 @@ use crate::run::assemble::{parameter_text, text};
 use crate::run::method::{MethodError, SetupError, configurations, run_as_far_as_it_goes};
 use crate::run::raw_counts;
 use crate::run::{Control, Ended, MethodRun, Recording, Run, assemble};
-use crate::scenario::{Endpoint, Method, Scenario};
+use crate::scenario::{Endpoint, Method, Scenario, Source};
 use crate::score::junit::junit;
 use crate::score::verdict::Verdict;
 use clap::Args;
@@ -120,6 +120,7 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         ("calibration", primary.table.clone()),
         ("baseline", baseline.as_ref().and_then(|b| b.table.clone())),
     ];
+    let link = primary.link.clone();
     let realtime = primary.kept.as_ref().map(|kept| kept.granted.clone());
     let refused = primary.calibration.as_ref().is_some_and(|c| c.refused.is_some());
     let estimate = primary.watcher.last_parameters.map(|e| e.parameters).filter(|_| !refused);
@@ -136,6 +137,7 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         ended: SystemTime::now(),
         command_line: rerun(arguments, seed),
         fmus,
+        link,
         realtime,
     };
     let raw = estimate.map_or(String::new(), |e| raw_counts::text(&scenario.source, &e));
@@ -163,7 +165,10 @@ fn set_up(scenario: &Scenario, method: Method, seed: u64) -> Result<(), Failure>
     let failure = |error: SetupError| Failure::from(MethodError::from(error)).failed();
     let (plant, core, _) = configurations(scenario, method, seed).map_err(failure)?;
     octant_calibration::Core::new(&core).map_err(|error| failure(error.into()))?;
-    crate::source::open(scenario, &plant).map_err(|error| failure(error.into()))?;
+    // An instrument's port is opened once too: what it sends meanwhile would be lost.
+    if !matches!(scenario.source, Source::Live(_)) {
+        crate::source::open(scenario, &plant).map_err(|error| failure(error.into()))?;
+    }
     // A device is greeted once, when the run begins: some restart when their port is opened.
     match &scenario.endpoint {
         Endpoint::Live(live) => LiveEndpoint::check(scenario, live),

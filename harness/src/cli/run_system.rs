@@ -165,6 +165,7 @@ pub(super) fn command(
         ended: SystemTime::now(),
         command_line: rerun(shared, arguments, seed),
         fmus: summary.fmus.iter().map(|fmu| facts(fmu, arguments)).collect(),
+        link: None,
         realtime: None,
     };
     Manifest::write(folder.path(), &facts)

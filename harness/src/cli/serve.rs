@@ -72,7 +72,9 @@ fn scenario(arguments: &Arguments) -> Result<Scenario, Failure> {
         Some(path) => {
             let arguments =
                 ScenarioArguments { scenario: path.clone(), set: arguments.set.clone() };
-            load(&arguments, &[])
+            // It is the scenario of a run with a device: what it says of one has its effect there.
+            let device = "endpoint.uri=\"serial:device\"".to_owned();
+            load(&arguments, &[device])
         }
         None if arguments.set.is_empty() => {
             Scenario::parse("schema = 1\n", "no scenario", std::path::Path::new(""), &[])

@@ -41,6 +41,9 @@ pub struct Manifest {
     /// FMUs that took part; left out where none did.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub fmus: Vec<FmuFacts>,
+    /// The device of a run over a wire, and what went over it; left out of others.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub link: Option<serde_json::Value>,
     /// What the host granted a run by the clock; left out of others.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub realtime: Option<Granted>,
@@ -124,6 +127,8 @@ pub struct RunFacts {
     pub command_line: Vec<String>,
     /// FMUs that took part.
     pub fmus: Vec<FmuFacts>,
+    /// The device of a run over a wire, and what went over it.
+    pub link: Option<serde_json::Value>,
     /// What the host granted a run by the clock.
     pub realtime: Option<Granted>,
 }
@@ -180,6 +185,7 @@ impl Manifest {
             rerun: shell_line(&facts.command_line),
             command_line: facts.command_line.clone(),
             fmus: facts.fmus.clone(),
+            link: facts.link.clone(),
             realtime: facts.realtime.clone(),
             files: Vec::new(),
             signature: None,
@@ -209,6 +215,11 @@ impl Manifest {
             );
             (format!("FMU as {}", fmu.role), text)
         });
+        let link = self.link.iter().flat_map(|link| {
+            ["device", "firmware", "port", "pacing"]
+                .into_iter()
+                .filter_map(|name| Some((name.to_owned(), link.get(name)?.as_str()?.to_owned())))
+        });
         let realtime = self.realtime.iter().flat_map(|granted| {
             [
                 ("real-time scheduling", granted.scheduling.text()),
@@ -229,6 +240,7 @@ impl Manifest {
         .map(|(name, value)| (name.to_owned(), value))
         .into_iter()
         .chain(fmus)
+        .chain(link)
         .chain(realtime)
         .collect()
     }
@@ -396,6 +408,7 @@ mod tests {
                 .map(String::from)
                 .to_vec(),
             fmus: Vec::new(),
+            link: None,
             realtime: None,
         }
     }

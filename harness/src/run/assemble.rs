@@ -213,6 +213,10 @@ pub fn facts(scenario: &Scenario) -> Vec<(String, String)> {
         Source::Fmu(fmu) if fmu.is_motion() => {
             facts.push(("motion of the case".to_owned(), format!("FMU {}", fmu.file.0)));
         }
+        Source::Live(instrument) => facts.push((
+            "source".to_owned(),
+            format!("instrument at {}, {}, no truth", instrument.uri, instrument.protocol.name()),
+        )),
         Source::Fmu(fmu) => facts.push(("source".to_owned(), format!("FMU {}", fmu.file.0))),
     }
     match &scenario.endpoint {

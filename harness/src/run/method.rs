@@ -133,6 +133,8 @@ pub struct MethodRun {
     pub broken: Option<RunError>,
     /// How it kept time, where it went by the clock.
     pub kept: Option<Kept>,
+    /// What went over the wire to a device, and who it is; as in the recording.
+    pub link: Option<serde_json::Value>,
 }
 
 /// Name of a method, for people.
@@ -173,7 +175,7 @@ pub fn configurations(
     let truth = match &scenario.source {
         SourceKind::Plant => Some(Plant::new(&plant)?.truth()),
         SourceKind::Fmu(fmu) => crate::source::fmu::truth_at_start(scenario, fmu, &plant)?,
-        SourceKind::Replay { .. } | SourceKind::Text(_) => None,
+        SourceKind::Replay { .. } | SourceKind::Text(_) | SourceKind::Live(_) => None,
     };
     let (q_nb, velocity) = match truth {
         Some(truth) => {
@@ -293,6 +295,7 @@ struct Closed {
     conclusion: Conclusion,
     estimate: ParameterEstimate,
     kept: Option<Kept>,
+    link: Option<serde_json::Value>,
 }
 
 /// Drives until the end, whatever it is, and asks the core for its last words.
@@ -334,8 +337,10 @@ fn to_the_end<S: Source, E: Endpoint>(
         Err(error) => return Err(error),
     };
     let mut conclusion = endpoint.conclusion();
+    let link = conclusion.events.iter().find(|event| event.kind == "link");
+    let link = link.map(|event| event.detail.clone());
     conclusion.events.drain(..).for_each(|event| recorder.event(event));
-    Ok(Closed { ended, broken, last, conclusion, estimate: endpoint.parameters(), kept })
+    Ok(Closed { ended, broken, last, conclusion, estimate: endpoint.parameters(), kept, link })
 }
 
 /// The station of a scenario; `None` without faults.
@@ -422,7 +427,7 @@ fn finish(
     mut watcher: Watcher,
     truth: Option<Parameters>,
 ) -> Result<MethodRun, MethodError> {
-    let Closed { ended, broken, last, conclusion, estimate, kept } = closed;
+    let Closed { ended, broken, last, conclusion, estimate, kept, link } = closed;
     if let Some(output) = last {
         watcher.last_parameters = Some(estimate);
         // No sample goes with this output: the recording keeps the parameters as an event.
@@ -482,6 +487,7 @@ fn finish(
         twin: None,
         broken,
         kept,
+        link,
     })
 }
 

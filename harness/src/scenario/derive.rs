@@ -2,7 +2,7 @@
 
 use super::document::{Node, Table, Value, parse_default};
 use super::error::Problem;
-use super::keys::{Default, ENDPOINT_FMU, ENDPOINT_LINK, SOURCE_FMU, Section};
+use super::keys::{Default, ENDPOINT_FMU, ENDPOINT_LINK, SOURCE_FMU, SOURCE_LIVE, Section};
 use super::quantity::{self, Dimension};
 
 /// Writes the defaults that depend on other keys into a document that hasn't been checked yet:
@@ -32,6 +32,13 @@ pub(crate) fn derive(document: &mut Table) {
         for key in ENDPOINT_LINK.keys {
             if let Default::Value(value) = key.default {
                 set(document, &format!("endpoint.link.{}", key.name), value);
+            }
+        }
+    }
+    if text(document, "source.uri").is_some_and(octant_link::Uri::is_one) {
+        for key in SOURCE_LIVE.keys {
+            if let Default::Value(value) = key.default {
+                set(document, &format!("source.live.{}", key.name), value);
             }
         }
     }
@@ -166,6 +173,9 @@ pub(crate) fn without_effect(document: &Table) -> Vec<(String, &'static str)> {
     }
     if !uri.starts_with("fmu:") {
         add("source", &["fmu"], "without effect: source.uri is not fmu:FILE");
+    }
+    if !octant_link::Uri::is_one(uri) {
+        add("source", &["live"], "without effect: source.uri names no instrument on a port");
     }
     if !text(document, "endpoint.uri").is_some_and(|uri| uri.starts_with("fmu:")) {
         add("endpoint", &["fmu"], "without effect: endpoint.uri is not fmu:FILE");

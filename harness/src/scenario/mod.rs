@@ -31,6 +31,7 @@ pub use quantity::{Dimension, Quantity};
 pub use read::faults::Fault;
 pub use read::faults::connection::{ConnectionFault, Given, connection_faults, text_of};
 pub use read::fmu::{Endpoint, Fmu, InterfaceChoice, Mapped, Process};
+pub use read::instrument_port::Instrument;
 pub use read::live::Live;
 pub use read::source::{FileName, Source};
 pub use schema::schema;

@@ -82,6 +82,7 @@ impl Scenario {
             let resolved = match (path, written.split_once(':')) {
                 ("source.uri" | "endpoint.uri", None) => continue,
                 // A port, and no file.
+                ("source.uri", Some(_)) if octant_link::Uri::is_one(written) => continue,
                 ("endpoint.uri", Some((scheme, _))) if scheme != "fmu" => continue,
                 ("source.uri" | "endpoint.uri", Some((scheme, file))) => {
                     format!("{scheme}:{}", absolute(file))

@@ -1,6 +1,6 @@
 //! The source of a scenario.
 
-use super::{Replay, Source, SourceError, TextFiles, TextMapping, TextSource};
+use super::{LiveSource, Replay, Source, SourceError, TextFiles, TextMapping, TextSource};
 use crate::scenario::{self, FileName, Scenario};
 use octant_plant::config::Config;
 use std::path::PathBuf;
@@ -28,6 +28,11 @@ pub fn open(scenario: &Scenario, plant: &Config) -> Result<Option<Box<dyn Source
             };
             let mapping = TextMapping { files, ..mapping.clone() };
             Ok(Some(Box::new(TextSource::open(&mapping)?)))
+        }
+        scenario::Source::Live(instrument) => {
+            let source =
+                LiveSource::open(instrument, scenario.sample_period_ns, scenario.samples())?;
+            Ok(Some(Box::new(source)))
         }
         scenario::Source::Fmu(fmu) => Ok(Some(super::fmu::open(scenario, fmu, plant)?)),
     }

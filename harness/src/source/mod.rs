@@ -1,10 +1,11 @@
-//! Where samples come from: the plant, a recording, a file of a real instrument.
+//! Where samples come from: the plant, a recording, a file of a real instrument, or the instrument itself.
 
 mod counting;
 mod fields;
 pub(crate) mod fmu;
 mod foreign;
 mod from_scenario;
+mod live;
 mod plant;
 mod replay;
 mod rows;
@@ -13,6 +14,7 @@ mod text;
 pub use counting::{Quantity, SPLIT_MAX};
 pub use foreign::{MappedField, MappedStamp, McapMapping};
 pub use from_scenario::open;
+pub use live::LiveSource;
 pub use plant::PlantSource;
 pub use replay::Replay;
 pub use text::{

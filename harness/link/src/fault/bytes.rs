@@ -104,15 +104,15 @@ impl FaultyBytes {
     /// Whether the port is there, as faults have it.
     fn there(&mut self) -> Result<(), PortError> {
         let pulled = |action: &WireAction| matches!(action, WireAction::HangUp { .. });
-        if let Some((entry, _)) = self.table.lasting(Instant::now(), pulled) {
-            if !self.closed {
-                self.closed = true;
-                self.inner.close();
-                self.there.clear();
-                self.back.clear();
-                self.begun.clear();
-                entry.altered(b"here", [b"away".as_slice()]);
-            }
+        if let Some((entry, _)) = self.table.lasting(Instant::now(), pulled)
+            && !self.closed
+        {
+            self.closed = true;
+            self.inner.close();
+            self.there.clear();
+            self.back.clear();
+            self.begun.clear();
+            entry.altered(b"here", [b"away".as_slice()]);
         }
         if self.closed {
             let port = self.inner.reached_at();

@@ -20,6 +20,7 @@ pub(crate) use faults::{dimension, kind_section};
 pub(crate) use fmu::{ENDPOINT_FMU, ENDPOINT_MAP, SOURCE_FMU, SOURCE_MAP};
 pub(crate) use link::ENDPOINT_LINK;
 pub(crate) use run::{POSITIONS, SCENARIO};
+pub(crate) use source::SOURCE_LIVE;
 pub(crate) use suite::SUITE;
 
 use super::document::{Table, Value};

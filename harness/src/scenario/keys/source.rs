@@ -15,6 +15,8 @@ pub(crate) static SOURCE: Section = section(&[
                 "fmu",
                 "an FMU: Octant's plant, another instrument, or the ship under the plant: fmu:FILE",
             ),
+            ("serial", "an instrument on a serial line: serial:/dev/ttyUSB0?baud=921600"),
+            ("udp", "an instrument that sends to a UDP port of this host: udp:HOST:PORT"),
         ]),
         Default::Value("plant"),
         "Where samples come from. A file name is relative to the scenario, and may start with ${OCTANT_RECORDINGS}.",
@@ -36,6 +38,39 @@ pub(crate) static SOURCE: Section = section(&[
         Kind::Table(&SOURCE_FMU),
         Default::Derived("fmu: the defaults of its keys"),
         "How the FMU of source.uri is run, and what its variables are.",
+    ),
+    key(
+        "live",
+        Kind::Table(&SOURCE_LIVE),
+        Default::Derived("serial and udp: the defaults of its keys"),
+        "What the instrument of source.uri speaks, and how it is mounted.",
+    ),
+]);
+
+pub(crate) static SOURCE_LIVE: Section = section(&[
+    key(
+        "protocol",
+        Kind::Choice(&[
+            ("octant", "the wire of this program"),
+            ("vectornav", "VectorNav's binary output"),
+            ("xsens", "Xsens' MTData2"),
+            ("novatel", "NovAtel's RAWIMUSX, binary or ASCII"),
+            ("sbg", "SBG's sbgECom, IMU_SHORT or IMU_DATA"),
+        ]),
+        Default::Value("octant"),
+        "What the instrument speaks.",
+    ),
+    key(
+        "axes",
+        Kind::Text,
+        Default::Value("x y z"),
+        "Which axes of the instrument body x, y and z are, with a minus for the opposite: x -y -z.",
+    ),
+    key(
+        "silence",
+        Kind::Quantity(&[Dimension::TIME], Bounds::Within(1e-3, 3600.0, "from 1 ms to 1 h")),
+        Default::Value("5 s"),
+        "How long a reading is waited for; then the instrument is gone.",
     ),
 ]);
 

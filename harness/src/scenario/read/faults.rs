@@ -160,6 +160,13 @@ fn impossible(kind: &Kind, source: &Source) -> Option<&'static str> {
             "acts inside the simulated instrument, and the source is an FMU, into which it doesn't \
              reach",
         ),
+        (Acts::Plant, Source::Live(_)) => {
+            Some("acts inside the simulated instrument, and the source is a real one")
+        }
+        (Acts::Command, Source::Live(_)) => Some(
+            "acts on the set points of the simulated turntable, and the source is a real instrument \
+             whose turntable isn't turned by this program",
+        ),
         (Acts::Plant, _) => Some(
             "acts inside the simulated instrument, and the source is a recording: what it holds has \
              happened",

@@ -4,6 +4,7 @@
 pub(crate) mod faults;
 pub(crate) mod fmu;
 mod instrument;
+pub(crate) mod instrument_port;
 pub(crate) mod live;
 mod procedure;
 mod requirement;
@@ -191,7 +192,7 @@ pub(super) fn scenario(document: Table, folder: &Path) -> Result<Scenario, Probl
         sample_period_ns,
         motion: &motion,
         turntable: &turntable,
-        simulated: matches!(source, source::Source::Plant | source::Source::Fmu(_)),
+        endless: !source.is_recorded(),
         folder,
     };
     let procedure_table = root.table("procedure")?;

@@ -20,7 +20,8 @@ pub(super) struct Setting<'a> {
     pub(super) sample_period_ns: u64,
     pub(super) motion: &'a Motion,
     pub(super) turntable: &'a plant::Turntable,
-    pub(super) simulated: bool,
+    /// The source never ends: it is no recording.
+    pub(super) endless: bool,
     /// Where relative file names start.
     pub(super) folder: &'a Path,
 }
@@ -377,8 +378,8 @@ pub(in crate::scenario) fn case_attitude(mean: &plant::CaseAttitude) -> UnitQuat
 fn navigation(table: &Reader<'_>, setting: &Setting<'_>) -> Result<core::NavigationPlan, Problem> {
     let duration_s = table.optional_si("duration");
     match duration_s {
-        None if setting.simulated => {
-            let message = "missing, expected a time such as \"24 h\": the plant never ends";
+        None if setting.endless => {
+            let message = "missing, expected a time such as \"24 h\": the source never ends";
             return Err(table.problem("duration", message));
         }
         Some(duration_s) if samples_of(duration_s, setting.sample_period_ns).is_none() => {

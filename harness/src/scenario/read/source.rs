@@ -2,6 +2,7 @@
 
 use super::Reader;
 use super::fmu::Fmu;
+use super::instrument_port::{Instrument, instrument};
 use crate::scenario::error::Problem;
 use crate::source::{
     Axis, Column, Delimiter, GimbalColumns, MappedField, MappedStamp, McapMapping, Quantity,
@@ -29,6 +30,8 @@ pub enum Source {
     Text(TextMapping),
     /// An FMU: our plant, another's instrument, or the ship under our plant.
     Fmu(Box<Fmu>),
+    /// A real instrument on a port.
+    Live(Instrument),
 }
 
 impl Source {
@@ -44,7 +47,7 @@ impl Source {
         match self {
             Self::Plant => true,
             Self::Fmu(fmu) => fmu.is_motion(),
-            Self::Replay { .. } | Self::Text(_) => false,
+            Self::Replay { .. } | Self::Text(_) | Self::Live(_) => false,
         }
     }
 }
@@ -103,9 +106,13 @@ pub(super) fn read(table: &Reader<'_>, sample_period_ns: u64) -> Result<Source, 
         Some(("fmu", file)) if !file.is_empty() => {
             Ok(Source::Fmu(Box::new(super::fmu::source(table, file, sample_period_ns)?)))
         }
+        _ if octant_link::Uri::is_one(uri) => Ok(Source::Live(instrument(table, uri)?)),
         _ => Err(table.problem(
             "uri",
-            format!("found {uri:?}, expected plant, replay:FILE, text:FILE or fmu:FILE"),
+            format!(
+                "found {uri:?}, expected plant, replay:FILE, text:FILE, fmu:FILE, serial:PORT or \
+                 udp:HOST:PORT"
+            ),
         )),
     }
 }

@@ -291,5 +291,6 @@ fn without_truth(source: &Source) -> Option<&'static str> {
         Source::Fmu(fmu) if fmu.map.iter().any(|m| m.channel.name.starts_with("truth.")) => None,
         Source::Fmu(_) => Some("source.fmu.map has no truth"),
         Source::Replay { .. } | Source::Text(_) => Some("the source is a recording"),
+        Source::Live(_) => Some("the source is a real instrument"),
     }
 }
