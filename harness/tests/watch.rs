@@ -255,8 +255,8 @@ fn the_dashboard_shows_a_known_state() {
             "Faults: 1 of 2 fired",
             "spike-1 (spike) acts since 15.0 s",
             "late-1 (late-delivery) armed, at 30 s",
-            "54.2 µs at most in the last second",
-            "overruns  2",
+            "late      54.2 µs",
+            "overruns  2 above 1.00 ms",
             "q leave",
         ],
     );

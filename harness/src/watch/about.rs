@@ -34,6 +34,8 @@ pub struct About {
     pub stops: usize,
     /// The run goes by the clock.
     pub by_clock: bool,
+    /// Lateness from which on a sample is an overrun, µs, in such a run.
+    pub overrun_us: Option<f64>,
     /// Faults that are armed, in order.
     pub faults: Vec<Armed>,
     /// True parameters of the instrument, where they are known.
@@ -68,6 +70,8 @@ impl About {
                 .as_ref()
                 .map_or(0, |c| c.sequence.stops().len() * c.sequence.passes() as usize),
             by_clock: scenario.realtime.by_clock,
+            overrun_us: (scenario.realtime.by_clock)
+                .then(|| scenario.realtime.overrun_ns as f64 / 1e3),
             faults: (scenario.faults.iter())
                 .map(|fault| Armed {
                     id: fault.spec.id.clone(),

@@ -19,6 +19,16 @@ pub fn time(ns: u64) -> String {
     }
 }
 
+/// A lateness in microseconds: `54.2 µs`, `21.0 ms`.
+#[must_use]
+pub fn lateness(us: f64) -> String {
+    if us < 1e3 {
+        format!("{} µs", significant(us, 3))
+    } else {
+        format!("{} ms", significant(us / 1e3, 3))
+    }
+}
+
 /// How far it is, in a few words.
 #[must_use]
 pub fn stage(follow: &Follow) -> String {
@@ -118,12 +128,7 @@ pub fn line(follow: &Follow) -> String {
         }
     }
     if let Some(pace) = state.pace {
-        let _ = write!(
-            text,
-            "  late {} µs, {} overruns",
-            significant(pace.latest_us, 3),
-            pace.overruns
-        );
+        let _ = write!(text, "  late {}, {} overruns", lateness(pace.latest_us), pace.overruns);
     }
     text
 }
@@ -213,11 +218,11 @@ pub fn page(follow: &Follow) -> String {
         row(
             "pace",
             &format!(
-                "{} samples, {} µs late at most in the last second, {} at most, {} overruns, {} \
+                "{} samples, {} late at most in the last second, {} at most, {} overruns, {} \
                  late answers",
                 pace.frames,
-                significant(pace.latest_us, 3),
-                significant(state.latest_us, 3),
+                lateness(pace.latest_us),
+                lateness(state.latest_us),
                 pace.overruns,
                 pace.late_answers
             ),

@@ -1,7 +1,7 @@
 //! Everything at this moment.
 
 use super::{ACTS, ALERT, GOOD, SOFT, parameters, row};
-use crate::report::number::{fixed, significant};
+use crate::report::number::fixed;
 use crate::watch::follow::{Follow, Stage};
 use crate::watch::plain;
 use crate::watch::state::{Drift, State};
@@ -26,18 +26,22 @@ pub(super) fn draw(frame: &mut Frame<'_>, area: Rect, follow: &Follow) {
     draw_position(frame, position, state);
     parameters::draw(frame, middle, state);
     let paced = state.about.by_clock || state.pace.is_some();
-    let [faults, last] = Layout::horizontal([
-        Constraint::Min(0),
-        Constraint::Percentage(if paced { 40 } else { 50 }),
-    ])
-    .areas(bottom);
-    draw_faults(frame, faults, state);
-    if follow.stage.is_over() && !matches!(follow.stage, Stage::BrokenOff) {
-        draw_end(frame, last, follow);
-    } else if paced {
-        draw_pace(frame, last, state);
-    } else {
-        draw_last(frame, last, follow);
+    let has_verdict = matches!(follow.stage, Stage::Ended(_));
+    let widths: &[u16] = match (paced, has_verdict) {
+        (true, true) => &[36, 25, 39],
+        (true, false) => &[60, 40],
+        (false, _) => &[50, 50],
+    };
+    let places =
+        Layout::horizontal(widths.iter().map(|w| Constraint::Percentage(*w))).split(bottom);
+    draw_faults(frame, places[0], state);
+    if paced {
+        draw_pace(frame, places[1], state);
+    }
+    match (paced, has_verdict) {
+        (true, false) => {}
+        (false, false) => draw_last(frame, places[1], follow),
+        (_, true) => draw_end(frame, places[places.len() - 1], follow),
     }
 }
 
@@ -153,24 +157,28 @@ fn draw_faults(frame: &mut Frame<'_>, area: Rect, state: &State) {
 
 fn draw_pace(frame: &mut Frame<'_>, area: Rect, state: &State) {
     let mut lines = Vec::new();
-    let us = |value: f64| format!("{} µs", significant(value, 3));
     let count = |n: u64| Span::styled(n.to_string(), if n > 0 { ALERT } else { Style::new() });
     if let Some(pace) = state.pace {
-        lines.push(row("late", format!("{} at most in the last second", us(pace.latest_us))));
-        lines.push(row("so far", format!("{} at most", us(state.latest_us))));
-        lines.push(row("overruns", count(pace.overruns)));
-        lines.push(row("answers", count(pace.late_answers)));
-        lines[3].push_span(Span::raw(" too late"));
+        let late = plain::lateness(pace.latest_us);
+        lines.push(row("late", format!("{late}, most of 1 s")));
+        lines.push(row("so far", format!("{} at most", plain::lateness(state.latest_us))));
+        let mut overruns = row("overruns", count(pace.overruns));
+        if let Some(limit_us) = state.about.overrun_us {
+            overruns.push_span(Span::raw(format!(" above {}", plain::lateness(limit_us))));
+        }
+        lines.push(overruns);
+        let mut answers = row("answers", count(pace.late_answers));
+        answers.push_span(Span::raw(" too late"));
+        lines.push(answers);
         lines.push(row("samples", pace.frames.to_string()));
     } else {
         lines.push(Line::styled("nothing told yet", SOFT));
     }
     if let Some(pacing) = &state.pacing {
         let of = &pacing.lateness_us;
-        lines.push(row(
-            "at the end",
-            format!("p50 {} p99 {} p99.9 {}", us(of.p50), us(of.p99), us(of.p999)),
-        ));
+        for (name, value) in [("median", of.p50), ("99 %", of.p99), ("99.9 %", of.p999)] {
+            lines.push(row(name, plain::lateness(value)));
+        }
     }
     frame.render_widget(Paragraph::new(lines).block(Block::bordered().title(" Lateness ")), area);
 }
