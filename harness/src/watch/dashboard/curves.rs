@@ -25,22 +25,10 @@ pub(super) fn draw(frame: &mut Frame<'_>, area: Rect, state: &State) {
     let paced = state.about.by_clock || state.pace.is_some();
     let parts = if paced { 3 } else { 2 };
     let areas = Layout::vertical(vec![Constraint::Ratio(1, parts); parts as usize]).split(area);
-    draw_curves(
-        frame,
-        areas[0],
-        " Latitude and longitude error, arcmin, over hours ",
-        hours,
-        &drift,
-    );
-    draw_curves(frame, areas[1], " NIS (3 is right) over hours ", hours, &nis);
+    draw_curves(frame, areas[0], " Latitude and longitude error, arcmin ", hours, &drift);
+    draw_curves(frame, areas[1], " NIS (3 is right) ", hours, &nis);
     if paced {
-        draw_curves(
-            frame,
-            areas[2],
-            " Largest lateness of each second, µs, over hours ",
-            hours,
-            &late,
-        );
+        draw_curves(frame, areas[2], " Largest lateness of each second, µs ", hours, &late);
     }
 }
 
@@ -56,13 +44,16 @@ fn draw_curves(frame: &mut Frame<'_>, area: Rect, title: &str, hours: f64, curve
         let values = points().map(of);
         values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| [low.min(v), high.max(v)])
     };
-    let axis = |bounds: [f64; 2]| {
+    let axis = |bounds: [f64; 2], scale: f64, unit: &str| {
+        let decimals = decimals_for((bounds[1] - bounds[0]) * scale, 3);
         let labels = [bounds[0], (bounds[0] + bounds[1]) / 2.0, bounds[1]];
-        let decimals = decimals_for(bounds[1] - bounds[0], 3);
-        Axis::default()
-            .style(SOFT)
-            .bounds(bounds)
-            .labels(labels.map(|value| Span::raw(fixed(value, decimals))))
+        let label = |value: f64| Span::raw(fixed(value * scale, decimals) + unit);
+        Axis::default().style(SOFT).bounds(bounds).labels(labels.map(label))
+    };
+    let (scale, unit) = match hours {
+        ..0.05 => (3600.0, " s"),
+        ..3.0 => (60.0, " min"),
+        _ => (1.0, " h"),
     };
     // From the start of the run, so that the curves stand above each other.
     let x = [0.0, hours.max(f64::MIN_POSITIVE)];
@@ -77,6 +68,10 @@ fn draw_curves(frame: &mut Frame<'_>, area: Rect, title: &str, hours: f64, curve
             .style(Style::new().fg(*color))
             .data(series.points())
     });
-    let chart = Chart::new(datasets.collect()).block(block).x_axis(axis(x)).y_axis(axis(y));
+    let chart = Chart::new(datasets.collect())
+        .block(block)
+        .x_axis(axis(x, scale, unit))
+        .y_axis(axis(y, 1.0, ""))
+        .hidden_legend_constraints((Constraint::Ratio(1, 2), Constraint::Ratio(3, 4)));
     frame.render_widget(chart, area);
 }
