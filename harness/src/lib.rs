@@ -15,3 +15,4 @@ pub mod run;
 pub mod scenario;
 pub mod score;
 pub mod source;
+pub mod watch;

@@ -8,6 +8,7 @@ mod doctor;
 mod fault_page;
 mod faults;
 mod fmu;
+mod live;
 mod minimise;
 mod observe;
 mod progress;
@@ -18,6 +19,7 @@ mod run_system;
 mod score;
 mod serve;
 mod sweep;
+mod watch;
 
 use crate::scenario::{Dimension, quantity_of};
 use crate::score::verdict::Verdict;
@@ -50,6 +52,8 @@ enum Command {
     Observe(observe::Arguments),
     /// Write the report of a finished run again.
     Report(report::Arguments),
+    /// Watch a run: how far it is, its drift, parameters, faults and lateness.
+    Watch(watch::Arguments),
     /// Tell what kinds of faults there are, and what each does.
     Faults(faults::Arguments),
     /// Make, check and step FMUs.
@@ -63,7 +67,7 @@ enum Command {
 }
 
 /// Commands that belong to the plan of the program and are not in this version.
-const LATER: [&str; 5] = ["campaign", "nightly", "selftest", "watch", "verify"];
+const LATER: [&str; 4] = ["campaign", "nightly", "selftest", "verify"];
 
 /// A command that isn't there.
 fn other(words: &[OsString]) -> Failure {
@@ -169,6 +173,7 @@ pub fn main() -> ExitCode {
         Command::Score(arguments) => score::command(&arguments),
         Command::Observe(arguments) => observe::command(&arguments),
         Command::Report(arguments) => report::command(&arguments),
+        Command::Watch(arguments) => watch::command(&arguments),
         Command::Faults(arguments) => faults::command(&arguments),
         Command::Doctor(arguments) => doctor::command(&arguments),
         Command::Fmu(arguments) => fmu::command(&arguments),

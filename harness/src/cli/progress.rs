@@ -63,14 +63,14 @@ fn show(
 }
 
 /// Ctrl-C: the first ends the run in order, the second at once.
-mod interrupts {
+pub(super) mod interrupts {
     use std::sync::Once;
     use std::sync::atomic::{AtomicBool, Ordering};
 
     static SEEN: AtomicBool = AtomicBool::new(false);
     static WATCHING: Once = Once::new();
 
-    pub(super) fn watch() {
+    pub(in crate::cli) fn watch() {
         WATCHING.call_once(|| {
             // Where no handler can be set, Ctrl-C ends the program at once; the recording survives.
             let _ = ctrlc::set_handler(|| {
@@ -83,7 +83,7 @@ mod interrupts {
         });
     }
 
-    pub(super) fn seen() -> bool {
+    pub(in crate::cli) fn seen() -> bool {
         SEEN.load(Ordering::Relaxed)
     }
 }

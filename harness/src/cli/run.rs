@@ -1,5 +1,6 @@
 //! `octant run`.
 
+use super::live::Live;
 use super::progress::with_progress;
 use super::{Failure, ScenarioArguments, load_fired, print, write};
 use crate::endpoint::LiveEndpoint;
@@ -45,6 +46,15 @@ pub(super) struct Arguments {
     /// Leave out the twin without faults, which a run with faults is compared with.
     #[arg(long)]
     no_twin: bool,
+    /// Serve the run to Foxglove while it goes on; by default to this host alone.
+    #[arg(
+        long,
+        value_name = "ADDRESS",
+        num_args = 0..=1,
+        require_equals = true,
+        default_missing_value = super::live::DEFAULT_ADDRESS
+    )]
+    live: Option<String>,
     /// Print summary.json on stdout, and nothing else.
     #[arg(long)]
     json: bool,
@@ -80,6 +90,7 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         set_up(&scenario, method, seed)?;
     }
     let fmus = fmus(&scenario, tasks)?;
+    let mut live = arguments.live.as_deref().map(Live::start).transpose()?;
     let (path, existing) = match &arguments.out {
         Some(path) if arguments.force => (path.clone(), Existing::Replace),
         Some(path) => (path.clone(), Existing::Refuse),
@@ -87,6 +98,9 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     };
     let folder = RunFolder::create(&path, existing)
         .map_err(|error| Failure::input(format!("failed to {}", in_the_way(&error))))?;
+    if let Some(live) = &mut live {
+        live.follow(folder.path())?;
+    }
     let started = SystemTime::now();
     let (_, _, draws) = configurations(&scenario, Method::Primary, seed)
         .map_err(|e| Failure::input(format!("failed to {e}")))?;
@@ -191,6 +205,7 @@ fn system(arguments: &Arguments) -> Result<Verdict, Failure> {
         ("--endpoint", arguments.endpoint.is_some()),
         ("--realtime", arguments.realtime),
         ("--no-twin", arguments.no_twin),
+        ("--live", arguments.live.is_some()),
     ];
     if let Some((option, _)) = given.into_iter().find(|(_, given)| *given) {
         return Err(Failure::input(format!(
@@ -417,6 +432,7 @@ pub(super) fn on_recording(
         fire: Vec::new(),
         realtime: false,
         no_twin: false,
+        live: None,
         json,
         system: super::run_system::SystemArguments::default(),
     })

@@ -65,7 +65,7 @@ pub enum FolderError {
 }
 
 /// Held while a run is written; removed before the folder gets its name.
-const LOCK: &str = ".writing";
+pub(crate) const LOCK: &str = ".writing";
 
 /// The folder of a run that is being written.
 ///

@@ -6,5 +6,6 @@ pub mod manifest;
 
 pub use fmus::fmus;
 pub(crate) use fmus::sha256;
+pub(crate) use folder::LOCK;
 pub use folder::{Existing, FolderError, RunFolder};
 pub use manifest::{FmuFacts, Manifest, ManifestError, RunFacts};

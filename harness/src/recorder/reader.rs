@@ -178,8 +178,26 @@ impl<R: Read> Recording<R> {
     /// # Errors
     /// If it isn't one, or of a newer version.
     pub fn new(source: R) -> Result<Self, ReadError> {
-        let mut recording = Self {
-            records: Records::new(source),
+        let mut recording = Self::of(Records::new(source));
+        // The head ends with the first message, or with the file.
+        recording.pending = recording.advance()?;
+        if recording.info.version == 0 {
+            return Err(ReadError::Foreign);
+        }
+        Ok(recording)
+    }
+
+    /// Reads a recording that somebody is writing, from its first byte on. Its head is there as soon
+    /// as [`Recording::info`] has a version other than 0. [`Recording::next_item`] returns `None`
+    /// where there is no whole message more at the moment, and goes on when it is called again;
+    /// [`Recording::ended`] tells the end.
+    pub fn growing(source: R) -> Self {
+        Self::of(Records::growing(source))
+    }
+
+    fn of(records: Records<R>) -> Self {
+        Self {
+            records,
             info: Info {
                 version: 0,
                 octant: String::new(),
@@ -190,13 +208,17 @@ impl<R: Read> Recording<R> {
             },
             channels: HashMap::new(),
             pending: None,
-        };
-        // The head ends with the first message, or with the file.
-        recording.pending = recording.advance()?;
-        if recording.info.version == 0 {
-            return Err(ReadError::Foreign);
         }
-        Ok(recording)
+    }
+
+    /// Where the bytes come from.
+    pub fn source(&mut self) -> &mut R {
+        self.records.source()
+    }
+
+    /// It was read to its end, and that is as it should be.
+    pub fn ended(&self) -> bool {
+        self.records.end() == Some(End::Whole)
     }
 
     /// What the recording says about itself.

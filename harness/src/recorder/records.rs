@@ -62,6 +62,8 @@ pub struct Records<R> {
     started: bool,
     /// What the file ended with, once it has.
     end: Option<End>,
+    /// Where nothing more is there, somebody may still write.
+    grows: bool,
 }
 
 /// How a file ended.
@@ -83,7 +85,18 @@ impl<R: Read> Records<R> {
                 .with_validate_summary_section_crc(true)
                 .with_record_length_limit(RECORD_BYTES_MAX),
         );
-        Self { source, reader, offset: 0, started: false, end: None }
+        Self { source, reader, offset: 0, started: false, end: None, grows: false }
+    }
+
+    /// Reads a file that somebody is writing: where it ends in the middle, [`Records::next`] returns
+    /// `None` without an end, and goes on there when it is called again.
+    pub fn growing(source: R) -> Self {
+        Self { grows: true, ..Self::new(source) }
+    }
+
+    /// Where the bytes come from.
+    pub fn source(&mut self) -> &mut R {
+        &mut self.source
     }
 
     /// How the file ended, once [`Records::next`] has returned `None`.
@@ -96,7 +109,8 @@ impl<R: Read> Records<R> {
         self.offset
     }
 
-    /// Gives the next record (opcode and content) to `take`; `None` at the end of the file.
+    /// Gives the next record (opcode and content) to `take`; `None` at the end of the file, and where
+    /// a file that grows has no whole record more at the moment.
     ///
     /// # Errors
     /// If the file can't be read or is damaged. After an error there are no more records.
@@ -133,20 +147,25 @@ impl<R: Read> Records<R> {
                     break;
                 }
             };
-            self.fill(wanted)?;
+            if !self.fill(wanted)? {
+                break;
+            }
         }
         Ok(None)
     }
 
-    /// Reads from the file into the reader's buffer.
-    fn fill(&mut self, wanted: usize) -> Result<(), RecordsError> {
+    /// Reads from the file into the reader's buffer; false where a file that grows has nothing more
+    /// at the moment.
+    fn fill(&mut self, wanted: usize) -> Result<bool, RecordsError> {
         let buffer = self.reader.insert(wanted.clamp(1, READ_BYTES));
         loop {
             match self.source.read(buffer) {
+                // Not told to the reader, for which it would be the end.
+                Ok(0) if self.grows => return Ok(false),
                 Ok(n) => {
                     self.reader.notify_read(n);
                     self.offset += n as u64;
-                    return Ok(());
+                    return Ok(true);
                 }
                 Err(error) if error.kind() == std::io::ErrorKind::Interrupted => {}
                 Err(error) => {

@@ -20,6 +20,8 @@ pub(super) enum Entry {
     Unit { event: UnitEvent, epoch: u64 },
     /// A fault, by its place in the list, set in or ended.
     Occurrence { fault: usize, begins: bool, epoch: u64 },
+    /// How time is kept, for who watches: once a second.
+    Pace { frames: u64, latest_ns: u64, overruns: u64, late_answers: u64 },
 }
 
 /// An output with what belongs to it.

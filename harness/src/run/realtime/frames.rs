@@ -19,6 +19,9 @@ use std::sync::atomic::{AtomicBool, Ordering};
 /// Epochs whose answers may be outstanding. A device that owes more has stopped answering.
 const OUTSTANDING: usize = 256;
 
+/// From one word on the pace to the next.
+const PACE_NS: u64 = 1_000_000_000;
+
 /// An epoch that was sent and not answered.
 #[derive(Clone, Copy, Debug, Default)]
 struct Owed {
@@ -52,11 +55,15 @@ pub(super) struct Frames<'a> {
     command: GimbalCommand,
     revision: u32,
     powered: bool,
+    /// Frames from one word on the pace to the next, and the largest lateness since the last one.
+    pace_every: u64,
+    latest_ns: u64,
 }
 
 impl<'a> Frames<'a> {
     pub(super) fn new(
         clock: FrameClock,
+        period_ns: u64,
         silence_ns: u64,
         ring: rtrb::Producer<Entry>,
         stop: &'a AtomicBool,
@@ -78,6 +85,8 @@ impl<'a> Frames<'a> {
             command: GimbalCommand::default(),
             revision: 0,
             powered: true,
+            pace_every: (PACE_NS / period_ns.max(1)).max(1),
+            latest_ns: 0,
         }
     }
 
@@ -107,7 +116,9 @@ impl<'a> Frames<'a> {
             if number > total {
                 return self.drain(endpoint);
             }
-            self.found.clock.wait();
+            let due = self.found.clock.deadline();
+            let began = self.found.clock.wait();
+            self.pace(began.since(due));
             if control.look(number - 1) || self.stop.load(Ordering::Relaxed) {
                 return Ok(Ended::Cancelled);
             }
@@ -139,6 +150,18 @@ impl<'a> Frames<'a> {
             }
         }
         Ok(Ended::SourceEnded)
+    }
+
+    /// Takes the lateness of a frame, and tells the pace where it is due.
+    #[inline]
+    fn pace(&mut self, late_ns: u64) {
+        self.latest_ns = self.latest_ns.max(late_ns);
+        let frames = self.found.clock.frames();
+        if frames.is_multiple_of(self.pace_every) {
+            let (overruns, late_answers) = (self.found.clock.overruns(), self.found.late_answers);
+            let latest_ns = std::mem::take(&mut self.latest_ns);
+            self.lay(Entry::Pace { frames, latest_ns, overruns, late_answers });
+        }
     }
 
     /// A step with faults; `None` where the source has ended.

@@ -68,6 +68,15 @@ fn take(
                 recorder.event(occurrence_event(id, kind, begins, epoch));
             }
         }
+        Entry::Pace { frames, latest_ns, overruns, late_answers } => recorder.event(Event {
+            kind: "pace".to_owned(),
+            detail: serde_json::json!({
+                "frames": frames,
+                "latest_us": latest_ns as f64 / 1e3,
+                "overruns": overruns,
+                "late_answers": late_answers,
+            }),
+        }),
     }
     Ok(())
 }

@@ -82,7 +82,7 @@ where
             cpu: settings.cpu,
         });
         let clock = clock(settings, period_ns, granted.is_realtime());
-        let mut frames = frames::Frames::new(clock, settings.silence_ns, producer, stop);
+        let mut frames = frames::Frames::new(clock, period_ns, settings.silence_ns, producer, stop);
         let Line { source, mut faulted, endpoint } = line;
         let ended = frames.run(source, faulted.as_deref_mut(), endpoint, control);
         // Its end of the ring goes with it: the keeper takes what is left, and ends.
