@@ -327,7 +327,7 @@ fn stream_hash(run: &Path) -> String {
 }
 
 /// Waits until a run in another process has a recording.
-fn wait_for(path: &PathBuf, child: &mut Child) {
+fn wait_for(path: &Path, child: &mut Child) {
     while !path.is_file() {
         assert!(child.try_wait().unwrap().is_none(), "the run ended before it was recorded");
         std::thread::sleep(std::time::Duration::from_millis(5));
