@@ -146,7 +146,8 @@ def live(here):
     states = stays.messages["/octant/state"]
     assert states[-1][0] >= 5_000_000_000 and states[-1][1]["mode"] in ("navigating", "done"), states[-1]
     assert states[-1][1]["done_percent"] > 80, states[-1]
-    assert [pace["samples"] for _, pace in stays.messages["/octant/pacing"]][-1] == 1200
+    paces = [pace["samples"] for _, pace in stays.messages["/octant/pacing"]]
+    assert paces[-1] == 1200, paces
     assert stays.last("/octant/faults")[1]["fired"] == 1, stays.last("/octant/faults")
     assert stays.messages["/octant/faults"][0][1]["fired"] == 0, "armed before it fired"
     assert "radial_nmi" in stays.last("/octant/error")[1]

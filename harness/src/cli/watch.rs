@@ -1,5 +1,6 @@
 //! `octant watch`.
 
+use super::progress::interrupts;
 use super::{Failure, print};
 use crate::score::verdict::Verdict;
 use crate::watch::dashboard::{self, Page};
@@ -119,6 +120,8 @@ pub(super) fn verdict(follow: &Follow) -> Result<Verdict, Failure> {
 fn screen(mut follow: Follow) -> Result<Verdict, Failure> {
     let mut terminal = ratatui::try_init()
         .map_err(|error| Failure::bench(format!("failed to take the terminal: {error}")))?;
+    // Who is told to end gives the terminal back, too.
+    interrupts::watch();
     let shown = show(&mut terminal, &mut follow);
     ratatui::restore();
     shown?;
@@ -134,7 +137,9 @@ fn show(terminal: &mut ratatui::DefaultTerminal, follow: &mut Follow) -> Result<
     let failed =
         |error: std::io::Error| Failure::bench(format!("failed to use the terminal: {error}"));
     let mut page = Page::default();
-    loop {
+    // Somebody who was killed may have left something there.
+    terminal.clear().map_err(failed)?;
+    while !interrupts::seen() {
         // One look at a time: a long recording fills the screen while it is read.
         let more = follow.look(|_, _, _| {}).map_err(unreadable)?;
         terminal.draw(|frame| dashboard::draw(frame, follow, page)).map_err(failed)?;
@@ -154,4 +159,5 @@ fn show(terminal: &mut ratatui::DefaultTerminal, follow: &mut Follow) -> Result<
             _ => {}
         }
     }
+    Ok(())
 }

@@ -15,11 +15,15 @@ use serde_json::Value;
 use std::net::{SocketAddr, ToSocketAddrs};
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, Mutex};
+use std::time::Duration;
 
 /// Messages of a channel that are kept for those who come later.
 const HISTORY: usize = 1000;
 /// Messages on their way to a client: room for the history of all channels.
 const BACKLOG: usize = 2 * HISTORY * Channel::ALL.len();
+
+/// Time for the last messages to leave before the connections end.
+const SETTLE: Duration = Duration::from_millis(300);
 
 /// Why nothing is served.
 #[derive(Debug, thiserror::Error)]
@@ -189,6 +193,11 @@ impl Server {
 
     /// Ends the connections in order.
     pub fn stop(self) {
+        // What is on its way to a client is dropped with the connection, and nothing tells when it
+        // has left.
+        if self.handle.client_count() > 0 {
+            std::thread::sleep(SETTLE);
+        }
         self.handle.stop().wait_blocking();
     }
 }

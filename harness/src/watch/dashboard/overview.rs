@@ -28,7 +28,7 @@ pub(super) fn draw(frame: &mut Frame<'_>, area: Rect, follow: &Follow) {
     let paced = state.about.by_clock || state.pace.is_some();
     let has_verdict = matches!(follow.stage, Stage::Ended(_));
     let widths: &[u16] = match (paced, has_verdict) {
-        (true, true) => &[36, 25, 39],
+        (true, true) => &[34, 27, 39],
         (true, false) => &[60, 40],
         (false, _) => &[50, 50],
     };
@@ -160,7 +160,7 @@ fn draw_pace(frame: &mut Frame<'_>, area: Rect, state: &State) {
     let count = |n: u64| Span::styled(n.to_string(), if n > 0 { ALERT } else { Style::new() });
     if let Some(pace) = state.pace {
         let late = plain::lateness(pace.latest_us);
-        lines.push(row("late", format!("{late}, most of 1 s")));
+        lines.push(row("late", format!("{late} in 1 s")));
         lines.push(row("so far", format!("{} at most", plain::lateness(state.latest_us))));
         let mut overruns = row("overruns", count(pace.overruns));
         if let Some(limit_us) = state.about.overrun_us {
