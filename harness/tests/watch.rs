@@ -17,7 +17,7 @@ use ratatui::backend::TestBackend;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::io::{self, Read, Write};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::{Child, Command, Stdio};
 
 fn full() -> RecorderOptions {
