@@ -17,7 +17,7 @@ use ratatui::backend::TestBackend;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::io::{self, Read, Write};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::{Child, Command, Stdio};
 
 fn full() -> RecorderOptions {
@@ -327,7 +327,7 @@ fn stream_hash(run: &Path) -> String {
 }
 
 /// Waits until a run in another process has a recording.
-fn wait_for(path: &PathBuf, child: &mut Child) {
+fn wait_for(path: &Path, child: &mut Child) {
     while !path.is_file() {
         assert!(child.try_wait().unwrap().is_none(), "the run ended before it was recorded");
         std::thread::sleep(std::time::Duration::from_millis(5));

@@ -178,8 +178,7 @@ impl State {
     /// Of a run of which nothing but this is known.
     #[must_use]
     pub fn new(about: About) -> Self {
-        let mut state = Self::default();
-        state.faults = (about.faults.iter())
+        let faults = (about.faults.iter())
             .map(|armed| FaultState {
                 id: armed.id.clone(),
                 kind: armed.kind.clone(),
@@ -187,8 +186,7 @@ impl State {
                 ..FaultState::default()
             })
             .collect();
-        state.about = about;
-        state
+        Self { about, faults, ..Self::default() }
     }
 
     /// The mode of the core; `None` before it said anything.
