@@ -218,8 +218,8 @@ pub fn page(follow: &Follow) -> String {
         row(
             "pace",
             &format!(
-                "{} samples, {} late at most in the last second, {} at most, {} overruns, {} \
-                 late answers",
+                "{} samples, {} late at most in the last second, {} at most, overruns {}, late \
+                 answers {}",
                 pace.frames,
                 lateness(pace.latest_us),
                 lateness(state.latest_us),
