@@ -246,7 +246,7 @@ fn the_dashboard_shows_a_known_state() {
             "navigating, stop 5",
             "azimuth 0.00°, roll 0.00°",
             "latitude",
-            "largest while navigating",
+            "largest, navigating",
             "nmi",
             "Parameters ±1σ",
             "gyro bias",

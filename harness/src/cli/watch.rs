@@ -11,6 +11,7 @@ use clap::Args;
 use ratatui::crossterm::event::{self, Event, KeyCode, KeyEventKind, KeyModifiers};
 use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
 use std::time::{Duration, Instant};
 
 /// Folder of runs that aren't named.
@@ -139,15 +140,19 @@ fn show(terminal: &mut ratatui::DefaultTerminal, follow: &mut Follow) -> Result<
     let mut page = Page::default();
     // Somebody who was killed may have left something there.
     terminal.clear().map_err(failed)?;
+    let events = events().map_err(failed)?;
     while !interrupts::seen() {
         // One look at a time: a long recording fills the screen while it is read.
         let more = follow.look(|_, _, _| {}).map_err(unreadable)?;
         terminal.draw(|frame| dashboard::draw(frame, follow, page)).map_err(failed)?;
         let wait = if more { Duration::ZERO } else { LOOK };
-        if !event::poll(wait).map_err(failed)? {
-            continue;
-        }
-        let Event::Key(key) = event::read().map_err(failed)? else { continue };
+        let event = match events.recv_timeout(wait) {
+            Ok(event) => event.map_err(failed)?,
+            Err(RecvTimeoutError::Timeout) => continue,
+            // The terminal has gone.
+            Err(RecvTimeoutError::Disconnected) => return Ok(()),
+        };
+        let Event::Key(key) = event else { continue };
         if key.kind == KeyEventKind::Release {
             continue;
         }
@@ -160,4 +165,20 @@ fn show(terminal: &mut ratatui::DefaultTerminal, follow: &mut Follow) -> Result<
         }
     }
     Ok(())
+}
+
+/// What comes from the keyboard. Read on a thread of its own, that ends with the program: a terminal
+/// that is closed can hold who reads it.
+fn events() -> std::io::Result<Receiver<std::io::Result<Event>>> {
+    let (sender, receiver) = channel();
+    std::thread::Builder::new().name("keys".to_owned()).spawn(move || {
+        loop {
+            let event = event::read();
+            let is_last = event.is_err();
+            if sender.send(event).is_err() || is_last {
+                return;
+            }
+        }
+    })?;
+    Ok(receiver)
 }

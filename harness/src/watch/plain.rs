@@ -86,7 +86,7 @@ pub fn fault(fault: &FaultState) -> String {
     }
     match fault.last_ns {
         Some(ns) if fault.acts => format!("acts since {}", time(ns)),
-        Some(ns) => format!("fired {times}, last until {}", time(ns)),
+        Some(ns) => format!("fired {times}, until {}", time(ns)),
         None => format!("armed, {}", fault.when).trim_end_matches([',', ' ']).to_owned(),
     }
 }
@@ -218,8 +218,8 @@ pub fn page(follow: &Follow) -> String {
         row(
             "pace",
             &format!(
-                "{} samples, {} late at most in the last second, {} at most, {} overruns, {} \
-                 late answers",
+                "{} samples, {} late at most in the last second, {} at most, overruns {}, late \
+                 answers {}",
                 pace.frames,
                 lateness(pace.latest_us),
                 lateness(state.latest_us),

@@ -107,9 +107,9 @@ fn draw_position(frame: &mut Frame<'_>, area: Rect, state: &State) {
 
 fn drift_table(drift: Drift, state: &State) -> [Line<'static>; 4] {
     let mode = state.largest_while.map_or("", Mode::name);
-    let head = format!("{:10}{:>12}{:>26}", "error", "now", format!("largest while {mode}"));
+    let head = format!("{:10}{:>10}{:>25}", "error", "now", format!("largest, {mode}"));
     let one = |name: &str, now: f64, largest: f64, unit: &str| {
-        row_owned(name, format!("{:>12}{:>26} {unit}", fixed(now, 4), fixed(largest, 4)))
+        row_owned(name, format!("{:>10}{:>25} {unit}", fixed(now, 4), fixed(largest, 4)))
     };
     let largest = state.largest;
     [
