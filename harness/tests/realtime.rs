@@ -1,6 +1,8 @@
 //! Runs by the clock: what is computed is the same, what was late is told, and the thread of the
 //! samples allocates nothing.
 
+#![allow(clippy::unwrap_used)]
+
 use octant::endpoint::{Endpoint, EndpointError, InProcess, ParameterEstimate, Sent};
 use octant::recorder::{Recorder, RecorderOptions};
 use octant::run::method::configurations;

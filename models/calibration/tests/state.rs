@@ -183,7 +183,6 @@ fn a_state_is_read_back_and_gives_the_same_bytes() {
 fn every_state_is_read_back() {
     for (name, core) in cores() {
         let saved = bytes(&core);
-        println!("{name}: {} bytes", saved.len());
         assert_eq!(reframed(payload(&saved)), saved, "the frame is as the test thinks");
         let loaded = Core::load(&saved).unwrap();
         assert_eq!(bytes(&loaded), saved, "{name}");

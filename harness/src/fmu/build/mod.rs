@@ -2,13 +2,13 @@
 //!
 //! | module | idea |
 //! |---|---|
-//! | [`library`] | the shared library that goes in, and its platform |
-//! | [`describe`] | `modelDescription.xml` of both standards |
-//! | [`terminals`] | `terminalsAndIcons.xml` |
-//! | [`bus`] | what FMI-LS-BUS adds to it, and its manifest |
-//! | [`documentation`], [`prose`] | `documentation/index.html` |
-//! | [`licences`] | `documentation/licenses` |
-//! | [`element`], [`archive`] | XML and ZIP whose bytes follow from what is in them alone |
+//! | `library` | the shared library that goes in, and its platform |
+//! | `describe` | `modelDescription.xml` of both standards |
+//! | `terminals` | `terminalsAndIcons.xml` |
+//! | `bus` | what FMI-LS-BUS adds to it, and its manifest |
+//! | `documentation`, `prose` | `documentation/index.html` |
+//! | `licences` | `documentation/licenses` |
+//! | `element`, `archive` | XML and ZIP whose bytes follow from what is in them alone |
 
 mod archive;
 mod bus;

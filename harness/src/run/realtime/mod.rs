@@ -1,8 +1,8 @@
 //! A run against the clock: sample k leaves at the start of the run plus k periods.
 //!
-//! [`frames`] is the real-time thread: it waits for the frame, steps source, faults and endpoint,
-//! and lays what came of it into a ring ([`entry`]). It allocates nothing and touches no file.
-//! [`keep`] is everybody else: the thread that called takes the entries out, records and watches.
+//! `frames` is the real-time thread: it waits for the frame, steps source, faults and endpoint,
+//! and lays what came of it into a ring (`entry`). It allocates nothing and touches no file.
+//! `keep` is everybody else: the thread that called takes the entries out, records and watches.
 //! Where the ring is full an entry is dropped and counted, and the run is inconclusive.
 //!
 //! The clock enters nothing that is computed: an endpoint that answers in time gives the bits of

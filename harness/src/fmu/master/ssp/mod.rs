@@ -6,7 +6,7 @@
 //! | [`structure`] | `SystemStructure.ssd`: systems, components, connectors, connections, bindings |
 //! | [`parameters`] | parameter sets (`.ssv`) and parameter mappings (`.ssm`), inline or in files |
 //! | [`annotation`] | what a structure says to this program alone |
-//! | [`xml`] | elements and attributes with their lines |
+//! | `xml` | elements and attributes with their lines |
 //!
 //! Nothing is looked up in an FMU here: that is done when the system is
 //! [built](super::system).
