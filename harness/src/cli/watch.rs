@@ -76,6 +76,8 @@ pub(super) fn unreadable(error: impl std::fmt::Display) -> Failure {
 
 fn once(mut follow: Follow) -> Result<Verdict, Failure> {
     catch_up(&mut follow)?;
+    // One look can't tell a run that has just ended from one that was killed; two can.
+    catch_up(&mut follow)?;
     if follow.stage == Stage::Starting {
         let folder = follow.place.folder().display();
         return Err(Failure::input(format!("{folder}: nothing is recorded yet")));
