@@ -350,13 +350,13 @@ fn what_is_set_reaches_the_fmus_and_what_is_wrong_is_told() {
         Prepared::new(request).map(|prepared| prepared.run(&[], &Control::default()))
     };
     let plain = with(&[]).unwrap().unwrap().summary.stream_hash;
-    let other = with(&["plant.random.seed_low=2"]).unwrap().unwrap().summary.stream_hash;
+    let other = with(&["plant.random.seed=2"]).unwrap().unwrap().summary.stream_hash;
     assert_ne!(plain, other);
     for (set, expected) in [
-        ("plant.random.sead_low=2", "the FMU has no variable \"random.sead_low\""),
-        ("plan.random.seed_low=2", "\"plan\" is no FMU of the system, did you mean \"plant\"?"),
-        ("plant.random.seed_low", "expected FMU.VARIABLE=VALUE"),
-        ("plant.random.seed_low=many", "--set plant.random.seed_low=many: found \"many\""),
+        ("plant.random.sead=2", "the FMU has no variable \"random.sead\""),
+        ("plan.random.seed=2", "\"plan\" is no FMU of the system, did you mean \"plant\"?"),
+        ("plant.random.seed", "expected FMU.VARIABLE=VALUE"),
+        ("plant.random.seed=many", "--set plant.random.seed=many: found \"many\""),
     ] {
         let error = with(&[set]).map(|_| ()).unwrap_err().to_string();
         assert!(error.contains(expected), "{error}");

@@ -231,7 +231,7 @@ fn a_packed_system_is_run_and_what_is_none_is_refused() {
     let unpacked = unpacked.path();
     for (more, expected) in [
         (&["--source", "plant"][..], "--source is for scenarios"),
-        (&["--order", "gauss-seidel=ball"], "the order leaves out sum"),
+        (&["--order", "gauss-seidel=ball", "--stop", "1 s"], "the order leaves out sum"),
         (&["--step", "7 ms", "--stop", "1 s"], "expected a whole number"),
         (&["--step", "fast"], "--step is \"fast\", expected a time"),
         (&["--set", "ball.h=3 kg"], "--set ball.h=3 kg"),
