@@ -661,10 +661,7 @@ fn faults_that_can_not_be_are_refused_with_their_place() {
         (fault("drop", "sink.angle", &format!("probability = 2\n{at}")), "above 0, up to 1"),
         (fault("stall", "sink.angle", at), "possible: stuck, bias, scale"),
         (fault("drop", "sink.angle", "trigger = { at = \"2 s\" }"), "it can't fire"),
-        (
-            fault("drop", "sink.angle", "trigger = { position = 2 }"),
-            "one of at, sample, when",
-        ),
+        (fault("drop", "sink.angle", "trigger = { position = 2 }"), "one of at, sample, when"),
         (
             fault("drop", "sink.angle", "trigger = { when = \"source.angle > 3\" }"),
             "expected an output, above or below, and a value",
