@@ -8,6 +8,8 @@ use crate::score::verdict::Verdict;
 use clap::Args;
 use octant_link::Uri;
 use octant_link::device::{Notice, serve};
+use octant_realtime::schedule::{self, Wish};
+use octant_wire::message::Pacing;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -49,7 +51,20 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     let until = Arc::clone(&stop);
     ctrlc::set_handler(move || until.store(true, Ordering::Relaxed))
         .map_err(|error| Failure::bench(format!("failed to wait for Ctrl-C: {error}")))?;
-    let mut notice = |notice: &Notice| eprintln!("octant: {notice}");
+    // Told on the thread that serves: for a session by the clock it asks for what the harness's
+    // thread of the samples asks for, a little below it.
+    let mut granted = None;
+    let mut notice = |notice: &Notice| {
+        eprintln!("octant: {notice}");
+        match notice {
+            Notice::Began { pacing: Pacing::RealTime, .. } => {
+                let wish = Wish { priority: Some(79), lock_memory: false, cpu: None };
+                granted = Some(schedule::apply(&wish));
+            }
+            Notice::Over { .. } => granted.take().iter().for_each(schedule::release),
+            _ => {}
+        }
+    };
     let facts = served.facts(silence_ms);
     serve(&uri, facts, &mut served, &mut notice, &stop)
         .map_err(|error| Failure::bench(format!("failed to {error}")))?;
