@@ -79,6 +79,6 @@ for line in lines:
     fields = known[frame].decode(bytes_of, decode_choices=False)
     decoded += bool(fields)
 check("cantools reads what candump saw", decoded > 10_000, f"{decoded} frames")
-check("frames of others were among them", foreign > 10, f"{foreign} frames")
+check("frames of others were among them", foreign >= 4, f"{foreign} frames")
 
 sys.exit(1 if failed else 0)
