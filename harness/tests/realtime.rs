@@ -259,7 +259,8 @@ fn an_endpoint_that_falls_silent_ends_the_run() {
     let error = ended.unwrap_err();
     assert!(error.starts_with("endpoint slow is gone: no answer to sample 50 for 0.1"), "{error}");
     assert_eq!(summary.epochs, 49, "what was answered is recorded");
-    assert!((69..75).contains(&kept.pacing.frames), "{:?}", kept.pacing);
+    // 20 periods of silence; fewer frames where the host stood still meanwhile.
+    assert!((50..75).contains(&kept.pacing.frames), "{:?}", kept.pacing);
 }
 
 #[test]
@@ -268,4 +269,8 @@ fn the_thread_of_the_samples_allocates_nothing() {
     let (ended, _, _, counted) = drive(held, "", Some((10, 390)));
     assert_eq!(ended, Ok(Ended::Done));
     assert_eq!(counted, Some(0));
+    // The counter counts.
+    COUNTED.set(Some(0));
+    let boxed = std::hint::black_box(Box::new(1));
+    assert_eq!(COUNTED.replace(None), Some(*boxed));
 }

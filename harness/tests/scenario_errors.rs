@@ -327,3 +327,26 @@ proptest! {
         }
     }
 }
+
+#[test]
+fn what_can_not_be_asked_for_twice_or_at_another_time_is_refused() {
+    let instrument = "[source]\nuri = \"udp:7000\"\n[source.live]\nprotocol = \"vectornav\"\n";
+    let navigation = "[procedure.navigation]\nduration = \"10 s\"\n";
+    let clock = "[realtime]\npace = \"clock\"\n";
+    let fine = format!("schema = 1\n{navigation}{instrument}");
+    assert!(problems_with(&fine, &[]).is_empty());
+    let (place, path, message) = problem(&format!("{fine}{clock}"));
+    assert_eq!((place, path.as_str()), (at(8, 8), "realtime.pace"));
+    assert_says(&message, &["a clock of its own", "expected \"free\""]);
+    let calibration = "schema = 1\n[procedure.calibration]\nduration = \"1 h\"\n";
+    let (_, path, message) =
+        problem(&format!("{calibration}{instrument}[baseline]\npositions = \"six\"\n"));
+    assert_eq!(path, "baseline");
+    assert_says(&message, &["the same samples again", "replay:FILE"]);
+    let device = "[endpoint]\nuri = \"udp:host:7000\"\n[endpoint.link]\nreconnect = \"2 s\"\n";
+    let fine = format!("schema = 1\n{navigation}{device}");
+    assert!(problems_with(&fine, &[]).is_empty());
+    let (_, path, message) = problem(&format!("{fine}{clock}"));
+    assert_eq!(path, "endpoint.link.reconnect");
+    assert_says(&message, &["ends the run", "\"0 s\""]);
+}

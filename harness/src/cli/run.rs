@@ -85,7 +85,15 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     let scenario = load_fired(&arguments.scenario, &more, &arguments.fire)?;
     let seed = arguments.seed.unwrap_or(scenario.seed);
     // What contradicts itself, or can't be opened, is said before anything is written.
-    let tasks = tasks(&scenario, !arguments.no_twin);
+    // A real instrument doesn't measure the same a second time.
+    let once = matches!(scenario.source, Source::Live(_));
+    let twins = !arguments.no_twin && !once;
+    if once && !arguments.no_twin && !scenario.faults.is_empty() {
+        eprintln!(
+            "octant: no twin without faults: a real instrument doesn't measure the same again"
+        );
+    }
+    let tasks = tasks(&scenario, twins);
     for method in methods(&scenario) {
         set_up(&scenario, method, seed)?;
     }
@@ -106,7 +114,7 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         .map_err(|e| Failure::input(format!("failed to {e}")))?;
     write(&folder.path().join("scenario.toml"), scenario.to_resolved_toml(seed, &draws))?;
 
-    let runs = execute(&scenario, seed, !arguments.no_twin, folder.path())?;
+    let runs = execute(&scenario, seed, twins, folder.path())?;
     let unfinished = |ended| matches!(ended, Ended::Cancelled | Ended::Broken);
     let interrupted = runs.iter().any(|run| {
         unfinished(run.ended) || run.twin.as_ref().is_some_and(|twin| twin.ended == Ended::Broken)

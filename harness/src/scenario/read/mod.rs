@@ -226,8 +226,40 @@ pub(super) fn scenario(document: Table, folder: &Path) -> Result<Scenario, Probl
         folder: folder.to_owned(),
         document: Table::default(),
     };
+    check_once(&root, &scenario)?;
     let faults = faults::read(&root, &scenario)?;
     Ok(Scenario { document, faults, ..scenario })
+}
+
+/// What goes by a clock of its own, or happens once, can't be asked for twice or at another time.
+fn check_once(root: &Reader<'_>, scenario: &Scenario) -> Result<(), Problem> {
+    let by_clock = scenario.realtime.by_clock;
+    if matches!(scenario.source, source::Source::Live(_)) {
+        if scenario.baseline.is_some() {
+            return Err(root.problem(
+                "baseline",
+                "a second method needs the same samples again, which a real instrument doesn't \
+                 give: expected it on the recording of the first, with source.uri = \"replay:FILE\"",
+            ));
+        }
+        if by_clock {
+            return Err(root.table("realtime")?.problem(
+                "pace",
+                "a real instrument sends by a clock of its own: expected \"free\"",
+            ));
+        }
+    }
+    if let super::Endpoint::Live(live) = &scenario.endpoint
+        && by_clock
+        && live.reconnect_s > 0.0
+    {
+        return Err(root.table("endpoint")?.table("link")?.problem(
+            "reconnect",
+            "by the clock a port that goes away ends the run: expected \"0 s\" with realtime.pace \
+             = \"clock\"",
+        ));
+    }
+    Ok(())
 }
 
 /// A case that an FMU moves is a case that moves.
