@@ -3,6 +3,7 @@
 //! Exit status: 0 pass, 1 fail, 2 bad input or usage, 3 inconclusive, 4 error (the bench failed).
 #![allow(clippy::print_stdout, reason = "results go to stdout")]
 
+mod campaign;
 mod compare;
 mod doctor;
 mod fault_page;
@@ -44,6 +45,8 @@ enum Command {
     Compare(compare::Arguments),
     /// Put a recorded stream through the core again.
     Replay(replay::Arguments),
+    /// Run many cases: plan them, run them anywhere, merge what came of them.
+    Campaign(campaign::Arguments),
     /// Serve the core as a device, that a harness drives over a port.
     Serve(serve::Arguments),
     /// Score a recording.
@@ -67,7 +70,7 @@ enum Command {
 }
 
 /// Commands that belong to the plan of the program and are not in this version.
-const LATER: [&str; 4] = ["campaign", "nightly", "selftest", "verify"];
+const LATER: [&str; 3] = ["nightly", "selftest", "verify"];
 
 /// A command that isn't there.
 fn other(words: &[OsString]) -> Failure {
@@ -167,6 +170,7 @@ pub fn main() -> ExitCode {
     let cli = Cli::parse();
     let outcome = match cli.command {
         Command::Run(arguments) => run::command(&arguments),
+        Command::Campaign(arguments) => campaign::command(&arguments),
         Command::Compare(arguments) => compare::command(&arguments),
         Command::Replay(arguments) => replay::command(&arguments),
         Command::Serve(arguments) => serve::command(&arguments),

@@ -40,6 +40,9 @@ pub(super) struct Arguments {
     /// Fire a fault whose trigger is manual, such as spike-1="5050 s".
     #[arg(long, value_name = "ID=TIME")]
     fire: Vec<String>,
+    /// Inject these of the scenario's faults alone; --faults= none of them.
+    #[arg(long, value_name = "ID,ID", value_delimiter = ',', require_equals = true, num_args = 0..)]
+    faults: Option<Vec<String>>,
     /// Go by the clock: a sample leaves when its time has come, as with realtime.pace = "clock".
     #[arg(long)]
     realtime: bool,
@@ -82,7 +85,13 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     if arguments.realtime {
         more.push("realtime.pace=\"clock\"".to_owned());
     }
-    let scenario = load_fired(&arguments.scenario, &more, &arguments.fire)?;
+    let mut scenario = load_fired(&arguments.scenario, &more, &arguments.fire)?;
+    if let Some(faults) = &arguments.faults {
+        scenario = scenario.with_only(faults).map_err(|reason| {
+            let file = arguments.scenario.scenario.display();
+            Failure::input(format!("{file}: --faults: {reason}"))
+        })?;
+    }
     let seed = arguments.seed.unwrap_or(scenario.seed);
     // What contradicts itself, or can't be opened, is said before anything is written.
     // A real instrument doesn't measure the same a second time.
@@ -213,6 +222,7 @@ fn system(arguments: &Arguments) -> Result<Verdict, Failure> {
         ("--endpoint", arguments.endpoint.is_some()),
         ("--realtime", arguments.realtime),
         ("--no-twin", arguments.no_twin),
+        ("--faults", arguments.faults.is_some()),
         ("--live", arguments.live.is_some()),
     ];
     if let Some((option, _)) = given.into_iter().find(|(_, given)| *given) {
@@ -391,6 +401,9 @@ fn rerun(arguments: &Arguments, seed: u64) -> Vec<String> {
     for fire in &arguments.fire {
         line.extend(["--fire".to_owned(), fire.clone()]);
     }
+    if let Some(faults) = &arguments.faults {
+        line.push(format!("--faults={}", faults.join(",")));
+    }
     if arguments.realtime {
         line.push("--realtime".to_owned());
     }
@@ -438,10 +451,34 @@ pub(super) fn on_recording(
         source: Some(format!("{kind}:{}", recording.display())),
         endpoint: None,
         fire: Vec::new(),
+        faults: None,
         realtime: false,
         no_twin: false,
         live: None,
         json,
+        system: super::run_system::SystemArguments::default(),
+    })
+}
+
+/// Runs a case of a campaign with all the evidence of a run.
+pub(super) fn case(
+    scenario: &Path,
+    case: &crate::campaign::plan::Case,
+    out: &Path,
+) -> Result<Verdict, Failure> {
+    command(&Arguments {
+        scenario: ScenarioArguments { scenario: scenario.to_owned(), set: case.set.clone() },
+        out: Some(out.to_owned()),
+        force: false,
+        seed: Some(case.seed),
+        source: None,
+        endpoint: None,
+        fire: Vec::new(),
+        faults: case.faults.clone(),
+        realtime: false,
+        no_twin: false,
+        live: None,
+        json: false,
         system: super::run_system::SystemArguments::default(),
     })
 }
