@@ -20,6 +20,7 @@ mod run_system;
 mod score;
 mod serve;
 mod sweep;
+mod verify;
 mod watch;
 
 use crate::scenario::{Dimension, quantity_of};
@@ -55,6 +56,8 @@ enum Command {
     Observe(observe::Arguments),
     /// Write the report of a finished run again.
     Report(report::Arguments),
+    /// Tell whether a folder of evidence is what was written, to the last bit.
+    Verify(verify::Arguments),
     /// Watch a run: how far it is, its drift, parameters, faults and lateness.
     Watch(watch::Arguments),
     /// Tell what kinds of faults there are, and what each does.
@@ -70,7 +73,7 @@ enum Command {
 }
 
 /// Commands that belong to the plan of the program and are not in this version.
-const LATER: [&str; 3] = ["nightly", "selftest", "verify"];
+const LATER: [&str; 2] = ["nightly", "selftest"];
 
 /// A command that isn't there.
 fn other(words: &[OsString]) -> Failure {
@@ -177,6 +180,7 @@ pub fn main() -> ExitCode {
         Command::Score(arguments) => score::command(&arguments),
         Command::Observe(arguments) => observe::command(&arguments),
         Command::Report(arguments) => report::command(&arguments),
+        Command::Verify(arguments) => verify::command(&arguments),
         Command::Watch(arguments) => watch::command(&arguments),
         Command::Faults(arguments) => faults::command(&arguments),
         Command::Doctor(arguments) => doctor::command(&arguments),

@@ -107,6 +107,7 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         set_up(&scenario, method, seed)?;
     }
     let fmus = fmus(&scenario, tasks)?;
+    let key = super::verify::signing_key()?;
     let mut live = arguments.live.as_deref().map(Live::start).transpose()?;
     let (path, existing) = match &arguments.out {
         Some(path) if arguments.force => (path.clone(), Existing::Replace),
@@ -156,6 +157,7 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         fmus,
         link,
         realtime,
+        key,
     };
     let raw = estimate.map_or(String::new(), |e| raw_counts::text(&scenario.source, &e));
     let (verdict, json) = write_results(folder.path(), run, &facts)?;
