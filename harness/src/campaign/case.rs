@@ -79,7 +79,8 @@ impl CaseResult {
     fn of(case: &Case, summary: Summary) -> Self {
         // A case that checks nothing shows nothing.
         let nothing = summary.requirements.is_empty();
-        let verdict = summary.verdict.worst(if nothing { Verdict::Inconclusive } else { Verdict::Pass });
+        let verdict =
+            summary.verdict.worst(if nothing { Verdict::Inconclusive } else { Verdict::Pass });
         Self { schema: SCHEMA, case: case.id.clone(), verdict, error: None, summary: Some(summary) }
     }
 
@@ -110,8 +111,9 @@ impl CaseResult {
     pub fn read(path: &Path) -> Result<Self, String> {
         let text = std::fs::read_to_string(path)
             .map_err(|error| format!("read {}: {error}", path.display()))?;
-        let result: Self = serde_json::from_str(&text)
-            .map_err(|error| format!("read {}: expected the result of a case: {error}", path.display()))?;
+        let result: Self = serde_json::from_str(&text).map_err(|error| {
+            format!("read {}: expected the result of a case: {error}", path.display())
+        })?;
         if result.schema != SCHEMA {
             return Err(format!(
                 "read {}: found version {}, this program reads version {SCHEMA}",
@@ -148,7 +150,7 @@ pub fn keep(folder: &Path, id: &str, bytes: &[u8]) -> io::Result<Kept> {
     let path = file(folder, id);
     let parent = path.parent().unwrap_or(folder);
     std::fs::create_dir_all(parent)?;
-    let new = tempfile::Builder::new().prefix(".").suffix(".new").tempfile_in(parent)?;
+    let new = super::new_file(parent)?;
     std::fs::write(new.path(), bytes)?;
     new.as_file().sync_data()?;
     match new.persist_noclobber(&path) {

@@ -37,7 +37,8 @@ pub(super) fn draws(campaign: &Campaign) -> Result<Draws, String> {
             .map(|replicate| at(levels, uniform(words(key, u64::from(replicate))[0])))
             .collect()
     };
-    let by_factor = campaign.factors.iter().map(|factor| of(&factor.name, &factor.levels)).collect();
+    let by_factor =
+        campaign.factors.iter().map(|factor| of(&factor.name, &factor.levels)).collect();
     Ok(Draws { by_factor })
 }
 

@@ -70,7 +70,9 @@ impl Shard {
         let parts = text.split_once('/').map(|(a, b)| (a.trim().parse(), b.trim().parse()));
         match parts {
             Some((Ok(number), Ok(of))) if (1..=of).contains(&number) => Ok(Self { number, of }),
-            _ => Err(format!("found {text:?}, expected a part and the number of parts, as in 3/16")),
+            _ => {
+                Err(format!("found {text:?}, expected a part and the number of parts, as in 3/16"))
+            }
         }
     }
 }
@@ -134,7 +136,9 @@ pub enum ExecuteError {
     #[error(transparent)]
     Plan(#[from] PlanError),
     /// The folder has results that are not of this plan.
-    #[error("run {folder}: it has results of {count} cases that the plan doesn't have, such as {one}")]
+    #[error(
+        "run {folder}: it has results of {count} cases that the plan doesn't have, such as {one}"
+    )]
     Foreign {
         /// The folder.
         folder: PathBuf,
@@ -276,7 +280,9 @@ fn one(plan: &Plan, case: &Case, options: &Options<'_>) -> Result<Option<Done>, 
     });
     let error = match status.map_err(|error| system("wait for", options.program, error))? {
         Ended::Cancelled => return Ok(None),
-        Ended::Status(status) if status.code() == Some(KEPT) => return Ok(Some(kept(case, options)?)),
+        Ended::Status(status) if status.code() == Some(KEPT) => {
+            return Ok(Some(kept(case, options)?));
+        }
         Ended::Status(status) => failure(status, &words, plan.limits.memory_mib),
         Ended::TooLong => format!("it took more than its {} s", plan.limits.time_s),
     };

@@ -315,8 +315,7 @@ fn toml(value: &Value) -> String {
 fn levels(table: &Reader<'_>, name: &str) -> Result<Levels, Problem> {
     let key = || table.optional_text("key").unwrap_or(name).to_owned();
     let unit = || table.optional_text("unit").map(str::to_owned);
-    let distributed =
-        |distribution| Levels::Distributed { key: key(), unit: unit(), distribution };
+    let distributed = |distribution| Levels::Distributed { key: key(), unit: unit(), distribution };
     for (list, drawn) in [("values", false), ("choose", true)] {
         if let Some(Node { value: Value::Array(entries), .. }) = table.node(list) {
             let values: Vec<String> = entries.iter().map(|entry| toml(&entry.value)).collect();

@@ -44,7 +44,9 @@ pub enum MergeError {
         expected: String,
     },
     /// A case came to two results.
-    #[error("merge {second}: case {case} differs in {column} from {first}: the same case has to come to the same result")]
+    #[error(
+        "merge {second}: case {case} differs in {column} from {first}: the same case has to come to the same result"
+    )]
     Differs {
         /// The case.
         case: String,
@@ -184,8 +186,9 @@ fn refuse_differing(
     paths: &[PathBuf],
     columns: &[(String, Kind)],
 ) -> Result<(), MergeError> {
-    let several =
-        |rows: &&Vec<Row>| rows.first().is_some_and(|first| rows.iter().any(|r| r.part != first.part));
+    let several = |rows: &&Vec<Row>| {
+        rows.first().is_some_and(|first| rows.iter().any(|r| r.part != first.part))
+    };
     if !rows.values().any(|rows| several(&rows)) {
         return Ok(());
     }

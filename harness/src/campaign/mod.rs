@@ -14,3 +14,12 @@ pub mod plan;
 pub mod results;
 pub mod status;
 pub mod table;
+
+/// A file that gets its name when it is whole; what others may read of it is as of any new file.
+fn new_file(folder: &std::path::Path) -> std::io::Result<tempfile::NamedTempFile> {
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(".").suffix(".new");
+    #[cfg(unix)]
+    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+    builder.tempfile_in(folder)
+}

@@ -21,11 +21,11 @@ pub const CASES_MAX: u64 = 10_000_000;
 pub struct Plan {
     /// Version of this form: [`SCHEMA`].
     pub schema: u32,
-    /// BLAKE3 of everything below, hexadecimal.
+    /// BLAKE3 of everything below but names of files, hexadecimal.
     pub id: String,
     /// Name of the campaign.
     pub title: String,
-    /// File of the campaign, as it was given.
+    /// File of the campaign.
     pub campaign: PathBuf,
     /// What a case may use.
     pub limits: CaseLimits,
@@ -155,12 +155,15 @@ impl Plan {
         let campaign = Campaign::load(path)?;
         let contradiction =
             |reason: String| PlanError::Contradiction { campaign: path.to_owned(), reason };
-        let grid: u64 = campaign.factors.iter().filter_map(|f| f.levels.grid()).map(|n| n as u64).product();
+        let grid: u64 =
+            campaign.factors.iter().filter_map(|f| f.levels.grid()).map(|n| n as u64).product();
         let count = grid
             .saturating_mul(u64::from(campaign.replicates))
             .saturating_mul(campaign.scenarios.len() as u64);
         if count > CASES_MAX {
-            return Err(contradiction(format!("it has {count} cases, at most {CASES_MAX} are expected")));
+            return Err(contradiction(format!(
+                "it has {count} cases, at most {CASES_MAX} are expected"
+            )));
         }
         let draws = super::draw::draws(&campaign).map_err(&contradiction)?;
         let scenarios = campaign.scenarios.iter().map(planned).collect::<Result<Vec<_>, _>>()?;
@@ -212,7 +215,7 @@ impl Plan {
             schema: SCHEMA,
             id: String::new(),
             title: campaign.title,
-            campaign: path.to_owned(),
+            campaign: absolute(path)?,
             limits: campaign.limits.into(),
             stop: campaign.stop.map(StopRule::from),
             factors: campaign.factors.iter().map(|factor| factor.name.clone()).collect(),
@@ -288,7 +291,7 @@ impl Plan {
         }
         system("create", folder, std::fs::create_dir_all(folder))?;
         let text = self.to_json();
-        let new = system("create a file in", folder, tempfile::NamedTempFile::new_in(folder))?;
+        let new = system("create a file in", folder, super::new_file(folder))?;
         system("write", &path, std::fs::write(new.path(), text))?;
         system("write", &path, new.persist(&path).map_err(|error| error.error))?;
         Ok(written)
@@ -303,9 +306,18 @@ impl Plan {
         serde_json::to_string_pretty(self).unwrap_or_default() + "\n"
     }
 
-    /// The id that the contents give.
+    /// The id that the contents give, wherever the files lie.
     fn hash(&self) -> String {
-        let unnamed = Self { id: String::new(), ..self.clone() };
+        let placeless = |scenario: &PlannedScenario| PlannedScenario {
+            file: PathBuf::new(),
+            ..scenario.clone()
+        };
+        let unnamed = Self {
+            id: String::new(),
+            campaign: PathBuf::new(),
+            scenarios: self.scenarios.iter().map(placeless).collect(),
+            ..self.clone()
+        };
         blake3::hash(unnamed.to_json().as_bytes()).to_hex().to_string()
     }
 
@@ -323,7 +335,10 @@ impl Plan {
         let found = self.scenarios.iter().find(|scenario| scenario.id == case.scenario);
         found.ok_or_else(|| PlanError::Contradiction {
             campaign: self.campaign.clone(),
-            reason: format!("case {} is of scenario {:?}, which isn't there", case.id, case.scenario),
+            reason: format!(
+                "case {} is of scenario {:?}, which isn't there",
+                case.id, case.scenario
+            ),
         })
     }
 
@@ -430,12 +445,16 @@ fn level_of(factors: &[Factor], cell: u64, index: usize) -> usize {
     factors.get(index).map_or(0, |factor| (cell / faster % levels(factor)) as usize)
 }
 
+fn absolute(path: &Path) -> Result<PathBuf, PlanError> {
+    system("find", path, std::path::absolute(path))
+}
+
 fn planned(member: &Member) -> Result<PlannedScenario, PlanError> {
     let bytes = system("read", &member.file, std::fs::read(&member.file))?;
     let base = Scenario::load(&member.file, &member.set)?;
     Ok(PlannedScenario {
         id: member.id.clone(),
-        file: member.file.clone(),
+        file: absolute(&member.file)?,
         blake3: blake3::hash(&bytes).to_hex().to_string(),
         requirements: base.requirements.iter().map(|r| r.check.id.clone()).collect(),
     })
@@ -480,6 +499,10 @@ fn id_of(scenario_blake3: &str, case: &Case) -> String {
     blake3::hash(content.to_string().as_bytes()).to_hex().as_str()[..16].to_owned()
 }
 
-fn system<T>(action: &'static str, path: &Path, result: std::io::Result<T>) -> Result<T, PlanError> {
+fn system<T>(
+    action: &'static str,
+    path: &Path,
+    result: std::io::Result<T>,
+) -> Result<T, PlanError> {
     result.map_err(|source| PlanError::System { action, path: path.to_owned(), source })
 }

@@ -134,9 +134,7 @@ fn text(value: impl Into<String>) -> Value {
     Value::Text(value.into())
 }
 
-fn row<'a>(
-    pairs: impl IntoIterator<Item = (&'a str, Option<Value>)>,
-) -> BTreeMap<String, Value> {
+fn row<'a>(pairs: impl IntoIterator<Item = (&'a str, Option<Value>)>) -> BTreeMap<String, Value> {
     let there = |(name, value): (&str, Option<Value>)| Some((name.to_owned(), value?));
     pairs.into_iter().filter_map(there).collect()
 }
@@ -168,16 +166,8 @@ fn case_row(case: &Case, result: &CaseResult) -> BTreeMap<String, Value> {
 }
 
 /// What of a summary stands in columns of its own, or isn't of the case.
-const NOT_MEASURES: [&str; 8] = [
-    "schema",
-    "octant",
-    "seed",
-    "scenario",
-    "verdict",
-    "reasons",
-    "requirements",
-    "stream_hash",
-];
+const NOT_MEASURES: [&str; 8] =
+    ["schema", "octant", "seed", "scenario", "verdict", "reasons", "requirements", "stream_hash"];
 
 /// Every value of a summary under its dotted path; of a fault, under its id.
 fn measures(document: &serde_json::Value, all: &mut BTreeMap<String, Value>) {

@@ -1,7 +1,7 @@
 //! How far a campaign is, and what failed.
 
 use super::case::{self, CaseResult};
-use super::execute::differing;
+use super::execute::{Shard, differing};
 use super::plan::Plan;
 use crate::score::verdict::Verdict;
 use serde::Serialize;
@@ -19,7 +19,7 @@ pub struct Status {
     pub title: String,
     /// Its plan.
     pub plan: String,
-    /// Cases of the plan.
+    /// Its cases.
     pub cases: usize,
     /// Cases without a result.
     pub open: usize,
@@ -44,22 +44,23 @@ pub struct Bad {
     pub reason: String,
 }
 
-/// The state of the campaign in a folder.
+/// The state of a part of the campaign in a folder.
 ///
 /// # Errors
 /// If a result is there and can't be read.
-pub fn of(plan: &Plan, folder: &Path) -> Result<Status, String> {
+pub fn of(plan: &Plan, folder: &Path, shard: Shard) -> Result<Status, String> {
+    let mine = || plan.cases.iter().enumerate().filter(|(index, _)| shard.has(*index));
     let mut status = Status {
         title: plan.title.clone(),
         plan: plan.id.clone(),
-        cases: plan.cases.len(),
+        cases: mine().count(),
         open: 0,
         verdicts: BTreeMap::new(),
         requirements: BTreeMap::new(),
         bad: Vec::new(),
         differing: Vec::new(),
     };
-    for case in &plan.cases {
+    for (_, case) in mine() {
         let path = case::file(folder, &case.id);
         if !path.exists() {
             status.open += 1;
@@ -132,7 +133,10 @@ impl Status {
             _ = writeln!(text, "  and {} more", bad - self.bad.len());
         }
         for case in &self.differing {
-            _ = writeln!(text, "  case {case} came to two results: this is no deterministic program");
+            _ = writeln!(
+                text,
+                "  case {case} came to two results: this is no deterministic program"
+            );
         }
         text
     }

@@ -191,9 +191,11 @@ pub fn write<'a>(
     let folder = path.parent().unwrap_or(Path::new("."));
     let system = |source| TableError::System { action: "write", path: path.to_owned(), source };
     std::fs::create_dir_all(folder).map_err(system)?;
-    let new = tempfile::NamedTempFile::new_in(folder).map_err(system)?;
-    let wrong =
-        |error: ParquetError| TableError::Write { path: path.to_owned(), reason: error.to_string() };
+    let new = super::new_file(folder).map_err(system)?;
+    let wrong = |error: ParquetError| TableError::Write {
+        path: path.to_owned(),
+        reason: error.to_string(),
+    };
     let fields = columns.iter().map(|(name, kind)| field(name, *kind)).collect::<Result<_, _>>();
     let root = Type::group_type_builder("octant").with_fields(fields.map_err(wrong)?).build();
     let pair = |key: &str, value: &str| KeyValue::new(key.to_owned(), value.to_owned());
@@ -302,7 +304,10 @@ impl Table {
         let plan = value(PLAN_KEY).ok_or_else(|| form(format!("it has no {PLAN_KEY}")))?;
         let rows: i64 = metadata.file_metadata().num_rows();
         if metadata.num_row_groups() > 1 {
-            return Err(form(format!("found {} row groups, expected one", metadata.num_row_groups())));
+            return Err(form(format!(
+                "found {} row groups, expected one",
+                metadata.num_row_groups()
+            )));
         }
         let columns = metadata.file_metadata().schema_descr().columns();
         let columns = columns.iter().map(|column| {
@@ -357,14 +362,16 @@ impl Table {
         let (mut levels, mut there) = (Vec::new(), Vec::new());
         while levels.len() < self.rows {
             let left = self.rows - levels.len();
-            let (records, _, _) =
-                reader.read_records(left, Some(&mut levels), None, &mut there)?;
+            let (records, _, _) = reader.read_records(left, Some(&mut levels), None, &mut there)?;
             if records == 0 {
                 return Err(ParquetError::General(format!("{left} rows are missing")));
             }
         }
         let mut there = there.into_iter();
-        Ok(levels.iter().map(|level| if *level > 0 { there.next().map(&from) } else { None }).collect())
+        Ok(levels
+            .iter()
+            .map(|level| if *level > 0 { there.next().map(&from) } else { None })
+            .collect())
     }
 }
 
@@ -374,8 +381,12 @@ mod tests {
     use proptest::prelude::*;
     use std::borrow::Cow;
 
-    fn values() -> impl Strategy<Value = Vec<(Option<String>, Option<f64>, Option<i64>, Option<bool>)>> {
-        proptest::collection::vec(any::<(Option<String>, Option<f64>, Option<i64>, Option<bool>)>(), 0..50)
+    fn values()
+    -> impl Strategy<Value = Vec<(Option<String>, Option<f64>, Option<i64>, Option<bool>)>> {
+        proptest::collection::vec(
+            any::<(Option<String>, Option<f64>, Option<i64>, Option<bool>)>(),
+            0..50,
+        )
     }
 
     proptest! {

@@ -79,7 +79,11 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         signed_by,
         signature: manifest.signature,
     };
-    if arguments.json { print_json(&found)? } else { print(&text(&found))? }
+    if arguments.json {
+        print_json(&found)?
+    } else {
+        print(&text(&found))?
+    }
     Ok(verdict)
 }
 
@@ -89,7 +93,9 @@ fn text(found: &Found) -> String {
         (None, Some(key)) => {
             format!("the signature was not looked at: --key has the public part of {key}")
         }
-        (None, None) => "unsigned: who can write here could have changed the manifest too".to_owned(),
+        (None, None) => {
+            "unsigned: who can write here could have changed the manifest too".to_owned()
+        }
     };
     let mut text = format!("{}: {} files, {signed}\n", found.folder, found.files);
     if found.differences.is_empty() {

@@ -4,7 +4,7 @@ mod run;
 
 use super::{Failure, print, print_json};
 use crate::campaign::case::{self, Job};
-use crate::campaign::execute::ExecuteError;
+use crate::campaign::execute::{ExecuteError, Shard};
 use crate::campaign::merge::{self, MergeError};
 use crate::campaign::plan::{FILE_NAME, Plan, PlanError, Written};
 use crate::campaign::{emit, status};
@@ -104,8 +104,13 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         Command::Plan { campaign, out, extend } => plan(campaign, out.as_deref(), *extend),
         Command::Run(arguments) => run::command(arguments),
         Command::Status { folder, json } => {
-            let status = status::of(&read(folder)?, folder).map_err(Failure::bench)?;
-            if *json { print_json(&status)? } else { print(&status.text())? }
+            let status =
+                status::of(&read(folder)?, folder, Shard::WHOLE).map_err(Failure::bench)?;
+            if *json {
+                print_json(&status)?
+            } else {
+                print(&status.text())?
+            }
             Ok(status.verdict())
         }
         Command::Merge { folder, others } => merge_parts(folder, others),
@@ -200,7 +205,9 @@ fn again(folder: &Path, id: &str, out: Option<&Path>) -> Result<Verdict, Failure
         let ids = plan.cases.iter().map(|case| case.id.as_str());
         let near: Vec<&str> = ids.filter(|other| other.starts_with(id)).take(5).collect();
         let known = if near.is_empty() { String::new() } else { format!(": {}", near.join(", ")) };
-        return Err(Failure::input(format!("failed to run case {id}: the plan has no such case{known}")));
+        return Err(Failure::input(format!(
+            "failed to run case {id}: the plan has no such case{known}"
+        )));
     };
     let planned = plan.planned(case)?;
     // That it is the scenario which was planned.
@@ -234,8 +241,9 @@ fn limit_memory(mib: u64) -> Result<(), Failure> {
     let bytes = Some(mib.saturating_mul(1 << 20));
     let most = getrlimit(Resource::As).maximum;
     let limit = Rlimit { current: bytes.min(most.or(bytes)), maximum: most };
-    setrlimit(Resource::As, limit)
-        .map_err(|error| Failure::bench(format!("failed to limit the memory to {mib} MiB: {error}")))
+    setrlimit(Resource::As, limit).map_err(|error| {
+        Failure::bench(format!("failed to limit the memory to {mib} MiB: {error}"))
+    })
 }
 
 #[cfg(not(target_os = "linux"))]

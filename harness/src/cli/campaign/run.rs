@@ -48,7 +48,8 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         cancel: &cancel,
     };
     let mine = (0..plan.cases.len()).filter(|index| shard.has(*index)).count();
-    let bar = ProgressBar::with_draw_target(Some(mine as u64), ProgressDrawTarget::stderr_with_hz(5));
+    let bar =
+        ProgressBar::with_draw_target(Some(mine as u64), ProgressDrawTarget::stderr_with_hz(5));
     let style = "{wide_bar} {pos} of {len} cases, {per_sec}, {eta} left{msg}";
     if let Ok(style) = ProgressStyle::with_template(style) {
         bar.set_style(style);
@@ -113,7 +114,7 @@ fn conclude(
         merge::part(&arguments.folder, shard, table)
     })
     .map_err(|error| Failure::bench(error).failed())?;
-    let status = status::of(plan, &arguments.folder).map_err(Failure::bench)?;
+    let status = status::of(plan, &arguments.folder, shard).map_err(Failure::bench)?;
     super::print(&status.text())?;
     Ok(status.verdict())
 }

@@ -39,12 +39,7 @@ pub(crate) static CAMPAIGN: Section = section(&[
     ),
     key("design", Kind::Choice(&DESIGNS), Default::Value("monte-carlo"), "How draws are spread."),
     key("limits", Kind::Table(&LIMITS), Default::Section, "What a case may use."),
-    key(
-        "stop",
-        Kind::Table(&STOP),
-        Default::Absent("every case is run"),
-        "When enough is known.",
-    ),
+    key("stop", Kind::Table(&STOP), Default::Absent("every case is run"), "When enough is known."),
 ]);
 
 static SCENARIO: Section = section(&[
