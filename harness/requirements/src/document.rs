@@ -158,14 +158,15 @@ impl<'a> Reader<'a> {
         self.text_of(key, self.get(key)?)
     }
 
-    /// As [`Reader::optional`], on one line.
+    /// As [`Reader::optional`], on one line. A tab, which no name of other formats could hold, is a
+    /// space.
     pub(crate) fn line_of(&self, key: &str) -> Option<String> {
         let text = self.optional(key)?;
         if text.contains('\n') {
             self.problem(key, "found several lines, expected one");
             return None;
         }
-        Some(text)
+        Some(text.replace('\t', " "))
     }
 
     /// A text that has to be there.

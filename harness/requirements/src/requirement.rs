@@ -100,26 +100,27 @@ pub struct Ensemble {
 pub fn probability(text: &str) -> Result<f64, String> {
     let percent = text.trim().strip_suffix('%').and_then(|n| n.trim_end().parse::<f64>().ok());
     match percent {
-        // Divided and not multiplied by 0.01: 95 / 100 is the double that is written 0.95.
-        Some(percent) if percent > 0.0 && percent < 100.0 => Ok(percent / 100.0),
+        // Shifted as a decimal: 86.4 % is the double that is written 0.864.
+        Some(percent) if percent > 0.0 && percent < 100.0 => {
+            format!("{percent}e-2").parse().map_err(|_| format!("found {text:?}"))
+        }
         Some(_) => Err(format!("found {text:?}, expected more than 0 % and less than 100 %")),
         None => Err(format!("found {text:?}, expected a percentage such as \"95 %\"")),
     }
 }
 
-/// A probability with the fewest digits that [`probability`] takes back to the same number.
+/// A probability above 0 and below 1 as [`probability`] takes it back, to the same number.
 #[must_use]
 pub fn percent(probability: f64) -> String {
-    for digits in 0..17 {
-        let text = format!("{:.digits$}", 100.0 * probability);
-        if text.parse::<f64>().is_ok_and(|p| p / 100.0 == probability) {
-            return format!("{text} %");
-        }
-    }
-    // Every double has its own shortest decimal; what hundredfold rounding hides is beside it.
-    let near = 100.0 * probability;
-    let exact = [near.next_down(), near.next_up()].into_iter().find(|p| p / 100.0 == probability);
-    format!("{} %", exact.unwrap_or(near))
+    let decimal = probability.to_string();
+    let digits = decimal.strip_prefix("0.").unwrap_or(&decimal);
+    let (whole, part) = match digits.split_at_checked(2) {
+        Some(split) => split,
+        None => return format!("{digits}0 %"),
+    };
+    let whole = whole.trim_start_matches('0');
+    let whole = if whole.is_empty() { "0" } else { whole };
+    if part.is_empty() { format!("{whole} %") } else { format!("{whole}.{part} %") }
 }
 
 /// A measure, and the limit that it has to keep.

@@ -73,3 +73,128 @@ pub fn results(trace: &Trace, requirements: &Requirements, title: &str) -> Resul
     }
     Ok(out)
 }
+
+/// Name of the test report: StrictDoc tells the flavour by it.
+const REPORT: &str = "campaign.lit.junit.xml";
+
+/// Everything that StrictDoc needs to show a campaign, as paths and texts: a project of it, the
+/// requirements, the results, one file for each case that names its requirements, and a test report.
+///
+/// The report is JUnit XML in the flavour of LLVM's lit, the one whose tests are files: so StrictDoc
+/// finds the way from the requirement over the case's file to its result. It refuses reports with
+/// errors in them: what is inconclusive or an error is a failure there, of that type. `results.sdoc`
+/// has the verdict by its name.
+///
+/// # Errors
+/// If a requirement or a case has what StrictDoc has no place for.
+pub fn folder(
+    requirements: &Requirements,
+    trace: &Trace,
+    title: &str,
+) -> Result<Vec<(String, String)>, ExportError> {
+    let mut files = vec![
+        ("strictdoc_config.py".to_owned(), config(title)),
+        ("requirements.sdoc".to_owned(), crate::sdoc::write(requirements)?),
+        ("results.sdoc".to_owned(), results(trace, requirements, &format!("{title}: results"))?),
+    ];
+    let mut cases: Vec<(String, Vec<(&str, Option<Verdict>)>)> = Vec::new();
+    let mut index: std::collections::HashMap<&str, usize> = std::collections::HashMap::new();
+    for row in &trace.requirements {
+        for link in &row.cases {
+            let at = *index.entry(&link.case).or_insert_with(|| {
+                cases.push((link.case.clone(), Vec::new()));
+                cases.len() - 1
+            });
+            cases[at].1.push((&row.id, link.verdict));
+        }
+    }
+    for (case, checks) in &cases {
+        // A path of its own for each, and none out of the folder.
+        let plain = |c: char| c.is_ascii_alphanumeric() || "-_.".contains(c);
+        if case.starts_with('.') || !case.chars().all(plain) {
+            let message = "its id is no name of a file: letters, digits, -, _ and .".to_owned();
+            return Err(ExportError { format: "StrictDoc", id: case.clone(), message });
+        }
+        let ids: Vec<&str> = checks.iter().map(|(id, _)| *id).collect();
+        let text = format!("# @relation({}, scope=file)\ncase = \"{case}\"\n", ids.join(", "));
+        files.push((format!("cases/{case}.toml"), text));
+    }
+    let report = report(title, &cases).map_err(|error| ExportError {
+        format: "JUnit XML",
+        id: title.to_owned(),
+        message: error.to_string(),
+    })?;
+    files.push((REPORT.to_owned(), report));
+    Ok(files)
+}
+
+/// The configuration of the project.
+fn config(title: &str) -> String {
+    let title = serde_json::Value::from(title).to_string();
+    format!(
+        "from strictdoc.core.project_config import ProjectConfig\n\n\n\
+         def create_config() -> ProjectConfig:\n    return ProjectConfig(\n        \
+         project_title={title},\n        project_features=[\n            \
+         \"REQUIREMENT_TO_SOURCE_TRACEABILITY\",\n            \"TABLE_SCREEN\",\n            \
+         \"TRACEABILITY_SCREEN\",\n            \"DEEP_TRACEABILITY_SCREEN\",\n        ],\n        \
+         include_source_paths=[\"cases/**\"],\n        \
+         test_report_root_dict={{\"{REPORT}\": \"\"}},\n    )\n"
+    )
+}
+
+/// The test report. A case that hasn't run is skipped.
+fn report(
+    title: &str,
+    cases: &[(String, Vec<(&str, Option<Verdict>)>)],
+) -> std::io::Result<String> {
+    use quick_xml::events::{BytesDecl, Event};
+    let worst = |checks: &[(&str, Option<Verdict>)]| {
+        let missing = checks.iter().any(|(_, verdict)| verdict.is_none());
+        let worst = checks.iter().filter_map(|(_, verdict)| *verdict).max()?;
+        Some(if missing { worst.max(Verdict::Inconclusive) } else { worst })
+    };
+    let bad = |verdict: Option<Verdict>| verdict.is_some_and(|v| v != Verdict::Pass);
+    let failures = cases.iter().filter(|(_, checks)| bad(worst(checks))).count().to_string();
+    let skipped = cases.iter().filter(|(_, checks)| worst(checks).is_none()).count().to_string();
+    let tests = cases.len().to_string();
+    let mut out = quick_xml::Writer::new_with_indent(Vec::new(), b' ', 1);
+    out.write_event(Event::Decl(BytesDecl::new("1.0", Some("UTF-8"), None)))?;
+    let counts = [("tests", tests.as_str()), ("failures", &failures), ("skipped", &skipped), ("errors", "0")];
+    out.create_element("testsuites").with_attribute(("name", "octant")).write_inner_content(|out| {
+        let suite = out.create_element("testsuite").with_attribute(("name", title));
+        suite.with_attributes(counts).write_inner_content(|out| {
+            for (case, checks) in cases {
+                let name = format!("{case}.toml");
+                let element = out.create_element("testcase").with_attributes([
+                    ("classname", "octant.cases"),
+                    ("name", name.as_str()),
+                    ("time", "0"),
+                ]);
+                element.write_inner_content(|out| {
+                    let ids: Vec<&str> = checks.iter().map(|(id, _)| *id).collect();
+                    out.create_element("properties").write_inner_content(|out| {
+                        let property = [("name", "verifies"), ("value", &ids.join(", "))];
+                        out.create_element("property").with_attributes(property).write_empty()?;
+                        Ok(())
+                    })?;
+                    let verdict = worst(checks);
+                    if let Some(verdict) = verdict.filter(|_| bad(verdict)) {
+                        let of = |(id, v): &(&str, Option<Verdict>)| {
+                            format!("{id}: {}", v.map_or("not run", Verdict::name))
+                        };
+                        let message: Vec<String> = checks.iter().map(of).collect();
+                        let message = message.join("; ");
+                        let attributes = [("type", verdict.name()), ("message", &message)];
+                        out.create_element("failure").with_attributes(attributes).write_empty()?;
+                    } else if verdict.is_none() {
+                        out.create_element("skipped").write_empty()?;
+                    }
+                    Ok(())
+                })?;
+            }
+            Ok(())
+        })?;
+        Ok(())
+    })?;
+    String::from_utf8(out.into_inner()).map_err(std::io::Error::other)
+}
