@@ -24,7 +24,8 @@ fn main() -> Result<(), Box<dyn Error>> {
 }
 
 fn read(path: &str) -> Result<Requirements, Box<dyn Error>> {
-    let text = std::fs::read_to_string(path).map_err(|error| format!("failed to read {path}: {error}"))?;
+    let text =
+        std::fs::read_to_string(path).map_err(|error| format!("failed to read {path}: {error}"))?;
     let imported = match Path::new(path).extension().and_then(|e| e.to_str()) {
         Some("toml") => return Ok(file::read(&text, path, &file::Anything)?),
         Some("sdoc") => sdoc::read(&text, path)?,
@@ -74,7 +75,12 @@ fn show(requirements: &str, cases: &str, folder: &Path) -> Result<(), Box<dyn Er
         std::fs::write(path, text)?;
     }
     for row in &trace.requirements {
-        println!("{}: {} ({})", row.id, row.verdict.map_or(row.verification.as_str(), |v| v.name()), row.reason);
+        println!(
+            "{}: {} ({})",
+            row.id,
+            row.verdict.map_or(row.verification.as_str(), |v| v.name()),
+            row.reason
+        );
     }
     Ok(())
 }

@@ -69,12 +69,15 @@ pub(crate) fn verification(
         let ensemble = match (part(PASS)?, part(CONFIDENCE)?) {
             (Some(pass), Some(confidence)) => Some(Ensemble { pass, confidence }),
             (None, None) => None,
-            _ => return Err((line, format!("{PASS} and {CONFIDENCE} say something only together"))),
+            _ => {
+                return Err((line, format!("{PASS} and {CONFIDENCE} say something only together")));
+            }
         };
         let check = Check {
             measure: measure.to_owned(),
             comparison,
-            limit: Limit::of_text(limit.1).map_err(|message| (limit.0, format!("{LIMIT}: {message}")))?,
+            limit: Limit::of_text(limit.1)
+                .map_err(|message| (limit.0, format!("{LIMIT}: {message}")))?,
             ensemble,
         };
         let mut used = vec![MEASURE, COMPARISON, LIMIT, PASS, CONFIDENCE];
@@ -88,7 +91,9 @@ pub(crate) fn verification(
     let verification = match how.to_ascii_lowercase().as_str() {
         "analysis" => Verification::Analysis,
         "inspection" => Verification::Inspection,
-        "test" => return Err((line, format!("{VERIFICATION} is by test, and there is no {MEASURE}"))),
+        "test" => {
+            return Err((line, format!("{VERIFICATION} is by test, and there is no {MEASURE}")));
+        }
         _ => return Err((line, format!("{VERIFICATION} is {how:?}"))),
     };
     Ok(Some((verification, vec![VERIFICATION])))

@@ -19,13 +19,21 @@ pub const VERIFIES: &str = "Verifies";
 ///
 /// # Errors
 /// If a case has an id that StrictDoc doesn't take.
-pub fn results(trace: &Trace, requirements: &Requirements, title: &str) -> Result<String, ExportError> {
+pub fn results(
+    trace: &Trace,
+    requirements: &Requirements,
+    title: &str,
+) -> Result<String, ExportError> {
     let mut out = format!("[DOCUMENT]\nTITLE: {title}\n\n[GRAMMAR]\nELEMENTS:\n");
     out.push_str("- TAG: TEXT\n  FIELDS:\n  - TITLE: UID\n    TYPE: String\n    REQUIRED: False\n");
     out.push_str("  - TITLE: STATEMENT\n    TYPE: String\n    REQUIRED: True\n- TAG: TEST_RESULT\n  FIELDS:\n");
-    for (field, required) in
-        [("UID", "True"), ("STATUS", "True"), ("RECORDING", "False"), ("FOLDER", "False"), ("STATEMENT", "True")]
-    {
+    for (field, required) in [
+        ("UID", "True"),
+        ("STATUS", "True"),
+        ("RECORDING", "False"),
+        ("FOLDER", "False"),
+        ("STATEMENT", "True"),
+    ] {
         _ = writeln!(out, "  - TITLE: {field}\n    TYPE: String\n    REQUIRED: {required}");
     }
     _ = writeln!(out, "  RELATIONS:\n  - TYPE: Parent\n  - TYPE: Parent\n    ROLE: {VERIFIES}");
@@ -38,7 +46,8 @@ pub fn results(trace: &Trace, requirements: &Requirements, title: &str) -> Resul
     }
     for case in cases {
         if !legal_uid(case) || requirements.get(case).is_some() {
-            let message = "its id is none that StrictDoc takes, or that of a requirement".to_owned();
+            let message =
+                "its id is none that StrictDoc takes, or that of a requirement".to_owned();
             return Err(ExportError { format: "sdoc", id: case.to_owned(), message });
         }
         let links: Vec<_> = trace
@@ -159,42 +168,53 @@ fn report(
     let tests = cases.len().to_string();
     let mut out = quick_xml::Writer::new_with_indent(Vec::new(), b' ', 1);
     out.write_event(Event::Decl(BytesDecl::new("1.0", Some("UTF-8"), None)))?;
-    let counts = [("tests", tests.as_str()), ("failures", &failures), ("skipped", &skipped), ("errors", "0")];
-    out.create_element("testsuites").with_attribute(("name", "octant")).write_inner_content(|out| {
-        let suite = out.create_element("testsuite").with_attribute(("name", title));
-        suite.with_attributes(counts).write_inner_content(|out| {
-            for (case, checks) in cases {
-                let name = format!("{case}.toml");
-                let element = out.create_element("testcase").with_attributes([
-                    ("classname", "octant.cases"),
-                    ("name", name.as_str()),
-                    ("time", "0"),
-                ]);
-                element.write_inner_content(|out| {
-                    let ids: Vec<&str> = checks.iter().map(|(id, _)| *id).collect();
-                    out.create_element("properties").write_inner_content(|out| {
-                        let property = [("name", "verifies"), ("value", &ids.join(", "))];
-                        out.create_element("property").with_attributes(property).write_empty()?;
+    let counts = [
+        ("tests", tests.as_str()),
+        ("failures", &failures),
+        ("skipped", &skipped),
+        ("errors", "0"),
+    ];
+    out.create_element("testsuites").with_attribute(("name", "octant")).write_inner_content(
+        |out| {
+            let suite = out.create_element("testsuite").with_attribute(("name", title));
+            suite.with_attributes(counts).write_inner_content(|out| {
+                for (case, checks) in cases {
+                    let name = format!("{case}.toml");
+                    let element = out.create_element("testcase").with_attributes([
+                        ("classname", "octant.cases"),
+                        ("name", name.as_str()),
+                        ("time", "0"),
+                    ]);
+                    element.write_inner_content(|out| {
+                        let ids: Vec<&str> = checks.iter().map(|(id, _)| *id).collect();
+                        out.create_element("properties").write_inner_content(|out| {
+                            let property = [("name", "verifies"), ("value", &ids.join(", "))];
+                            out.create_element("property")
+                                .with_attributes(property)
+                                .write_empty()?;
+                            Ok(())
+                        })?;
+                        let verdict = worst(checks);
+                        if let Some(verdict) = verdict.filter(|_| bad(verdict)) {
+                            let of = |(id, v): &(&str, Option<Verdict>)| {
+                                format!("{id}: {}", v.map_or("not run", Verdict::name))
+                            };
+                            let message: Vec<String> = checks.iter().map(of).collect();
+                            let message = message.join("; ");
+                            let attributes = [("type", verdict.name()), ("message", &message)];
+                            out.create_element("failure")
+                                .with_attributes(attributes)
+                                .write_empty()?;
+                        } else if verdict.is_none() {
+                            out.create_element("skipped").write_empty()?;
+                        }
                         Ok(())
                     })?;
-                    let verdict = worst(checks);
-                    if let Some(verdict) = verdict.filter(|_| bad(verdict)) {
-                        let of = |(id, v): &(&str, Option<Verdict>)| {
-                            format!("{id}: {}", v.map_or("not run", Verdict::name))
-                        };
-                        let message: Vec<String> = checks.iter().map(of).collect();
-                        let message = message.join("; ");
-                        let attributes = [("type", verdict.name()), ("message", &message)];
-                        out.create_element("failure").with_attributes(attributes).write_empty()?;
-                    } else if verdict.is_none() {
-                        out.create_element("skipped").write_empty()?;
-                    }
-                    Ok(())
-                })?;
-            }
+                }
+                Ok(())
+            })?;
             Ok(())
-        })?;
-        Ok(())
-    })?;
+        },
+    )?;
     String::from_utf8(out.into_inner()).map_err(std::io::Error::other)
 }

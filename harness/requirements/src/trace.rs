@@ -254,7 +254,8 @@ pub fn judge(ensemble: Option<Ensemble>, counts: Counts) -> (Verdict, String) {
         return if fail > 0 {
             (Verdict::Fail, format!("{fail} of {all} checks failed"))
         } else if open > 0 {
-            let told = format!("{inconclusive} of {all} checks are inconclusive, {missing} missing");
+            let told =
+                format!("{inconclusive} of {all} checks are inconclusive, {missing} missing");
             (Verdict::Inconclusive, told)
         } else {
             (Verdict::Pass, format!("all {all} checks passed"))
@@ -274,8 +275,13 @@ pub fn judge(ensemble: Option<Ensemble>, counts: Counts) -> (Verdict, String) {
         percent(required)
     );
     if upper < required {
-        let at_most = format!("{fail} of {all} runs failed: with {} confidence", percent(confidence));
-        let told = format!("the pass probability is at most {}, required {}", percent(upper), percent(required));
+        let at_most =
+            format!("{fail} of {all} runs failed: with {} confidence", percent(confidence));
+        let told = format!(
+            "the pass probability is at most {}, required {}",
+            percent(upper),
+            percent(required)
+        );
         (Verdict::Fail, format!("{at_most} {told}"))
     } else if open > 0 {
         (Verdict::Inconclusive, format!("{found}; {open} of {all} checks came to nothing"))

@@ -87,22 +87,64 @@ fn every_problem_is_told_with_its_place() {
 fn each_key_says_what_it_expects() {
     for (rest, expected) in [
         ("measure = \"a\"\n", "r.toml:2:1: requirements.N-1.limit: missing, expected a quantity"),
-        ("measure = \"a\"\nlimit = \"3\"\n", "6:9: requirements.N-1.limit: found \"3\", expected a unit, or a bare number"),
-        ("measure = \"a\"\nlimit = inf\n", "6:9: requirements.N-1.limit: found a number that isn't finite"),
-        ("measure = \"a\"\nlimit = 1\ncomparison = \"=\"\n", "7:14: requirements.N-1.comparison: found \"=\", expected <=, <, >= or >"),
-        ("measure = \"a\"\nlimit = 1\npass = \"95 %\"\n", "requirements.N-1.confidence: missing: pass says something only together with confidence"),
-        ("measure = \"a\"\nlimit = 1\npass = \"0.95\"\nconfidence = \"95 %\"\n", "7:8: requirements.N-1.pass: found \"0.95\", expected a percentage such as \"95 %\""),
-        ("measure = \"a\"\nlimit = 1\npass = \"100 %\"\nconfidence = \"95 %\"\n", "expected more than 0 % and less than 100 %"),
-        ("measure = \"a\"\nlimit = 1\npass = 95\nconfidence = \"95 %\"\n", "7:8: requirements.N-1.pass: found the bare number 95, expected a text"),
-        ("verification = \"review\"\n", "5:16: requirements.N-1.verification: found \"review\", known: test, analysis, inspection"),
+        (
+            "measure = \"a\"\nlimit = \"3\"\n",
+            "6:9: requirements.N-1.limit: found \"3\", expected a unit, or a bare number",
+        ),
+        (
+            "measure = \"a\"\nlimit = inf\n",
+            "6:9: requirements.N-1.limit: found a number that isn't finite",
+        ),
+        (
+            "measure = \"a\"\nlimit = 1\ncomparison = \"=\"\n",
+            "7:14: requirements.N-1.comparison: found \"=\", expected <=, <, >= or >",
+        ),
+        (
+            "measure = \"a\"\nlimit = 1\npass = \"95 %\"\n",
+            "requirements.N-1.confidence: missing: pass says something only together with confidence",
+        ),
+        (
+            "measure = \"a\"\nlimit = 1\npass = \"0.95\"\nconfidence = \"95 %\"\n",
+            "7:8: requirements.N-1.pass: found \"0.95\", expected a percentage such as \"95 %\"",
+        ),
+        (
+            "measure = \"a\"\nlimit = 1\npass = \"100 %\"\nconfidence = \"95 %\"\n",
+            "expected more than 0 % and less than 100 %",
+        ),
+        (
+            "measure = \"a\"\nlimit = 1\npass = 95\nconfidence = \"95 %\"\n",
+            "7:8: requirements.N-1.pass: found the bare number 95, expected a text",
+        ),
+        (
+            "verification = \"review\"\n",
+            "5:16: requirements.N-1.verification: found \"review\", known: test, analysis, inspection",
+        ),
         ("verification = \"anlysis\"\n", "did you mean \"analysis\"?"),
-        ("verification = \"analysis\"\nlimit = 1\n", "6:9: requirements.N-1.limit: a requirement that is verified by analysis has none"),
+        (
+            "verification = \"analysis\"\nlimit = 1\n",
+            "6:9: requirements.N-1.limit: a requirement that is verified by analysis has none",
+        ),
         ("verification = \"test\"\n", "requirements.N-1.measure: missing"),
-        ("verification = \"analysis\"\nattributes = { UID = \"x\" }\n", "requirements.N-1.attributes.UID: stands for a key"),
-        ("verification = \"analysis\"\nattributes = { VERIFICATION = \"x\" }\n", "stands for a key"),
-        ("verification = \"analysis\"\nparents = \"x\"\n", "6:11: requirements.N-1.parents: found \"x\", expected an array of ids"),
-        ("verification = \"analysis\"\ntitle = \"a\\nb\"\n", "6:9: requirements.N-1.title: found several lines, expected one"),
-        ("verification = \"analysis\"\nclause = \"a\\u0007\"\n", "found the control character '\\u{7}'"),
+        (
+            "verification = \"analysis\"\nattributes = { UID = \"x\" }\n",
+            "requirements.N-1.attributes.UID: stands for a key",
+        ),
+        (
+            "verification = \"analysis\"\nattributes = { VERIFICATION = \"x\" }\n",
+            "stands for a key",
+        ),
+        (
+            "verification = \"analysis\"\nparents = \"x\"\n",
+            "6:11: requirements.N-1.parents: found \"x\", expected an array of ids",
+        ),
+        (
+            "verification = \"analysis\"\ntitle = \"a\\nb\"\n",
+            "6:9: requirements.N-1.title: found several lines, expected one",
+        ),
+        (
+            "verification = \"analysis\"\nclause = \"a\\u0007\"\n",
+            "found the control character '\\u{7}'",
+        ),
     ] {
         let found = problems(&format!("{HEAD}{rest}")).join("\n");
         assert!(found.contains(expected), "{rest}: {found}");
@@ -111,10 +153,14 @@ fn each_key_says_what_it_expects() {
 
 #[test]
 fn attributes_have_to_be_of_their_kind() {
-    let define = "schema = 1\n[[attributes]]\nname = \"P\"\ntype = \"choice\"\noptions = [\"a\", \"b\"]\n";
+    let define =
+        "schema = 1\n[[attributes]]\nname = \"P\"\ntype = \"choice\"\noptions = [\"a\", \"b\"]\n";
     let one = "[[requirements]]\nid = \"N\"\ntext = \"x\"\nverification = \"analysis\"\n";
     let text = format!("{define}{one}attributes = {{ P = \"c\" }}\n");
-    assert_eq!(problems(&text), ["r.toml:10:20: requirements.N.attributes.P: found c, expected one of a, b"]);
+    assert_eq!(
+        problems(&text),
+        ["r.toml:10:20: requirements.N.attributes.P: found c, expected one of a, b"]
+    );
     let text = "schema = 1\n[[attributes]]\nname = \"P\"\ntype = \"chice\"\n";
     assert!(problems(text)[0].contains("did you mean \"choice\"?"));
     let text = "schema = 1\n[[attributes]]\nname = \"P\"\ntype = \"choice\"\n";
@@ -124,7 +170,12 @@ fn attributes_have_to_be_of_their_kind() {
 #[test]
 fn a_newer_missing_or_older_schema_is_refused_in_plain_words() {
     let newer = problems("schema = 2\nwhatever = 3\n");
-    assert_eq!(newer, ["r.toml:1:10: schema: the file is of version 2, and this Octant reads version 1: it takes a newer Octant"]);
+    assert_eq!(
+        newer,
+        [
+            "r.toml:1:10: schema: the file is of version 2, and this Octant reads version 1: it takes a newer Octant"
+        ]
+    );
     assert_eq!(problems(""), ["r.toml:1:1: schema: missing, expected 1"]);
     assert_eq!(problems("schema = 0"), ["r.toml:1:10: schema: found version 0, expected 1"]);
     assert_eq!(problems("schema = \"1\""), ["r.toml:1:10: schema: found \"1\", expected 1"]);
@@ -140,7 +191,9 @@ impl Checker for OnlyDrift {
 
     fn limit(&self, _: &str, limit: &Limit) -> Result<(), String> {
         match limit {
-            Limit::Quantity(text) if !text.ends_with("nmi") => Err(format!("found {text:?}, expected nmi")),
+            Limit::Quantity(text) if !text.ends_with("nmi") => {
+                Err(format!("found {text:?}, expected nmi"))
+            }
             _ => Ok(()),
         }
     }
@@ -161,7 +214,9 @@ fn measures_and_units_are_asked_of_who_knows_them() {
 
 #[test]
 fn a_percentage_is_the_decimal_that_is_written() {
-    for (text, value) in [("95 %", 0.95), ("86.4%", 0.864), ("99.999 %", 0.99999), ("0.1 %", 0.001), ("5 %", 0.05)] {
+    for (text, value) in
+        [("95 %", 0.95), ("86.4%", 0.864), ("99.999 %", 0.99999), ("0.1 %", 0.001), ("5 %", 0.05)]
+    {
         assert_eq!(probability(text), Ok(value));
         assert_eq!(probability(&percent(value)), Ok(value));
     }
@@ -205,7 +260,10 @@ fn a_broken_sdoc_is_told_with_its_line() {
          VERSION, DATE, CLASSIFICATION, REQ_PREFIX, PREFIX, ROOT, ENABLE_MID, RELATION_FIELD, MARKUP, \
          AUTO_LEVELS, LAYOUT, VIEW_STYLE, REQUIREMENT_STYLE, NODE_IN_TOC, REQUIREMENT_IN_TOC, DEFAULT_VIEW"
     );
-    assert!(said(&format!("{head}[[/SECTION]]\n")).contains("found the end of SECTION, and none is open"));
+    assert!(
+        said(&format!("{head}[[/SECTION]]\n"))
+            .contains("found the end of SECTION, and none is open")
+    );
 }
 
 #[test]
@@ -235,16 +293,35 @@ fn what_an_import_leaves_out_is_told() {
 #[test]
 fn a_broken_reqif_is_told_with_its_line() {
     let said = |text: &str| reqif::read(text, "r.reqif").unwrap_err().to_string();
-    assert!(said("<REQ-IF>\n<a></b>").starts_with("r.reqif:2:4: not XML: "), "{}", said("<REQ-IF>\n<a></b>"));
-    assert!(said("<html/>").starts_with("r.reqif:1:1: found html of the namespace \"\", expected REQ-IF of "));
+    assert!(
+        said("<REQ-IF>\n<a></b>").starts_with("r.reqif:2:4: not XML: "),
+        "{}",
+        said("<REQ-IF>\n<a></b>")
+    );
+    assert!(
+        said("<html/>")
+            .starts_with("r.reqif:1:1: found html of the namespace \"\", expected REQ-IF of ")
+    );
     let one = Requirement::new("N-1", "x", Verification::Analysis);
     let all = Requirements { requirements: vec![one], ..Requirements::default() };
     let good = reqif::write(&all, "2026-01-31T12:00:00Z").unwrap();
     let line = |of: &str| good.lines().position(|line| line.contains(of)).unwrap() + 1;
     for (from, to, expected) in [
-        ("<SPEC-OBJECT-REF>octant-N-1<", "<SPEC-OBJECT-REF>gone<", "the hierarchy has an object \"gone\" that isn't in the file"),
-        ("<SPEC-OBJECT-TYPE-REF>octant-t-octant-REQUIREMENT<", "<SPEC-OBJECT-TYPE-REF>gone<", "the object \"octant-N-1\" is of a type \"gone\" that isn't in the file"),
-        ("<ATTRIBUTE-DEFINITION-XHTML-REF>", "<ATTRIBUTE-DEFINITION-XHTML-REF>gone", "that no type in the file has"),
+        (
+            "<SPEC-OBJECT-REF>octant-N-1<",
+            "<SPEC-OBJECT-REF>gone<",
+            "the hierarchy has an object \"gone\" that isn't in the file",
+        ),
+        (
+            "<SPEC-OBJECT-TYPE-REF>octant-t-octant-REQUIREMENT<",
+            "<SPEC-OBJECT-TYPE-REF>gone<",
+            "the object \"octant-N-1\" is of a type \"gone\" that isn't in the file",
+        ),
+        (
+            "<ATTRIBUTE-DEFINITION-XHTML-REF>",
+            "<ATTRIBUTE-DEFINITION-XHTML-REF>gone",
+            "that no type in the file has",
+        ),
         ("<SPEC-OBJECT IDENTIFIER=\"octant-N-1\"", "<SPEC-OBJECT", "SPEC-OBJECT has no IDENTIFIER"),
     ] {
         assert!(good.contains(from), "{from}\n{good}");
@@ -263,7 +340,11 @@ fn what_a_format_has_no_place_for_is_refused() {
         ..Requirements::default()
     };
     let error = sdoc::write(&of("§1", "x")).unwrap_err().to_string();
-    assert!(error.starts_with("failed to write sdoc: requirement §1: its id \"§1\" is none of StrictDoc's"));
+    assert!(
+        error.starts_with(
+            "failed to write sdoc: requirement §1: its id \"§1\" is none of StrictDoc's"
+        )
+    );
     let error = sdoc::write(&of("A", "a\n<<<\nb")).unwrap_err().to_string();
     assert!(error.contains("STATEMENT has a line that begins with <<<"), "{error}");
     let mut all = of("A", "x");

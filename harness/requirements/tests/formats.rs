@@ -6,9 +6,9 @@ use octant_requirements::requirement::{
     Requirements, Verification,
 };
 use octant_requirements::{file, reqif, sdoc};
-use proptest::prelude::*;
 use proptest::collection::vec;
 use proptest::option::of as maybe;
+use proptest::prelude::*;
 
 /// One line as people write it, without space around it.
 fn line() -> impl Strategy<Value = String> {
@@ -63,7 +63,11 @@ fn attributes() -> Vec<(Definition, Vec<Vec<String>>)> {
     vec![
         define("STATUS", Kind::Text, &[&["Draft"], &["In µ-review"]]),
         define("Owner of it", Kind::Text, &[&["A. Person"]]),
-        define("Priority", Kind::Choice(options(&["high", "low & slow"])), &[&["high"], &["low & slow"]]),
+        define(
+            "Priority",
+            Kind::Choice(options(&["high", "low & slow"])),
+            &[&["high"], &["low & slow"]],
+        ),
         define("Phases", Kind::Choices(options(&["1a", "1b", "2"])), &[&["1a", "2"], &["1b"]]),
         define("Effort", Kind::Integer, &[&["-12"]]),
         define("Weight", Kind::Real, &[&["1.5e-3"]]),
@@ -81,9 +85,17 @@ fn requirement(index: usize) -> impl Strategy<Value = Requirement> {
     );
     let all = attributes();
     let picks = vec(maybe(any::<prop::sample::Index>()), all.len());
-    let parents = vec((0..=index, maybe(Just("Refines".to_owned()))), 0..if index == 0 { 1 } else { 3 });
+    let parents =
+        vec((0..=index, maybe(Just("Refines".to_owned()))), 0..if index == 0 { 1 } else { 3 });
     (names, verification(), place, picks, parents, "[A-Z]{2,4}[-/.: ()]?[0-9]").prop_map(
-        move |((title, text, clause, rationale), verification, (section, kind, mid), picks, parents, id)| {
+        move |(
+            (title, text, clause, rationale),
+            verification,
+            (section, kind, mid),
+            picks,
+            parents,
+            id,
+        )| {
             let attributes = all
                 .iter()
                 .zip(picks)
@@ -114,7 +126,14 @@ fn requirement(index: usize) -> impl Strategy<Value = Requirement> {
 
 fn requirements() -> impl Strategy<Value = Requirements> {
     let all = (0usize..6).prop_flat_map(|n| (0..n).map(requirement).collect::<Vec<_>>());
-    (name(), all).prop_map(|(title, mut requirements)| {
+    let head = prop::sample::subsequence(
+        vec!["VERSION", "DATE", "OPTIONS.MARKUP", "METADATA.Author"],
+        0..=4,
+    );
+    let document = (head, name()).prop_map(|(keys, value)| {
+        keys.into_iter().map(|key| (key.to_owned(), value.clone())).collect::<Vec<_>>()
+    });
+    (name(), document, all).prop_map(|(title, document, mut requirements)| {
         let ids: Vec<String> = requirements.iter().map(|r| r.id.clone()).collect();
         for (at, requirement) in requirements.iter_mut().enumerate() {
             for parent in &mut requirement.parents {
@@ -125,7 +144,7 @@ fn requirements() -> impl Strategy<Value = Requirements> {
         }
         let definitions = attributes().into_iter().map(|(definition, _)| definition);
         let definitions = definitions.filter(|d| d.kind != Kind::Text).collect();
-        Requirements { title, document: Vec::new(), definitions, requirements }
+        Requirements { title, document, definitions, requirements }
     })
 }
 

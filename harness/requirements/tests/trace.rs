@@ -57,13 +57,19 @@ fn the_trace_goes_both_ways() {
     let trace = Trace::new(&requirements, &cases);
     assert_eq!(trace.without_case, ["C", "E"]);
     assert_eq!(trace.without_requirement, ["c3"]);
-    assert_eq!((trace.unknown[0].case.as_str(), trace.unknown[0].requirement.as_str()), ("c2", "X"));
+    assert_eq!(
+        (trace.unknown[0].case.as_str(), trace.unknown[0].requirement.as_str()),
+        ("c2", "X")
+    );
     let row = |id: &str| trace.requirements.iter().find(|row| row.id == id).unwrap();
     assert_eq!(row("A").verdict, Some(Verdict::Fail));
     assert_eq!(row("A").cases[1].recording.as_deref(), Some("runs/c2/recording.mcap"));
     assert_eq!(row("B").verdict, Some(Verdict::Inconclusive));
     assert_eq!(row("B").reason, "0 of 2 checks are inconclusive, 1 missing");
-    assert_eq!((row("C").verdict, row("C").reason.as_str()), (Some(Verdict::Inconclusive), "no case verifies it"));
+    assert_eq!(
+        (row("C").verdict, row("C").reason.as_str()),
+        (Some(Verdict::Inconclusive), "no case verifies it")
+    );
     assert_eq!(row("D").verdict, None);
     assert_eq!(trace.of_case("c1"), [("A", Some(Verdict::Pass)), ("B", Some(Verdict::Pass))]);
     assert_eq!(trace.of_case("c4"), [("B", None)]);
@@ -160,10 +166,16 @@ fn a_campaign_as_a_project_of_strictdoc() {
     assert_eq!(text("cases/c1.toml"), "# @relation(A, B, scope=file)\ncase = \"c1\"\n");
     let report = text("campaign.lit.junit.xml");
     assert!(report.contains("tests=\"2\" failures=\"1\" skipped=\"1\" errors=\"0\""), "{report}");
-    assert!(report.contains("<failure type=\"inconclusive\" message=\"A: pass; B: inconclusive\"/>"), "{report}");
+    assert!(
+        report.contains("<failure type=\"inconclusive\" message=\"A: pass; B: inconclusive\"/>"),
+        "{report}"
+    );
     assert!(report.contains("<property name=\"verifies\" value=\"A, B\"/>"), "{report}");
     let results = text("results.sdoc");
-    assert!(results.contains("UID: c1\nSTATUS: inconclusive\nRECORDING: runs/c1/recording.mcap\n"), "{results}");
+    assert!(
+        results.contains("UID: c1\nSTATUS: inconclusive\nRECORDING: runs/c1/recording.mcap\n"),
+        "{results}"
+    );
     let outside = Trace::new(&requirements, &[case("../c1", &[("A", Verdict::Pass)])]);
     assert!(strictdoc::folder(&requirements, &outside, "T").is_err());
 }

@@ -61,7 +61,8 @@ pub fn difference(first: &[f64], second: &[f64], confidence: f64) -> Option<Diff
     let (value, spread) = (mean(&differences)?, deviation(&differences)?);
     let n = differences.len();
     let half = student(n - 1, confidence)? * spread / libm::sqrt(n as f64);
-    let count = |sign: &dyn Fn(f64) -> bool| differences.iter().filter(|d| sign(**d)).count() as u64;
+    let count =
+        |sign: &dyn Fn(f64) -> bool| differences.iter().filter(|d| sign(**d)).count() as u64;
     let (less, more) = (count(&|d| d < 0.0), count(&|d| d > 0.0));
     Some(Difference {
         mean: Interval { value, low: value - half, high: value + half },

@@ -52,7 +52,9 @@ pub enum SobolError {
         run: usize,
     },
     /// All are the same.
-    #[error("make Sobol indices: the output is the same in all runs, there is no variance to divide")]
+    #[error(
+        "make Sobol indices: the output is the same in all runs, there is no variance to divide"
+    )]
     Constant,
 }
 

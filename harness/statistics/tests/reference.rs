@@ -108,7 +108,8 @@ fn the_normal_distribution_and_its_inverse() {
     }
     for row in rows("normal_cdf") {
         let row = numbers(&row);
-        assert_near(normal::cdf(row[0]), row[1], 2e-14);
+        // Far out the density falls by z² times what z is off by: the last bit of z/√2 is felt.
+        assert_near(normal::cdf(row[0]), row[1], 2.3e-16 * (4.0 + row[0] * row[0]));
     }
     assert_eq!(normal::quantile(0.0), f64::NEG_INFINITY);
     assert_eq!(normal::quantile(1.0), f64::INFINITY);
@@ -174,7 +175,10 @@ fn truncated_distributions_by_their_inverse() {
         for pair in row["rows"].as_array().unwrap() {
             let pair = numbers(pair);
             let Value::Number(found) = factor.at(pair[0]).unwrap() else { panic!("{row}") };
-            assert!((found - pair[1]).abs() < 1e-9 * pair[1].abs().max(1.0), "{row} {pair:?} {found}");
+            assert!(
+                (found - pair[1]).abs() < 1e-9 * pair[1].abs().max(1.0),
+                "{row} {pair:?} {found}"
+            );
         }
     }
 }

@@ -1,9 +1,9 @@
 //! Reads `requirements.toml`.
 
 use super::{Checker, SCHEMA};
-use crate::fields::{self, own_fields};
 use crate::document::{Lines, Problems, Reader, describe};
 use crate::error::{Problem, RequirementsError};
+use crate::fields::{self, own_fields};
 use crate::requirement::{
     Attribute, Check, Comparison, Definition, Ensemble, Kind, Limit, Parent, Requirement,
     Requirements, Verification, probability,
@@ -57,7 +57,11 @@ pub fn read(
     let found = if schema(&root) { document(&root, checker) } else { Requirements::default() };
     let mut problems = problems.all.into_inner();
     problems.sort_by_key(|p| (p.line, p.column));
-    if problems.is_empty() { Ok(found) } else { Err(RequirementsError { file: file.to_owned(), problems }) }
+    if problems.is_empty() {
+        Ok(found)
+    } else {
+        Err(RequirementsError { file: file.to_owned(), problems })
+    }
 }
 
 fn schema(root: &Reader<'_>) -> bool {
@@ -265,9 +269,9 @@ fn parents(table: &Reader<'_>) -> Vec<Parent> {
                 let role = reader.line_of("role");
                 parents.extend(id.map(|id| Parent { id, role }));
             }
-            _ => parents.extend(
-                table.text_of("parents", entry).map(|id| Parent { id, role: None }),
-            ),
+            _ => {
+                parents.extend(table.text_of("parents", entry).map(|id| Parent { id, role: None }))
+            }
         }
     }
     parents
@@ -315,7 +319,8 @@ fn verification(table: &Reader<'_>, checker: &dyn Checker) -> Option<Verificatio
     {
         table.problem("limit", message);
     }
-    let sign = if table.has("comparison") { table.optional("comparison") } else { Some("<=".into()) };
+    let sign =
+        if table.has("comparison") { table.optional("comparison") } else { Some("<=".into()) };
     let comparison = sign.and_then(|sign| {
         let comparison = Comparison::of_sign(&sign);
         if comparison.is_none() {

@@ -3,7 +3,8 @@
 //! The names of attributes are those of the ReqIF implementation guide where it has one
 //! (`ReqIF.ForeignID`, `ReqIF.Name`, `ReqIF.Text`, `ReqIF.ChapterName`), and the fields of
 //! [`crate::sdoc`] for the rest: so StrictDoc turns one file into the other. Enumerations, numbers and
-//! dates of other tools keep their type. Formatting of a text doesn't survive.
+//! dates of other tools keep their type. Formatting and indentation
+//! of a text don't survive.
 
 mod read;
 mod types;

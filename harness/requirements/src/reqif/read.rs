@@ -34,6 +34,9 @@ pub fn read(text: &str, file: &str) -> Result<Imported, RequirementsError> {
     Reader::read(&document).map_err(|(line, message)| fail(line, 1, message))
 }
 
+/// Name and kind of an attribute, its values, and its line.
+type Attributed = (String, Kind, Vec<String>, usize);
+
 /// An object as it was written.
 #[derive(Default)]
 struct Object {
@@ -41,8 +44,7 @@ struct Object {
     identifier: String,
     /// Name of its type.
     kind: String,
-    /// Attributes by name, with the kind and the line of each.
-    values: Vec<(String, Kind, Vec<String>, usize)>,
+    values: Vec<Attributed>,
 }
 
 impl Object {
@@ -72,7 +74,11 @@ impl<'a> Reader<'a> {
         let root = document.root_element();
         let name = root.tag_name();
         if name.name() != "REQ-IF" || name.namespace() != Some(NAMESPACE) {
-            let found = format!("found {} of the namespace {:?}", name.name(), name.namespace().unwrap_or(""));
+            let found = format!(
+                "found {} of the namespace {:?}",
+                name.name(),
+                name.namespace().unwrap_or("")
+            );
             return Err((line(root), format!("{found}, expected REQ-IF of {NAMESPACE}")));
         }
         let header = child(root, "THE-HEADER").and_then(|n| child(n, "REQ-IF-HEADER"));
@@ -83,16 +89,13 @@ impl<'a> Reader<'a> {
         };
         let types = Types::read(content, &line)?;
         let escaped = tool.is_some_and(|tool| tool.trim().eq_ignore_ascii_case("strictdoc"));
-        let mut reader = Reader {
-            document,
-            types,
-            escaped,
-            found: Requirements::default(),
-            notes: Vec::new(),
-        };
+        let mut reader =
+            Reader { document, types, escaped, found: Requirements::default(), notes: Vec::new() };
         reader.content(content)?;
         if child(root, "TOOL-EXTENSIONS").is_some() {
-            reader.notes.push(Note { line: line(root), message: "tool extensions are left out".into() });
+            reader
+                .notes
+                .push(Note { line: line(root), message: "tool extensions are left out".into() });
         }
         Ok(Imported { requirements: reader.found, notes: reader.notes })
     }
@@ -114,7 +117,10 @@ impl<'a> Reader<'a> {
             order.push(id.clone());
             if let Some(first) = objects.insert(id.clone(), object) {
                 let found = format!("the object {id:?} is there a second time");
-                return Err((self.line(node), format!("{found}, the first is in line {}", first.line)));
+                return Err((
+                    self.line(node),
+                    format!("{found}, the first is in line {}", first.line),
+                ));
             }
         }
         let ids: HashMap<String, String> =
@@ -129,6 +135,14 @@ impl<'a> Reader<'a> {
             specifications.first().map_or_else(|| "Requirements".to_owned(), |node| title(*node));
         if several {
             self.found.title = "Requirements".to_owned();
+            self.note(
+                self.line(content),
+                "several documents become one, their attributes are left out",
+            );
+        } else if let [node] = specifications.as_slice() {
+            let values = self.values(*node, "the document")?;
+            let document = values.into_iter().map(|(name, _, texts, _)| (name, texts.join(", ")));
+            self.found.document = document.collect();
         }
         let mut placed: HashSet<String> = HashSet::new();
         for specification in &specifications {
@@ -140,7 +154,10 @@ impl<'a> Reader<'a> {
                 section.retain(|(at, _)| *at < depth);
                 let id = reference(node, "OBJECT").unwrap_or_default();
                 if !placed.insert(id.to_owned()) {
-                    self.note(self.line(node), format!("the object {id} is in the hierarchy again"));
+                    self.note(
+                        self.line(node),
+                        format!("the object {id} is in the hierarchy again"),
+                    );
                     continue;
                 }
                 let Some(object) = objects.remove(id) else {
@@ -159,7 +176,10 @@ impl<'a> Reader<'a> {
         }
         for id in order {
             let Some(object) = objects.remove(&id) else { continue };
-            self.note(object.line, format!("the object {id} is in no specification: it stands at the end"));
+            self.note(
+                object.line,
+                format!("the object {id} is in no specification: it stands at the end"),
+            );
             let parents = parents.remove(&id).unwrap_or_default();
             if chapter(&object).is_none() {
                 self.requirement(object, Vec::new(), parents)?;
@@ -169,7 +189,10 @@ impl<'a> Reader<'a> {
     }
 
     /// The nodes of a specification with their depth, from 1, in the order of the document.
-    fn hierarchy<'n>(&self, specification: Node<'n, 'n>) -> Result<Vec<(usize, Node<'n, 'n>)>, Wrong> {
+    fn hierarchy<'n>(
+        &self,
+        specification: Node<'n, 'n>,
+    ) -> Result<Vec<(usize, Node<'n, 'n>)>, Wrong> {
         let mut nodes = Vec::new();
         let mut open: Vec<(usize, Node<'n, 'n>)> =
             within(specification, "CHILDREN").map(|node| (1, node)).collect();
@@ -191,23 +214,13 @@ impl<'a> Reader<'a> {
         let id = identifier(node, &|n| self.line(n))?.to_owned();
         let of = reference(node, "TYPE").unwrap_or_default();
         let Some(object_type) = self.types.objects.get(of) else {
-            return Err((line, format!("the object {id:?} is of a type {of:?} that isn't in the file")));
+            return Err((
+                line,
+                format!("the object {id:?} is of a type {of:?} that isn't in the file"),
+            ));
         };
         let kind = object_type.name.clone();
-        let mut values = Vec::new();
-        for value in within(node, "VALUES") {
-            let at = self.line(value);
-            let definition = reference(value, "DEFINITION").unwrap_or_default();
-            let Some(known) = self.types.attributes.get(definition) else {
-                let found = format!("the object {id:?} has an attribute {definition:?}");
-                return Err((at, format!("{found} that no type in the file has")));
-            };
-            let (name, kind) = (known.name.clone(), known.kind.clone());
-            let texts = self.value(value, &name, &id)?;
-            if texts.iter().any(|text| !text.is_empty()) {
-                values.push((name, kind, texts, at));
-            }
-        }
+        let mut values = self.values(node, &id)?;
         // In the order in which the type has them, whatever that of the object is.
         let rank: HashMap<&str, usize> = self.types.objects[of]
             .attributes
@@ -217,6 +230,25 @@ impl<'a> Reader<'a> {
             .collect();
         values.sort_by_key(|(name, ..)| rank.get(name.as_str()).copied());
         Ok(Object { line, identifier: id, kind, values })
+    }
+
+    /// The attributes of an object, or of a document.
+    fn values(&mut self, node: Node<'_, '_>, id: &str) -> Result<Vec<Attributed>, Wrong> {
+        let mut values = Vec::new();
+        for value in within(node, "VALUES") {
+            let at = self.line(value);
+            let definition = reference(value, "DEFINITION").unwrap_or_default();
+            let Some(known) = self.types.attributes.get(definition) else {
+                let found = format!("{id} has an attribute {definition:?}");
+                return Err((at, format!("{found} that no type in the file has")));
+            };
+            let (name, kind) = (known.name.clone(), known.kind.clone());
+            let texts = self.value(value, &name, id)?;
+            if texts.iter().any(|text| !text.is_empty()) {
+                values.push((name, kind, texts, at));
+            }
+        }
+        Ok(values)
     }
 
     /// The texts of an attribute's value.
@@ -297,7 +329,10 @@ impl<'a> Reader<'a> {
             self.note(line, format!("the object has no {FOREIGN_ID}: it is called {id}"));
         }
         if self.found.requirements.iter().any(|r| r.id == id) {
-            return Err((line, format!("the id {id:?} is there a second time, expected unique ids")));
+            return Err((
+                line,
+                format!("the id {id:?} is there a second time, expected unique ids"),
+            ));
         }
         let title = object.take(NAME);
         let Some(text) = object.take(TEXT).or_else(|| title.clone()) else {

@@ -64,10 +64,9 @@ impl Types {
             let mut options = Vec::new();
             for value in within(datatype, "SPECIFIED-VALUES") {
                 let id = identifier(value, line)?;
-                let key = || {
-                    within(value, "PROPERTIES").next().and_then(|p| p.attribute("KEY"))
-                };
-                let name = value.attribute("LONG-NAME").filter(|n| !n.trim().is_empty()).or_else(key);
+                let key = || within(value, "PROPERTIES").next().and_then(|p| p.attribute("KEY"));
+                let name =
+                    value.attribute("LONG-NAME").filter(|n| !n.trim().is_empty()).or_else(key);
                 let name = name.unwrap_or(id).trim().to_owned();
                 types.options.insert(id.to_owned(), name.clone());
                 options.push(name);
@@ -83,7 +82,10 @@ impl Types {
                     let attributes = types.attributes_of(node, &enumerations, line)?;
                     types.objects.insert(id.to_owned(), ObjectType { name, attributes });
                 }
-                // Attributes of documents and relations have no place here.
+                "SPECIFICATION-TYPE" => {
+                    types.attributes_of(node, &enumerations, line)?;
+                }
+                // Attributes of relations have no place here.
                 _ => {}
             }
         }
@@ -110,7 +112,8 @@ impl Types {
                 Some("ENUMERATION") => {
                     let datatype = reference(attribute, "TYPE").unwrap_or_default();
                     let Some(options) = enumerations.get(datatype) else {
-                        let found = format!("the attribute {name:?} is of an enumeration {datatype:?}");
+                        let found =
+                            format!("the attribute {name:?} is of an enumeration {datatype:?}");
                         return Err((line(attribute), format!("{found} that isn't in the file")));
                     };
                     match attribute.attribute("MULTI-VALUED") {
@@ -118,7 +121,12 @@ impl Types {
                         _ => Kind::Choice(options.clone()),
                     }
                 }
-                _ => return Err((line(attribute), format!("found {tag}, expected an ATTRIBUTE-DEFINITION"))),
+                _ => {
+                    return Err((
+                        line(attribute),
+                        format!("found {tag}, expected an ATTRIBUTE-DEFINITION"),
+                    ));
+                }
             };
             self.attributes.insert(id.to_owned(), Definition { name, kind });
             attributes.push(id.to_owned());

@@ -46,8 +46,12 @@ pub fn write(requirements: &Requirements, time: &str) -> Result<String, ExportEr
                 return Err(wrong(format!("{} is {found:?}, expected {expected}", attribute.name)));
             }
         }
-        if let Some(parent) = requirement.parents.iter().find(|p| requirements.get(&p.id).is_none()) {
-            let message = format!("its parent {:?} isn't in this document, and a relation has both ends in one file", parent.id);
+        if let Some(parent) = requirement.parents.iter().find(|p| requirements.get(&p.id).is_none())
+        {
+            let message = format!(
+                "its parent {:?} isn't in this document, and a relation has both ends in one file",
+                parent.id
+            );
             return Err(wrong(message));
         }
         if !seen.insert(id.clone()) {
@@ -194,13 +198,18 @@ impl File<'_> {
         for (tag, id, more) in [
             ("STRING", "octant-d-text", &[("MAX-LENGTH", "1000000")][..]),
             ("XHTML", "octant-d-xhtml", &[]),
-            ("INTEGER", "octant-d-integer", &[("MIN", "-9223372036854775808"), ("MAX", "9223372036854775807")]),
+            (
+                "INTEGER",
+                "octant-d-integer",
+                &[("MIN", "-9223372036854775808"), ("MAX", "9223372036854775807")],
+            ),
             ("REAL", "octant-d-real", &[("ACCURACY", "17"), ("MIN", "-1e308"), ("MAX", "1e308")]),
             ("BOOLEAN", "octant-d-boolean", &[]),
             ("DATE", "octant-d-date", &[]),
         ] {
             let name = format!("DATATYPE-DEFINITION-{tag}");
-            let mut attributes = vec![("IDENTIFIER", id), ("LAST-CHANGE", time), ("LONG-NAME", tag)];
+            let mut attributes =
+                vec![("IDENTIFIER", id), ("LAST-CHANGE", time), ("LONG-NAME", tag)];
             attributes.extend(more);
             self.empty(&name, &attributes)?;
         }
@@ -210,13 +219,15 @@ impl File<'_> {
             };
             let id = format!("octant-d-{index}");
             let name = self.columns[index].name.clone();
-            let attributes = [("IDENTIFIER", id.as_str()), ("LAST-CHANGE", time), ("LONG-NAME", &name)];
+            let attributes =
+                [("IDENTIFIER", id.as_str()), ("LAST-CHANGE", time), ("LONG-NAME", &name)];
             self.open("DATATYPE-DEFINITION-ENUMERATION", &attributes)?;
             self.open("SPECIFIED-VALUES", &[])?;
             for (number, option) in options.iter().enumerate() {
                 let id = format!("octant-d-{index}-v-{number}");
                 let key = number.to_string();
-                let attributes = [("IDENTIFIER", id.as_str()), ("LAST-CHANGE", time), ("LONG-NAME", option)];
+                let attributes =
+                    [("IDENTIFIER", id.as_str()), ("LAST-CHANGE", time), ("LONG-NAME", option)];
                 self.open("ENUM-VALUE", &attributes)?;
                 self.open("PROPERTIES", &[])?;
                 self.empty("EMBEDDED-VALUE", &[("KEY", &key), ("OTHER-CONTENT", "")])?;
@@ -243,8 +254,19 @@ impl File<'_> {
     fn types(&mut self) -> io::Result<()> {
         let time = self.time;
         self.open("SPEC-TYPES", &[])?;
-        self.empty("SPECIFICATION-TYPE", &named(time, "octant-t-specification", "Specification"))?;
         let chapter = "ATTRIBUTE-DEFINITION-STRING";
+        self.open("SPECIFICATION-TYPE", &named(time, "octant-t-specification", "Specification"))?;
+        if !self.requirements.document.is_empty() {
+            self.open("SPEC-ATTRIBUTES", &[])?;
+            for (index, (key, _)) in self.requirements.document.iter().enumerate() {
+                let id = format!("octant-t-specification-a-{index}");
+                self.open("ATTRIBUTE-DEFINITION-XHTML", &named(time, &id, key))?;
+                self.reference("TYPE", "DATATYPE-DEFINITION-XHTML-REF", "octant-d-xhtml")?;
+                self.close("ATTRIBUTE-DEFINITION-XHTML")?;
+            }
+            self.close("SPEC-ATTRIBUTES")?;
+        }
+        self.close("SPECIFICATION-TYPE")?;
         self.open("SPEC-OBJECT-TYPE", &named(time, "octant-t-section", "SECTION"))?;
         self.open("SPEC-ATTRIBUTES", &[])?;
         self.open(chapter, &named(time, "octant-t-section-a-title", CHAPTER))?;
@@ -275,7 +297,10 @@ impl File<'_> {
         }
         for (index, role) in self.roles().iter().enumerate() {
             let name = role.as_deref().unwrap_or("Parent");
-            self.empty("SPEC-RELATION-TYPE", &named(time, &format!("octant-t-relation-{index}"), name))?;
+            self.empty(
+                "SPEC-RELATION-TYPE",
+                &named(time, &format!("octant-t-relation-{index}"), name),
+            )?;
         }
         self.close("SPEC-TYPES")
     }
@@ -290,7 +315,9 @@ impl File<'_> {
             Kind::Real => ("REAL", "octant-d-real"),
             Kind::Boolean => ("BOOLEAN", "octant-d-boolean"),
             Kind::Date => ("DATE", "octant-d-date"),
-            Kind::Choice(_) | Kind::Choices(_) => return ("ENUMERATION", format!("octant-d-{index}")),
+            Kind::Choice(_) | Kind::Choices(_) => {
+                return ("ENUMERATION", format!("octant-d-{index}"));
+            }
         };
         (tag, id.to_owned())
     }
@@ -399,7 +426,11 @@ impl File<'_> {
                 let id = format!("octant-relation-{number}");
                 number += 1;
                 self.open("SPEC-RELATION", &[("IDENTIFIER", &id), ("LAST-CHANGE", self.time)])?;
-                self.reference("TYPE", "SPEC-RELATION-TYPE-REF", &format!("octant-t-relation-{role}"))?;
+                self.reference(
+                    "TYPE",
+                    "SPEC-RELATION-TYPE-REF",
+                    &format!("octant-t-relation-{role}"),
+                )?;
                 self.reference("SOURCE", "SPEC-OBJECT-REF", &object_id(requirement))?;
                 self.reference("TARGET", "SPEC-OBJECT-REF", &object_id(target))?;
                 self.close("SPEC-RELATION")?;
@@ -415,6 +446,19 @@ impl File<'_> {
         let attributes =
             [("IDENTIFIER", "octant-specification"), ("LAST-CHANGE", time), ("LONG-NAME", title)];
         self.open("SPECIFICATION", &attributes)?;
+        if !requirements.document.is_empty() {
+            self.open("VALUES", &[])?;
+            for (index, (_, value)) in requirements.document.iter().enumerate() {
+                let id = format!("octant-t-specification-a-{index}");
+                self.open("ATTRIBUTE-VALUE-XHTML", &[])?;
+                self.reference("DEFINITION", "ATTRIBUTE-DEFINITION-XHTML-REF", &id)?;
+                self.open("THE-VALUE", &[])?;
+                xhtml::write(&mut self.out, value)?;
+                self.close("THE-VALUE")?;
+                self.close("ATTRIBUTE-VALUE-XHTML")?;
+            }
+            self.close("VALUES")?;
+        }
         self.reference("TYPE", "SPECIFICATION-TYPE-REF", "octant-t-specification")?;
         self.open("CHILDREN", &[])?;
         let mut open: Vec<&str> = Vec::new();

@@ -38,8 +38,8 @@ pub(super) fn read(value: Node<'_, '_>) -> Plain {
             let name = edge.tag_name().name();
             match name {
                 "br" => plain.text.push('\n'),
-                "div" | "p" | "li" | "ul" | "ol" | "h1" | "h2" | "h3" | "h4" | "h5" | "h6" | "tr"
-                | "table" | "pre" | "blockquote" | "td" => block(&mut plain.text),
+                "div" | "p" | "li" | "ul" | "ol" | "h1" | "h2" | "h3" | "h4" | "h5" | "h6"
+                | "tr" | "table" | "pre" | "blockquote" | "td" => block(&mut plain.text),
                 _ => {}
             }
             let plainly = matches!(name, "br" | "div" | "p");

@@ -5,9 +5,7 @@ use super::{HEAD, OPTIONS, REQUIREMENT};
 use crate::document::{control, normal};
 use crate::error::{Imported, Note, Problem, RequirementsError};
 use crate::fields as field;
-use crate::requirement::{
-    Attribute, Kind, Parent, Requirement, Requirements, Verification,
-};
+use crate::requirement::{Attribute, Kind, Parent, Requirement, Requirements, Verification};
 use std::collections::HashMap;
 
 /// Reads the text of an `.sdoc`.
@@ -152,7 +150,8 @@ impl<'a> Parser<'a> {
                     _ => {
                         let known: Vec<&str> = HEAD.into_iter().chain(OPTIONS).collect();
                         let like = crate::error::suggestion(key, &known);
-                        return self.wrong(format!("unknown field {key:?} of the document, {like}"));
+                        return self
+                            .wrong(format!("unknown field {key:?} of the document, {like}"));
                     }
                 }
             } else {
@@ -236,7 +235,10 @@ impl<'a> Parser<'a> {
                 Some(open) if open.kind == kind => Ok(()),
                 Some(open) => Err((
                     line,
-                    format!("found the end of {kind}, expected that of {} of line {}", open.kind, open.line),
+                    format!(
+                        "found the end of {kind}, expected that of {} of line {}",
+                        open.kind, open.line
+                    ),
                 )),
                 None => Err((line, format!("found the end of {kind}, and none is open"))),
             };
@@ -249,7 +251,8 @@ impl<'a> Parser<'a> {
         };
         self.at += 1;
         if kind == "DOCUMENT_FROM_FILE" {
-            let message = format!("another document is not read: {}", self.peek().unwrap_or_default());
+            let message =
+                format!("another document is not read: {}", self.peek().unwrap_or_default());
             self.note(line, message);
             self.at += 1;
             return Ok(());
@@ -386,7 +389,10 @@ impl<'a> Parser<'a> {
                 Verification::Open
             }
             Err((at, message)) => {
-                self.note(at, format!("{}: {message}: how it is verified has to be added", uid.value));
+                self.note(
+                    at,
+                    format!("{}: {message}: how it is verified has to be added", uid.value),
+                );
                 Verification::Open
             }
         };
@@ -427,8 +433,7 @@ impl Written {
 
 /// How a node says that it is verified, and the fields that say it; `None`: it doesn't say.
 fn check(fields: &[Written]) -> Result<Option<(Verification, Vec<&'static str>)>, Wrong> {
-    let of = |name: &str| {
-        fields.iter().find(|f| f.name == name).map(|f| (f.line, f.value.as_str()))
-    };
+    let of =
+        |name: &str| fields.iter().find(|f| f.name == name).map(|f| (f.line, f.value.as_str()));
     crate::fields::verification(&of)
 }

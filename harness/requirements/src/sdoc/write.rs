@@ -20,12 +20,10 @@ pub fn write(requirements: &Requirements) -> Result<String, ExportError> {
     grammar(&mut out, requirements, &columns);
     let mut open: Vec<&str> = Vec::new();
     for requirement in &requirements.requirements {
-        let wrong = |message: String| ExportError {
-            format: "sdoc",
-            id: requirement.id.clone(),
-            message,
-        };
-        let shared = open.iter().zip(&requirement.section).take_while(|(a, b)| **a == b.as_str()).count();
+        let wrong =
+            |message: String| ExportError { format: "sdoc", id: requirement.id.clone(), message };
+        let shared =
+            open.iter().zip(&requirement.section).take_while(|(a, b)| **a == b.as_str()).count();
         for _ in shared..open.len() {
             out.push_str("\n[[/SECTION]]\n");
         }
@@ -47,7 +45,11 @@ pub fn write(requirements: &Requirements) -> Result<String, ExportError> {
 
 fn head(out: &mut String, requirements: &Requirements) {
     let entry = |key: &str| {
-        requirements.document.iter().find(|(k, _)| k == key).map(|(_, value)| value.replace('\n', " "))
+        requirements
+            .document
+            .iter()
+            .find(|(k, _)| k == key)
+            .map(|(_, value)| value.replace('\n', " "))
     };
     let line = |out: &mut String, indent: &str, key: &str, value: &str| {
         _ = writeln!(out, "{indent}{key}: {value}");
@@ -188,7 +190,9 @@ fn node(
     }
     let kind = requirement.kind.as_deref().unwrap_or(REQUIREMENT);
     if !legal_kind(kind) {
-        return Err(format!("its kind {kind:?} is none of StrictDoc's: words of capitals, joined by _"));
+        return Err(format!(
+            "its kind {kind:?} is none of StrictDoc's: words of capitals, joined by _"
+        ));
     }
     _ = write!(out, "\n[{kind}]\n");
     let mut own: Vec<(&str, String)> = Vec::new();
@@ -209,7 +213,9 @@ fn node(
         if let Some((_, value)) = of(column) {
             entry(out, column, value)?;
         }
-        let Some(attribute) = requirement.attributes.iter().find(|a| a.name == *name) else { continue };
+        let Some(attribute) = requirement.attributes.iter().find(|a| a.name == *name) else {
+            continue;
+        };
         if matches!(kind, Kind::Choices(_)) {
             entry(out, column, &choices(&attribute.values))?;
         } else {

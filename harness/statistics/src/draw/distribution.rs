@@ -102,7 +102,9 @@ impl Factor {
         match &self.distribution {
             Distribution::Uniform { low, high } => {
                 if !(low < high && (high - low).is_finite()) {
-                    return Err(self.wrong(format!("it is even from {low} to {high}: there is nothing between")));
+                    return Err(self.wrong(format!(
+                        "it is even from {low} to {high}: there is nothing between"
+                    )));
                 }
             }
             Distribution::Normal { mean, sigma } => {
@@ -117,7 +119,9 @@ impl Factor {
             }
             Distribution::Choice { weights } => {
                 if let Some(weight) = weights.iter().find(|w| !(**w >= 0.0 && w.is_finite())) {
-                    return Err(self.wrong(format!("found the weight {weight}, expected 0 or more")));
+                    return Err(
+                        self.wrong(format!("found the weight {weight}, expected 0 or more"))
+                    );
                 }
                 positive("the sum of the weights", weights.iter().sum())?;
                 if self.low.is_some() || self.high.is_some() {
@@ -135,7 +139,9 @@ impl Factor {
         if !(from < to) {
             let limit = |x: Option<f64>, none: &str| x.map_or(none.to_owned(), |x| x.to_string());
             let (low, high) = (limit(self.low, "-inf"), limit(self.high, "inf"));
-            return Err(self.wrong(format!("nothing of the distribution is between {low} and {high}")));
+            return Err(
+                self.wrong(format!("nothing of the distribution is between {low} and {high}"))
+            );
         }
         Ok(())
     }
@@ -146,7 +152,11 @@ impl Factor {
             Distribution::Uniform { low, high } => (x - low) / (high - low),
             Distribution::Normal { mean, sigma } => (x - mean) / sigma,
             Distribution::LogNormal { median, sigma_ln } => {
-                if x > 0.0 { libm::log(x / median) / sigma_ln } else { f64::NEG_INFINITY }
+                if x > 0.0 {
+                    libm::log(x / median) / sigma_ln
+                } else {
+                    f64::NEG_INFINITY
+                }
             }
             Distribution::Choice { .. } => x,
         }
@@ -163,10 +173,16 @@ impl Factor {
     fn range(&self, mirrored: bool) -> (f64, f64) {
         let at = |limit: Option<f64>, none: f64| match limit.map(|x| self.standard(x)) {
             None => none,
-            Some(z) if matches!(self.distribution, Distribution::Uniform { .. }) => z.clamp(0.0, 1.0),
+            Some(z) if matches!(self.distribution, Distribution::Uniform { .. }) => {
+                z.clamp(0.0, 1.0)
+            }
             Some(z) => normal::cdf(if mirrored { -z } else { z }),
         };
-        if mirrored { (at(self.high, 0.0), at(self.low, 1.0)) } else { (at(self.low, 0.0), at(self.high, 1.0)) }
+        if mirrored {
+            (at(self.high, 0.0), at(self.low, 1.0))
+        } else {
+            (at(self.low, 0.0), at(self.high, 1.0))
+        }
     }
 
     /// The value at a probability of (0, 1) of the truncated distribution.

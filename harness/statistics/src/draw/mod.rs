@@ -106,8 +106,7 @@ pub fn latin_hypercube(
     if runs == 0 {
         return Err(DrawError::Runs { found: 0, expected: 1 });
     }
-    let mut columns: Vec<Vec<f64>> =
-        factors.iter().map(|f| column(seed, &f.name, runs)).collect();
+    let mut columns: Vec<Vec<f64>> = factors.iter().map(|f| column(seed, &f.name, runs)).collect();
     correlations.rearrange(&mut columns)?;
     (0..runs)
         .map(|i| factors.iter().zip(&columns).map(|(f, column)| f.at(column[i])).collect())
@@ -121,7 +120,8 @@ fn column(seed: u64, name: &str, runs: usize) -> Vec<f64> {
     let words: Vec<[u64; 4]> = (0..runs as u64).map(|i| words(key, i)).collect();
     let order: Vec<f64> = words.iter().map(|w| uniform(w[0])).collect();
     let ranks = ranks(&order);
-    let place = |(rank, w): (&f64, &[u64; 4])| (libm::floor(rank - 1.0) + uniform(w[1])) / runs as f64;
+    let place =
+        |(rank, w): (&f64, &[u64; 4])| (libm::floor(rank - 1.0) + uniform(w[1])) / runs as f64;
     ranks.iter().zip(&words).map(place).collect()
 }
 
