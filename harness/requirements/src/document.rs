@@ -1,0 +1,228 @@
+//! Tables of a TOML file that know where they stand, and collect what is wrong with them.
+
+use crate::error::{Problem, suggestion};
+use std::cell::RefCell;
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+/// Turns byte offsets into lines and columns, from 1; columns in characters.
+pub(crate) struct Lines<'a> {
+    text: &'a str,
+    starts: Vec<usize>,
+}
+
+impl<'a> Lines<'a> {
+    pub(crate) fn new(text: &'a str) -> Self {
+        let breaks = text.bytes().enumerate().filter(|(_, b)| *b == b'\n').map(|(i, _)| i + 1);
+        Self { text, starts: std::iter::once(0).chain(breaks).collect() }
+    }
+
+    pub(crate) fn place(&self, offset: usize) -> (usize, usize) {
+        let line = self.starts.partition_point(|start| *start <= offset);
+        let start = self.starts[line - 1];
+        (line, self.text.get(start..offset).unwrap_or_default().chars().count() + 1)
+    }
+}
+
+/// What a text is inside: without space around it, and with plain line breaks.
+pub(crate) fn normal(text: &str) -> String {
+    text.replace("\r\n", "\n").replace('\r', "\n").trim().to_owned()
+}
+
+/// What no format of others could hold.
+pub(crate) fn control(text: &str) -> Option<char> {
+    let legal = |c: char| matches!(c, '\n' | '\t') || !c.is_control();
+    text.chars().find(|c| !legal(*c) || matches!(c, '\u{fffe}' | '\u{ffff}'))
+}
+
+/// What a value is, for "found …".
+pub(crate) fn describe(value: &DeValue<'_>) -> String {
+    match value {
+        DeValue::String(text) => format!("{text:?}"),
+        DeValue::Integer(number) => format!("the bare number {number}"),
+        DeValue::Float(number) => format!("the bare number {number}"),
+        DeValue::Boolean(value) => format!("{value}"),
+        DeValue::Datetime(date) => format!("the date {date}"),
+        DeValue::Array(entries) => format!("an array of {}", entries.len()),
+        DeValue::Table(_) => "a table".to_owned(),
+    }
+}
+
+/// Everything that is wrong with a file.
+pub(crate) struct Problems<'a> {
+    pub(crate) lines: Lines<'a>,
+    pub(crate) all: RefCell<Vec<Problem>>,
+}
+
+/// A table of the file.
+#[derive(Clone)]
+pub(crate) struct Reader<'a> {
+    table: &'a DeTable<'a>,
+    /// Where the table begins.
+    at: usize,
+    path: String,
+    problems: &'a Problems<'a>,
+}
+
+impl<'a> Reader<'a> {
+    pub(crate) fn new(
+        table: &'a DeTable<'a>,
+        at: usize,
+        path: &str,
+        problems: &'a Problems<'a>,
+    ) -> Self {
+        Self { table, at, path: path.to_owned(), problems }
+    }
+
+    pub(crate) fn with_path(mut self, path: String) -> Self {
+        self.path = path;
+        self
+    }
+
+    fn path_of(&self, key: &str) -> String {
+        match (self.path.as_str(), key) {
+            ("", key) => key.to_owned(),
+            (path, "") => path.to_owned(),
+            (path, key) => format!("{path}.{key}"),
+        }
+    }
+
+    /// Something is wrong at an offset of the file.
+    fn problem_at(&self, offset: usize, key: &str, message: impl Into<String>) {
+        let place = self.problems.lines.place(offset);
+        self.problems.all.borrow_mut().push(Problem::new(place, self.path_of(key), message));
+    }
+
+    /// Something is wrong with the value of a key, or with the table where the key isn't there.
+    pub(crate) fn problem(&self, key: &str, message: impl Into<String>) {
+        let at = self.get(key).map_or(self.at, |value| value.span().start);
+        self.problem_at(at, key, message);
+    }
+
+    pub(crate) fn problems(&self) -> &'a Problems<'a> {
+        self.problems
+    }
+
+    pub(crate) fn line(&self) -> usize {
+        self.problems.lines.place(self.at).0
+    }
+
+    pub(crate) fn get(&self, key: &str) -> Option<&'a Spanned<DeValue<'a>>> {
+        self.table.iter().find(|(k, _)| k.get_ref() == key).map(|(_, value)| value)
+    }
+
+    pub(crate) fn has(&self, key: &str) -> bool {
+        self.get(key).is_some()
+    }
+
+    /// Keys and values in the order in which they were written.
+    pub(crate) fn entries(&self) -> Vec<(&'a str, &'a Spanned<DeValue<'a>>)> {
+        let mut entries: Vec<_> =
+            self.table.iter().map(|(k, v)| (k.span().start, k.get_ref().as_ref(), v)).collect();
+        entries.sort_by_key(|(at, ..)| *at);
+        entries.into_iter().map(|(_, key, value)| (key, value)).collect()
+    }
+
+    /// Refuses keys that aren't among these.
+    pub(crate) fn known(&self, known: &[&str]) {
+        for (key, _) in self.table.iter() {
+            if !known.contains(&key.get_ref().as_ref()) {
+                let message = format!("unknown key, {}", suggestion(key.get_ref(), known));
+                self.problem_at(key.span().start, key.get_ref(), message);
+            }
+        }
+    }
+
+    /// The text of a value; problems are told of `key`.
+    pub(crate) fn text_of(&self, key: &str, value: &Spanned<DeValue<'_>>) -> Option<String> {
+        let DeValue::String(text) = value.get_ref() else {
+            let found = describe(value.get_ref());
+            self.problem_at(value.span().start, key, format!("found {found}, expected a text"));
+            return None;
+        };
+        let text = normal(text);
+        if text.is_empty() {
+            self.problem_at(value.span().start, key, "found an empty text");
+            return None;
+        }
+        if let Some(c) = control(&text) {
+            let message = format!("found the control character {c:?} in a text");
+            self.problem_at(value.span().start, key, message);
+            return None;
+        }
+        Some(text)
+    }
+
+    /// A text that may be left out; not empty.
+    pub(crate) fn optional(&self, key: &str) -> Option<String> {
+        self.text_of(key, self.get(key)?)
+    }
+
+    /// As [`Reader::optional`], on one line. A tab, which no name of other formats could hold, is a
+    /// space.
+    pub(crate) fn line_of(&self, key: &str) -> Option<String> {
+        let text = self.optional(key)?;
+        if text.contains('\n') {
+            self.problem(key, "found several lines, expected one");
+            return None;
+        }
+        Some(text.replace('\t', " "))
+    }
+
+    /// A text that has to be there.
+    pub(crate) fn required(&self, key: &str, what: &str) -> Option<String> {
+        if !self.has(key) {
+            self.problem_at(self.at, key, format!("missing, expected {what}"));
+        }
+        self.optional(key)
+    }
+
+    /// A text, or an array of texts.
+    pub(crate) fn texts_of(&self, key: &str, value: &Spanned<DeValue<'_>>) -> Vec<String> {
+        match value.get_ref() {
+            DeValue::Array(entries) => {
+                entries.iter().filter_map(|entry| self.text_of(key, entry)).collect()
+            }
+            _ => self.text_of(key, value).into_iter().collect(),
+        }
+    }
+
+    /// The tables of an array of tables, or of an array with inline tables.
+    pub(crate) fn tables(&self, key: &str) -> Vec<Reader<'a>> {
+        let Some(value) = self.get(key) else { return Vec::new() };
+        let DeValue::Array(entries) = value.get_ref() else {
+            let found = describe(value.get_ref());
+            self.problem(key, format!("found {found}, expected tables [[{key}]]"));
+            return Vec::new();
+        };
+        let mut tables = Vec::new();
+        for (index, entry) in entries.iter().enumerate() {
+            let at = entry.span().start;
+            match entry.get_ref() {
+                DeValue::Table(table) => {
+                    let path = self.path_of(&format!("{key}[{index}]"));
+                    tables.push(Self::new(table, at, &path, self.problems));
+                }
+                other => {
+                    let found = describe(other);
+                    self.problem_at(at, key, format!("found {found}, expected a table"));
+                }
+            }
+        }
+        tables
+    }
+
+    /// A table in this one.
+    pub(crate) fn table(&self, key: &str) -> Option<Reader<'a>> {
+        let value = self.get(key)?;
+        match value.get_ref() {
+            DeValue::Table(table) => {
+                Some(Self::new(table, value.span().start, &self.path_of(key), self.problems))
+            }
+            other => {
+                self.problem(key, format!("found {}, expected a table", describe(other)));
+                None
+            }
+        }
+    }
+}

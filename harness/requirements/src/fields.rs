@@ -1,0 +1,100 @@
+//! Fields by which the requirement's own keys are known in the formats of others.
+
+use crate::requirement::{
+    Check, Comparison, Ensemble, Limit, Requirement, Verification, percent, probability,
+};
+
+pub(crate) const MEASURE: &str = "MEASURE";
+pub(crate) const COMPARISON: &str = "COMPARISON";
+pub(crate) const LIMIT: &str = "LIMIT";
+pub(crate) const PASS: &str = "PASS";
+pub(crate) const CONFIDENCE: &str = "CONFIDENCE";
+pub(crate) const VERIFICATION: &str = "VERIFICATION";
+pub(crate) const CLAUSE: &str = "CLAUSE";
+pub(crate) const RATIONALE: &str = "RATIONALE";
+/// Those that every format names in its own way.
+pub(crate) const OF_FORMATS: [&str; 4] = ["MID", "UID", "TITLE", "STATEMENT"];
+/// All, in the order in which they are written.
+pub(crate) const ALL: [&str; 8] =
+    [MEASURE, COMPARISON, LIMIT, PASS, CONFIDENCE, VERIFICATION, CLAUSE, RATIONALE];
+
+/// The fields of a requirement beside id, title and text, as names and values.
+pub(crate) fn own_fields(requirement: &Requirement) -> Vec<(&'static str, String)> {
+    let mut fields = Vec::new();
+    match &requirement.verification {
+        Verification::Test(Check { measure, comparison, limit, ensemble }) => {
+            fields.push((MEASURE, measure.clone()));
+            fields.push((COMPARISON, comparison.sign().to_owned()));
+            fields.push((LIMIT, limit.text()));
+            if let Some(ensemble) = ensemble {
+                fields.push((PASS, percent(ensemble.pass)));
+                fields.push((CONFIDENCE, percent(ensemble.confidence)));
+            }
+        }
+        other @ (Verification::Analysis | Verification::Inspection) => {
+            fields.push((VERIFICATION, other.name().to_owned()));
+        }
+        Verification::Open => {}
+    }
+    fields.extend(requirement.clause.iter().map(|text| (CLAUSE, text.clone())));
+    fields.extend(requirement.rationale.iter().map(|text| (RATIONALE, text.clone())));
+    fields
+}
+
+/// Line and value of a field, if it is there.
+pub(crate) type Lookup<'a> = dyn Fn(&str) -> Option<(usize, &'a str)> + 'a;
+
+/// How a requirement says that it is verified, and the fields that say it; `None`: it doesn't say.
+///
+/// # Errors
+/// Line and reason, if what it says is incomplete or isn't understood.
+pub(crate) fn verification(
+    of: &Lookup<'_>,
+) -> Result<Option<(Verification, Vec<&'static str>)>, (usize, String)> {
+    if let Some((line, measure)) = of(MEASURE) {
+        let limit = of(LIMIT).ok_or_else(|| (line, format!("{MEASURE} without {LIMIT}")))?;
+        let comparison = match of(COMPARISON) {
+            None => Comparison::AtMost,
+            Some((line, sign)) => Comparison::of_sign(sign).ok_or_else(|| {
+                (line, format!("{COMPARISON} is {sign:?}, expected <=, <, >= or >"))
+            })?,
+        };
+        let part = |name: &'static str| match of(name) {
+            None => Ok(None),
+            Some((line, text)) => match probability(text) {
+                Ok(probability) => Ok(Some(probability)),
+                Err(message) => Err((line, format!("{name}: {message}"))),
+            },
+        };
+        let ensemble = match (part(PASS)?, part(CONFIDENCE)?) {
+            (Some(pass), Some(confidence)) => Some(Ensemble { pass, confidence }),
+            (None, None) => None,
+            _ => {
+                return Err((line, format!("{PASS} and {CONFIDENCE} say something only together")));
+            }
+        };
+        let check = Check {
+            measure: measure.to_owned(),
+            comparison,
+            limit: Limit::of_text(limit.1)
+                .map_err(|message| (limit.0, format!("{LIMIT}: {message}")))?,
+            ensemble,
+        };
+        let mut used = vec![MEASURE, COMPARISON, LIMIT, PASS, CONFIDENCE];
+        // Beside a measure it says nothing more.
+        if of(VERIFICATION).is_some_and(|(_, how)| how.eq_ignore_ascii_case("test")) {
+            used.push(VERIFICATION);
+        }
+        return Ok(Some((Verification::Test(check), used)));
+    }
+    let Some((line, how)) = of(VERIFICATION) else { return Ok(None) };
+    let verification = match how.to_ascii_lowercase().as_str() {
+        "analysis" => Verification::Analysis,
+        "inspection" => Verification::Inspection,
+        "test" => {
+            return Err((line, format!("{VERIFICATION} is by test, and there is no {MEASURE}")));
+        }
+        _ => return Err((line, format!("{VERIFICATION} is {how:?}"))),
+    };
+    Ok(Some((verification, vec![VERIFICATION])))
+}

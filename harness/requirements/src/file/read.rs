@@ -1,0 +1,386 @@
+//! Reads `requirements.toml`.
+
+use super::{Checker, SCHEMA};
+use crate::document::{Lines, Problems, Reader, describe};
+use crate::error::{Problem, RequirementsError};
+use crate::fields::{self, own_fields};
+use crate::requirement::{
+    Attribute, Check, Comparison, Definition, Ensemble, Kind, Limit, Parent, Requirement,
+    Requirements, Verification, probability,
+};
+use std::cell::RefCell;
+use std::collections::HashMap;
+use toml::de::{DeTable, DeValue};
+
+const ROOT: [&str; 5] = ["schema", "title", "document", "attributes", "requirements"];
+const DEFINITION: [&str; 4] = ["name", "type", "options", "field"];
+const REQUIREMENT: [&str; 16] = [
+    "id",
+    "title",
+    "text",
+    "measure",
+    "comparison",
+    "limit",
+    "pass",
+    "confidence",
+    "verification",
+    "clause",
+    "rationale",
+    "parents",
+    "section",
+    "kind",
+    "identifier",
+    "attributes",
+];
+const KINDS: [&str; 7] = ["text", "integer", "real", "boolean", "date", "choice", "choices"];
+
+/// Reads the text of a `requirements.toml`.
+///
+/// # Errors
+/// With everything that is wrong, each with line, column and field.
+pub fn read(
+    text: &str,
+    file: &str,
+    checker: &dyn Checker,
+) -> Result<Requirements, RequirementsError> {
+    let problems = Problems { lines: Lines::new(text), all: RefCell::default() };
+    let table = match DeTable::parse(text) {
+        Ok(table) => table,
+        Err(error) => {
+            let at = problems.lines.place(error.span().map_or(text.len(), |span| span.start));
+            let message = format!("not TOML: {}", error.message().replace('\n', ", "));
+            return Err(RequirementsError::one(file, Problem::new(at, "", message)));
+        }
+    };
+    let root = Reader::new(table.get_ref(), 0, "", &problems);
+    // A newer form may have other keys: what is unknown there is not told.
+    let found = if schema(&root) { document(&root, checker) } else { Requirements::default() };
+    let mut problems = problems.all.into_inner();
+    problems.sort_by_key(|p| (p.line, p.column));
+    if problems.is_empty() {
+        Ok(found)
+    } else {
+        Err(RequirementsError { file: file.to_owned(), problems })
+    }
+}
+
+fn schema(root: &Reader<'_>) -> bool {
+    let version = match root.get("schema").map(|v| v.get_ref()) {
+        None => {
+            root.problem("schema", format!("missing, expected {SCHEMA}"));
+            return false;
+        }
+        Some(DeValue::Integer(n)) => i64::from_str_radix(n.as_str(), n.radix()).ok(),
+        Some(_) => None,
+    };
+    match version {
+        Some(SCHEMA) => true,
+        Some(newer) if newer > SCHEMA => {
+            root.problem(
+                "schema",
+                format!(
+                    "the file is of version {newer}, and this Octant reads version {SCHEMA}: it takes \
+                     a newer Octant"
+                ),
+            );
+            false
+        }
+        Some(other) => {
+            root.problem("schema", format!("found version {other}, expected {SCHEMA}"));
+            false
+        }
+        None => {
+            let found = root.get("schema").map(|v| describe(v.get_ref())).unwrap_or_default();
+            root.problem("schema", format!("found {found}, expected {SCHEMA}"));
+            false
+        }
+    }
+}
+
+fn document(root: &Reader<'_>, checker: &dyn Checker) -> Requirements {
+    root.known(&ROOT);
+    let mut document = Vec::new();
+    if let Some(head) = root.table("document") {
+        for (key, value) in head.entries() {
+            document.extend(head.text_of(key, value).map(|text| (key.to_owned(), text)));
+        }
+    }
+    let mut definitions: Vec<Definition> = Vec::new();
+    for table in root.tables("attributes") {
+        let Some(definition) = definition(&table) else { continue };
+        if definitions.iter().any(|d| d.name == definition.name) {
+            let found = format!("found {:?} a second time", definition.name);
+            table.problem("name", format!("{found}, expected unique names"));
+        }
+        definitions.push(definition);
+    }
+    let mut requirements = Vec::new();
+    let mut lines: HashMap<String, usize> = HashMap::new();
+    for table in root.tables("requirements") {
+        let id = table.line_of("id");
+        let name = id.as_ref().map(|id| format!("requirements.{id}"));
+        let table = match name {
+            Some(name) => table.with_path(name),
+            None => table,
+        };
+        if !table.has("id") {
+            table.problem("id", "missing, expected an identifier");
+        }
+        if let Some(id) = &id {
+            if let Some(line) = lines.get(id) {
+                let found = format!("found {id:?} a second time, the first is in line {line}");
+                table.problem("id", format!("{found}; expected unique ids"));
+            } else {
+                lines.insert(id.clone(), table.line());
+            }
+        }
+        requirements.extend(requirement(&table, id, &definitions, checker));
+    }
+    let title = root.line_of("title").unwrap_or_else(|| "Requirements".to_owned());
+    Requirements { title, document, definitions, requirements }
+}
+
+fn definition(table: &Reader<'_>) -> Option<Definition> {
+    table.known(&DEFINITION);
+    let name = table.required("name", "the name of an attribute")?;
+    let kind = table.optional("type").unwrap_or_else(|| "text".to_owned());
+    let options: Vec<String> =
+        table.get("options").map(|v| table.texts_of("options", v)).unwrap_or_default();
+    let choice = matches!(kind.as_str(), "choice" | "choices");
+    if choice && options.is_empty() {
+        table.problem("options", "missing, a choice has options");
+    }
+    if !choice && table.has("options") {
+        table.problem("options", format!("found options, and {kind} has none"));
+    }
+    let kind = match kind.as_str() {
+        "text" => Kind::Text,
+        "integer" => Kind::Integer,
+        "real" => Kind::Real,
+        "boolean" => Kind::Boolean,
+        "date" => Kind::Date,
+        "choice" => Kind::Choice(options),
+        "choices" => Kind::Choices(options),
+        other => {
+            let known = crate::error::suggestion(other, &KINDS);
+            table.problem("type", format!("found {other:?}, {known}"));
+            return None;
+        }
+    };
+    Some(Definition { name, kind, field: table.line_of("field") })
+}
+
+fn requirement(
+    table: &Reader<'_>,
+    id: Option<String>,
+    definitions: &[Definition],
+    checker: &dyn Checker,
+) -> Option<Requirement> {
+    table.known(&REQUIREMENT);
+    let text = table.required("text", "what is required, as a sentence");
+    let verification = verification(table, checker);
+    let section = table.get("section").map(|v| table.texts_of("section", v)).unwrap_or_default();
+    let parents = parents(table);
+    for (key, mut texts) in [
+        ("section", Box::new(section.iter()) as Box<dyn Iterator<Item = &String>>),
+        ("parents", Box::new(parents.iter().flat_map(|p| p.role.iter().chain([&p.id])))),
+    ] {
+        if texts.any(|text| text.contains('\n')) {
+            table.problem(key, "found several lines, expected one");
+        }
+    }
+    let mut read = Requirement {
+        title: table.line_of("title"),
+        clause: table.optional("clause"),
+        rationale: table.optional("rationale"),
+        parents,
+        section,
+        kind: table.line_of("kind"),
+        identifier: table.line_of("identifier"),
+        ..Requirement::new(&id?, &text?, verification?)
+    };
+    let own = own_fields(&read);
+    if let Some(attributes) = table.table("attributes") {
+        for (name, value) in attributes.entries() {
+            if fields::OF_FORMATS.contains(&name) || own.iter().any(|(own, _)| *own == name) {
+                let message = "stands for a key that the requirement itself has";
+                attributes.problem(name, message);
+                continue;
+            }
+            let values = attributes.texts_of(name, value);
+            fits(&attributes, name, &values, definitions);
+            read.attributes.push(Attribute { name: name.to_owned(), values });
+        }
+    }
+    Some(read)
+}
+
+/// Tells values that aren't of their attribute's kind.
+fn fits(table: &Reader<'_>, name: &str, values: &[String], definitions: &[Definition]) {
+    let Some(definition) = definitions.iter().find(|d| d.name == name) else { return };
+    if let Some(expected) = misfit(&definition.kind, values) {
+        table.problem(name, format!("found {}, expected {expected}", values.join(", ")));
+    }
+}
+
+/// What was expected, where values aren't of a kind.
+pub(crate) fn misfit(kind: &Kind, values: &[String]) -> Option<String> {
+    let all = |legal: &dyn Fn(&String) -> bool| values.iter().all(legal);
+    let one_of = |options: &[String]| format!("of {}", options.join(", "));
+    let (legal, expected) = match kind {
+        Kind::Text => (true, String::new()),
+        Kind::Integer => {
+            (values.len() == 1 && all(&|v| v.parse::<i64>().is_ok()), "a whole number".to_owned())
+        }
+        Kind::Real => {
+            let legal = |v: &String| v.parse::<f64>().is_ok_and(f64::is_finite);
+            (values.len() == 1 && all(&legal), "a number".to_owned())
+        }
+        Kind::Boolean => {
+            let legal = |v: &String| v == "true" || v == "false";
+            (values.len() == 1 && all(&legal), "\"true\" or \"false\"".to_owned())
+        }
+        Kind::Date => (values.len() == 1 && all(&|v| v.len() >= 10), "a date".to_owned()),
+        Kind::Choice(options) => {
+            (values.len() == 1 && all(&|v| options.contains(v)), format!("one {}", one_of(options)))
+        }
+        Kind::Choices(options) => {
+            (all(&|v| options.contains(v)), format!("some {}", one_of(options)))
+        }
+    };
+    (!legal).then_some(expected)
+}
+
+fn parents(table: &Reader<'_>) -> Vec<Parent> {
+    let Some(value) = table.get("parents") else { return Vec::new() };
+    let DeValue::Array(entries) = value.get_ref() else {
+        let found = describe(value.get_ref());
+        table.problem("parents", format!("found {found}, expected an array of ids"));
+        return Vec::new();
+    };
+    let mut parents = Vec::new();
+    for entry in entries {
+        match entry.get_ref() {
+            DeValue::Table(inner) => {
+                let path = "requirements.parents";
+                let reader = Reader::new(inner, entry.span().start, path, table.problems());
+                reader.known(&["id", "role"]);
+                let id = reader.required("id", "the id of the parent");
+                let role = reader.line_of("role");
+                parents.extend(id.map(|id| Parent { id, role }));
+            }
+            _ => {
+                parents.extend(table.text_of("parents", entry).map(|id| Parent { id, role: None }))
+            }
+        }
+    }
+    parents
+}
+
+fn verification(table: &Reader<'_>, checker: &dyn Checker) -> Option<Verification> {
+    let how = table.optional("verification");
+    if table.has("verification") && how.is_none() {
+        return None;
+    }
+    let tested = ["measure", "comparison", "limit", "pass", "confidence"];
+    let elsewhere = match how.as_deref() {
+        None | Some("test") => None,
+        Some("analysis") => Some(Verification::Analysis),
+        Some("inspection") => Some(Verification::Inspection),
+        Some(other) => {
+            let known = crate::error::suggestion(other, &["test", "analysis", "inspection"]);
+            table.problem("verification", format!("found {other:?}, {known}"));
+            return None;
+        }
+    };
+    if let Some(verification) = elsewhere {
+        for key in tested.into_iter().filter(|key| table.has(key)) {
+            let how = verification.name();
+            table.problem(key, format!("a requirement that is verified by {how} has none"));
+        }
+        return Some(verification);
+    }
+    if !table.has("measure") {
+        table.problem(
+            "measure",
+            "missing: a requirement has a measure, or says how else it is verified \
+             (verification = \"analysis\" or \"inspection\")",
+        );
+        return None;
+    }
+    let measure = table.line_of("measure");
+    if let Some(Err(message)) = measure.as_ref().map(|measure| checker.measure(measure)) {
+        table.problem("measure", message);
+        return None;
+    }
+    let limit = limit(table);
+    if let (Some(measure), Some(limit)) = (&measure, &limit)
+        && let Err(message) = checker.limit(measure, limit)
+    {
+        table.problem("limit", message);
+    }
+    let sign =
+        if table.has("comparison") { table.optional("comparison") } else { Some("<=".into()) };
+    let comparison = sign.and_then(|sign| {
+        let comparison = Comparison::of_sign(&sign);
+        if comparison.is_none() {
+            table.problem("comparison", format!("found {sign:?}, expected <=, <, >= or >"));
+        }
+        comparison
+    });
+    let ensemble = ensemble(table);
+    Some(Verification::Test(Check {
+        measure: measure?,
+        comparison: comparison?,
+        limit: limit?,
+        ensemble,
+    }))
+}
+
+fn limit(table: &Reader<'_>) -> Option<Limit> {
+    let Some(value) = table.get("limit") else {
+        table.problem("limit", "missing, expected a quantity, or a number in the measure's unit");
+        return None;
+    };
+    let number = match value.get_ref() {
+        DeValue::Integer(n) => i64::from_str_radix(n.as_str(), n.radix()).ok().map(|n| n as f64),
+        DeValue::Float(n) => n.as_str().parse::<f64>().ok(),
+        _ => {
+            let text = table.line_of("limit")?;
+            return match Limit::of_text(&text) {
+                Ok(limit @ Limit::Quantity(_)) => Some(limit),
+                Ok(Limit::Number(_)) => {
+                    let message = format!("found {text:?}, expected a unit, or a bare number");
+                    table.problem("limit", message);
+                    None
+                }
+                Err(message) => {
+                    table.problem("limit", message);
+                    None
+                }
+            };
+        }
+    };
+    match number {
+        Some(number) if number.is_finite() => Some(Limit::Number(number)),
+        _ => {
+            table.problem("limit", "found a number that isn't finite");
+            None
+        }
+    }
+}
+
+fn ensemble(table: &Reader<'_>) -> Option<Ensemble> {
+    let part = |key: &str| {
+        let text = table.line_of(key)?;
+        probability(&text).map_err(|message| table.problem(key, message)).ok()
+    };
+    let (pass, confidence) = (part("pass"), part("confidence"));
+    for (key, other) in [("pass", "confidence"), ("confidence", "pass")] {
+        if table.has(key) && !table.has(other) {
+            let message = format!("missing: {key} says something only together with {other}");
+            table.problem(other, message);
+        }
+    }
+    Some(Ensemble { pass: pass?, confidence: confidence? })
+}

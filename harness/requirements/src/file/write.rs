@@ -1,0 +1,122 @@
+//! Writes `requirements.toml`.
+
+use super::SCHEMA;
+use crate::requirement::{Limit, Requirement, Requirements, Verification, percent};
+use std::fmt::Write as _;
+
+/// The text of a `requirements.toml`; [`super::read`] takes it back to the same requirements. One of
+/// which nobody has said how it is verified is written without that, and is refused there until
+/// somebody has.
+#[must_use]
+pub fn write(requirements: &Requirements) -> String {
+    let mut out = format!("schema = {SCHEMA}\n");
+    entry(&mut out, "title", &requirements.title);
+    if !requirements.document.is_empty() {
+        out.push_str("\n[document]\n");
+        for (key, value) in &requirements.document {
+            entry(&mut out, key, value);
+        }
+    }
+    for definition in &requirements.definitions {
+        out.push_str("\n[[attributes]]\n");
+        entry(&mut out, "name", &definition.name);
+        entry(&mut out, "type", definition.kind.name());
+        if let Some(options) = definition.kind.options() {
+            array(&mut out, "options", options);
+        }
+        optional(&mut out, "field", &definition.field);
+    }
+    for requirement in &requirements.requirements {
+        one(&mut out, requirement);
+    }
+    out
+}
+
+fn one(out: &mut String, requirement: &Requirement) {
+    out.push_str("\n[[requirements]]\n");
+    entry(out, "id", &requirement.id);
+    optional(out, "title", &requirement.title);
+    entry(out, "text", &requirement.text);
+    match &requirement.verification {
+        Verification::Test(check) => {
+            entry(out, "measure", &check.measure);
+            entry(out, "comparison", check.comparison.sign());
+            match &check.limit {
+                Limit::Quantity(text) => entry(out, "limit", text),
+                Limit::Number(number) => _ = writeln!(out, "limit = {number:?}"),
+            }
+            if let Some(ensemble) = &check.ensemble {
+                entry(out, "pass", &percent(ensemble.pass));
+                entry(out, "confidence", &percent(ensemble.confidence));
+            }
+        }
+        Verification::Open => {}
+        other => entry(out, "verification", other.name()),
+    }
+    optional(out, "clause", &requirement.clause);
+    optional(out, "rationale", &requirement.rationale);
+    if !requirement.parents.is_empty() {
+        let parents: Vec<String> = requirement
+            .parents
+            .iter()
+            .map(|parent| match &parent.role {
+                None => quoted(&parent.id),
+                Some(role) => format!("{{ id = {}, role = {} }}", quoted(&parent.id), quoted(role)),
+            })
+            .collect();
+        _ = writeln!(out, "parents = [{}]", parents.join(", "));
+    }
+    if !requirement.section.is_empty() {
+        array(out, "section", &requirement.section);
+    }
+    optional(out, "kind", &requirement.kind);
+    optional(out, "identifier", &requirement.identifier);
+    if !requirement.attributes.is_empty() {
+        out.push_str("[requirements.attributes]\n");
+        for attribute in &requirement.attributes {
+            match attribute.values.as_slice() {
+                [value] => entry(out, &attribute.name, value),
+                values => array(out, &attribute.name, values),
+            }
+        }
+    }
+}
+
+fn entry(out: &mut String, key: &str, value: &str) {
+    _ = writeln!(out, "{} = {}", key_of(key), quoted(value));
+}
+
+fn optional(out: &mut String, key: &str, value: &Option<String>) {
+    if let Some(value) = value {
+        entry(out, key, value);
+    }
+}
+
+fn array(out: &mut String, key: &str, values: &[String]) {
+    let values: Vec<String> = values.iter().map(|value| quoted(value)).collect();
+    _ = writeln!(out, "{} = [{}]", key_of(key), values.join(", "));
+}
+
+fn escape(text: &str) -> String {
+    serde_json::Value::from(text).to_string().replace('\u{7f}', "\\u007f")
+}
+
+/// JSON escapes what a basic string of TOML must, except DEL. Several lines stay several lines.
+fn quoted(text: &str) -> String {
+    if !text.contains('\n') {
+        return escape(text);
+    }
+    let lines: Vec<String> = text
+        .split('\n')
+        .map(|line| {
+            let quoted = escape(line);
+            quoted[1..quoted.len() - 1].to_owned()
+        })
+        .collect();
+    format!("\"\"\"\n{}\"\"\"", lines.join("\n"))
+}
+
+fn key_of(key: &str) -> String {
+    let bare = |c: char| c.is_ascii_alphanumeric() || c == '-' || c == '_';
+    if !key.is_empty() && key.chars().all(bare) { key.to_owned() } else { escape(key) }
+}

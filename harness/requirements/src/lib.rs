@@ -1,0 +1,21 @@
+//! Requirements of a campaign, and what became of them.
+//!
+//! - [`requirement`] is what a requirement is, [`file`](mod@file) is `requirements.toml`
+//! - [`sdoc`] and [`reqif`] are the formats of others: StrictDoc's documents, and ReqIF
+//! - [`trace`] goes from requirements to cases, results and recordings, and back; [`strictdoc`] shows it
+//!   in StrictDoc
+//!
+//! Nothing here knows measures and units: who does gives a [`file::Checker`].
+
+mod document;
+pub mod error;
+mod fields;
+pub mod file;
+pub mod reqif;
+pub mod requirement;
+pub mod sdoc;
+pub mod strictdoc;
+pub mod trace;
+
+pub use error::{Imported, Problem, RequirementsError};
+pub use requirement::{Requirement, Requirements};

@@ -1,0 +1,146 @@
+//! Types of a ReqIF file: enumerations, and the attributes that objects have.
+
+use crate::requirement::Kind;
+use roxmltree::Node;
+use std::collections::HashMap;
+
+/// The first child of a name.
+pub(super) fn child<'a, 'i>(node: Node<'a, 'i>, name: &str) -> Option<Node<'a, 'i>> {
+    node.children().find(|n| n.tag_name().name() == name)
+}
+
+/// The elements in a child of a name.
+pub(super) fn within<'a, 'i>(
+    node: Node<'a, 'i>,
+    name: &str,
+) -> impl Iterator<Item = Node<'a, 'i>> + use<'a, 'i> {
+    child(node, name).into_iter().flat_map(|n| n.children()).filter(Node::is_element)
+}
+
+/// The text of the one element in a child of a name: a reference.
+pub(super) fn reference<'a>(node: Node<'a, '_>, name: &str) -> Option<&'a str> {
+    within(node, name).next().and_then(|n| n.text()).map(str::trim)
+}
+
+/// An attribute that objects of a type have.
+pub(super) struct Definition {
+    pub(super) name: String,
+    pub(super) kind: Kind,
+}
+
+/// A type of objects.
+pub(super) struct ObjectType {
+    pub(super) name: String,
+    /// Identifiers of its attributes.
+    pub(super) attributes: Vec<String>,
+}
+
+/// All types of a file.
+#[derive(Default)]
+pub(super) struct Types {
+    /// Attributes by identifier.
+    pub(super) attributes: HashMap<String, Definition>,
+    pub(super) objects: HashMap<String, ObjectType>,
+    /// Names of types of relations by identifier.
+    pub(super) relations: HashMap<String, String>,
+    /// Options by the identifier of their value.
+    pub(super) options: HashMap<String, String>,
+}
+
+/// Line and what is wrong.
+pub(super) type Wrong = (usize, String);
+
+impl Types {
+    pub(super) fn read(
+        content: Node<'_, '_>,
+        line: &dyn Fn(Node<'_, '_>) -> usize,
+    ) -> Result<Self, Wrong> {
+        let mut types = Self::default();
+        let mut enumerations: HashMap<&str, Vec<String>> = HashMap::new();
+        for datatype in within(content, "DATATYPES") {
+            if datatype.tag_name().name() != "DATATYPE-DEFINITION-ENUMERATION" {
+                continue;
+            }
+            let mut options = Vec::new();
+            for value in within(datatype, "SPECIFIED-VALUES") {
+                let id = identifier(value, line)?;
+                let key = || within(value, "PROPERTIES").next().and_then(|p| p.attribute("KEY"));
+                let name =
+                    value.attribute("LONG-NAME").filter(|n| !n.trim().is_empty()).or_else(key);
+                let name = name.unwrap_or(id).trim().to_owned();
+                types.options.insert(id.to_owned(), name.clone());
+                options.push(name);
+            }
+            enumerations.insert(identifier(datatype, line)?, options);
+        }
+        for node in within(content, "SPEC-TYPES") {
+            let id = identifier(node, line)?;
+            let name = node.attribute("LONG-NAME").unwrap_or(id).to_owned();
+            match node.tag_name().name() {
+                "SPEC-RELATION-TYPE" => _ = types.relations.insert(id.to_owned(), name),
+                "SPEC-OBJECT-TYPE" => {
+                    let attributes = types.attributes_of(node, &enumerations, line)?;
+                    types.objects.insert(id.to_owned(), ObjectType { name, attributes });
+                }
+                "SPECIFICATION-TYPE" => {
+                    types.attributes_of(node, &enumerations, line)?;
+                }
+                // Attributes of relations have no place here.
+                _ => {}
+            }
+        }
+        Ok(types)
+    }
+
+    fn attributes_of(
+        &mut self,
+        node: Node<'_, '_>,
+        enumerations: &HashMap<&str, Vec<String>>,
+        line: &dyn Fn(Node<'_, '_>) -> usize,
+    ) -> Result<Vec<String>, Wrong> {
+        let mut attributes = Vec::new();
+        for attribute in within(node, "SPEC-ATTRIBUTES") {
+            let id = identifier(attribute, line)?;
+            let name = attribute.attribute("LONG-NAME").unwrap_or(id).trim().to_owned();
+            let tag = attribute.tag_name().name();
+            let kind = match tag.strip_prefix("ATTRIBUTE-DEFINITION-") {
+                Some("STRING" | "XHTML") => Kind::Text,
+                Some("INTEGER") => Kind::Integer,
+                Some("REAL") => Kind::Real,
+                Some("BOOLEAN") => Kind::Boolean,
+                Some("DATE") => Kind::Date,
+                Some("ENUMERATION") => {
+                    let datatype = reference(attribute, "TYPE").unwrap_or_default();
+                    let Some(options) = enumerations.get(datatype) else {
+                        let found =
+                            format!("the attribute {name:?} is of an enumeration {datatype:?}");
+                        return Err((line(attribute), format!("{found} that isn't in the file")));
+                    };
+                    match attribute.attribute("MULTI-VALUED") {
+                        Some("true" | "1") => Kind::Choices(options.clone()),
+                        _ => Kind::Choice(options.clone()),
+                    }
+                }
+                _ => {
+                    return Err((
+                        line(attribute),
+                        format!("found {tag}, expected an ATTRIBUTE-DEFINITION"),
+                    ));
+                }
+            };
+            self.attributes.insert(id.to_owned(), Definition { name, kind });
+            attributes.push(id.to_owned());
+        }
+        Ok(attributes)
+    }
+}
+
+/// The identifier that every element of ReqIF has.
+pub(super) fn identifier<'a>(
+    node: Node<'a, '_>,
+    line: &dyn Fn(Node<'_, '_>) -> usize,
+) -> Result<&'a str, Wrong> {
+    node.attribute("IDENTIFIER")
+        .filter(|id| !id.is_empty())
+        .ok_or_else(|| (line(node), format!("{} has no IDENTIFIER", node.tag_name().name())))
+}

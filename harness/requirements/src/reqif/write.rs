@@ -1,0 +1,497 @@
+//! Writes a ReqIF file.
+
+use super::{CHAPTER, FOREIGN_ID, NAME, NAMESPACE, TEXT, TOOL, XHTML, xhtml};
+use crate::error::ExportError;
+use crate::fields::{ALL, own_fields};
+use crate::file::misfit;
+use crate::requirement::{Kind, Requirement, Requirements};
+use crate::sdoc::REQUIREMENT;
+use quick_xml::events::{BytesDecl, BytesEnd, BytesStart, BytesText, Event};
+use quick_xml::writer::Writer;
+use std::collections::HashSet;
+use std::io;
+
+/// An identifier made of the id that people use: letters, digits, `-` and `.`, the rest as its number.
+pub(super) fn identifier(id: &str) -> String {
+    let mut out = String::from("octant-");
+    for c in id.chars() {
+        match c {
+            c if c.is_ascii_alphanumeric() || c == '-' || c == '.' => out.push(c),
+            c => out.push_str(&format!("_{:x}_", u32::from(c))),
+        }
+    }
+    out
+}
+
+/// Writes the requirements as ReqIF; [`super::read`] takes it back to the same ones.
+///
+/// `time` is the time of the export as XML Schema writes it, `2026-01-31T12:00:00Z`: the same
+/// requirements and time give the same bytes.
+///
+/// # Errors
+/// If an attribute has a value that isn't of its kind, or an identifier is no identifier of XML or there
+/// twice, or a parent isn't in the document.
+pub fn write(requirements: &Requirements, time: &str) -> Result<String, ExportError> {
+    let mut seen = HashSet::new();
+    for requirement in &requirements.requirements {
+        let wrong = |message| ExportError { format: "ReqIF", id: requirement.id.clone(), message };
+        let id = object_id(requirement);
+        if !legal(&id) {
+            return Err(wrong(format!("its identifier {id:?} is none that XML takes")));
+        }
+        for attribute in &requirement.attributes {
+            let kind = requirements.kind(&attribute.name);
+            if let Some(expected) = misfit(&kind, &attribute.values) {
+                let found = attribute.values.join(", ");
+                return Err(wrong(format!("{} is {found:?}, expected {expected}", attribute.name)));
+            }
+        }
+        if let Some(parent) = requirement.parents.iter().find(|p| requirements.get(&p.id).is_none())
+        {
+            let message = format!(
+                "its parent {:?} isn't in this document, and a relation has both ends in one file",
+                parent.id
+            );
+            return Err(wrong(message));
+        }
+        if !seen.insert(id.clone()) {
+            return Err(wrong(format!("its identifier {id:?} is there a second time")));
+        }
+    }
+    let mut file = File {
+        out: Writer::new_with_indent(Vec::new(), b' ', 1),
+        time,
+        requirements,
+        columns: columns(requirements),
+    };
+    let failed = |error: String| ExportError { format: "ReqIF", id: String::new(), message: error };
+    file.document().map_err(|error| failed(error.to_string()))?;
+    String::from_utf8(file.out.into_inner()).map_err(|error| failed(error.to_string()))
+}
+
+fn object_id(requirement: &Requirement) -> String {
+    requirement.identifier.clone().unwrap_or_else(|| identifier(&requirement.id))
+}
+
+/// Whether this is an NCName: what an identifier has to be in XML.
+fn legal(id: &str) -> bool {
+    let first = |c: char| c.is_alphabetic() || c == '_';
+    id.starts_with(first) && id.chars().all(|c| first(c) || c.is_numeric() || "-.".contains(c))
+}
+
+/// A column of every object type.
+struct Column {
+    name: String,
+    kind: Kind,
+    /// A text that isn't one line of plain ASCII. (StrictDoc writes and reads strings with escapes of
+    /// its own, which would spoil the others; in XHTML it has none.)
+    formatted: bool,
+}
+
+fn columns(requirements: &Requirements) -> Vec<Column> {
+    let all = &requirements.requirements;
+    let plain = |text: &str| text.chars().all(|c| (' '..='~').contains(&c) && c != '\\');
+    let column = |name: &str, kind: Kind, values: &[String]| {
+        let formatted = kind == Kind::Text && !values.iter().all(|text| plain(text));
+        Column { name: name.to_owned(), kind, formatted }
+    };
+    let mut columns = vec![
+        Column { name: FOREIGN_ID.to_owned(), kind: Kind::Text, formatted: false },
+        column(NAME, Kind::Text, &all.iter().filter_map(|r| r.title.clone()).collect::<Vec<_>>()),
+        Column { name: TEXT.to_owned(), kind: Kind::Text, formatted: true },
+    ];
+    for field in ALL {
+        let values: Vec<String> = all
+            .iter()
+            .flat_map(own_fields)
+            .filter(|(name, _)| *name == field)
+            .map(|(_, value)| value)
+            .collect();
+        columns.push(column(field, Kind::Text, &values));
+    }
+    for name in requirements.attribute_names() {
+        let values: Vec<String> = all
+            .iter()
+            .flat_map(|r| &r.attributes)
+            .filter(|a| a.name == name)
+            .map(|a| a.values.join("\n\n"))
+            .collect();
+        let new = column(name, requirements.kind(name), &values);
+        // One of ours is an attribute of a requirement whose own key says nothing.
+        match columns.iter_mut().find(|c| c.name == name) {
+            Some(column) => column.formatted |= new.formatted,
+            None => columns.push(new),
+        }
+    }
+    columns
+}
+
+struct File<'a> {
+    out: Writer<Vec<u8>>,
+    time: &'a str,
+    requirements: &'a Requirements,
+    columns: Vec<Column>,
+}
+
+fn named<'a>(time: &'a str, id: &'a str, name: &'a str) -> [(&'a str, &'a str); 3] {
+    [("IDENTIFIER", id), ("LAST-CHANGE", time), ("LONG-NAME", name)]
+}
+
+type Attributes<'a> = &'a [(&'a str, &'a str)];
+
+impl File<'_> {
+    fn open(&mut self, name: &str, attributes: Attributes<'_>) -> io::Result<()> {
+        let start = BytesStart::new(name).with_attributes(attributes.iter().copied());
+        self.out.write_event(Event::Start(start))
+    }
+
+    fn close(&mut self, name: &str) -> io::Result<()> {
+        self.out.write_event(Event::End(BytesEnd::new(name)))
+    }
+
+    fn empty(&mut self, name: &str, attributes: Attributes<'_>) -> io::Result<()> {
+        let start = BytesStart::new(name).with_attributes(attributes.iter().copied());
+        self.out.write_event(Event::Empty(start))
+    }
+
+    fn text(&mut self, name: &str, text: &str) -> io::Result<()> {
+        self.open(name, &[])?;
+        self.out.write_event(Event::Text(BytesText::new(text)))?;
+        self.close(name)
+    }
+
+    /// An element that holds a reference: `<TYPE><…-REF>id</…-REF></TYPE>`.
+    fn reference(&mut self, name: &str, to: &str, id: &str) -> io::Result<()> {
+        self.open(name, &[])?;
+        self.text(to, id)?;
+        self.close(name)
+    }
+
+    fn document(&mut self) -> io::Result<()> {
+        self.out.write_event(Event::Decl(BytesDecl::new("1.0", Some("UTF-8"), None)))?;
+        self.open("REQ-IF", &[("xmlns", NAMESPACE), ("xmlns:xhtml", XHTML)])?;
+        self.open("THE-HEADER", &[])?;
+        self.open("REQ-IF-HEADER", &[("IDENTIFIER", "octant-header")])?;
+        self.text("CREATION-TIME", self.time)?;
+        self.text("REQ-IF-TOOL-ID", TOOL)?;
+        // The schema of ReqIF 1.2 fixes it to that of 1.0.
+        self.text("REQ-IF-VERSION", "1.0")?;
+        self.text("SOURCE-TOOL-ID", TOOL)?;
+        self.text("TITLE", &self.requirements.title)?;
+        self.close("REQ-IF-HEADER")?;
+        self.close("THE-HEADER")?;
+        self.open("CORE-CONTENT", &[])?;
+        self.open("REQ-IF-CONTENT", &[])?;
+        self.datatypes()?;
+        self.types()?;
+        self.objects()?;
+        self.relations()?;
+        self.specification()?;
+        self.close("REQ-IF-CONTENT")?;
+        self.close("CORE-CONTENT")?;
+        self.close("REQ-IF")
+    }
+
+    fn datatypes(&mut self) -> io::Result<()> {
+        let time = self.time;
+        self.open("DATATYPES", &[])?;
+        for (tag, id, more) in [
+            ("STRING", "octant-d-text", &[("MAX-LENGTH", "1000000")][..]),
+            ("XHTML", "octant-d-xhtml", &[]),
+            (
+                "INTEGER",
+                "octant-d-integer",
+                &[("MIN", "-9223372036854775808"), ("MAX", "9223372036854775807")],
+            ),
+            ("REAL", "octant-d-real", &[("ACCURACY", "17"), ("MIN", "-1e308"), ("MAX", "1e308")]),
+            ("BOOLEAN", "octant-d-boolean", &[]),
+            ("DATE", "octant-d-date", &[]),
+        ] {
+            let name = format!("DATATYPE-DEFINITION-{tag}");
+            let mut attributes =
+                vec![("IDENTIFIER", id), ("LAST-CHANGE", time), ("LONG-NAME", tag)];
+            attributes.extend(more);
+            self.empty(&name, &attributes)?;
+        }
+        for index in 0..self.columns.len() {
+            let Some(options) = self.columns[index].kind.options().map(<[String]>::to_vec) else {
+                continue;
+            };
+            let id = format!("octant-d-{index}");
+            let name = self.columns[index].name.clone();
+            let attributes =
+                [("IDENTIFIER", id.as_str()), ("LAST-CHANGE", time), ("LONG-NAME", &name)];
+            self.open("DATATYPE-DEFINITION-ENUMERATION", &attributes)?;
+            self.open("SPECIFIED-VALUES", &[])?;
+            for (number, option) in options.iter().enumerate() {
+                let id = format!("octant-d-{index}-v-{number}");
+                let key = number.to_string();
+                let attributes =
+                    [("IDENTIFIER", id.as_str()), ("LAST-CHANGE", time), ("LONG-NAME", option)];
+                self.open("ENUM-VALUE", &attributes)?;
+                self.open("PROPERTIES", &[])?;
+                self.empty("EMBEDDED-VALUE", &[("KEY", &key), ("OTHER-CONTENT", "")])?;
+                self.close("PROPERTIES")?;
+                self.close("ENUM-VALUE")?;
+            }
+            self.close("SPECIFIED-VALUES")?;
+            self.close("DATATYPE-DEFINITION-ENUMERATION")?;
+        }
+        self.close("DATATYPES")
+    }
+
+    fn kinds(&self) -> Vec<String> {
+        let mut kinds: Vec<String> = Vec::new();
+        for requirement in &self.requirements.requirements {
+            let kind = requirement.kind.as_deref().unwrap_or(REQUIREMENT);
+            if !kinds.iter().any(|known| known == kind) {
+                kinds.push(kind.to_owned());
+            }
+        }
+        kinds
+    }
+
+    fn types(&mut self) -> io::Result<()> {
+        let time = self.time;
+        self.open("SPEC-TYPES", &[])?;
+        let chapter = "ATTRIBUTE-DEFINITION-STRING";
+        self.open("SPECIFICATION-TYPE", &named(time, "octant-t-specification", "Specification"))?;
+        if !self.requirements.document.is_empty() {
+            self.open("SPEC-ATTRIBUTES", &[])?;
+            for (index, (key, _)) in self.requirements.document.iter().enumerate() {
+                let id = format!("octant-t-specification-a-{index}");
+                self.open("ATTRIBUTE-DEFINITION-XHTML", &named(time, &id, key))?;
+                self.reference("TYPE", "DATATYPE-DEFINITION-XHTML-REF", "octant-d-xhtml")?;
+                self.close("ATTRIBUTE-DEFINITION-XHTML")?;
+            }
+            self.close("SPEC-ATTRIBUTES")?;
+        }
+        self.close("SPECIFICATION-TYPE")?;
+        self.open("SPEC-OBJECT-TYPE", &named(time, "octant-t-section", "SECTION"))?;
+        self.open("SPEC-ATTRIBUTES", &[])?;
+        self.open(chapter, &named(time, "octant-t-section-a-title", CHAPTER))?;
+        self.reference("TYPE", "DATATYPE-DEFINITION-STRING-REF", "octant-d-text")?;
+        self.close(chapter)?;
+        self.close("SPEC-ATTRIBUTES")?;
+        self.close("SPEC-OBJECT-TYPE")?;
+        for kind in self.kinds() {
+            let of = format!("octant-t-{}", identifier(&kind));
+            self.open("SPEC-OBJECT-TYPE", &named(time, &of, &kind))?;
+            self.open("SPEC-ATTRIBUTES", &[])?;
+            for index in 0..self.columns.len() {
+                let (tag, datatype) = self.datatype(index);
+                let id = format!("{of}-a-{index}");
+                let name = self.columns[index].name.clone();
+                let element = format!("ATTRIBUTE-DEFINITION-{tag}");
+                let mut attributes = named(time, &id, &name).to_vec();
+                if tag == "ENUMERATION" {
+                    let multi = matches!(self.columns[index].kind, Kind::Choices(_));
+                    attributes.push(("MULTI-VALUED", if multi { "true" } else { "false" }));
+                }
+                self.open(&element, &attributes)?;
+                self.reference("TYPE", &format!("DATATYPE-DEFINITION-{tag}-REF"), &datatype)?;
+                self.close(&element)?;
+            }
+            self.close("SPEC-ATTRIBUTES")?;
+            self.close("SPEC-OBJECT-TYPE")?;
+        }
+        for (index, role) in self.roles().iter().enumerate() {
+            let name = role.as_deref().unwrap_or("Parent");
+            self.empty(
+                "SPEC-RELATION-TYPE",
+                &named(time, &format!("octant-t-relation-{index}"), name),
+            )?;
+        }
+        self.close("SPEC-TYPES")
+    }
+
+    /// Tag and identifier of a column's datatype.
+    fn datatype(&self, index: usize) -> (&'static str, String) {
+        let column = &self.columns[index];
+        let (tag, id) = match &column.kind {
+            Kind::Text if column.formatted => ("XHTML", "octant-d-xhtml"),
+            Kind::Text => ("STRING", "octant-d-text"),
+            Kind::Integer => ("INTEGER", "octant-d-integer"),
+            Kind::Real => ("REAL", "octant-d-real"),
+            Kind::Boolean => ("BOOLEAN", "octant-d-boolean"),
+            Kind::Date => ("DATE", "octant-d-date"),
+            Kind::Choice(_) | Kind::Choices(_) => {
+                return ("ENUMERATION", format!("octant-d-{index}"));
+            }
+        };
+        (tag, id.to_owned())
+    }
+
+    fn roles(&self) -> Vec<Option<String>> {
+        let mut roles: Vec<Option<String>> = vec![None];
+        for parent in self.requirements.requirements.iter().flat_map(|r| &r.parents) {
+            if !roles.contains(&parent.role) {
+                roles.push(parent.role.clone());
+            }
+        }
+        roles
+    }
+
+    /// Writes the objects, and among them the heads of sections.
+    fn objects(&mut self) -> io::Result<()> {
+        let time = self.time;
+        self.open("SPEC-OBJECTS", &[])?;
+        let mut sections = 0;
+        let requirements = self.requirements;
+        let mut open: Vec<String> = Vec::new();
+        for requirement in &requirements.requirements {
+            let shared = open.iter().zip(&requirement.section).take_while(|(a, b)| a == b).count();
+            open.truncate(shared);
+            for title in &requirement.section[shared..] {
+                open.push(title.clone());
+                let id = format!("octant-section-{}", sections);
+                sections += 1;
+                self.open("SPEC-OBJECT", &[("IDENTIFIER", &id), ("LAST-CHANGE", time)])?;
+                self.open("VALUES", &[])?;
+                self.open("ATTRIBUTE-VALUE-STRING", &[("THE-VALUE", title)])?;
+                let definition = "ATTRIBUTE-DEFINITION-STRING-REF";
+                self.reference("DEFINITION", definition, "octant-t-section-a-title")?;
+                self.close("ATTRIBUTE-VALUE-STRING")?;
+                self.close("VALUES")?;
+                self.reference("TYPE", "SPEC-OBJECT-TYPE-REF", "octant-t-section")?;
+                self.close("SPEC-OBJECT")?;
+            }
+            self.object(requirement)?;
+        }
+        self.close("SPEC-OBJECTS")
+    }
+
+    fn object(&mut self, requirement: &Requirement) -> io::Result<()> {
+        let id = object_id(requirement);
+        let kind = requirement.kind.as_deref().unwrap_or(REQUIREMENT);
+        let of = format!("octant-t-{}", identifier(kind));
+        let mut values: Vec<(&str, Vec<String>)> = vec![
+            (FOREIGN_ID, vec![requirement.id.clone()]),
+            (TEXT, vec![requirement.text.clone()]),
+        ];
+        values.extend(requirement.title.iter().map(|title| (NAME, vec![title.clone()])));
+        values.extend(own_fields(requirement).into_iter().map(|(name, value)| (name, vec![value])));
+        values.extend(requirement.attributes.iter().map(|a| (a.name.as_str(), a.values.clone())));
+        self.open("SPEC-OBJECT", &[("IDENTIFIER", &id), ("LAST-CHANGE", self.time)])?;
+        self.open("VALUES", &[])?;
+        for index in 0..self.columns.len() {
+            let name = self.columns[index].name.clone();
+            if let Some((_, values)) = values.iter().find(|(n, _)| *n == name) {
+                self.value(index, &format!("{of}-a-{index}"), values)?;
+            }
+        }
+        self.close("VALUES")?;
+        self.reference("TYPE", "SPEC-OBJECT-TYPE-REF", &of)?;
+        self.close("SPEC-OBJECT")
+    }
+
+    fn value(&mut self, index: usize, definition: &str, values: &[String]) -> io::Result<()> {
+        let (tag, datatype) = self.datatype(index);
+        let element = format!("ATTRIBUTE-VALUE-{tag}");
+        let joined = values.join("\n\n");
+        let inside = matches!(tag, "XHTML" | "ENUMERATION");
+        let attributes = [("THE-VALUE", joined.as_str())];
+        self.open(&element, if inside { &[] } else { &attributes })?;
+        self.reference("DEFINITION", &format!("ATTRIBUTE-DEFINITION-{tag}-REF"), definition)?;
+        match tag {
+            "XHTML" => {
+                self.open("THE-VALUE", &[])?;
+                xhtml::write(&mut self.out, &joined)?;
+                self.close("THE-VALUE")?;
+            }
+            "ENUMERATION" => {
+                self.open("VALUES", &[])?;
+                let options = self.columns[index].kind.options().unwrap_or_default().to_vec();
+                for value in values {
+                    if let Some(number) = options.iter().position(|option| option == value) {
+                        self.text("ENUM-VALUE-REF", &format!("{datatype}-v-{number}"))?;
+                    }
+                }
+                self.close("VALUES")?;
+            }
+            _ => {}
+        }
+        self.close(&element)
+    }
+
+    fn relations(&mut self) -> io::Result<()> {
+        let (requirements, roles) = (self.requirements, self.roles());
+        self.open("SPEC-RELATIONS", &[])?;
+        let mut number = 0;
+        for requirement in &requirements.requirements {
+            for parent in &requirement.parents {
+                // One that isn't here is refused before.
+                let Some(target) = requirements.get(&parent.id) else { continue };
+                let role = roles.iter().position(|role| *role == parent.role).unwrap_or(0);
+                let id = format!("octant-relation-{number}");
+                number += 1;
+                self.open("SPEC-RELATION", &[("IDENTIFIER", &id), ("LAST-CHANGE", self.time)])?;
+                self.reference(
+                    "TYPE",
+                    "SPEC-RELATION-TYPE-REF",
+                    &format!("octant-t-relation-{role}"),
+                )?;
+                self.reference("SOURCE", "SPEC-OBJECT-REF", &object_id(requirement))?;
+                self.reference("TARGET", "SPEC-OBJECT-REF", &object_id(target))?;
+                self.close("SPEC-RELATION")?;
+            }
+        }
+        self.close("SPEC-RELATIONS")
+    }
+
+    fn specification(&mut self) -> io::Result<()> {
+        let (time, requirements) = (self.time, self.requirements);
+        self.open("SPECIFICATIONS", &[])?;
+        let title = requirements.title.as_str();
+        let attributes =
+            [("IDENTIFIER", "octant-specification"), ("LAST-CHANGE", time), ("LONG-NAME", title)];
+        self.open("SPECIFICATION", &attributes)?;
+        if !requirements.document.is_empty() {
+            self.open("VALUES", &[])?;
+            for (index, (_, value)) in requirements.document.iter().enumerate() {
+                let id = format!("octant-t-specification-a-{index}");
+                self.open("ATTRIBUTE-VALUE-XHTML", &[])?;
+                self.reference("DEFINITION", "ATTRIBUTE-DEFINITION-XHTML-REF", &id)?;
+                self.open("THE-VALUE", &[])?;
+                xhtml::write(&mut self.out, value)?;
+                self.close("THE-VALUE")?;
+                self.close("ATTRIBUTE-VALUE-XHTML")?;
+            }
+            self.close("VALUES")?;
+        }
+        self.reference("TYPE", "SPECIFICATION-TYPE-REF", "octant-t-specification")?;
+        self.open("CHILDREN", &[])?;
+        let mut open: Vec<&str> = Vec::new();
+        let mut next = 0;
+        for requirement in &requirements.requirements {
+            let same = open.iter().zip(&requirement.section).take_while(|(a, b)| **a == b.as_str());
+            let shared = same.count();
+            for _ in shared..open.len() {
+                self.close("CHILDREN")?;
+                self.close("SPEC-HIERARCHY")?;
+            }
+            open.truncate(shared);
+            for title in &requirement.section[shared..] {
+                open.push(title);
+                let (id, object) =
+                    (format!("octant-section-{next}-place"), format!("octant-section-{next}"));
+                next += 1;
+                self.open("SPEC-HIERARCHY", &[("IDENTIFIER", &id), ("LAST-CHANGE", time)])?;
+                self.reference("OBJECT", "SPEC-OBJECT-REF", &object)?;
+                self.open("CHILDREN", &[])?;
+            }
+            let object = object_id(requirement);
+            let id = format!("{object}-place");
+            self.open("SPEC-HIERARCHY", &[("IDENTIFIER", &id), ("LAST-CHANGE", time)])?;
+            self.reference("OBJECT", "SPEC-OBJECT-REF", &object)?;
+            self.close("SPEC-HIERARCHY")?;
+        }
+        for _ in open {
+            self.close("CHILDREN")?;
+            self.close("SPEC-HIERARCHY")?;
+        }
+        self.close("CHILDREN")?;
+        self.close("SPECIFICATION")?;
+        self.close("SPECIFICATIONS")
+    }
+}

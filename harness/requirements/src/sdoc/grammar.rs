@@ -1,0 +1,64 @@
+//! The grammar of a document: which fields its nodes have.
+
+use crate::requirement::{Definition, Kind};
+
+/// A field of the grammar.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Field {
+    /// Its name in nodes.
+    pub(super) title: String,
+    /// Its name for people.
+    pub(super) human: Option<String>,
+    pub(super) kind: Kind,
+}
+
+impl Field {
+    /// The name of the attribute.
+    pub(super) fn name(&self) -> &str {
+        self.human.as_deref().unwrap_or(&self.title)
+    }
+
+    /// What has to be remembered of it, if anything.
+    pub(super) fn definition(&self) -> Option<Definition> {
+        let plain = self.kind == Kind::Text;
+        let field = self.human.as_ref().map(|_| self.title.clone());
+        // A name that leads to this field by itself needs no memory.
+        let field = field.filter(|title| *title != field_of(self.name()));
+        (!plain || field.is_some()).then(|| Definition {
+            name: self.name().to_owned(),
+            kind: self.kind.clone(),
+            field,
+        })
+    }
+}
+
+/// The field that an attribute is called where it has no other: capitals, digits and `_`.
+pub(super) fn field_of(name: &str) -> String {
+    let mut field = String::new();
+    for c in name.chars() {
+        match c {
+            c if c.is_ascii_alphanumeric() => field.push(c.to_ascii_uppercase()),
+            '_' | '-' => field.push(c),
+            _ => field.push('_'),
+        }
+    }
+    if super::legal_field(&field) { field } else { format!("X_{field}") }
+}
+
+/// What a `TYPE` of the grammar means.
+pub(super) fn kind(text: &str) -> Option<Kind> {
+    let options = |list: &str| -> Option<Vec<String>> {
+        let inner = list.strip_prefix('(')?.strip_suffix(')')?;
+        Some(inner.split(", ").map(|option| option.trim_matches('"').to_owned()).collect())
+    };
+    match text {
+        "String" => Some(Kind::Text),
+        // Words, separated by commas, of which no list is kept.
+        "Tag" => Some(Kind::Text),
+        _ => match (text.strip_prefix("SingleChoice"), text.strip_prefix("MultipleChoice")) {
+            (Some(list), _) => options(list).map(Kind::Choice),
+            (_, Some(list)) => options(list).map(Kind::Choices),
+            _ => None,
+        },
+    }
+}

@@ -1,0 +1,55 @@
+//! Documents of StrictDoc, `.sdoc`: read and written as its version 0.30 does.
+//!
+//! A node's UID, TITLE, STATEMENT, RATIONALE and MID are ours by other names; measure, limit and the
+//! rest are fields MEASURE, COMPARISON, LIMIT, PASS, CONFIDENCE, VERIFICATION and CLAUSE, declared in
+//! the document's grammar. Every other field is an attribute, and comes out again as it went in.
+
+mod grammar;
+mod read;
+mod write;
+
+pub use read::read;
+pub use write::write;
+
+/// Fields of which a document's head is made, in the order of StrictDoc's grammar.
+pub(crate) const HEAD: [&str; 8] =
+    ["MID", "UID", "VERSION", "DATE", "CLASSIFICATION", "REQ_PREFIX", "PREFIX", "ROOT"];
+
+/// Options of a document, in the order of StrictDoc's grammar.
+pub(crate) const OPTIONS: [&str; 10] = [
+    "ENABLE_MID",
+    "RELATION_FIELD",
+    "MARKUP",
+    "AUTO_LEVELS",
+    "LAYOUT",
+    "VIEW_STYLE",
+    "REQUIREMENT_STYLE",
+    "NODE_IN_TOC",
+    "REQUIREMENT_IN_TOC",
+    "DEFAULT_VIEW",
+];
+
+/// What a plain requirement is called.
+pub(crate) const REQUIREMENT: &str = "REQUIREMENT";
+
+/// Whether StrictDoc takes this as UID: a letter, digit or `_`, then also `()-/.:` and space.
+pub(crate) fn legal_uid(id: &str) -> bool {
+    let word = |c: char| c.is_alphanumeric() || c == '_';
+    id.starts_with(word) && id.chars().all(|c| word(c) || "()-/.: ".contains(c))
+}
+
+/// Whether StrictDoc takes this as the name of a field: a capital, then letters, digits, `_`, `-`.
+pub(crate) fn legal_field(name: &str) -> bool {
+    name.starts_with(|c: char| c.is_ascii_uppercase())
+        && name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_' || c == '-')
+        // The grammar takes these for the beginning of something else.
+        && !name.starts_with("RELATIONS")
+        && !name.starts_with("UID")
+}
+
+/// Whether StrictDoc takes this as the name of a kind of node: capitals, in words by `_`.
+pub(crate) fn legal_kind(name: &str) -> bool {
+    let word = |w: &str| !w.is_empty() && w.chars().all(|c| c.is_ascii_uppercase());
+    let reserved = ["DOCUMENT", "GRAMMAR", "SECTION", "DOCUMENT_FROM_FILE", "TEXT"];
+    name.split('_').all(word) && !reserved.contains(&name)
+}

@@ -1,0 +1,249 @@
+//! Writes a document of StrictDoc.
+
+use super::grammar::field_of;
+use super::{HEAD, OPTIONS, REQUIREMENT, legal_field, legal_kind, legal_uid};
+use crate::error::ExportError;
+use crate::fields::{ALL, OF_FORMATS, own_fields};
+use crate::requirement::{Kind, Requirement, Requirements};
+use std::collections::HashMap;
+use std::fmt::Write as _;
+
+/// Writes the requirements as an `.sdoc`; [`super::read`] takes it back to the same ones.
+///
+/// # Errors
+/// If a requirement has what StrictDoc has no place for: an id or kind that it doesn't take, a line
+/// `<<<` in a text.
+pub fn write(requirements: &Requirements) -> Result<String, ExportError> {
+    let mut out = String::from("[DOCUMENT]\n");
+    head(&mut out, requirements);
+    let columns = columns(requirements);
+    grammar(&mut out, requirements, &columns);
+    let mut open: Vec<&str> = Vec::new();
+    for requirement in &requirements.requirements {
+        let wrong =
+            |message: String| ExportError { format: "sdoc", id: requirement.id.clone(), message };
+        let shared =
+            open.iter().zip(&requirement.section).take_while(|(a, b)| **a == b.as_str()).count();
+        for _ in shared..open.len() {
+            out.push_str("\n[[/SECTION]]\n");
+        }
+        open.truncate(shared);
+        for title in &requirement.section[shared..] {
+            if title.contains('\n') {
+                return Err(wrong(format!("the section {title:?} has several lines")));
+            }
+            _ = write!(out, "\n[[SECTION]]\nTITLE: {title}\n");
+            open.push(title);
+        }
+        node(&mut out, requirement, &columns).map_err(wrong)?;
+    }
+    for _ in open {
+        out.push_str("\n[[/SECTION]]\n");
+    }
+    Ok(out)
+}
+
+fn head(out: &mut String, requirements: &Requirements) {
+    let entry = |key: &str| {
+        requirements
+            .document
+            .iter()
+            .find(|(k, _)| k == key)
+            .map(|(_, value)| value.replace('\n', " "))
+    };
+    let line = |out: &mut String, indent: &str, key: &str, value: &str| {
+        _ = writeln!(out, "{indent}{key}: {value}");
+    };
+    if let Some(mid) = entry("MID") {
+        line(out, "", "MID", &mid);
+    }
+    line(out, "", "TITLE", &requirements.title);
+    for key in &HEAD[1..] {
+        if let Some(value) = entry(key) {
+            line(out, "", key, &value);
+        }
+    }
+    let options: Vec<_> = OPTIONS
+        .iter()
+        .filter_map(|key| entry(&format!("OPTIONS.{key}")).map(|value| (*key, value)))
+        .collect();
+    if !options.is_empty() {
+        out.push_str("OPTIONS:\n");
+        for (key, value) in options {
+            line(out, "  ", key, &value);
+        }
+    }
+    let mut metadata = requirements
+        .document
+        .iter()
+        .filter_map(|(key, value)| Some((key.strip_prefix("METADATA.")?, value)))
+        .peekable();
+    if metadata.peek().is_some() {
+        out.push_str("METADATA:\n");
+        for (key, value) in metadata {
+            line(out, "  ", key, &value.replace('\n', " "));
+        }
+    }
+}
+
+/// Attributes and the fields that they become.
+fn columns(requirements: &Requirements) -> Vec<(&str, String, Kind)> {
+    let mut taken: Vec<String> = Vec::new();
+    let mut columns = Vec::new();
+    let reserved = |field: &str| OF_FORMATS.contains(&field);
+    for name in requirements.attribute_names() {
+        let definition = requirements.definitions.iter().find(|d| d.name == name);
+        let wanted = definition.and_then(|d| d.field.clone()).filter(|field| legal_field(field));
+        let wanted = wanted.unwrap_or_else(|| field_of(name));
+        let mut field = wanted.clone();
+        let mut number = 2;
+        // Ours may be an attribute too: of a requirement whose own key says nothing.
+        let ours = |field: &str| ALL.contains(&field) && field != name;
+        while reserved(&field) || ours(&field) || taken.contains(&field) {
+            field = format!("{wanted}_{number}");
+            number += 1;
+        }
+        taken.push(field.clone());
+        columns.push((name, field, requirements.kind(name)));
+    }
+    columns
+}
+
+fn grammar(out: &mut String, requirements: &Requirements, columns: &[(&str, String, Kind)]) {
+    out.push_str("\n[GRAMMAR]\nELEMENTS:\n");
+    out.push_str(
+        "- TAG: TEXT\n  FIELDS:\n  - TITLE: UID\n    TYPE: String\n    REQUIRED: False\n  \
+         - TITLE: STATEMENT\n    TYPE: String\n    REQUIRED: True\n\
+         - TAG: SECTION\n  PROPERTIES:\n    IS_COMPOSITE: True\n  FIELDS:\n  \
+         - TITLE: UID\n    TYPE: String\n    REQUIRED: False\n  \
+         - TITLE: TITLE\n    TYPE: String\n    REQUIRED: True\n",
+    );
+    let mut kinds: Vec<&str> = Vec::new();
+    // Every role that parents have has to be declared.
+    let mut roles: HashMap<&str, Vec<Option<&str>>> = HashMap::new();
+    for requirement in &requirements.requirements {
+        let kind = requirement.kind.as_deref().unwrap_or(REQUIREMENT);
+        if !kinds.contains(&kind) {
+            kinds.push(kind);
+        }
+        let roles = roles.entry(kind).or_insert_with(|| vec![None]);
+        for parent in &requirement.parents {
+            if !roles.contains(&parent.role.as_deref()) {
+                roles.push(parent.role.as_deref());
+            }
+        }
+    }
+    if kinds.is_empty() {
+        kinds.push(REQUIREMENT);
+    }
+    for kind in kinds {
+        _ = writeln!(out, "- TAG: {kind}\n  FIELDS:");
+        let mut field = |title: &str, human: Option<&str>, kind: &Kind, required: &str| {
+            _ = writeln!(out, "  - TITLE: {title}");
+            if let Some(human) = human {
+                _ = writeln!(out, "    HUMAN_TITLE: {human}");
+            }
+            let of = match kind {
+                Kind::Choice(options) => format!("SingleChoice({})", choices(options)),
+                Kind::Choices(options) => format!("MultipleChoice({})", choices(options)),
+                _ => "String".to_owned(),
+            };
+            _ = writeln!(out, "    TYPE: {of}\n    REQUIRED: {required}");
+        };
+        for (title, required) in
+            [("MID", "False"), ("UID", "True"), ("TITLE", "False"), ("STATEMENT", "True")]
+        {
+            field(title, None, &Kind::Text, required);
+        }
+        for title in ALL {
+            if !columns.iter().any(|(_, column, _)| column == title) {
+                field(title, None, &Kind::Text, "False");
+            }
+        }
+        for (name, column, kind) in columns {
+            field(column, (name != column).then_some(name), kind, "False");
+        }
+        out.push_str("  RELATIONS:\n");
+        for role in roles.get(kind).map_or(&[None][..], Vec::as_slice) {
+            out.push_str("  - TYPE: Parent\n");
+            if let Some(role) = role {
+                _ = writeln!(out, "    ROLE: {role}");
+            }
+        }
+    }
+}
+
+fn choices(options: &[String]) -> String {
+    options.join(", ")
+}
+
+fn node(
+    out: &mut String,
+    requirement: &Requirement,
+    columns: &[(&str, String, Kind)],
+) -> Result<(), String> {
+    if !legal_uid(&requirement.id) {
+        return Err(format!(
+            "its id {:?} is none of StrictDoc's: a letter, digit or _, then those, ()-/.: or space",
+            requirement.id
+        ));
+    }
+    let kind = requirement.kind.as_deref().unwrap_or(REQUIREMENT);
+    if !legal_kind(kind) {
+        return Err(format!(
+            "its kind {kind:?} is none of StrictDoc's: words of capitals, joined by _"
+        ));
+    }
+    _ = write!(out, "\n[{kind}]\n");
+    let mut own: Vec<(&str, String)> = Vec::new();
+    own.extend(requirement.identifier.iter().map(|text| ("MID", text.clone())));
+    own.push(("UID", requirement.id.clone()));
+    own.extend(requirement.title.iter().map(|text| ("TITLE", text.clone())));
+    own.push(("STATEMENT", requirement.text.clone()));
+    own.extend(own_fields(requirement));
+    let of = |field: &str| own.iter().find(|(name, _)| *name == field);
+    // In the order of the grammar: StrictDoc takes no other.
+    let before = OF_FORMATS.into_iter().chain(ALL);
+    for field in before.filter(|field| !columns.iter().any(|(_, column, _)| column == field)) {
+        if let Some((_, value)) = of(field) {
+            entry(out, field, value)?;
+        }
+    }
+    for (name, column, kind) in columns {
+        if let Some((_, value)) = of(column) {
+            entry(out, column, value)?;
+        }
+        let Some(attribute) = requirement.attributes.iter().find(|a| a.name == *name) else {
+            continue;
+        };
+        if matches!(kind, Kind::Choices(_)) {
+            entry(out, column, &choices(&attribute.values))?;
+        } else {
+            for value in &attribute.values {
+                entry(out, column, value)?;
+            }
+        }
+    }
+    if !requirement.parents.is_empty() {
+        out.push_str("RELATIONS:\n");
+    }
+    for parent in &requirement.parents {
+        _ = writeln!(out, "- TYPE: Parent\n  VALUE: {}", parent.id);
+        if let Some(role) = &parent.role {
+            _ = writeln!(out, "  ROLE: {role}");
+        }
+    }
+    Ok(())
+}
+
+fn entry(out: &mut String, field: &str, value: &str) -> Result<(), String> {
+    if value.split('\n').any(|line| line.starts_with("<<<")) {
+        return Err(format!("{field} has a line that begins with <<<, which ends a text there"));
+    }
+    if value.contains('\n') || value.starts_with(">>>") {
+        _ = writeln!(out, "{field}: >>>\n{value}\n<<<");
+    } else {
+        _ = writeln!(out, "{field}: {value}");
+    }
+    Ok(())
+}

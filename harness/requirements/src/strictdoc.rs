@@ -1,0 +1,220 @@
+//! The trace as StrictDoc shows it: results as a document beside that of the requirements.
+//!
+//! StrictDoc reads test reports in JUnit XML, but links a result to a requirement only through the
+//! source file of the test, and refuses a report with an error in it. Results are therefore written as
+//! a document of its own, a `TEST_RESULT` for each case with a relation to each requirement that it
+//! verifies: whatever the verdict is.
+
+use crate::error::ExportError;
+use crate::requirement::Requirements;
+use crate::sdoc::legal_uid;
+use crate::trace::{Trace, Verdict};
+use std::fmt::Write as _;
+
+/// Role of the relation from a result to its requirement.
+pub const VERIFIES: &str = "Verifies";
+
+/// Writes the results of a campaign as an `.sdoc`, to be exported together with that of the
+/// requirements.
+///
+/// # Errors
+/// If a case has an id that StrictDoc doesn't take.
+pub fn results(
+    trace: &Trace,
+    requirements: &Requirements,
+    title: &str,
+) -> Result<String, ExportError> {
+    let mut out = format!("[DOCUMENT]\nTITLE: {title}\n\n[GRAMMAR]\nELEMENTS:\n");
+    out.push_str("- TAG: TEXT\n  FIELDS:\n  - TITLE: UID\n    TYPE: String\n    REQUIRED: False\n");
+    out.push_str("  - TITLE: STATEMENT\n    TYPE: String\n    REQUIRED: True\n- TAG: TEST_RESULT\n  FIELDS:\n");
+    for (field, required) in [
+        ("UID", "True"),
+        ("STATUS", "True"),
+        ("RECORDING", "False"),
+        ("FOLDER", "False"),
+        ("STATEMENT", "True"),
+    ] {
+        _ = writeln!(out, "  - TITLE: {field}\n    TYPE: String\n    REQUIRED: {required}");
+    }
+    _ = writeln!(out, "  RELATIONS:\n  - TYPE: Parent\n  - TYPE: Parent\n    ROLE: {VERIFIES}");
+    let mut cases: Vec<&str> = Vec::new();
+    let mut seen = std::collections::HashSet::new();
+    for link in trace.requirements.iter().flat_map(|row| &row.cases) {
+        if seen.insert(link.case.as_str()) {
+            cases.push(&link.case);
+        }
+    }
+    for case in cases {
+        if !legal_uid(case) || requirements.get(case).is_some() {
+            let message =
+                "its id is none that StrictDoc takes, or that of a requirement".to_owned();
+            return Err(ExportError { format: "sdoc", id: case.to_owned(), message });
+        }
+        let links: Vec<_> = trace
+            .requirements
+            .iter()
+            .filter_map(|row| Some((row, row.cases.iter().find(|link| link.case == case)?)))
+            .collect();
+        let word = |verdict: Option<Verdict>| verdict.map_or("not run", Verdict::name);
+        let missing = links.iter().any(|(_, link)| link.verdict.is_none());
+        let worst = links.iter().filter_map(|(_, link)| link.verdict).max();
+        // A check that is missing leaves nothing shown.
+        let worst = match worst {
+            Some(verdict) if missing => Some(verdict.max(Verdict::Inconclusive)),
+            other => other,
+        };
+        _ = write!(out, "\n[TEST_RESULT]\nUID: {case}\nSTATUS: {}\n", word(worst));
+        let first = links.first().map(|(_, link)| *link);
+        if let Some(recording) = first.and_then(|link| link.recording.as_deref()) {
+            _ = writeln!(out, "RECORDING: {recording}");
+        }
+        if let Some(folder) = first.and_then(|link| link.folder.as_deref()) {
+            _ = writeln!(out, "FOLDER: {folder}");
+        }
+        out.push_str("STATEMENT: >>>\n");
+        for (row, link) in &links {
+            _ = writeln!(out, "- {}: {}", row.id, word(link.verdict));
+        }
+        out.push_str("<<<\nRELATIONS:\n");
+        for (row, _) in &links {
+            _ = writeln!(out, "- TYPE: Parent\n  VALUE: {}\n  ROLE: {VERIFIES}", row.id);
+        }
+    }
+    Ok(out)
+}
+
+/// Name of the test report: StrictDoc tells the flavour by it.
+const REPORT: &str = "campaign.lit.junit.xml";
+
+/// Everything that StrictDoc needs to show a campaign, as paths and texts: a project of it, the
+/// requirements, the results, one file for each case that names its requirements, and a test report.
+///
+/// The report is JUnit XML in the flavour of LLVM's lit, the one whose tests are files: so StrictDoc
+/// finds the way from the requirement over the case's file to its result. It refuses reports with
+/// errors in them: what is inconclusive or an error is a failure there, of that type. `results.sdoc`
+/// has the verdict by its name.
+///
+/// # Errors
+/// If a requirement or a case has what StrictDoc has no place for.
+pub fn folder(
+    requirements: &Requirements,
+    trace: &Trace,
+    title: &str,
+) -> Result<Vec<(String, String)>, ExportError> {
+    let mut files = vec![
+        ("strictdoc_config.py".to_owned(), config(title)),
+        ("requirements.sdoc".to_owned(), crate::sdoc::write(requirements)?),
+        ("results.sdoc".to_owned(), results(trace, requirements, &format!("{title}: results"))?),
+    ];
+    let mut cases: Vec<(String, Vec<(&str, Option<Verdict>)>)> = Vec::new();
+    let mut index: std::collections::HashMap<&str, usize> = std::collections::HashMap::new();
+    for row in &trace.requirements {
+        for link in &row.cases {
+            let at = *index.entry(&link.case).or_insert_with(|| {
+                cases.push((link.case.clone(), Vec::new()));
+                cases.len() - 1
+            });
+            cases[at].1.push((&row.id, link.verdict));
+        }
+    }
+    for (case, checks) in &cases {
+        // A path of its own for each, and none out of the folder.
+        let plain = |c: char| c.is_ascii_alphanumeric() || "-_.".contains(c);
+        if case.starts_with('.') || !case.chars().all(plain) {
+            let message = "its id is no name of a file: letters, digits, -, _ and .".to_owned();
+            return Err(ExportError { format: "StrictDoc", id: case.clone(), message });
+        }
+        let ids: Vec<&str> = checks.iter().map(|(id, _)| *id).collect();
+        let text = format!("# @relation({}, scope=file)\ncase = \"{case}\"\n", ids.join(", "));
+        files.push((format!("cases/{case}.toml"), text));
+    }
+    let report = report(title, &cases).map_err(|error| ExportError {
+        format: "JUnit XML",
+        id: title.to_owned(),
+        message: error.to_string(),
+    })?;
+    files.push((REPORT.to_owned(), report));
+    Ok(files)
+}
+
+/// The configuration of the project.
+fn config(title: &str) -> String {
+    let title = serde_json::Value::from(title).to_string();
+    format!(
+        "from strictdoc.core.project_config import ProjectConfig\n\n\n\
+         def create_config() -> ProjectConfig:\n    return ProjectConfig(\n        \
+         project_title={title},\n        project_features=[\n            \
+         \"REQUIREMENT_TO_SOURCE_TRACEABILITY\",\n            \"TABLE_SCREEN\",\n            \
+         \"TRACEABILITY_SCREEN\",\n            \"DEEP_TRACEABILITY_SCREEN\",\n        ],\n        \
+         include_source_paths=[\"cases/**\"],\n        \
+         test_report_root_dict={{\"{REPORT}\": \"\"}},\n    )\n"
+    )
+}
+
+/// The test report. A case that hasn't run is skipped.
+fn report(
+    title: &str,
+    cases: &[(String, Vec<(&str, Option<Verdict>)>)],
+) -> std::io::Result<String> {
+    use quick_xml::events::{BytesDecl, Event};
+    let worst = |checks: &[(&str, Option<Verdict>)]| {
+        let missing = checks.iter().any(|(_, verdict)| verdict.is_none());
+        let worst = checks.iter().filter_map(|(_, verdict)| *verdict).max()?;
+        Some(if missing { worst.max(Verdict::Inconclusive) } else { worst })
+    };
+    let bad = |verdict: Option<Verdict>| verdict.is_some_and(|v| v != Verdict::Pass);
+    let failures = cases.iter().filter(|(_, checks)| bad(worst(checks))).count().to_string();
+    let skipped = cases.iter().filter(|(_, checks)| worst(checks).is_none()).count().to_string();
+    let tests = cases.len().to_string();
+    let mut out = quick_xml::Writer::new_with_indent(Vec::new(), b' ', 1);
+    out.write_event(Event::Decl(BytesDecl::new("1.0", Some("UTF-8"), None)))?;
+    let counts = [
+        ("tests", tests.as_str()),
+        ("failures", &failures),
+        ("skipped", &skipped),
+        ("errors", "0"),
+    ];
+    out.create_element("testsuites").with_attribute(("name", "octant")).write_inner_content(
+        |out| {
+            let suite = out.create_element("testsuite").with_attribute(("name", title));
+            suite.with_attributes(counts).write_inner_content(|out| {
+                for (case, checks) in cases {
+                    let name = format!("{case}.toml");
+                    let element = out.create_element("testcase").with_attributes([
+                        ("classname", "octant.cases"),
+                        ("name", name.as_str()),
+                        ("time", "0"),
+                    ]);
+                    element.write_inner_content(|out| {
+                        let ids: Vec<&str> = checks.iter().map(|(id, _)| *id).collect();
+                        out.create_element("properties").write_inner_content(|out| {
+                            let property = [("name", "verifies"), ("value", &ids.join(", "))];
+                            out.create_element("property")
+                                .with_attributes(property)
+                                .write_empty()?;
+                            Ok(())
+                        })?;
+                        let verdict = worst(checks);
+                        if let Some(verdict) = verdict.filter(|_| bad(verdict)) {
+                            let of = |(id, v): &(&str, Option<Verdict>)| {
+                                format!("{id}: {}", v.map_or("not run", Verdict::name))
+                            };
+                            let message: Vec<String> = checks.iter().map(of).collect();
+                            let message = message.join("; ");
+                            let attributes = [("type", verdict.name()), ("message", &message)];
+                            out.create_element("failure")
+                                .with_attributes(attributes)
+                                .write_empty()?;
+                        } else if verdict.is_none() {
+                            out.create_element("skipped").write_empty()?;
+                        }
+                        Ok(())
+                    })?;
+                }
+                Ok(())
+            })?;
+            Ok(())
+        },
+    )?;
+    String::from_utf8(out.into_inner()).map_err(std::io::Error::other)
+}

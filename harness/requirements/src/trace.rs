@@ -1,0 +1,293 @@
+//! From requirements to cases, results and recordings, and back.
+
+use crate::requirement::{Ensemble, Requirement, Requirements, Verification};
+use octant_statistics::proportion;
+use serde::{Deserialize, Serialize};
+use std::collections::HashMap;
+
+/// What a check, a case or a requirement comes to. The order is the order of badness.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Verdict {
+    /// It is shown to be good.
+    Pass,
+    /// Nothing is shown.
+    Inconclusive,
+    /// It is shown to be bad.
+    Fail,
+    /// The bench failed.
+    Error,
+}
+
+impl Verdict {
+    /// All verdicts, from best to worst.
+    pub const ALL: [Self; 4] = [Self::Pass, Self::Inconclusive, Self::Fail, Self::Error];
+
+    /// The name used in files and on the screen.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Pass => "pass",
+            Self::Inconclusive => "inconclusive",
+            Self::Fail => "fail",
+            Self::Error => "error",
+        }
+    }
+}
+
+/// A case of a campaign: what it is there to verify, and what it came to.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Case {
+    /// Id of the case.
+    pub id: String,
+    /// Ids of the requirements that it verifies.
+    pub verifies: Vec<String>,
+    /// What came of it; without it, the case hasn't run.
+    pub result: Option<CaseResult>,
+}
+
+/// What came of a case.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct CaseResult {
+    /// What the case as a whole came to.
+    pub verdict: Verdict,
+    /// What each check came to, by the id of the requirement. A requirement that the case is there to
+    /// verify and that isn't here was not checked.
+    pub checks: Vec<(String, Verdict)>,
+    /// The recording.
+    pub recording: Option<String>,
+    /// The run folder.
+    pub folder: Option<String>,
+}
+
+/// One case of a requirement.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Link {
+    /// The case.
+    pub case: String,
+    /// What the check came to; none, if the case hasn't run, or ran without this check.
+    pub verdict: Option<Verdict>,
+    /// The recording.
+    pub recording: Option<String>,
+    /// The run folder.
+    pub folder: Option<String>,
+}
+
+/// How many checks came to what.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Counts {
+    /// Passed.
+    pub pass: u64,
+    /// Came to nothing.
+    pub inconclusive: u64,
+    /// Failed.
+    pub fail: u64,
+    /// The bench failed.
+    pub error: u64,
+    /// Not run, or run without this check.
+    pub missing: u64,
+}
+
+impl Counts {
+    fn add(&mut self, verdict: Option<Verdict>) {
+        *match verdict {
+            None => &mut self.missing,
+            Some(Verdict::Pass) => &mut self.pass,
+            Some(Verdict::Inconclusive) => &mut self.inconclusive,
+            Some(Verdict::Fail) => &mut self.fail,
+            Some(Verdict::Error) => &mut self.error,
+        } += 1;
+    }
+}
+
+/// What became of one requirement.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Row {
+    /// Its id.
+    pub id: String,
+    /// How it is verified: `test`, `analysis`, `inspection`, `open`.
+    pub verification: String,
+    /// Its cases, in the order of the campaign.
+    pub cases: Vec<Link>,
+    /// How many of its checks came to what.
+    pub counts: Counts,
+    /// What it comes to; none where a run can't tell: it is verified by analysis or inspection.
+    pub verdict: Option<Verdict>,
+    /// Why, in plain words.
+    pub reason: String,
+}
+
+/// A case that names a requirement that there isn't.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Unknown {
+    /// The case.
+    pub case: String,
+    /// What it names.
+    pub requirement: String,
+}
+
+/// The trace of a campaign, both ways.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Trace {
+    /// Every requirement with its cases, in the order of the document.
+    pub requirements: Vec<Row>,
+    /// Requirements that are verified by test, or that nobody has said of, and have no case.
+    pub without_case: Vec<String>,
+    /// Cases that verify no requirement that there is.
+    pub without_requirement: Vec<String>,
+    /// Requirements that cases name, and that there aren't.
+    pub unknown: Vec<Unknown>,
+}
+
+impl Trace {
+    /// Traces the cases of a campaign. A case that names a requirement several times counts once for
+    /// it, with the worst of its checks.
+    #[must_use]
+    pub fn new(requirements: &Requirements, cases: &[Case]) -> Self {
+        let index: HashMap<&str, usize> =
+            requirements.requirements.iter().enumerate().map(|(i, r)| (r.id.as_str(), i)).collect();
+        let mut links: Vec<Vec<Link>> = vec![Vec::new(); requirements.requirements.len()];
+        let (mut without_requirement, mut unknown) = (Vec::new(), Vec::new());
+        for case in cases {
+            let mut worst: HashMap<&str, Verdict> = HashMap::new();
+            for (id, verdict) in case.result.iter().flat_map(|result| &result.checks) {
+                let slot = worst.entry(id).or_insert(*verdict);
+                *slot = (*slot).max(*verdict);
+            }
+            // What was checked counts, whether it was announced or not.
+            let mut ids: Vec<&str> = Vec::new();
+            let checked = case.result.iter().flat_map(|r| &r.checks).map(|(id, _)| id);
+            for id in case.verifies.iter().chain(checked) {
+                if !ids.contains(&id.as_str()) {
+                    ids.push(id);
+                }
+            }
+            let mut known = false;
+            for id in ids {
+                let Some(&at) = index.get(id) else {
+                    let requirement = id.to_owned();
+                    unknown.push(Unknown { case: case.id.clone(), requirement });
+                    continue;
+                };
+                known = true;
+                links[at].push(Link {
+                    case: case.id.clone(),
+                    verdict: worst.get(id).copied(),
+                    recording: case.result.as_ref().and_then(|r| r.recording.clone()),
+                    folder: case.result.as_ref().and_then(|r| r.folder.clone()),
+                });
+            }
+            if !known {
+                without_requirement.push(case.id.clone());
+            }
+        }
+        let rows: Vec<Row> =
+            requirements.requirements.iter().zip(links).map(|(r, cases)| row(r, cases)).collect();
+        let tested = |row: &&Row| row.cases.is_empty() && row.verdict.is_some();
+        let without_case = rows.iter().filter(tested).map(|row| row.id.clone()).collect();
+        Self { requirements: rows, without_case, without_requirement, unknown }
+    }
+
+    /// The worst of all requirements that runs can tell of. None at all is inconclusive: nothing is
+    /// shown by nothing.
+    #[must_use]
+    pub fn verdict(&self) -> Verdict {
+        let worst = self.requirements.iter().filter_map(|row| row.verdict).max();
+        let unknown = if self.unknown.is_empty() { Verdict::Pass } else { Verdict::Inconclusive };
+        worst.unwrap_or(Verdict::Inconclusive).max(unknown)
+    }
+
+    /// The requirements that a case verifies, with what each check came to.
+    #[must_use]
+    pub fn of_case(&self, case: &str) -> Vec<(&str, Option<Verdict>)> {
+        let of = |row: &Row| row.cases.iter().find(|link| link.case == case).map(|l| l.verdict);
+        self.requirements
+            .iter()
+            .filter_map(|row| of(row).map(|verdict| (row.id.as_str(), verdict)))
+            .collect()
+    }
+}
+
+fn row(requirement: &Requirement, cases: Vec<Link>) -> Row {
+    let mut counts = Counts::default();
+    for link in &cases {
+        counts.add(link.verdict);
+    }
+    let (verdict, reason) = match &requirement.verification {
+        Verification::Test(check) => {
+            let (verdict, reason) = judge(check.ensemble, counts);
+            (Some(verdict), reason)
+        }
+        Verification::Open => {
+            (Some(Verdict::Inconclusive), "nobody has said how it is verified".to_owned())
+        }
+        other => (None, format!("verified by {}, of which no run can tell", other.name())),
+    };
+    Row {
+        id: requirement.id.clone(),
+        verification: requirement.verification.name().to_owned(),
+        cases,
+        counts,
+        verdict,
+        reason,
+    }
+}
+
+/// What the checks of a requirement come to together.
+///
+/// Without a statement on the ensemble the worst check wins. With one, failures are counted: it passes
+/// if the lower bound of the pass probability (Clopper and Pearson) reaches what is required, fails if
+/// the upper one doesn't, and is inconclusive between. Errors, inconclusive checks and such as are
+/// missing never end in pass.
+#[must_use]
+pub fn judge(ensemble: Option<Ensemble>, counts: Counts) -> (Verdict, String) {
+    let Counts { pass, inconclusive, fail, error, missing } = counts;
+    let all = pass + inconclusive + fail + error + missing;
+    if all == 0 {
+        return (Verdict::Inconclusive, "no case verifies it".to_owned());
+    }
+    if error > 0 {
+        return (Verdict::Error, format!("{error} of {all} checks ended in an error"));
+    }
+    let open = inconclusive + missing;
+    let Some(Ensemble { pass: required, confidence }) = ensemble else {
+        return if fail > 0 {
+            (Verdict::Fail, format!("{fail} of {all} checks failed"))
+        } else if open > 0 {
+            let told =
+                format!("{inconclusive} of {all} checks are inconclusive, {missing} missing");
+            (Verdict::Inconclusive, told)
+        } else {
+            (Verdict::Pass, format!("all {all} checks passed"))
+        };
+    };
+    let (lower, upper) = (
+        proportion::success_lower_bound(fail, pass + fail, confidence),
+        // What came to nothing might have passed: failure is shown where that wouldn't help.
+        proportion::success_upper_bound(fail, all, confidence),
+    );
+    let percent = |p: f64| format!("{:.2} %", 100.0 * p);
+    let found = format!(
+        "{pass} of {} runs passed: with {} confidence the pass probability is at least {}, required {}",
+        pass + fail,
+        percent(confidence),
+        percent(lower),
+        percent(required)
+    );
+    if upper < required {
+        let at_most =
+            format!("{fail} of {all} runs failed: with {} confidence", percent(confidence));
+        let told = format!(
+            "the pass probability is at most {}, required {}",
+            percent(upper),
+            percent(required)
+        );
+        (Verdict::Fail, format!("{at_most} {told}"))
+    } else if open > 0 {
+        (Verdict::Inconclusive, format!("{found}; {open} of {all} checks came to nothing"))
+    } else if pass + fail > 0 && lower >= required {
+        (Verdict::Pass, found)
+    } else {
+        (Verdict::Inconclusive, found)
+    }
+}

@@ -1,0 +1,232 @@
+//! Any requirements go through every format and come back the same.
+#![allow(clippy::unwrap_used)]
+
+use octant_requirements::requirement::{
+    Attribute, Check, Comparison, Definition, Ensemble, Kind, Limit, Parent, Requirement,
+    Requirements, Verification,
+};
+use octant_requirements::{file, reqif, sdoc};
+use proptest::collection::vec;
+use proptest::option::of as maybe;
+use proptest::prelude::*;
+
+/// One line as people write it, without space around it.
+fn line() -> impl Strategy<Value = String> {
+    prop_oneof![
+        "[A-Za-z0-9µ°§≤<>&\"'\\\\\\[\\]]([ -~µ√é]{0,20}[a-z.;])?",
+        Just(">>> is no beginning".to_owned()),
+        Just("RELATIONS: none".to_owned()),
+        Just("tab\tinside, and  two spaces".to_owned()),
+        Just("[REQUIREMENT]".to_owned()),
+        Just("]]> &amp; <p>".to_owned()),
+    ]
+}
+
+/// A line as titles are.
+fn name() -> impl Strategy<Value = String> {
+    line().prop_map(|line| line.replace('\t', " "))
+}
+
+fn text() -> impl Strategy<Value = String> {
+    // A paragraph may be empty in the middle.
+    vec(prop_oneof![4 => line(), 1 => Just(String::new())], 1..4).prop_map(|lines| {
+        let text = lines.join("\n").trim().to_owned();
+        if text.is_empty() { "x".to_owned() } else { text }
+    })
+}
+
+fn verification() -> impl Strategy<Value = Verification> {
+    let limit = prop_oneof![
+        (-1000i32..1000).prop_map(|n| Limit::Number(f64::from(n) / 8.0)),
+        prop::num::f64::NORMAL.prop_map(Limit::Number),
+        "[0-9]{1,3}(\\.[0-9]{1,2})? (arcmin|deg/h|µg/√Hz|%)".prop_map(Limit::Quantity),
+    ];
+    let probability = (1u32..1000).prop_map(|n| f64::from(n) / 1000.0);
+    let ensemble = maybe((probability.clone(), probability));
+    let comparison = prop::sample::select(Comparison::ALL.to_vec());
+    let test = ("\\|?[a-z_]{1,8}(\\.[a-z_0-9]{1,8}){0,3}", comparison, limit, ensemble).prop_map(
+        |(measure, comparison, limit, ensemble)| {
+            let ensemble = ensemble.map(|(pass, confidence)| Ensemble { pass, confidence });
+            Verification::Test(Check { measure, comparison, limit, ensemble })
+        },
+    );
+    prop_oneof![3 => test, 1 => Just(Verification::Analysis), 1 => Just(Verification::Inspection)]
+}
+
+/// Attributes of other tools, and their values.
+fn attributes() -> Vec<(Definition, Vec<Vec<String>>)> {
+    let define = |name: &str, kind, values: &[&[&str]]| {
+        let values = values.iter().map(|v| v.iter().map(|s| (*s).to_owned()).collect()).collect();
+        (Definition { name: name.to_owned(), kind, field: None }, values)
+    };
+    let options = |all: &[&str]| all.iter().map(|s| (*s).to_owned()).collect::<Vec<_>>();
+    vec![
+        define("STATUS", Kind::Text, &[&["Draft"], &["In µ-review"]]),
+        define("Owner of it", Kind::Text, &[&["A. Person"]]),
+        define(
+            "Priority",
+            Kind::Choice(options(&["high", "low & slow"])),
+            &[&["high"], &["low & slow"]],
+        ),
+        define("Phases", Kind::Choices(options(&["1a", "1b", "2"])), &[&["1a", "2"], &["1b"]]),
+        define("Effort", Kind::Integer, &[&["-12"]]),
+        define("Weight", Kind::Real, &[&["1.5e-3"]]),
+        define("Safe", Kind::Boolean, &[&["true"], &["false"]]),
+        define("Due", Kind::Date, &[&["2026-01-31T00:00:00Z"]]),
+    ]
+}
+
+fn requirement(index: usize) -> impl Strategy<Value = Requirement> {
+    let names = (maybe(name()), text(), maybe(text()), maybe(text()));
+    let place = (
+        vec(prop::sample::select(vec!["Navigation", "Drift & more", "1"]), 0..3),
+        maybe(Just("SYSTEM_REQUIREMENT".to_owned())),
+        any::<bool>(),
+    );
+    let all = attributes();
+    let picks = vec(maybe(any::<prop::sample::Index>()), all.len());
+    let parents =
+        vec((0..=index, maybe(Just("Refines".to_owned()))), 0..if index == 0 { 1 } else { 3 });
+    (names, verification(), place, picks, parents, "[A-Z]{2,4}[-/.: ()]?[0-9]").prop_map(
+        move |(
+            (title, text, clause, rationale),
+            verification,
+            (section, kind, mid),
+            picks,
+            parents,
+            id,
+        )| {
+            let attributes = all
+                .iter()
+                .zip(picks)
+                .filter_map(|((definition, values), pick)| {
+                    let values = pick?.get(values).clone();
+                    Some(Attribute { name: definition.name.clone(), values })
+                })
+                .collect();
+            let id = format!("{id}.{index}");
+            Requirement {
+                title,
+                clause,
+                rationale,
+                // By index: the ids are known when all are made.
+                parents: parents
+                    .into_iter()
+                    .map(|(at, role)| Parent { id: at.to_string(), role })
+                    .collect(),
+                section: section.into_iter().map(str::to_owned).collect(),
+                kind,
+                identifier: mid.then(|| format!("_{index:032x}")),
+                attributes,
+                ..Requirement::new(&id, &text, verification)
+            }
+        },
+    )
+}
+
+fn requirements() -> impl Strategy<Value = Requirements> {
+    let all = (0usize..6).prop_flat_map(|n| (0..n).map(requirement).collect::<Vec<_>>());
+    let head = prop::sample::subsequence(
+        vec!["VERSION", "DATE", "OPTIONS.MARKUP", "METADATA.Author"],
+        0..=4,
+    );
+    let document = (head, name()).prop_map(|(keys, value)| {
+        keys.into_iter().map(|key| (key.to_owned(), value.clone())).collect::<Vec<_>>()
+    });
+    (name(), document, all).prop_map(|(title, document, mut requirements)| {
+        let ids: Vec<String> = requirements.iter().map(|r| r.id.clone()).collect();
+        for (at, requirement) in requirements.iter_mut().enumerate() {
+            for parent in &mut requirement.parents {
+                parent.id = ids[parent.id.parse::<usize>().unwrap()].clone();
+            }
+            requirement.parents.retain(|parent| parent.id != ids[at]);
+            requirement.parents.dedup_by(|a, b| a.id == b.id);
+        }
+        let definitions = attributes().into_iter().map(|(definition, _)| definition);
+        let definitions = definitions.filter(|d| d.kind != Kind::Text).collect();
+        Requirements { title, document, definitions, requirements }
+    })
+}
+
+/// Without definitions that a format doesn't keep, and in the order of their names.
+fn sorted(mut requirements: Requirements, keep: impl Fn(&Definition) -> bool) -> Requirements {
+    let used: Vec<String> = requirements
+        .requirements
+        .iter()
+        .flat_map(|r| r.attributes.iter().map(|a| a.name.clone()))
+        .collect();
+    requirements.definitions.retain(|d| keep(d) && used.contains(&d.name));
+    requirements.definitions.sort_by(|a, b| a.name.cmp(&b.name));
+    for requirement in &mut requirements.requirements {
+        requirement.attributes.sort_by(|a, b| a.name.cmp(&b.name));
+    }
+    requirements
+}
+
+/// Parents in any order: relations of ReqIF are a set.
+fn unordered(mut requirements: Requirements) -> Requirements {
+    for requirement in &mut requirements.requirements {
+        requirement.parents.sort_by(|a, b| a.id.cmp(&b.id));
+    }
+    requirements
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(300))]
+
+    #[test]
+    fn toml_comes_back_as_it_was(all in requirements()) {
+        let text = file::write(&all);
+        let back = file::read(&text, "test.toml", &file::Anything).map_err(|e| format!("{e}\n{text}"));
+        prop_assert_eq!(back.unwrap(), all);
+    }
+
+    #[test]
+    fn sdoc_comes_back_as_it_was(all in requirements()) {
+        let text = sdoc::write(&all).unwrap();
+        let back = sdoc::read(&text, "test.sdoc").map_err(|e| format!("{e}\n{text}")).unwrap();
+        prop_assert_eq!(&back.notes, &[]);
+        // StrictDoc knows text and choices, no numbers and dates.
+        let choice = |d: &Definition| d.kind.options().is_some();
+        prop_assert_eq!(sorted(back.requirements, choice), sorted(all, choice), "{}", text);
+    }
+
+    #[test]
+    fn reqif_comes_back_as_it_was(all in requirements()) {
+        let text = reqif::write(&all, "2026-01-31T12:00:00Z").unwrap();
+        let back = reqif::read(&text, "test.reqif").map_err(|e| format!("{e}\n{text}")).unwrap();
+        prop_assert_eq!(&back.notes, &[]);
+        let found = unordered(sorted(back.requirements, |_| true));
+        prop_assert_eq!(found, unordered(sorted(all, |_| true)), "{}", text);
+    }
+
+    #[test]
+    fn any_text_is_read_without_a_panic(text in "\\PC*", lines in vec(line(), 0..20)) {
+        let lines = lines.join("\n");
+        for text in [&text, &lines, &format!("[DOCUMENT]\nTITLE: x\n\n{lines}")] {
+            let _ = sdoc::read(text, "x");
+            let _ = reqif::read(text, "x");
+            let _ = file::read(text, "x", &file::Anything);
+        }
+    }
+
+    #[test]
+    fn a_damaged_file_is_read_or_refused(all in requirements(), cut in any::<prop::sample::Index>(), by in any::<char>()) {
+        for (text, is_sdoc) in [
+            (sdoc::write(&all).unwrap(), true),
+            (reqif::write(&all, "2026-01-31T12:00:00Z").unwrap(), false),
+        ] {
+            let mut chars: Vec<char> = text.chars().collect();
+            let at = cut.index(chars.len());
+            chars[at] = by;
+            let damaged: String = chars.iter().collect();
+            let short: String = chars[..at].iter().collect();
+            for text in [&damaged, &short] {
+                let error = if is_sdoc { sdoc::read(text, "x").err() } else { reqif::read(text, "x").err() };
+                if let Some(error) = error {
+                    prop_assert!(error.problems[0].line >= 1, "{error}");
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,181 @@
+//! The trace both ways, and that nothing ends in pass that wasn't shown.
+#![allow(clippy::unwrap_used)]
+
+use octant_requirements::requirement::{
+    Check, Comparison, Ensemble, Limit, Requirement, Requirements, Verification,
+};
+use octant_requirements::strictdoc;
+use octant_requirements::trace::{Case, CaseResult, Counts, Trace, Verdict, judge};
+use proptest::prelude::*;
+
+fn tested(id: &str, ensemble: Option<Ensemble>) -> Requirement {
+    let check = Check {
+        measure: "navigation.radial_error_nmi.max".to_owned(),
+        comparison: Comparison::AtMost,
+        limit: Limit::Quantity("1 nmi".to_owned()),
+        ensemble,
+    };
+    Requirement::new(id, "It stays close.", Verification::Test(check))
+}
+
+fn document(requirements: Vec<Requirement>) -> Requirements {
+    Requirements { title: "T".to_owned(), requirements, ..Requirements::default() }
+}
+
+fn case(id: &str, checks: &[(&str, Verdict)]) -> Case {
+    let checks: Vec<(String, Verdict)> =
+        checks.iter().map(|(id, verdict)| ((*id).to_owned(), *verdict)).collect();
+    Case {
+        id: id.to_owned(),
+        verifies: checks.iter().map(|(id, _)| id.clone()).collect(),
+        result: Some(CaseResult {
+            verdict: checks.iter().map(|(_, v)| *v).max().unwrap_or(Verdict::Pass),
+            checks,
+            recording: Some(format!("runs/{id}/recording.mcap")),
+            folder: Some(format!("runs/{id}")),
+        }),
+    }
+}
+
+#[test]
+fn the_trace_goes_both_ways() {
+    let requirements = document(vec![
+        tested("A", None),
+        tested("B", None),
+        tested("C", None),
+        Requirement::new("D", "x", Verification::Analysis),
+        Requirement::new("E", "x", Verification::Open),
+    ]);
+    let mut planned = case("c4", &[("B", Verdict::Pass)]);
+    planned.result = None;
+    let cases = [
+        case("c1", &[("A", Verdict::Pass), ("B", Verdict::Pass)]),
+        case("c2", &[("A", Verdict::Fail), ("X", Verdict::Pass)]),
+        case("c3", &[]),
+        planned,
+    ];
+    let trace = Trace::new(&requirements, &cases);
+    assert_eq!(trace.without_case, ["C", "E"]);
+    assert_eq!(trace.without_requirement, ["c3"]);
+    assert_eq!(
+        (trace.unknown[0].case.as_str(), trace.unknown[0].requirement.as_str()),
+        ("c2", "X")
+    );
+    let row = |id: &str| trace.requirements.iter().find(|row| row.id == id).unwrap();
+    assert_eq!(row("A").verdict, Some(Verdict::Fail));
+    assert_eq!(row("A").cases[1].recording.as_deref(), Some("runs/c2/recording.mcap"));
+    assert_eq!(row("B").verdict, Some(Verdict::Inconclusive));
+    assert_eq!(row("B").reason, "0 of 2 checks are inconclusive, 1 missing");
+    assert_eq!(
+        (row("C").verdict, row("C").reason.as_str()),
+        (Some(Verdict::Inconclusive), "no case verifies it")
+    );
+    assert_eq!(row("D").verdict, None);
+    assert_eq!(trace.of_case("c1"), [("A", Some(Verdict::Pass)), ("B", Some(Verdict::Pass))]);
+    assert_eq!(trace.of_case("c4"), [("B", None)]);
+    assert_eq!(trace.verdict(), Verdict::Fail);
+}
+
+#[test]
+fn nothing_shows_nothing() {
+    assert_eq!(Trace::new(&document(vec![]), &[]).verdict(), Verdict::Inconclusive);
+    let analysed = document(vec![Requirement::new("D", "x", Verification::Analysis)]);
+    assert_eq!(Trace::new(&analysed, &[]).verdict(), Verdict::Inconclusive);
+    // A requirement that isn't there was meant to be verified by something.
+    let one = document(vec![tested("A", None)]);
+    let cases = [case("c1", &[("A", Verdict::Pass), ("B", Verdict::Pass)])];
+    assert_eq!(Trace::new(&one, &cases).verdict(), Verdict::Inconclusive);
+    assert_eq!(Trace::new(&one, &[case("c1", &[("A", Verdict::Pass)])]).verdict(), Verdict::Pass);
+    // Said to verify, and not checked.
+    let mut unchecked = case("c1", &[]);
+    unchecked.verifies.push("A".to_owned());
+    assert_eq!(Trace::new(&one, &[unchecked]).verdict(), Verdict::Inconclusive);
+    // Checked twice in a case: the worst counts.
+    let twice = case("c1", &[("A", Verdict::Fail), ("A", Verdict::Pass)]);
+    assert_eq!(Trace::new(&one, &[twice]).verdict(), Verdict::Fail);
+}
+
+#[test]
+fn an_ensemble_passes_by_its_bound() {
+    let demand = Some(Ensemble { pass: 0.95, confidence: 0.95 });
+    let counts = |pass, fail| Counts { pass, fail, ..Counts::default() };
+    let verdict = |counts| judge(demand, counts).0;
+    assert_eq!(verdict(counts(59, 0)), Verdict::Pass);
+    assert_eq!(verdict(counts(58, 0)), Verdict::Inconclusive);
+    // One failure takes 93 runs: 0.95^93 + 93 · 0.05 · 0.95^92 is the first below 5 %.
+    assert_eq!(verdict(counts(91, 1)), Verdict::Inconclusive);
+    assert_eq!(verdict(counts(92, 1)), Verdict::Pass);
+    assert_eq!(verdict(counts(50, 10)), Verdict::Fail);
+    assert_eq!(verdict(counts(0, 1)), Verdict::Inconclusive);
+    assert_eq!(verdict(Counts { missing: 1, ..counts(1000, 0) }), Verdict::Inconclusive);
+    assert_eq!(verdict(Counts { error: 1, ..counts(1000, 0) }), Verdict::Error);
+    let (_, reason) = judge(demand, counts(59, 0));
+    assert_eq!(
+        reason,
+        "59 of 59 runs passed: with 95.00 % confidence the pass probability is at least 95.05 %, required 95.00 %"
+    );
+}
+
+fn verdict() -> impl Strategy<Value = Verdict> {
+    prop::sample::select(Verdict::ALL.to_vec())
+}
+
+proptest! {
+    #[test]
+    fn only_passes_make_a_pass(
+        all in prop::collection::vec(prop::option::of(verdict()), 0..80),
+        ensemble in prop::option::of((0.01f64..0.999, 0.01f64..0.999)),
+    ) {
+        let ensemble = ensemble.map(|(pass, confidence)| Ensemble { pass, confidence });
+        let requirements = document(vec![tested("A", ensemble)]);
+        let cases: Vec<Case> = all.iter().enumerate().map(|(i, verdict)| match verdict {
+            Some(verdict) => case(&format!("c{i}"), &[("A", *verdict)]),
+            None => Case { id: format!("c{i}"), verifies: vec!["A".to_owned()], result: None },
+        }).collect();
+        let trace = Trace::new(&requirements, &cases);
+        let counted = trace.requirements[0].counts;
+        let sum = counted.pass + counted.inconclusive + counted.fail + counted.error + counted.missing;
+        prop_assert_eq!(sum, all.len() as u64);
+        if trace.verdict() == Verdict::Pass {
+            prop_assert!(!all.is_empty());
+            let worst = all.iter().map(|v| v.unwrap_or(Verdict::Error)).max();
+            // With a demand on the ensemble some may fail, and nothing else.
+            prop_assert!(worst == Some(Verdict::Pass) || (ensemble.is_some() && worst == Some(Verdict::Fail)));
+        }
+        if all.contains(&Some(Verdict::Error)) {
+            prop_assert_eq!(trace.verdict(), Verdict::Error);
+        }
+        // One more failure never makes it better.
+        let mut more = cases;
+        more.push(case("more", &[("A", Verdict::Fail)]));
+        prop_assert!(Trace::new(&requirements, &more).verdict() >= trace.verdict().max(Verdict::Pass)
+            || ensemble.is_some());
+    }
+}
+
+#[test]
+fn a_campaign_as_a_project_of_strictdoc() {
+    let requirements = document(vec![tested("A", None), tested("B", None)]);
+    let cases = [
+        case("c1", &[("A", Verdict::Pass), ("B", Verdict::Inconclusive)]),
+        Case { id: "c2".to_owned(), verifies: vec!["A".to_owned()], result: None },
+    ];
+    let trace = Trace::new(&requirements, &cases);
+    let files = strictdoc::folder(&requirements, &trace, "Night & day").unwrap();
+    let text = |path: &str| files.iter().find(|(p, _)| p == path).unwrap().1.as_str();
+    assert_eq!(text("cases/c1.toml"), "# @relation(A, B, scope=file)\ncase = \"c1\"\n");
+    let report = text("campaign.lit.junit.xml");
+    assert!(report.contains("tests=\"2\" failures=\"1\" skipped=\"1\" errors=\"0\""), "{report}");
+    assert!(
+        report.contains("<failure type=\"inconclusive\" message=\"A: pass; B: inconclusive\"/>"),
+        "{report}"
+    );
+    assert!(report.contains("<property name=\"verifies\" value=\"A, B\"/>"), "{report}");
+    let results = text("results.sdoc");
+    assert!(
+        results.contains("UID: c1\nSTATUS: inconclusive\nRECORDING: runs/c1/recording.mcap\n"),
+        "{results}"
+    );
+    let outside = Trace::new(&requirements, &[case("../c1", &[("A", Verdict::Pass)])]);
+    assert!(strictdoc::folder(&requirements, &outside, "T").is_err());
+}

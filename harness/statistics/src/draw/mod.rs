@@ -1,0 +1,136 @@
+//! The factors of many runs: Monte Carlo draws and Latin hypercubes, with correlations.
+//!
+//! Draws come from the named, counter-based streams of `octant-random`. Draw i of a factor depends on
+//! the seed, the factor's name and i, in a Latin hypercube also on the number of runs, and on nothing
+//! else: adding a factor, or runs to a Monte Carlo, moves no other draw. Factors that are correlated
+//! depend on each other as well.
+
+mod correlation;
+mod distribution;
+
+pub use correlation::{Correlation, Correlations};
+pub use distribution::{Distribution, Factor, Value};
+
+use crate::sample::ranks;
+use octant_random::normal::{uniform, words};
+use octant_random::stream::{Phase, key};
+
+/// Why factors can't be drawn.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum DrawError {
+    /// A distribution without a value.
+    #[error("draw {factor}: {message}")]
+    Factor {
+        /// The factor.
+        factor: String,
+        /// What is wrong.
+        message: String,
+    },
+    /// Two factors of one name would have the same draws.
+    #[error("draw {0}: there are two factors of this name")]
+    Duplicate(String),
+    /// A correlation that can't be.
+    #[error("correlate {first} with {second}: {message}")]
+    Correlation {
+        /// One factor.
+        first: String,
+        /// The other.
+        second: String,
+        /// What is wrong.
+        message: String,
+    },
+    /// Correlations that contradict each other.
+    #[error(
+        "correlate {}: no quantities are correlated like this (the matrix is not positive definite; \
+         it breaks at {})",
+        .factors.join(", "), .breaks_at
+    )]
+    NotPositiveDefinite {
+        /// The factors of the matrix, in its order.
+        factors: Vec<String>,
+        /// The factor at which the leading minor isn't positive.
+        breaks_at: String,
+    },
+    /// Latin hypercube of nothing, or too few for the correlations.
+    #[error("draw a Latin hypercube: {found} runs, at least {expected} are needed")]
+    Runs {
+        /// Found.
+        found: usize,
+        /// Expected.
+        expected: usize,
+    },
+}
+
+/// The name of a factor's stream: no model draws from one that is called so.
+fn stream(name: &str) -> String {
+    format!("factor {name}")
+}
+
+/// Word `word` of draw `i` of a factor, as a number in (0, 1).
+pub(crate) fn unit(seed: u64, name: &str, i: u64, word: usize) -> f64 {
+    uniform(words(key(seed, &stream(name), Phase::Draw), i)[word])
+}
+
+/// Draw `i` of every factor, in the order of the factors.
+///
+/// # Errors
+/// If a factor or a correlation isn't one.
+pub fn monte_carlo(
+    factors: &[Factor],
+    correlations: &[Correlation],
+    seed: u64,
+    i: u64,
+) -> Result<Vec<Value>, DrawError> {
+    check(factors)?;
+    let correlations = Correlations::new(factors, correlations)?;
+    let mut units: Vec<f64> = factors.iter().map(|f| unit(seed, &f.name, i, 0)).collect();
+    correlations.apply(&mut units);
+    factors.iter().zip(&units).map(|(factor, u)| factor.at(*u)).collect()
+}
+
+/// A Latin hypercube of `runs` (McKay, Beckman and Conover, Technometrics 21, 1979): every factor has
+/// one draw in each of `runs` parts of equal probability, at random in its part. Correlations are made
+/// by rearranging the draws (Iman and Conover, Communications in Statistics B 11, 1982), which leaves
+/// every factor its parts.
+///
+/// # Errors
+/// If a factor or a correlation isn't one, or there are too few runs to correlate them.
+pub fn latin_hypercube(
+    factors: &[Factor],
+    correlations: &[Correlation],
+    seed: u64,
+    runs: usize,
+) -> Result<Vec<Vec<Value>>, DrawError> {
+    check(factors)?;
+    let correlations = Correlations::new(factors, correlations)?;
+    if runs == 0 {
+        return Err(DrawError::Runs { found: 0, expected: 1 });
+    }
+    let mut columns: Vec<Vec<f64>> = factors.iter().map(|f| column(seed, &f.name, runs)).collect();
+    correlations.rearrange(&mut columns)?;
+    (0..runs)
+        .map(|i| factors.iter().zip(&columns).map(|(f, column)| f.at(column[i])).collect())
+        .collect()
+}
+
+/// The probabilities of one factor in a Latin hypercube: the part that a run has is the rank of its
+/// number among all, and its place in the part another number.
+fn column(seed: u64, name: &str, runs: usize) -> Vec<f64> {
+    let key = key(seed, &stream(&format!("{name} of {runs}")), Phase::Draw);
+    let words: Vec<[u64; 4]> = (0..runs as u64).map(|i| words(key, i)).collect();
+    let order: Vec<f64> = words.iter().map(|w| uniform(w[0])).collect();
+    let ranks = ranks(&order);
+    let place =
+        |(rank, w): (&f64, &[u64; 4])| (libm::floor(rank - 1.0) + uniform(w[1])) / runs as f64;
+    ranks.iter().zip(&words).map(place).collect()
+}
+
+fn check(factors: &[Factor]) -> Result<(), DrawError> {
+    for (index, factor) in factors.iter().enumerate() {
+        factor.check()?;
+        if factors[..index].iter().any(|other| other.name == factor.name) {
+            return Err(DrawError::Duplicate(factor.name.clone()));
+        }
+    }
+    Ok(())
+}

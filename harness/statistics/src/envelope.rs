@@ -1,0 +1,74 @@
+//! Percentile envelopes over time of many runs.
+
+use crate::sample::of_sorted;
+use serde::{Deserialize, Serialize};
+
+/// Why series make no envelope.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum EnvelopeError {
+    /// No run.
+    #[error("make an envelope: there is no run")]
+    Empty,
+    /// A run is on another grid.
+    #[error("make an envelope: run {run} has {found} points, the grid has {expected}")]
+    Length {
+        /// The run, from 0.
+        run: usize,
+        /// Its points.
+        found: usize,
+        /// The points of the grid.
+        expected: usize,
+    },
+    /// A value that isn't a number.
+    #[error("make an envelope: run {run} is not a number at point {point}")]
+    NotANumber {
+        /// The run, from 0.
+        run: usize,
+        /// The point, from 0.
+        point: usize,
+    },
+}
+
+/// Percentiles over runs at each point of a grid.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Envelope {
+    /// The percentiles, 0 to 1.
+    pub percentiles: Vec<f64>,
+    /// One curve for each percentile.
+    pub curves: Vec<Vec<f64>>,
+}
+
+/// The percentiles of series by run on a common grid of `points`, exact: every run is looked at, and
+/// between order statistics it is interpolated as [`crate::sample::percentile`] does.
+///
+/// # Errors
+/// If there is no run, or one has other points or a value that isn't a number.
+pub fn envelope<S: AsRef<[f64]>>(
+    series: &[S],
+    points: usize,
+    percentiles: &[f64],
+) -> Result<Envelope, EnvelopeError> {
+    if series.is_empty() {
+        return Err(EnvelopeError::Empty);
+    }
+    for (run, values) in series.iter().enumerate() {
+        let values = values.as_ref();
+        if values.len() != points {
+            return Err(EnvelopeError::Length { run, found: values.len(), expected: points });
+        }
+        if let Some(point) = values.iter().position(|v| v.is_nan()) {
+            return Err(EnvelopeError::NotANumber { run, point });
+        }
+    }
+    let mut curves = vec![Vec::with_capacity(points); percentiles.len()];
+    let mut column = Vec::with_capacity(series.len());
+    for point in 0..points {
+        column.clear();
+        column.extend(series.iter().map(|values| values.as_ref()[point]));
+        column.sort_by(f64::total_cmp);
+        for (curve, p) in curves.iter_mut().zip(percentiles) {
+            curve.extend(of_sorted(&column, *p));
+        }
+    }
+    Ok(Envelope { percentiles: percentiles.to_vec(), curves })
+}

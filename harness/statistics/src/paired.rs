@@ -1,0 +1,199 @@
+//! Two sets of runs, compared seed by seed: what both share, the instrument and its noise, stays shared.
+
+use crate::sample::{Interval, deviation, mean, percentile, ranks, rms};
+use rand_philox::Philox;
+use serde::{Deserialize, Serialize};
+use statrs::distribution::{Beta, ContinuousCDF, StudentsT};
+
+/// Resamples of a bootstrap.
+pub const RESAMPLES: u32 = 4000;
+
+/// The factor of a two-sided interval by Student's distribution; `None` without a degree of freedom.
+pub(crate) fn student(degrees: usize, confidence: f64) -> Option<f64> {
+    if !(confidence > 0.0 && confidence < 1.0) {
+        return None;
+    }
+    let t = StudentsT::new(0.0, 1.0, degrees as f64).ok()?;
+    Some(t.inverse_cdf(0.5 * (1.0 + confidence)))
+}
+
+/// P(X ≤ k) of a binomial with n tosses of a fair coin.
+fn fair_coin(k: u64, n: u64) -> f64 {
+    if k >= n {
+        return 1.0;
+    }
+    Beta::new((n - k) as f64, (k + 1) as f64).map_or(f64::NAN, |beta| beta.cdf(0.5))
+}
+
+/// Exact two-sided probability of a split at least as uneven as `first` to `second`, if both are as
+/// likely (sign test; Conover, Practical Nonparametric Statistics, 3rd edition, section 3.4).
+#[must_use]
+pub fn sign_test(first: u64, second: u64) -> f64 {
+    (2.0 * fair_coin(first.min(second), first + second)).min(1.0)
+}
+
+/// What the differences of pairs show.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Difference {
+    /// Mean of second − first with its interval by Student's distribution.
+    pub mean: Interval,
+    /// Pairs in which the second is less.
+    pub less: u64,
+    /// Pairs in which the second is more.
+    pub more: u64,
+    /// Exact two-sided probability of the sign test; 1 of no difference at all.
+    pub sign_p: f64,
+    /// Two-sided probability of Wilcoxon's signed-rank test.
+    pub wilcoxon_p: f64,
+}
+
+/// Compares pairs of numbers; `None` if the lengths differ, there are fewer than two pairs, or a value
+/// isn't finite.
+#[must_use]
+pub fn difference(first: &[f64], second: &[f64], confidence: f64) -> Option<Difference> {
+    if first.len() != second.len() {
+        return None;
+    }
+    let differences: Vec<f64> = second.iter().zip(first).map(|(b, a)| b - a).collect();
+    if !differences.iter().all(|d| d.is_finite()) {
+        return None;
+    }
+    let (value, spread) = (mean(&differences)?, deviation(&differences)?);
+    let n = differences.len();
+    let half = student(n - 1, confidence)? * spread / libm::sqrt(n as f64);
+    let count =
+        |sign: &dyn Fn(f64) -> bool| differences.iter().filter(|d| sign(**d)).count() as u64;
+    let (less, more) = (count(&|d| d < 0.0), count(&|d| d > 0.0));
+    Some(Difference {
+        mean: Interval { value, low: value - half, high: value + half },
+        less,
+        more,
+        sign_p: sign_test(less, more),
+        wilcoxon_p: wilcoxon(&differences),
+    })
+}
+
+/// Differences beyond which the signed-rank test takes the normal distribution.
+const EXACT_MAX: usize = 200;
+
+/// Two-sided probability of Wilcoxon's signed-rank test (Biometrics Bulletin 1, 1945). Zeros are left
+/// out, ties have the mean of their ranks. Exact up to 200 differences, with ties too: the distribution
+/// of the sum over all signs of the ranks that are there. Beyond, the normal approximation with the
+/// variance Σ r² / 4 and a continuity correction.
+#[must_use]
+pub fn wilcoxon(differences: &[f64]) -> f64 {
+    let differences: Vec<f64> = differences.iter().copied().filter(|d| *d != 0.0).collect();
+    let n = differences.len();
+    if n == 0 {
+        return 1.0;
+    }
+    let magnitudes: Vec<f64> = differences.iter().map(|d| d.abs()).collect();
+    let ranks = ranks(&magnitudes);
+    let positive: f64 =
+        ranks.iter().zip(&differences).filter(|(_, d)| **d > 0.0).map(|(r, _)| r).sum();
+    let total: f64 = ranks.iter().sum();
+    let smaller = positive.min(total - positive);
+    if n > EXACT_MAX {
+        let variance: f64 = ranks.iter().map(|r| r * r).sum::<f64>() / 4.0;
+        let z = (smaller - total / 2.0 + 0.5).min(0.0) / libm::sqrt(variance);
+        return (2.0 * crate::normal::cdf(z)).min(1.0);
+    }
+    // Ranks doubled are whole numbers. Each has either sign with probability 1/2.
+    let steps: Vec<usize> = ranks.iter().map(|r| (2.0 * r) as usize).collect();
+    let mut probability = vec![0.0; steps.iter().sum::<usize>() + 1];
+    probability[0] = 1.0;
+    let mut reached = 0;
+    for step in steps {
+        for sum in (0..=reached).rev() {
+            let half = 0.5 * probability[sum];
+            probability[sum] = half;
+            probability[sum + step] += half;
+        }
+        reached += step;
+    }
+    let tail: f64 = probability[..=(2.0 * smaller) as usize].iter().sum();
+    (2.0 * tail).min(1.0)
+}
+
+/// Pairs of passes and failures.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct PassPairs {
+    /// Both passed.
+    pub both: u64,
+    /// Only the first passed: newly failing.
+    pub only_first: u64,
+    /// Only the second passed: newly passing.
+    pub only_second: u64,
+    /// Neither.
+    pub neither: u64,
+}
+
+impl PassPairs {
+    /// Counts pairs of passes; `None` if the lengths differ.
+    #[must_use]
+    pub fn of(first: &[bool], second: &[bool]) -> Option<Self> {
+        if first.len() != second.len() {
+            return None;
+        }
+        let mut pairs = Self::default();
+        for (a, b) in first.iter().zip(second) {
+            *match (a, b) {
+                (true, true) => &mut pairs.both,
+                (true, false) => &mut pairs.only_first,
+                (false, true) => &mut pairs.only_second,
+                (false, false) => &mut pairs.neither,
+            } += 1;
+        }
+        Some(pairs)
+    }
+
+    /// Exact two-sided probability of McNemar's test (Psychometrika 12, 1947): only pairs that differ
+    /// count, and each way is as likely.
+    #[must_use]
+    pub fn mcnemar(&self) -> f64 {
+        sign_test(self.only_first, self.only_second)
+    }
+}
+
+/// How much better a second method is, from paired runs.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Improvement {
+    /// 1 − rms(second)/rms(first).
+    pub value: f64,
+    /// Lower end of the 90 % interval.
+    pub low: f64,
+    /// Upper end of the 90 % interval.
+    pub high: f64,
+}
+
+/// Improvement of `second` over `first`, run by run with the same seeds, as 1 − ratio of the root
+/// mean squares, and its 90 % interval by the paired bootstrap (Efron, 1979): whole pairs are drawn
+/// with replacement, so what both share, the instrument and its noise, stays shared.
+///
+/// `None` if the lengths differ, there are fewer than two pairs, or `first` is all zero.
+#[must_use]
+pub fn improvement(first: &[f64], second: &[f64], seed: u64) -> Option<Improvement> {
+    let pairs = first.len();
+    let (whole, other) = (rms(first)?, rms(second)?);
+    if second.len() != pairs || pairs < 2 || whole == 0.0 || !(whole + other).is_finite() {
+        return None;
+    }
+    let mut random = Philox::from_u64_seed(seed);
+    let mut resampled = Vec::with_capacity(RESAMPLES as usize);
+    for _ in 0..RESAMPLES {
+        let (mut a, mut b) = (0.0, 0.0);
+        for _ in 0..pairs {
+            let i = random.bounded(pairs as u32) as usize;
+            a += first[i] * first[i];
+            b += second[i] * second[i];
+        }
+        if a > 0.0 {
+            resampled.push(1.0 - libm::sqrt(b / a));
+        }
+    }
+    Some(Improvement {
+        value: 1.0 - other / whole,
+        low: percentile(&resampled, 0.05)?,
+        high: percentile(&resampled, 0.95)?,
+    })
+}

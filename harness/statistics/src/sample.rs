@@ -1,0 +1,83 @@
+//! Figures of one sample.
+
+use serde::{Deserialize, Serialize};
+
+/// √ of the mean of squares; `None` of nothing.
+#[must_use]
+pub fn rms(values: &[f64]) -> Option<f64> {
+    let sum: f64 = values.iter().map(|v| v * v).sum();
+    (!values.is_empty()).then(|| libm::sqrt(sum / values.len() as f64))
+}
+
+/// The mean; `None` of nothing.
+#[must_use]
+pub fn mean(values: &[f64]) -> Option<f64> {
+    (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
+}
+
+/// The standard deviation about the mean, with n − 1; `None` of fewer than two.
+#[must_use]
+pub fn deviation(values: &[f64]) -> Option<f64> {
+    if values.len() < 2 {
+        return None;
+    }
+    let mean = mean(values)?;
+    let sum: f64 = values.iter().map(|v| (v - mean) * (v - mean)).sum();
+    Some(libm::sqrt(sum / (values.len() - 1) as f64))
+}
+
+/// Percentile `p` (0 to 1), interpolated between order statistics; `None` of nothing or of a value
+/// that isn't a number. Definition 7 of Hyndman and Fan (The American Statistician 50, 1996), that of
+/// numpy, R and spreadsheets.
+#[must_use]
+pub fn percentile(values: &[f64], p: f64) -> Option<f64> {
+    if values.iter().any(|v| v.is_nan()) {
+        return None;
+    }
+    let mut sorted = values.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    of_sorted(&sorted, p)
+}
+
+/// As [`percentile`], of values in ascending order.
+pub(crate) fn of_sorted(sorted: &[f64], p: f64) -> Option<f64> {
+    if sorted.is_empty() {
+        return None;
+    }
+    let at = p.clamp(0.0, 1.0) * (sorted.len() - 1) as f64;
+    let (low, part) = (at as usize, at - libm::floor(at));
+    let high = (low + 1).min(sorted.len() - 1);
+    Some(sorted[low] + part * (sorted[high] - sorted[low]))
+}
+
+/// An estimate with the interval that its sample leaves.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Interval {
+    /// The estimate.
+    pub value: f64,
+    /// Lower end; minus infinity where the sample gives none.
+    pub low: f64,
+    /// Upper end; infinity where the sample gives none.
+    pub high: f64,
+}
+
+/// Ranks from 1, ties with the mean of their ranks.
+#[must_use]
+pub fn ranks(values: &[f64]) -> Vec<f64> {
+    let mut order: Vec<usize> = (0..values.len()).collect();
+    order.sort_by(|a, b| values[*a].total_cmp(&values[*b]));
+    let mut ranks = vec![0.0; values.len()];
+    let mut from = 0;
+    while from < order.len() {
+        let mut to = from;
+        while to + 1 < order.len() && values[order[to + 1]] == values[order[from]] {
+            to += 1;
+        }
+        let rank = (from + to) as f64 / 2.0 + 1.0;
+        for &index in &order[from..=to] {
+            ranks[index] = rank;
+        }
+        from = to + 1;
+    }
+    ranks
+}

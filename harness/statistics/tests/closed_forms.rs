@@ -1,0 +1,227 @@
+//! Against closed forms.
+#![allow(clippy::unwrap_used)]
+
+use octant_statistics::envelope::{EnvelopeError, envelope};
+use octant_statistics::outlier::{LIMIT, Scale, outliers};
+use octant_statistics::rate::{RadialSample, radial_rate_nmi_per_h, time_rms_nmi};
+use octant_statistics::sobol::{Design, Role, SobolError};
+use octant_statistics::{convergence, paired, position, quantile, rank, rate, sample};
+use std::f64::consts::PI;
+
+/// Standard normals of a stream, for samples.
+fn normals(seed: u64, name: &str, n: u64) -> Vec<f64> {
+    use octant_random::normal::Ziggurat;
+    use octant_random::stream::{Phase, key};
+    let key = key(seed, name, Phase::Draw);
+    (0..n).map(|i| Ziggurat::shared().three(key, i)[0]).collect()
+}
+
+#[test]
+fn the_circle_of_a_round_gaussian() {
+    // Radial errors are Rayleigh: median σ √(2 ln 2), 95 % at σ √(2 ln 20), drms σ √2.
+    let (n, e) = (normals(1, "north", 40_000), normals(1, "east", 40_000));
+    let errors: Vec<[f64; 2]> = n.iter().zip(&e).map(|(n, e)| [3.0 * n, 3.0 * e]).collect();
+    let found = position::position_statistics(&errors).unwrap();
+    let near = |found: f64, expected: f64| {
+        assert!((found / expected - 1.0).abs() < 0.02, "{found} {expected}")
+    };
+    near(found.cep50_empirical, 3.0 * (2.0 * 2f64.ln()).sqrt());
+    near(found.cep50_gaussian, 3.0 * (2.0 * 2f64.ln()).sqrt());
+    near(found.r95, 3.0 * (2.0 * 20f64.ln()).sqrt());
+    near(found.drms, 3.0 * 2f64.sqrt());
+    let bounds = position::position_bounds(&errors, 0.95).unwrap();
+    assert_eq!((bounds.cep50.value, bounds.r95.value), (found.cep50_empirical, found.r95));
+    assert!(bounds.cep50.low < bounds.cep50.value && bounds.cep50.value < bounds.cep50.high);
+    assert_eq!(position::position_statistics(&[]), None);
+}
+
+#[test]
+fn bounds_of_a_quantile_cover_it_as_often_as_they_say() {
+    // 2000 samples of 100 uniform numbers: the 95 % point is 0.95, and an interval of 90 % holds it in
+    // at least that many, within the spread of a binomial.
+    let mut held = 0;
+    for sample in 0..2000 {
+        let name = format!("sample {sample}");
+        let values: Vec<f64> =
+            normals(2, &name, 100).into_iter().map(octant_statistics::normal::cdf).collect();
+        let interval = quantile::interval(&values, 0.95, 0.9).unwrap();
+        held += u32::from(interval.low <= 0.95 && 0.95 <= interval.high);
+    }
+    assert!(held > 1800 - 3 * 14, "{held} of 2000");
+    // Ranks are whole: it is more than it says, not everything.
+    assert!(held < 1960, "{held} of 2000");
+    // Too few values have no upper end.
+    assert_eq!(quantile::interval(&[1.0, 2.0], 0.95, 0.9).unwrap().high, f64::INFINITY);
+}
+
+#[test]
+fn the_rate_of_a_ramp_is_its_slope() {
+    let ramp: Vec<RadialSample> = (0..100)
+        .map(|i| RadialSample { t_h: 0.3 * f64::from(i), radial_nmi: 0.24 * f64::from(i) })
+        .collect();
+    assert!((radial_rate_nmi_per_h(&ramp).unwrap() - 0.8).abs() < 1e-14);
+    // √(1/T ∫ (0.8 t)² dt) = 0.8 T / √3.
+    let expected = 0.8 * 0.3 * 99.0 / 3f64.sqrt();
+    assert!((time_rms_nmi(&ramp).unwrap() - expected).abs() < 1e-12);
+    assert_eq!(radial_rate_nmi_per_h(&ramp[..1]), None);
+    assert_eq!(time_rms_nmi(&ramp[..1]), None);
+    let [half, most] = rate::radial_rates(&[0.0, 1.0, 2.0]).unwrap();
+    assert!((half - 1.0).abs() < 1e-15 && (most - 1.9).abs() < 1e-15);
+    let bounds = rate::rate_bounds(&[0.0, 1.0, 2.0], 0.5).unwrap();
+    assert_eq!((bounds.rate50.low, bounds.rate50.high), (0.0, 2.0));
+}
+
+#[test]
+fn an_envelope_has_the_percentiles_of_every_point() {
+    // Run k is k times a line: at t its p-percentile is p (n − 1) t.
+    let series: Vec<Vec<f64>> =
+        (0..11).rev().map(|k| (0..5).map(|t| f64::from(k * t)).collect()).collect();
+    let found = envelope(&series, 5, &[0.0, 0.5, 0.95, 1.0]).unwrap();
+    for (curve, p) in found.curves.iter().zip([0.0, 0.5, 0.95, 1.0]) {
+        for (t, value) in curve.iter().enumerate() {
+            assert!((value - p * 10.0 * t as f64).abs() < 1e-12);
+        }
+    }
+    assert_eq!(envelope::<Vec<f64>>(&[], 5, &[0.5]), Err(EnvelopeError::Empty));
+    let short = envelope(&[vec![0.0; 5], vec![0.0; 4]], 5, &[0.5]).unwrap_err();
+    assert_eq!(short.to_string(), "make an envelope: run 1 has 4 points, the grid has 5");
+    let nan = envelope(&[vec![0.0, f64::NAN]], 2, &[0.5]);
+    assert_eq!(nan, Err(EnvelopeError::NotANumber { run: 0, point: 1 }));
+}
+
+#[test]
+fn what_stands_out_is_found_and_nothing_else() {
+    let mut values = normals(3, "bulk", 300);
+    values[17] = 40.0;
+    values[200] = -25.0;
+    values[5] = f64::NAN;
+    let found: Vec<usize> = outliers(&values, Scale::Linear, 5.0).iter().map(|o| o.index).collect();
+    assert_eq!(found, [5, 17, 200]);
+    // Skewed magnitudes stand out by themselves, their logarithms don't.
+    let skewed: Vec<f64> = normals(3, "skewed", 300).into_iter().map(|v| (1.5 * v).exp()).collect();
+    assert!(outliers(&skewed, Scale::Linear, 5.0).len() > 10);
+    assert_eq!(outliers(&skewed, Scale::Logarithm, 5.0), []);
+    // Most are equal: whatever differs stands out, by infinity.
+    let found = outliers(&[1.0, 1.0, 1.0, 1.0, 1.1], Scale::Linear, LIMIT);
+    assert_eq!((found.len(), found[0].index, found[0].score), (1, 4, f64::INFINITY));
+    assert_eq!(outliers(&[1.0, 1.0, 1.0], Scale::Linear, LIMIT), []);
+    assert_eq!(outliers(&[1.0, 2.0, 0.0], Scale::Logarithm, LIMIT)[0].index, 2);
+}
+
+#[test]
+fn an_estimate_settles_as_one_over_the_root() {
+    let values = normals(4, "settles", 10_000);
+    let found = convergence::convergence(&values, |v| convergence::mean(v, 0.95));
+    let runs: Vec<u64> = found.iter().map(|step| step.runs).collect();
+    assert_eq!(runs, [2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 10_000]);
+    let last = found.last().unwrap().estimate;
+    assert!(((last.high - last.low) / (2.0 * 1.96 / 100.0) - 1.0).abs() < 0.03);
+    let passed: Vec<bool> = (0..59).map(|_| true).collect();
+    let pass = convergence::pass(&passed, 0.9).unwrap();
+    assert!(pass.value == 1.0 && pass.high == 1.0 && pass.low > 0.95);
+    assert!(convergence::convergence(&[] as &[f64], |v| convergence::mean(v, 0.9)).is_empty());
+}
+
+#[test]
+fn sensitivities_come_with_the_strongest_first() {
+    let factors: Vec<(String, Vec<f64>)> =
+        ["weak", "none", "strong"].map(|name| (name.to_owned(), normals(5, name, 200))).into();
+    let output: Vec<f64> =
+        (0..200).map(|i| (3.0 * factors[2].1[i]).exp() + 2.0 * factors[0].1[i]).collect();
+    let mut with_constant = factors.clone();
+    with_constant.push(("constant".to_owned(), vec![1.0; 200]));
+    let found = rank::sensitivities(&with_constant, &output);
+    let names: Vec<&str> = found.iter().map(|s| s.factor.as_str()).collect();
+    assert_eq!(names, ["strong", "weak", "none", "constant"]);
+    assert!(found[0].correlation.unwrap().p < 1e-20);
+    assert_eq!(found[3].correlation, None);
+}
+
+/// Indices of a function of the three factors of the design, as probabilities.
+fn indices(rows: usize, f: impl Fn(&[f64]) -> f64) -> Vec<octant_statistics::sobol::Index> {
+    let design = Design::new(&["a", "b", "c"].map(str::to_owned), rows, 7);
+    let outputs: Vec<f64> = (0..design.runs()).map(|run| f(&design.units(run))).collect();
+    design.indices(&outputs, 0.99).unwrap()
+}
+
+#[test]
+fn sobol_indices_of_ishigami() {
+    // Ishigami and Homma, 1990: f = sin x + 7 sin² y + 0.1 z⁴ sin x on (−π, π)³.
+    let x = |u: f64| PI * (2.0 * u - 1.0);
+    let found = indices(4000, |u| {
+        let (a, b, c) = (x(u[0]), x(u[1]), x(u[2]));
+        a.sin() + 7.0 * b.sin().powi(2) + 0.1 * c.powi(4) * a.sin()
+    });
+    let v1 = 0.5 * (1.0 + 0.1 * PI.powi(4) / 5.0).powi(2);
+    let v2 = 49.0 / 8.0;
+    let v13 = 0.01 * PI.powi(8) * (1.0 / 18.0 - 1.0 / 50.0);
+    let variance = v1 + v2 + v13;
+    let first = [v1, v2, 0.0].map(|v| v / variance);
+    let total = [v1 + v13, v2, v13].map(|v| v / variance);
+    for (index, (first, total)) in found.iter().zip(first.into_iter().zip(total)) {
+        // The interval of 99 % says how far off is likely: its width is five standard errors.
+        for (found, expected) in [(index.first_order, first), (index.total, total)] {
+            let width = found.high - found.low;
+            assert!(width < 0.2 && (found.value - expected).abs() < width, "{found:?} {expected}");
+        }
+    }
+}
+
+#[test]
+fn sobol_indices_of_a_sum_are_its_parts() {
+    // Variances 1, 4 and 9 of 14, about a mean that is large against them. The interval of 99 % says how
+    // far off is likely: its width is five standard errors.
+    for index in indices(8000, |u| 1000.0 + u[0] + 2.0 * u[1] + 3.0 * u[2])
+        .iter()
+        .zip([1.0, 4.0, 9.0])
+        .flat_map(|(index, part)| [(index.first_order, part / 14.0), (index.total, part / 14.0)])
+    {
+        let (found, expected) = index;
+        let width = found.high - found.low;
+        assert!(width < 0.07 && (found.value - expected).abs() < width, "{found:?} {expected}");
+    }
+}
+
+#[test]
+fn a_sobol_design_differs_in_one_factor_at_a_time() {
+    let names = ["a", "b", "c"].map(str::to_owned);
+    let design = Design::new(&names, 10, 1);
+    assert_eq!(design.runs(), 50);
+    let row = 3 * 5;
+    let (a, b) = (design.units(row), design.units(row + 1));
+    assert_eq!(design.place(row + 3), (3, Role::Mixed(1)));
+    assert_eq!(design.units(row + 3), [a[0], b[1], a[2]]);
+    // A longer one begins with it.
+    let longer = Design::new(&names, 20, 1);
+    assert!((0..50).all(|run| longer.units(run) == design.units(run)));
+    let wrong = design.indices(&[1.0; 49], 0.9).unwrap_err();
+    assert_eq!(wrong, SobolError::Outputs { found: 49, expected: 50 });
+    assert_eq!(design.indices(&[1.0; 50], 0.9), Err(SobolError::Constant));
+    let mut outputs = vec![1.0; 50];
+    outputs[4] = f64::INFINITY;
+    assert_eq!(design.indices(&outputs, 0.9), Err(SobolError::NotFinite { run: 4 }));
+}
+
+#[test]
+fn improvement_is_paired() {
+    let first = normals(6, "first", 40);
+    let half: Vec<f64> = first.iter().map(|v| 0.5 * v).collect();
+    // The same noise in both: the interval has no width.
+    let found = paired::improvement(&first, &half, 7).unwrap();
+    assert!([found.value, found.low, found.high].iter().all(|v| (v - 0.5).abs() < 1e-12));
+    let other = normals(6, "second", 40);
+    let found = paired::improvement(&first, &other, 7).unwrap();
+    assert!(
+        found.low < found.value && found.value < found.high && found.low < 0.0 && found.high > 0.0
+    );
+    assert_eq!(paired::improvement(&first, &other[1..], 7), None);
+    assert_eq!(paired::improvement(&[0.0, 0.0], &[1.0, 1.0], 7), None);
+}
+
+#[test]
+fn figures_of_a_sample() {
+    assert_eq!(sample::rms(&[3.0, 4.0]), Some(12.5f64.sqrt()));
+    assert_eq!(sample::deviation(&[1.0, 3.0]), Some(2f64.sqrt()));
+    assert_eq!((sample::mean(&[]), sample::deviation(&[1.0])), (None, None));
+    assert_eq!(sample::ranks(&[2.0, 1.0, 2.0, 5.0]), [2.5, 1.0, 2.5, 4.0]);
+}
