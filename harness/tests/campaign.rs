@@ -31,6 +31,7 @@ channels = \"gyro x\"
 amplitude = \"100 deg/h\"
 [[requirements]]
 id = \"NAV-1\"
+text = \"It stays near.\"
 measure = \"navigation.radial_error_nmi.max\"
 limit = \"10 nmi\"
 ";
@@ -98,7 +99,7 @@ fn begin(
     again: bool,
 ) -> Result<Outcome, String> {
     let program = Path::new(env!("CARGO_BIN_EXE_octant"));
-    let options = Options { folder, program, jobs, shard, again, cancel };
+    let options = Options { folder, program, jobs, shard, end: plan.cases.len(), again, cancel };
     execute(plan, &options, &|_| {}).map_err(|error| error.to_string())
 }
 
@@ -136,6 +137,7 @@ fn the_same_bytes_on_one_processor_in_parts_and_after_interruptions() {
             program,
             jobs: 2,
             shard: Shard::WHOLE,
+            end: plan.cases.len(),
             again: false,
             cancel: &cancel,
         };
@@ -354,6 +356,7 @@ fn every_case_is_told_once() {
         program,
         jobs: 3,
         shard: Shard::WHOLE,
+        end: plan.cases.len(),
         again: false,
         cancel: &cancel,
     };
@@ -367,4 +370,64 @@ fn every_case_is_told_once() {
     assert_eq!((there.load(Ordering::Relaxed), told), (0, (0..6).collect()));
     execute(&plan, &options, &tell).unwrap();
     assert_eq!(there.load(Ordering::Relaxed), 6);
+}
+
+#[test]
+fn it_ends_where_enough_is_known_wherever_it_ran() {
+    // Three looks share the error of 20 %: four passes of four show a half with 93.75 %.
+    let stop = "[stop]\nrequirement = \"NAV-1\"\npass = 0.5\nconfidence = 0.8\nevery = 2\n";
+    let bench = Bench::new(&format!("{CAMPAIGN}{stop}"));
+    let octant = |arguments: &[&str]| {
+        let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_octant"));
+        let output =
+            command.current_dir(bench.folder.path()).arg("campaign").args(arguments).output();
+        let output = output.unwrap();
+        assert!(output.status.success(), "{output:?}");
+        String::from_utf8(output.stdout).unwrap()
+    };
+    octant(&["plan", "campaign.toml", "--out", "a"]);
+    let said = octant(&["run", "a"]);
+    assert!(
+        said.contains("4 cases run") && said.contains("after 4 cases: no more are needed"),
+        "{said}"
+    );
+    assert!(octant(&["merge", "a"]).starts_with("4 of 4 cases from 1 parts"));
+    // In parts all six run, and the same four count.
+    octant(&["plan", "campaign.toml", "--out", "b"]);
+    for shard in ["1/2", "2/2"] {
+        octant(&["run", "b", "--shard", shard]);
+    }
+    assert!(octant(&["merge", "b"]).starts_with("4 of 4 cases from 2 parts"));
+    for table in ["cases", "checks", "drift"] {
+        let [a, b] = ["a", "b"]
+            .map(|folder| std::fs::read(merge::merged(&bench.at(folder), table)).unwrap());
+        assert_eq!(a, b, "{table}");
+    }
+}
+
+#[test]
+fn a_rule_counts_what_is_not_shown_as_broken() {
+    use octant::campaign::stop::{Decision, decide};
+    let stop = "[stop]\nrequirement = \"NAV-1\"\nevery = 10\n";
+    let plan =
+        Bench::new(&format!("{CAMPAIGN}{stop}").replace("replicates = 3", "replicates = 100"))
+            .plan();
+    let rule = plan.stop.as_ref().unwrap();
+    let decided = |check: &dyn Fn(usize) -> Option<Verdict>| {
+        let place = |id: &str| plan.cases.iter().position(|case| case.id == id).unwrap();
+        decide(&plan, rule, |case| check(place(&case.id)))
+    };
+    // 20 looks at 95 %: 0.0025 each; 0.95^n falls below it at n = 117.
+    assert_eq!(decided(&|_| Some(Verdict::Pass)), Decision::Shown { end: 120 });
+    assert_eq!(decided(&|_| Some(Verdict::Inconclusive)), Decision::Refuted { end: 10 });
+    assert_eq!(decided(&|_| Some(Verdict::Error)), Decision::Refuted { end: 10 });
+    assert_eq!(decided(&|_| None), Decision::Open { next: 10 });
+    assert_eq!(
+        decided(&|index| (index != 15).then_some(Verdict::Pass)),
+        Decision::Open { next: 20 }
+    );
+    // One in twenty is just what is allowed: that is never shown.
+    let one_in_20 =
+        |index: usize| Some(if index % 20 == 0 { Verdict::Fail } else { Verdict::Pass });
+    assert_eq!(decided(&one_in_20), Decision::Open { next: 200 });
 }

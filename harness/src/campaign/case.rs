@@ -96,6 +96,16 @@ impl CaseResult {
         }
     }
 
+    /// The verdict of a requirement in it: an error where it came to no summary, inconclusive where it
+    /// wasn't checked.
+    #[must_use]
+    pub fn check(&self, requirement: &str) -> Verdict {
+        let Some(summary) = &self.summary else { return Verdict::Error };
+        let mut checks = summary.requirements.iter();
+        let found = checks.find(|check| check.id == requirement);
+        found.map_or(Verdict::Inconclusive, |check| check.verdict)
+    }
+
     /// The bytes of its file.
     ///
     /// # Errors

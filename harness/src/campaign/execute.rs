@@ -88,6 +88,8 @@ pub struct Options<'a> {
     pub jobs: usize,
     /// Which cases.
     pub shard: Shard,
+    /// Cases of the plan up to here alone.
+    pub end: usize,
     /// Cases that ended as errors are run again.
     pub again: bool,
     /// Somebody wants it to end.
@@ -173,7 +175,8 @@ pub fn execute(
     if options.again {
         forget_errors(plan, options)?;
     }
-    let mine = || plan.cases.iter().enumerate().filter(|(index, _)| options.shard.has(*index));
+    let up_to_end = || plan.cases.iter().enumerate().take(options.end);
+    let mine = || up_to_end().filter(|(index, _)| options.shard.has(*index));
     let open: Vec<(usize, &Case)> =
         mine().filter(|(_, case)| !case::file(options.folder, &case.id).exists()).collect();
     let skipped = mine().count() - open.len();

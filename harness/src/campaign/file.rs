@@ -25,6 +25,7 @@ use crate::scenario::document::{self, Node, Table, Value};
 use crate::scenario::error::{Place, Problem, ScenarioError, suggestion};
 use crate::scenario::keys::CAMPAIGN;
 use crate::scenario::read::Reader;
+use octant_statistics::proportion::Demand;
 use std::path::{Path, PathBuf};
 
 /// A campaign.
@@ -141,8 +142,8 @@ pub struct Correlation {
     pub first: usize,
     /// Index of another.
     pub second: usize,
-    /// Spearman's rank correlation.
-    pub rank: f64,
+    /// Correlation of the Gaussian copula that joins them: of normal factors their own.
+    pub value: f64,
 }
 
 /// What a case may use.
@@ -155,10 +156,12 @@ pub struct Limits {
 }
 
 /// When enough is known.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Stop {
     /// The requirement that decides.
     pub requirement: String,
+    /// What has to be shown of it.
+    pub demand: Demand,
     /// After how many cases it is looked at.
     pub every: u64,
 }
@@ -239,7 +242,7 @@ fn read(document: &Table, folder: &Path) -> Result<Campaign, Problem> {
             return Err(table.problem("second", "expected another factor than the first"));
         }
         let pair = |c: &Correlation| [c.first.min(c.second), c.first.max(c.second)];
-        let correlation = Correlation { first, second, rank: table.number("rank")? };
+        let correlation = Correlation { first, second, value: table.number("value")? };
         if correlations.iter().any(|other| pair(other) == pair(&correlation)) {
             return Err(table.problem("second", "these two have a correlation already"));
         }
@@ -250,6 +253,7 @@ fn read(document: &Table, folder: &Path) -> Result<Campaign, Problem> {
         None => None,
         Some(stop) => Some(Stop {
             requirement: stop.text("requirement")?.to_owned(),
+            demand: Demand { pass: stop.number("pass")?, confidence: stop.number("confidence")? },
             every: stop.integer("every")?,
         }),
     };

@@ -3,7 +3,9 @@
 use super::execute::Shard;
 use super::plan::{Plan, short};
 use super::results::{Columns, TABLES, ordered};
+use super::stop;
 use super::table::{Kind, Table, TableError, Values, write};
+use crate::score::verdict::Verdict;
 use std::borrow::Cow;
 use std::collections::{BTreeMap, HashMap};
 use std::path::{Path, PathBuf};
@@ -88,6 +90,45 @@ fn parts(folders: &[PathBuf], table: &str) -> Vec<PathBuf> {
 struct Row {
     part: usize,
     row: usize,
+}
+
+/// Cases of the plan that count: all, or those up to where its rule says that enough is known, by the
+/// parts in `folders`.
+///
+/// # Errors
+/// If a part can't be read.
+pub fn end(plan: &Plan, folders: &[PathBuf]) -> Result<usize, MergeError> {
+    let Some(rule) = &plan.stop else { return Ok(plan.cases.len()) };
+    let mut verdicts: HashMap<String, Verdict> = HashMap::new();
+    // A case that came to no summary checked nothing: it counts as an error.
+    for (table, of_cases) in [("cases", true), ("checks", false)] {
+        for path in parts(folders, table) {
+            let table = Table::open(&path)?;
+            let texts = |name: &str| match table.column(name) {
+                Ok(Some(Values::Text(texts))) => Ok(texts),
+                Ok(_) => Err(TableError::Form {
+                    path: path.clone(),
+                    reason: format!("it has no texts in a column {name}"),
+                }),
+                Err(error) => Err(error),
+            };
+            let which = texts(if of_cases { "error" } else { "requirement" })?;
+            for ((case, which), verdict) in
+                texts("case")?.iter().zip(&which).zip(&texts("verdict")?)
+            {
+                let counts = match which {
+                    Some(which) => of_cases || *which == rule.requirement,
+                    None => false,
+                };
+                let named = Verdict::ALL.iter().find(|v| Some(v.name()) == verdict.as_deref());
+                if let (true, Some(case), Some(verdict)) = (counts, case, named) {
+                    verdicts.insert(case.clone(), *verdict);
+                }
+            }
+        }
+    }
+    let decision = stop::decide(plan, rule, |case| verdicts.get(&case.id).copied());
+    Ok(decision.end(plan.cases.len()))
 }
 
 /// Puts the parts in `folders` together into the tables of `out`, with the cases of the plan up to

@@ -13,6 +13,7 @@ pub mod merge;
 pub mod plan;
 pub mod results;
 pub mod status;
+pub mod stop;
 pub mod table;
 
 /// A file that gets its name when it is whole; what others may read of it is as of any new file.

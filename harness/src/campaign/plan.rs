@@ -5,6 +5,7 @@
 
 use super::file::{Campaign, Factor, Levels, Limits, Member, Stop};
 use crate::scenario::{Scenario, ScenarioError};
+use octant_statistics::proportion::Demand;
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, HashMap};
 use std::path::{Path, PathBuf};
@@ -55,17 +56,19 @@ impl From<Limits> for CaseLimits {
 }
 
 /// When enough is known.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct StopRule {
     /// The requirement that decides.
     pub requirement: String,
+    /// What has to be shown of it.
+    pub demand: Demand,
     /// After how many cases, in the order of the plan, it is looked at.
     pub every: u64,
 }
 
 impl From<Stop> for StopRule {
     fn from(stop: Stop) -> Self {
-        Self { requirement: stop.requirement, every: stop.every }
+        Self { requirement: stop.requirement, demand: stop.demand, every: stop.every }
     }
 }
 

@@ -2,7 +2,9 @@
 
 use super::case::{self, CaseResult};
 use super::execute::{Shard, differing};
-use super::plan::Plan;
+use super::plan::{Plan, StopRule};
+use super::stop::{self, Decision};
+use crate::report::number::plain;
 use crate::score::verdict::Verdict;
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -31,6 +33,8 @@ pub struct Status {
     pub bad: Vec<Bad>,
     /// Cases that came to two results.
     pub differing: Vec<String>,
+    /// Why no more cases are run; null: all are.
+    pub stopped: Option<String>,
 }
 
 /// A case that isn't good.
@@ -53,14 +57,24 @@ pub fn of(plan: &Plan, folder: &Path, shard: Shard) -> Result<Status, String> {
     let mut status = Status {
         title: plan.title.clone(),
         plan: plan.id.clone(),
-        cases: mine().count(),
+        cases: 0,
         open: 0,
         verdicts: BTreeMap::new(),
         requirements: BTreeMap::new(),
         bad: Vec::new(),
         differing: Vec::new(),
+        stopped: None,
     };
-    for (_, case) in mine() {
+    let end = match &plan.stop {
+        None => plan.cases.len(),
+        Some(rule) => {
+            let decision = decide(plan, folder, rule);
+            status.stopped = in_words(rule, decision);
+            decision.end(plan.cases.len())
+        }
+    };
+    status.cases = mine().filter(|(index, _)| *index < end).count();
+    for (_, case) in mine().filter(|(index, _)| *index < end) {
         let path = case::file(folder, &case.id);
         if !path.exists() {
             status.open += 1;
@@ -82,6 +96,33 @@ pub fn of(plan: &Plan, folder: &Path, shard: Shard) -> Result<Status, String> {
         }
     }
     Ok(status)
+}
+
+/// Looks at the results in a folder.
+#[must_use]
+pub fn decide(plan: &Plan, folder: &Path, rule: &StopRule) -> Decision {
+    stop::decide(plan, rule, |case| {
+        let result = CaseResult::read(&case::file(folder, &case.id)).ok()?;
+        Some(result.check(&rule.requirement))
+    })
+}
+
+fn in_words(rule: &StopRule, decision: Decision) -> Option<String> {
+    let StopRule { requirement, demand, .. } = rule;
+    let asked = format!(
+        "{} % at a confidence of {} %",
+        plain(100.0 * demand.pass, 6),
+        plain(100.0 * demand.confidence, 6)
+    );
+    match decision {
+        Decision::Shown { end } => Some(format!(
+            "{requirement} is shown to be kept with {asked} after {end} cases: no more are needed"
+        )),
+        Decision::Refuted { end } => Some(format!(
+            "{requirement} is shown not to be kept with {asked} after {end} cases: no more are needed"
+        )),
+        Decision::Open { .. } => None,
+    }
 }
 
 impl Status {
@@ -121,6 +162,9 @@ impl Status {
         }
         if self.requirements.is_empty() {
             text += "  no requirement checked\n";
+        }
+        if let Some(stopped) = &self.stopped {
+            _ = writeln!(text, "  {stopped}");
         }
         for Bad { case, verdict, reason } in &self.bad {
             _ = writeln!(text, "  case {case}: {}: {reason}", verdict.name());

@@ -181,17 +181,13 @@ fn merge_parts(folder: &Path, others: &[PathBuf]) -> Result<Verdict, Failure> {
     let plan = read(folder)?;
     let mut folders = vec![folder.to_owned()];
     folders.extend_from_slice(others);
-    let merged = merge::merge(&plan, &folders, folder, plan.cases.len())?;
+    let end = merge::end(&plan, &folders)?;
+    let merged = merge::merge(&plan, &folders, folder, end)?;
     let missing = match merged.missing {
         0 => String::new(),
         missing => format!(", {missing} have no result yet"),
     };
-    print(&format!(
-        "{} of {} cases from {} parts{missing}\n",
-        merged.cases,
-        plan.cases.len(),
-        merged.parts
-    ))?;
+    print(&format!("{} of {end} cases from {} parts{missing}\n", merged.cases, merged.parts))?;
     for (table, _) in crate::campaign::results::TABLES {
         print(&format!("{}\n", merge::merged(folder, table).display()))?;
     }

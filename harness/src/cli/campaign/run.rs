@@ -1,7 +1,9 @@
 //! `octant campaign run`: the cases that have no result yet, with progress and live failures.
 
 use super::read;
-use crate::campaign::execute::{Done, Event, Options, Outcome, Shard, execute};
+use crate::campaign::execute::{Done, Event, ExecuteError, Options, Outcome, Shard, execute};
+use crate::campaign::plan::Plan;
+use crate::campaign::stop::Decision;
 use crate::campaign::{merge, results, status};
 use crate::cli::Failure;
 use crate::cli::progress::interrupts;
@@ -39,11 +41,12 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         .map_err(|error| Failure::bench(format!("failed to find this program: {error}")))?;
     let processors = || std::thread::available_parallelism().map_or(1, usize::from);
     let cancel = AtomicBool::new(false);
-    let options = Options {
+    let mut options = Options {
         folder: &arguments.folder,
         program: &program,
         jobs: arguments.jobs.map_or_else(processors, usize::from),
         shard,
+        end: plan.cases.len(),
         again: arguments.again,
         cancel: &cancel,
     };
@@ -69,7 +72,7 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
                 }
             }
         });
-        let outcome = execute(&plan, &options, &|event| match event {
+        let tell = |event: &Event| match event {
             Event::There(count) => bar.inc(*count as u64),
             Event::Done(done) => {
                 bar.inc(1);
@@ -77,13 +80,48 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
                     told(line);
                 }
             }
-        });
+        };
+        let outcome = in_rounds(&plan, &mut options, &tell);
         over.store(true, Ordering::Relaxed);
         outcome
     });
     bar.finish_and_clear();
     let outcome = outcome?;
     conclude(arguments, &plan, shard, &outcome)
+}
+
+/// Runs the cases up to where the plan's rule says that enough is known. A shard doesn't know what the
+/// others have: it runs all of its cases, and merging leaves out what wasn't needed.
+fn in_rounds(
+    plan: &Plan,
+    options: &mut Options<'_>,
+    tell: &(dyn Fn(&Event) + Sync),
+) -> Result<Outcome, ExecuteError> {
+    let Some(rule) = plan.stop.as_ref().filter(|_| options.shard == Shard::WHOLE) else {
+        return execute(plan, options, tell);
+    };
+    let mut all = Outcome::default();
+    let mut told = 0;
+    loop {
+        let Decision::Open { next } = status::decide(plan, options.folder, rule) else { break };
+        options.end = next;
+        let outcome = execute(plan, options, &|event| match event {
+            // Those of the rounds before are told.
+            Event::There(count) => tell(&Event::There(count.saturating_sub(told))),
+            Event::Done(_) => tell(event),
+        })?;
+        // What is an error again stays one.
+        options.again = false;
+        all.run += outcome.run;
+        all.skipped += outcome.skipped.saturating_sub(told);
+        all.left = outcome.left;
+        all.differing = outcome.differing;
+        told = outcome.run + outcome.skipped;
+        if outcome.left > 0 || next == plan.cases.len() {
+            break;
+        }
+    }
+    Ok(all)
 }
 
 /// What is told of a case as it ends: nothing of one that passes.
@@ -98,7 +136,7 @@ fn failure(id: &str, done: &Done) -> Option<String> {
 
 fn conclude(
     arguments: &Arguments,
-    plan: &crate::campaign::plan::Plan,
+    plan: &Plan,
     shard: Shard,
     outcome: &Outcome,
 ) -> Result<Verdict, Failure> {
@@ -109,7 +147,13 @@ fn conclude(
         return Ok(Verdict::Inconclusive);
     }
     super::print(&(text + "\n"))?;
-    let cases = (0..plan.cases.len()).filter(|index| shard.has(*index));
+    let end = match &plan.stop {
+        Some(rule) if shard == Shard::WHOLE => {
+            status::decide(plan, &arguments.folder, rule).end(plan.cases.len())
+        }
+        _ => plan.cases.len(),
+    };
+    let cases = (0..end).filter(|index| shard.has(*index));
     results::tables(plan, &arguments.folder, cases, |table| {
         merge::part(&arguments.folder, shard, table)
     })

@@ -142,10 +142,10 @@ static CORRELATION: Section = section(&[
     key("first", Kind::Text, Default::Required, "Name of a factor that is drawn."),
     key("second", Kind::Text, Default::Required, "Name of another."),
     key(
-        "rank",
+        "value",
         Kind::Number(Bounds::Within(-0.999, 0.999, "between -0.999 and 0.999")),
         Default::Required,
-        "Their rank correlation (Spearman).",
+        "The correlation of the Gaussian copula that joins them: of normal factors their own.",
     ),
 ]);
 
@@ -164,8 +164,18 @@ static LIMITS: Section = section(&[
     ),
 ]);
 
+const PROBABILITY: Kind =
+    Kind::Number(Bounds::Within(0.001, 0.999_999, "between 0.001 and 0.999999"));
+
 static STOP: Section = section(&[
     key("requirement", Kind::Text, Default::Required, "Id of the requirement that decides."),
+    key(
+        "pass",
+        PROBABILITY,
+        Default::Value("0.95"),
+        "It has to be kept with at least this probability.",
+    ),
+    key("confidence", PROBABILITY, Default::Value("0.95"), "With this confidence, one-sided."),
     key(
         "every",
         Kind::Integer(1, 1_000_000),
