@@ -221,8 +221,13 @@ fn print(text: &str) -> Result<(), Failure> {
 
 /// Writes a file of a run.
 fn write(path: &std::path::Path, contents: impl AsRef<[u8]>) -> Result<(), Failure> {
-    std::fs::write(path, contents)
-        .map_err(|error| Failure::bench(format!("failed to write {}: {error}", path.display())))
+    std::fs::write(path, contents).map_err(|error| {
+        if error.kind() == std::io::ErrorKind::StorageFull {
+            // Half a file would be taken for a whole one.
+            let _ = std::fs::remove_file(path);
+        }
+        Failure::bench(format!("failed to write {}: {error}", path.display()))
+    })
 }
 
 /// One JSON value and a newline on stdout.

@@ -129,7 +129,15 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     let interrupted = runs.iter().any(|run| {
         unfinished(run.ended) || run.twin.as_ref().is_some_and(|twin| twin.ended == Ended::Broken)
     });
-    let broken = runs.iter().any(|run| run.broken.is_some());
+    let broken = runs.iter().find_map(|run| run.broken.as_ref().map(ToString::to_string));
+    // Where the disk is full, there may be no room for the results either.
+    let failed = |failure: Failure| match &broken {
+        None => failure,
+        Some(reason) => {
+            let message = format!("failed to {reason}; and {}", failure.message);
+            Failure { message, ..failure }
+        }
+    };
     let mut runs = runs.into_iter();
     let (Some(primary), baseline) = (runs.next(), runs.next()) else {
         return Err(Failure::bench("failed to run the scenario: no method ran"));
@@ -146,7 +154,8 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         .map_err(|error| Failure::bench(format!("failed to write the summary: {error}")))?;
     for (name, table) in tables {
         if let Some(table) = table {
-            write(&folder.path().join(format!("{name}.octcal")), table.to_bytes())?;
+            let path = folder.path().join(format!("{name}.octcal"));
+            write(&path, table.to_bytes()).map_err(failed)?;
         }
     }
     let facts = RunFacts {
@@ -160,14 +169,14 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         key,
     };
     let raw = estimate.map_or(String::new(), |e| raw_counts::text(&scenario.source, &e));
-    let (verdict, json) = write_results(folder.path(), run, &facts)?;
+    let (verdict, json) = write_results(folder.path(), run, &facts).map_err(failed)?;
     let place = if interrupted {
         // An unfinished run keeps the name of one.
         folder.path().to_owned()
     } else {
         folder.finish().map_err(|error| Failure::bench(format!("failed to {error}")))?
     };
-    if broken {
+    if broken.is_some() {
         eprintln!("octant: the run broke off; what was recorded is in {}", place.display());
     }
     if arguments.json {
