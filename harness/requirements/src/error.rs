@@ -65,7 +65,7 @@ impl std::error::Error for RequirementsError {}
 pub struct ExportError {
     /// The format.
     pub format: &'static str,
-    /// The requirement.
+    /// The requirement; `(all)` where it isn't one alone.
     pub id: String,
     /// What has no place.
     pub message: String,

@@ -8,11 +8,39 @@
 use crate::error::ExportError;
 use crate::requirement::Requirements;
 use crate::sdoc::legal_uid;
-use crate::trace::{Trace, Verdict};
+use crate::trace::{Link, Row, Trace, Verdict};
+use std::collections::HashMap;
 use std::fmt::Write as _;
 
 /// Role of the relation from a result to its requirement.
 pub const VERIFIES: &str = "Verifies";
+
+/// The cases of a trace with their requirements, in the order in which requirements name them.
+fn cases(trace: &Trace) -> Vec<(&str, Vec<(&Row, &Link)>)> {
+    let mut cases: Vec<(&str, Vec<(&Row, &Link)>)> = Vec::new();
+    let mut index: HashMap<&str, usize> = HashMap::new();
+    for row in &trace.requirements {
+        for link in &row.cases {
+            let at = *index.entry(&link.case).or_insert(cases.len());
+            if at == cases.len() {
+                cases.push((&link.case, Vec::new()));
+            }
+            cases[at].1.push((row, link));
+        }
+    }
+    cases
+}
+
+fn word(verdict: Option<Verdict>) -> &'static str {
+    verdict.map_or("not run", Verdict::name)
+}
+
+/// What a case came to; none, if no check of it ran. A check that is missing leaves nothing shown.
+fn worst(links: &[(&Row, &Link)]) -> Option<Verdict> {
+    let missing = links.iter().any(|(_, link)| link.verdict.is_none());
+    let worst = links.iter().filter_map(|(_, link)| link.verdict).max()?;
+    Some(if missing { worst.max(Verdict::Inconclusive) } else { worst })
+}
 
 /// Writes the results of a campaign as an `.sdoc`, to be exported together with that of the
 /// requirements.
@@ -37,39 +65,20 @@ pub fn results(
         _ = writeln!(out, "  - TITLE: {field}\n    TYPE: String\n    REQUIRED: {required}");
     }
     _ = writeln!(out, "  RELATIONS:\n  - TYPE: Parent\n  - TYPE: Parent\n    ROLE: {VERIFIES}");
-    let mut cases: Vec<&str> = Vec::new();
-    let mut seen = std::collections::HashSet::new();
-    for link in trace.requirements.iter().flat_map(|row| &row.cases) {
-        if seen.insert(link.case.as_str()) {
-            cases.push(&link.case);
-        }
-    }
-    for case in cases {
+    for (case, links) in cases(trace) {
         if !legal_uid(case) || requirements.get(case).is_some() {
             let message =
                 "its id is none that StrictDoc takes, or that of a requirement".to_owned();
             return Err(ExportError { format: "sdoc", id: case.to_owned(), message });
         }
-        let links: Vec<_> = trace
-            .requirements
-            .iter()
-            .filter_map(|row| Some((row, row.cases.iter().find(|link| link.case == case)?)))
-            .collect();
-        let word = |verdict: Option<Verdict>| verdict.map_or("not run", Verdict::name);
-        let missing = links.iter().any(|(_, link)| link.verdict.is_none());
-        let worst = links.iter().filter_map(|(_, link)| link.verdict).max();
-        // A check that is missing leaves nothing shown.
-        let worst = match worst {
-            Some(verdict) if missing => Some(verdict.max(Verdict::Inconclusive)),
-            other => other,
-        };
+        let worst = worst(&links);
         _ = write!(out, "\n[TEST_RESULT]\nUID: {case}\nSTATUS: {}\n", word(worst));
         let first = links.first().map(|(_, link)| *link);
         if let Some(recording) = first.and_then(|link| link.recording.as_deref()) {
-            _ = writeln!(out, "RECORDING: {recording}");
+            _ = writeln!(out, "RECORDING: {}", recording.replace('\n', " "));
         }
         if let Some(folder) = first.and_then(|link| link.folder.as_deref()) {
-            _ = writeln!(out, "FOLDER: {folder}");
+            _ = writeln!(out, "FOLDER: {}", folder.replace('\n', " "));
         }
         out.push_str("STATEMENT: >>>\n");
         for (row, link) in &links {
@@ -106,25 +115,15 @@ pub fn folder(
         ("requirements.sdoc".to_owned(), crate::sdoc::write(requirements)?),
         ("results.sdoc".to_owned(), results(trace, requirements, &format!("{title}: results"))?),
     ];
-    let mut cases: Vec<(String, Vec<(&str, Option<Verdict>)>)> = Vec::new();
-    let mut index: std::collections::HashMap<&str, usize> = std::collections::HashMap::new();
-    for row in &trace.requirements {
-        for link in &row.cases {
-            let at = *index.entry(&link.case).or_insert_with(|| {
-                cases.push((link.case.clone(), Vec::new()));
-                cases.len() - 1
-            });
-            cases[at].1.push((&row.id, link.verdict));
-        }
-    }
-    for (case, checks) in &cases {
+    let cases = cases(trace);
+    for (case, links) in &cases {
         // A path of its own for each, and none out of the folder.
         let plain = |c: char| c.is_ascii_alphanumeric() || "-_.".contains(c);
         if case.starts_with('.') || !case.chars().all(plain) {
             let message = "its id is no name of a file: letters, digits, -, _ and .".to_owned();
-            return Err(ExportError { format: "StrictDoc", id: case.clone(), message });
+            return Err(ExportError { format: "StrictDoc", id: (*case).to_owned(), message });
         }
-        let ids: Vec<&str> = checks.iter().map(|(id, _)| *id).collect();
+        let ids: Vec<&str> = links.iter().map(|(row, _)| row.id.as_str()).collect();
         let text = format!("# @relation({}, scope=file)\ncase = \"{case}\"\n", ids.join(", "));
         files.push((format!("cases/{case}.toml"), text));
     }
@@ -152,19 +151,11 @@ fn config(title: &str) -> String {
 }
 
 /// The test report. A case that hasn't run is skipped.
-fn report(
-    title: &str,
-    cases: &[(String, Vec<(&str, Option<Verdict>)>)],
-) -> std::io::Result<String> {
+fn report(title: &str, cases: &[(&str, Vec<(&Row, &Link)>)]) -> std::io::Result<String> {
     use quick_xml::events::{BytesDecl, Event};
-    let worst = |checks: &[(&str, Option<Verdict>)]| {
-        let missing = checks.iter().any(|(_, verdict)| verdict.is_none());
-        let worst = checks.iter().filter_map(|(_, verdict)| *verdict).max()?;
-        Some(if missing { worst.max(Verdict::Inconclusive) } else { worst })
-    };
     let bad = |verdict: Option<Verdict>| verdict.is_some_and(|v| v != Verdict::Pass);
-    let failures = cases.iter().filter(|(_, checks)| bad(worst(checks))).count().to_string();
-    let skipped = cases.iter().filter(|(_, checks)| worst(checks).is_none()).count().to_string();
+    let failures = cases.iter().filter(|(_, links)| bad(worst(links))).count().to_string();
+    let skipped = cases.iter().filter(|(_, links)| worst(links).is_none()).count().to_string();
     let tests = cases.len().to_string();
     let mut out = quick_xml::Writer::new_with_indent(Vec::new(), b' ', 1);
     out.write_event(Event::Decl(BytesDecl::new("1.0", Some("UTF-8"), None)))?;
@@ -178,7 +169,7 @@ fn report(
         |out| {
             let suite = out.create_element("testsuite").with_attribute(("name", title));
             suite.with_attributes(counts).write_inner_content(|out| {
-                for (case, checks) in cases {
+                for (case, links) in cases {
                     let name = format!("{case}.toml");
                     let element = out.create_element("testcase").with_attributes([
                         ("classname", "octant.cases"),
@@ -186,7 +177,7 @@ fn report(
                         ("time", "0"),
                     ]);
                     element.write_inner_content(|out| {
-                        let ids: Vec<&str> = checks.iter().map(|(id, _)| *id).collect();
+                        let ids: Vec<&str> = links.iter().map(|(row, _)| row.id.as_str()).collect();
                         out.create_element("properties").write_inner_content(|out| {
                             let property = [("name", "verifies"), ("value", &ids.join(", "))];
                             out.create_element("property")
@@ -194,12 +185,12 @@ fn report(
                                 .write_empty()?;
                             Ok(())
                         })?;
-                        let verdict = worst(checks);
+                        let verdict = worst(links);
                         if let Some(verdict) = verdict.filter(|_| bad(verdict)) {
-                            let of = |(id, v): &(&str, Option<Verdict>)| {
-                                format!("{id}: {}", v.map_or("not run", Verdict::name))
+                            let of = |(row, link): &(&Row, &Link)| {
+                                format!("{}: {}", row.id, word(link.verdict))
                             };
-                            let message: Vec<String> = checks.iter().map(of).collect();
+                            let message: Vec<String> = links.iter().map(of).collect();
                             let message = message.join("; ");
                             let attributes = [("type", verdict.name()), ("message", &message)];
                             out.create_element("failure")

@@ -3,7 +3,8 @@
 
 use octant_requirements::file::{Anything, Checker};
 use octant_requirements::requirement::{
-    Ensemble, Limit, Requirement, Requirements, Verification, percent, probability,
+    Definition, Ensemble, Kind, Limit, Parent, Requirement, Requirements, Verification, percent,
+    probability,
 };
 use octant_requirements::{file, reqif, sdoc};
 
@@ -347,6 +348,27 @@ fn what_a_format_has_no_place_for_is_refused() {
     );
     let error = sdoc::write(&of("A", "a\n<<<\nb")).unwrap_err().to_string();
     assert!(error.contains("STATEMENT has a line that begins with <<<"), "{error}");
+    let mut choice = of("A", "x");
+    choice.definitions.push(Definition {
+        name: "P".to_owned(),
+        kind: Kind::Choice(vec!["a, b".to_owned()]),
+        field: None,
+    });
+    let error = sdoc::write(&choice).unwrap_err().to_string();
+    assert!(error.contains("the option \"a, b\" of P has a comma"), "{error}");
+    // What StrictDoc has no name for stands where it has a place.
+    let mut foreign = of("A", "x");
+    foreign.document.push(("Author".to_owned(), "B".to_owned()));
+    foreign.requirements[0].kind = Some("Requirement type 2".to_owned());
+    let text = sdoc::write(&foreign).unwrap();
+    assert!(
+        text.contains("METADATA:\n  Author: B\n") && text.contains("\n[REQUIREMENT_TYPE]\n"),
+        "{text}"
+    );
+    let mut alone = of("A", "x");
+    alone.requirements[0].parents.push(Parent { id: "Z".to_owned(), role: None });
+    let error = reqif::write(&alone, "").unwrap_err().to_string();
+    assert!(error.contains("its parent \"Z\" isn't in this document"), "{error}");
     let mut all = of("A", "x");
     all.requirements[0].identifier = Some("1 2".to_owned());
     let error = reqif::write(&all, "").unwrap_err().to_string();

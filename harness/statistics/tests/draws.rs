@@ -4,7 +4,7 @@
 use octant_statistics::draw::{
     Correlation, Distribution, DrawError, Factor, Value, latin_hypercube, monte_carlo,
 };
-use octant_statistics::{normal, rank};
+use octant_statistics::{normal, rank, sample};
 
 fn factors() -> Vec<Factor> {
     vec![
@@ -107,19 +107,33 @@ fn a_latin_hypercube_has_one_draw_in_each_part() {
 fn correlations_are_those_asked_for() {
     let all = factors();
     let wanted = [pair("bias", "walk", 0.8), pair("bias", "tilt", -0.3), pair("walk", "tilt", 0.1)];
-    // Spearman's ρ of a Gaussian copula is 6/π asin(r/2).
-    let spearman = |r: f64| 6.0 / std::f64::consts::PI * (r / 2.0).asin();
     let runs = 4000;
-    let samples =
-        [draws(&all, &wanted, runs), latin_hypercube(&all, &wanted, 3, runs as usize).unwrap()];
-    for (drawn, within) in samples.iter().zip([0.05, 0.01]) {
-        for (a, b, r) in [(0, 2, 0.8), (0, 4, -0.3), (2, 4, 0.1), (0, 1, 0.0), (1, 4, 0.0)] {
-            let found = rank::spearman(&column(drawn, a), &column(drawn, b)).unwrap().rho;
-            // Factors that nothing was asked of are left to chance in both.
-            let within = if r == 0.0 { 0.06 } else { within };
-            assert!((found - spearman(r)).abs() < within, "{a} {b} {r} {found}");
-        }
+    let drawn = draws(&all, &wanted, runs);
+    let cube = latin_hypercube(&all, &wanted, 3, runs as usize).unwrap();
+    // Five standard errors of a correlation by chance.
+    let chance = 5.0 / (runs as f64).sqrt();
+    for (a, b, r) in [(0, 2, 0.8), (0, 4, -0.3), (2, 4, 0.1), (0, 1, 0.0), (1, 4, 0.0)] {
+        // Spearman's ρ of a Gaussian copula is 6/π asin(r/2).
+        let expected = 6.0 / std::f64::consts::PI * (r / 2.0f64).asin();
+        let found = rank::spearman(&column(&drawn, a), &column(&drawn, b)).unwrap().rho;
+        assert!((found - expected).abs() < chance, "{a} {b} {r} {found}");
+        // The hypercube has the correlation of normal scores itself, but for the rounding of scores to
+        // those of ranks; factors that nothing was asked of are left to chance.
+        let found = scores(&column(&cube, a), &column(&cube, b));
+        let within = if r == 0.0 { chance } else { 0.01 };
+        assert!((found - r).abs() < within, "{a} {b} {r} {found}");
     }
+}
+
+/// The correlation of normal scores.
+fn scores(x: &[f64], y: &[f64]) -> f64 {
+    let of = |values: &[f64]| -> Vec<f64> {
+        let n = values.len() as f64 + 1.0;
+        sample::ranks(values).into_iter().map(|rank| normal::quantile(rank / n)).collect()
+    };
+    let (x, y) = (of(x), of(y));
+    let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+    dot(&x, &y) / (dot(&x, &x) * dot(&y, &y)).sqrt()
 }
 
 #[test]

@@ -334,7 +334,7 @@ impl<'a> Reader<'a> {
                 format!("the id {id:?} is there a second time, expected unique ids"),
             ));
         }
-        let title = object.take(NAME);
+        let title = object.take(NAME).map(|title| title.replace('\n', " "));
         let Some(text) = object.take(TEXT).or_else(|| title.clone()) else {
             return Err((line, format!("{id} has neither {TEXT} nor {NAME}")));
         };

@@ -8,7 +8,7 @@ use crate::requirement::{Kind, Requirement, Requirements};
 use crate::sdoc::REQUIREMENT;
 use quick_xml::events::{BytesDecl, BytesEnd, BytesStart, BytesText, Event};
 use quick_xml::writer::Writer;
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 use std::io;
 
 /// An identifier made of the id that people use: letters, digits, `-` and `.`, the rest as its number.
@@ -33,6 +33,7 @@ pub(super) fn identifier(id: &str) -> String {
 /// twice, or a parent isn't in the document.
 pub fn write(requirements: &Requirements, time: &str) -> Result<String, ExportError> {
     let mut seen = HashSet::new();
+    let ids: HashSet<&str> = requirements.requirements.iter().map(|r| r.id.as_str()).collect();
     for requirement in &requirements.requirements {
         let wrong = |message| ExportError { format: "ReqIF", id: requirement.id.clone(), message };
         let id = object_id(requirement);
@@ -46,8 +47,7 @@ pub fn write(requirements: &Requirements, time: &str) -> Result<String, ExportEr
                 return Err(wrong(format!("{} is {found:?}, expected {expected}", attribute.name)));
             }
         }
-        if let Some(parent) = requirement.parents.iter().find(|p| requirements.get(&p.id).is_none())
-        {
+        if let Some(parent) = requirement.parents.iter().find(|p| !ids.contains(p.id.as_str())) {
             let message = format!(
                 "its parent {:?} isn't in this document, and a relation has both ends in one file",
                 parent.id
@@ -64,7 +64,8 @@ pub fn write(requirements: &Requirements, time: &str) -> Result<String, ExportEr
         requirements,
         columns: columns(requirements),
     };
-    let failed = |error: String| ExportError { format: "ReqIF", id: String::new(), message: error };
+    let failed =
+        |error: String| ExportError { format: "ReqIF", id: "(all)".to_owned(), message: error };
     file.document().map_err(|error| failed(error.to_string()))?;
     String::from_utf8(file.out.into_inner()).map_err(|error| failed(error.to_string()))
 }
@@ -416,12 +417,14 @@ impl File<'_> {
 
     fn relations(&mut self) -> io::Result<()> {
         let (requirements, roles) = (self.requirements, self.roles());
+        let ids: HashMap<&str, String> =
+            requirements.requirements.iter().map(|r| (r.id.as_str(), object_id(r))).collect();
         self.open("SPEC-RELATIONS", &[])?;
         let mut number = 0;
         for requirement in &requirements.requirements {
             for parent in &requirement.parents {
                 // One that isn't here is refused before.
-                let Some(target) = requirements.get(&parent.id) else { continue };
+                let Some(target) = ids.get(parent.id.as_str()) else { continue };
                 let role = roles.iter().position(|role| *role == parent.role).unwrap_or(0);
                 let id = format!("octant-relation-{number}");
                 number += 1;
@@ -432,7 +435,7 @@ impl File<'_> {
                     &format!("octant-t-relation-{role}"),
                 )?;
                 self.reference("SOURCE", "SPEC-OBJECT-REF", &object_id(requirement))?;
-                self.reference("TARGET", "SPEC-OBJECT-REF", &object_id(target))?;
+                self.reference("TARGET", "SPEC-OBJECT-REF", target)?;
                 self.close("SPEC-RELATION")?;
             }
         }

@@ -15,7 +15,16 @@ use std::fmt::Write as _;
 /// `<<<` in a text.
 pub fn write(requirements: &Requirements) -> Result<String, ExportError> {
     let mut out = String::from("[DOCUMENT]\n");
-    head(&mut out, requirements);
+    let whole = |message: String| ExportError { format: "sdoc", id: "(all)".to_owned(), message };
+    head(&mut out, requirements).map_err(whole)?;
+    for definition in &requirements.definitions {
+        for option in definition.kind.options().unwrap_or_default() {
+            if option.contains([',', '(', ')', '"', '\n']) {
+                let message = format!("the option {option:?} of {}", definition.name);
+                return Err(whole(format!("{message} has a comma, bracket, quote or line break")));
+            }
+        }
+    }
     let columns = columns(requirements);
     grammar(&mut out, requirements, &columns);
     let mut open: Vec<&str> = Vec::new();
@@ -43,7 +52,7 @@ pub fn write(requirements: &Requirements) -> Result<String, ExportError> {
     Ok(out)
 }
 
-fn head(out: &mut String, requirements: &Requirements) {
+fn head(out: &mut String, requirements: &Requirements) -> Result<(), String> {
     let entry = |key: &str| {
         requirements
             .document
@@ -73,17 +82,26 @@ fn head(out: &mut String, requirements: &Requirements) {
             line(out, "  ", key, &value);
         }
     }
-    let mut metadata = requirements
-        .document
-        .iter()
-        .filter_map(|(key, value)| Some((key.strip_prefix("METADATA.")?, value)))
-        .peekable();
+    // What StrictDoc has no name for is metadata, which every document may have.
+    let known = |key: &str| {
+        HEAD.contains(&key) || key.strip_prefix("OPTIONS.").is_some_and(|o| OPTIONS.contains(&o))
+    };
+    let mut metadata = requirements.document.iter().filter(|(key, _)| !known(key)).peekable();
     if metadata.peek().is_some() {
         out.push_str("METADATA:\n");
-        for (key, value) in metadata {
-            line(out, "  ", key, &value.replace('\n', " "));
-        }
     }
+    for (key, value) in metadata {
+        let key = key.strip_prefix("METADATA.").unwrap_or(key);
+        let word = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
+        let first = |c: char| c.is_ascii_alphabetic() || c == '_';
+        if !key.starts_with(first) || !key.chars().all(word) {
+            return Err(format!(
+                "{key:?} of the document is none of StrictDoc's names: a letter or _, then also digits and -"
+            ));
+        }
+        line(out, "  ", key, &value.replace('\n', " "));
+    }
+    Ok(())
 }
 
 /// Attributes and the fields that they become.
@@ -118,13 +136,13 @@ fn grammar(out: &mut String, requirements: &Requirements, columns: &[(&str, Stri
          - TITLE: UID\n    TYPE: String\n    REQUIRED: False\n  \
          - TITLE: TITLE\n    TYPE: String\n    REQUIRED: True\n",
     );
-    let mut kinds: Vec<&str> = Vec::new();
+    let mut kinds: Vec<String> = Vec::new();
     // Every role that parents have has to be declared.
-    let mut roles: HashMap<&str, Vec<Option<&str>>> = HashMap::new();
+    let mut roles: HashMap<String, Vec<Option<&str>>> = HashMap::new();
     for requirement in &requirements.requirements {
-        let kind = requirement.kind.as_deref().unwrap_or(REQUIREMENT);
+        let kind = tag(requirement);
         if !kinds.contains(&kind) {
-            kinds.push(kind);
+            kinds.push(kind.clone());
         }
         let roles = roles.entry(kind).or_insert_with(|| vec![None]);
         for parent in &requirement.parents {
@@ -134,10 +152,10 @@ fn grammar(out: &mut String, requirements: &Requirements, columns: &[(&str, Stri
         }
     }
     if kinds.is_empty() {
-        kinds.push(REQUIREMENT);
+        kinds.push(REQUIREMENT.to_owned());
     }
-    for kind in kinds {
-        _ = writeln!(out, "- TAG: {kind}\n  FIELDS:");
+    for tag in kinds {
+        _ = writeln!(out, "- TAG: {tag}\n  FIELDS:");
         let mut field = |title: &str, human: Option<&str>, kind: &Kind, required: &str| {
             _ = writeln!(out, "  - TITLE: {title}");
             if let Some(human) = human {
@@ -164,13 +182,24 @@ fn grammar(out: &mut String, requirements: &Requirements, columns: &[(&str, Stri
             field(column, (name != column).then_some(name), kind, "False");
         }
         out.push_str("  RELATIONS:\n");
-        for role in roles.get(kind).map_or(&[None][..], Vec::as_slice) {
+        for role in roles.get(&tag).map_or(&[None][..], Vec::as_slice) {
             out.push_str("  - TYPE: Parent\n");
             if let Some(role) = role {
                 _ = writeln!(out, "    ROLE: {role}");
             }
         }
     }
+}
+
+/// What a requirement's kind is called where only capitals and `_` are legal.
+fn tag(requirement: &Requirement) -> String {
+    let Some(kind) = &requirement.kind else { return REQUIREMENT.to_owned() };
+    if legal_kind(kind) {
+        return kind.clone();
+    }
+    let words = kind.split(|c: char| !c.is_ascii_alphabetic()).filter(|word| !word.is_empty());
+    let tag = words.map(str::to_ascii_uppercase).collect::<Vec<_>>().join("_");
+    if legal_kind(&tag) { tag } else { REQUIREMENT.to_owned() }
 }
 
 fn choices(options: &[String]) -> String {
@@ -188,12 +217,7 @@ fn node(
             requirement.id
         ));
     }
-    let kind = requirement.kind.as_deref().unwrap_or(REQUIREMENT);
-    if !legal_kind(kind) {
-        return Err(format!(
-            "its kind {kind:?} is none of StrictDoc's: words of capitals, joined by _"
-        ));
-    }
+    let kind = tag(requirement);
     _ = write!(out, "\n[{kind}]\n");
     let mut own: Vec<(&str, String)> = Vec::new();
     own.extend(requirement.identifier.iter().map(|text| ("MID", text.clone())));

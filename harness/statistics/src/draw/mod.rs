@@ -116,7 +116,7 @@ pub fn latin_hypercube(
 /// The probabilities of one factor in a Latin hypercube: the part that a run has is the rank of its
 /// number among all, and its place in the part another number.
 fn column(seed: u64, name: &str, runs: usize) -> Vec<f64> {
-    let key = key(seed, &stream(&format!("{name} of {runs}")), Phase::Draw);
+    let key = key(seed, &format!("hypercube of {runs}: {name}"), Phase::Draw);
     let words: Vec<[u64; 4]> = (0..runs as u64).map(|i| words(key, i)).collect();
     let order: Vec<f64> = words.iter().map(|w| uniform(w[0])).collect();
     let ranks = ranks(&order);
