@@ -124,7 +124,7 @@ fn the_same_bytes_on_one_processor_in_parts_and_after_interruptions() {
     for number in 1..=4 {
         run(&plan, &parts, Shard { number, of: 4 }, 2);
     }
-    assert_eq!(merged(&plan, &parts), expected, "four parts");
+    assert!(merged(&plan, &parts) == expected, "four parts");
 
     // Told to end after each case, and gone on with.
     let torn = bench.at("torn");
@@ -153,7 +153,7 @@ fn the_same_bytes_on_one_processor_in_parts_and_after_interruptions() {
     }
     assert!(rounds >= 3, "{rounds}");
     assert_eq!(run(&plan, &torn, Shard::WHOLE, 2), Outcome { skipped: 6, ..Outcome::default() });
-    assert_eq!(merged(&plan, &torn), expected, "interrupted");
+    assert!(merged(&plan, &torn) == expected, "interrupted");
 
     // What the tables say is what the cases are.
     let table = Table::open(&merge::merged(&whole, "cases")).unwrap();
@@ -325,8 +325,8 @@ fn a_campaign_that_contradicts_itself_is_refused_with_its_place() {
         ("uniform = [10, 1000]", "unifrom = [10, 1000]", "did you mean \"uniform\"?"),
         ("file = \"short.toml\"", "file = \"shorter.toml\"", "shorter.toml"),
         (
-            "title = \"test\"",
-            "title = \"test\"\n[stop]\nrequirement = \"NAV-2\"",
+            "uniform = [10, 1000]",
+            "uniform = [10, 1000]\n[stop]\nrequirement = \"NAV-2\"",
             "no scenario checks it",
         ),
     ];
@@ -401,7 +401,7 @@ fn it_ends_where_enough_is_known_wherever_it_ran() {
     for table in ["cases", "checks", "drift"] {
         let [a, b] = ["a", "b"]
             .map(|folder| std::fs::read(merge::merged(&bench.at(folder), table)).unwrap());
-        assert_eq!(a, b, "{table}");
+        assert!(a == b, "{table} differs");
     }
 }
 

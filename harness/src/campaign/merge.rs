@@ -186,6 +186,28 @@ pub fn merge(
                 rows.iter().copied().filter(move |row| row.part == first)
             })
             .collect();
+        // A column of cases that don't count is none.
+        let empty = |column: &str| -> Result<bool, TableError> {
+            for (part, table) in tables.iter().enumerate() {
+                let Some(values) = table.column(column)? else { continue };
+                let mut mine = kept.iter().filter(|row| row.part == part);
+                if mine.any(|row| values.at(row.row).is_some()) {
+                    return Ok(false);
+                }
+            }
+            Ok(true)
+        };
+        let mut columns = columns;
+        if end < plan.cases.len() {
+            let first = |name: &String| first.iter().any(|(other, _)| other == name);
+            let mut there = Vec::with_capacity(columns.len());
+            for (column, kind) in columns {
+                if first(&column) || !empty(&column)? {
+                    there.push((column, kind));
+                }
+            }
+            columns = there;
+        }
         if name == "cases" {
             merged_cases = Merged {
                 parts: paths.len(),

@@ -6,7 +6,7 @@ use super::plan::{Case, FactorValue, Plan};
 use super::table::{Kind, TableError, Value, Values, write};
 use crate::score::summary::Summary;
 use std::borrow::Cow;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 /// Columns with their kinds.
@@ -74,12 +74,6 @@ impl Rows {
                 (0..self.rows).for_each(|_| column.push(None));
                 column
             });
-            // A factor that is a number in one case and a text in another is a text in all.
-            if column.kind() != value.kind() && value.kind() == Kind::Text {
-                let mut texts = Values::new(Kind::Text);
-                (0..self.rows).for_each(|row| texts.push(column.at(row)));
-                *column = texts;
-            }
             column.push(Some(value));
         }
         self.rows += 1;
@@ -113,12 +107,17 @@ pub fn tables(
     path: impl Fn(&str) -> std::path::PathBuf,
 ) -> Result<(), TableError> {
     let [mut all_cases, mut checks, mut drift] = TABLES.map(|(_, first)| Rows::new(first));
+    // A factor that is a number in one case and a text in another is a text in all.
+    let texts: BTreeSet<&str> = (plan.cases.iter().flat_map(|case| &case.factors))
+        .filter(|(_, value)| matches!(value, FactorValue::Text(_)))
+        .map(|(name, _)| name.as_str())
+        .collect();
     for index in cases {
         let Some(case) = plan.cases.get(index) else { continue };
         let file = case::file(folder, &case.id);
         let result = CaseResult::read(&file)
             .map_err(|reason| TableError::Form { path: file.clone(), reason })?;
-        all_cases.push(case_row(case, &result));
+        all_cases.push(case_row(case, &result, &texts));
         if let Some(summary) = &result.summary {
             check_rows(case, summary).for_each(|row| checks.push(row));
             drift_rows(case, summary).for_each(|row| drift.push(row));
@@ -139,7 +138,7 @@ fn row<'a>(pairs: impl IntoIterator<Item = (&'a str, Option<Value>)>) -> BTreeMa
     pairs.into_iter().filter_map(there).collect()
 }
 
-fn case_row(case: &Case, result: &CaseResult) -> BTreeMap<String, Value> {
+fn case_row(case: &Case, result: &CaseResult, texts: &BTreeSet<&str>) -> BTreeMap<String, Value> {
     let summary = result.summary.as_ref();
     let mut all = row([
         ("case", Some(text(&case.id))),
@@ -154,6 +153,9 @@ fn case_row(case: &Case, result: &CaseResult) -> BTreeMap<String, Value> {
     ]);
     for (name, value) in &case.factors {
         let value = match value {
+            FactorValue::Number(number) if texts.contains(name.as_str()) => {
+                Value::Text(number.to_string())
+            }
             FactorValue::Number(number) => Value::Number(*number),
             FactorValue::Text(text) => Value::Text(text.clone()),
         };
