@@ -264,9 +264,14 @@ impl<P: Port> Driver<P> {
     }
 
     /// Asks a question until it has an answer that makes sense.
-    fn ask(&mut self, sent: &str, expected: &Pattern) -> Result<Values, Error> {
+    fn ask(
+        &mut self,
+        sent: &str,
+        expected: &Pattern,
+    ) -> Result<(Values, Instant, Duration), Error> {
         let mut asked = 1;
         loop {
+            let before = Instant::now();
             let result = self.exchange(sent, expected).and_then(|fields| {
                 self.dialect.read(&fields).ok_or_else(|| {
                     let reply = expected.write(&fields).unwrap_or_default();
@@ -278,7 +283,10 @@ impl<P: Port> Driver<P> {
                     self.stale = true;
                     asked += 1;
                 }
-                result => return result,
+                result => {
+                    let half = before.elapsed() / 2;
+                    return result.map(|values| (values, before + half, half));
+                }
             }
         }
     }
@@ -350,7 +358,10 @@ impl<P: Port> Turntable for Driver<P> {
             let mut found = AxisStatus::default();
             for question in self.dialect.status.clone() {
                 let sent = self.filled(&question.send, &fields)?;
-                let values = self.ask(&sent, &question.reply)?;
+                let (values, at, within) = self.ask(&sent, &question.reply)?;
+                if values.angle_rad.is_some() {
+                    (found.at, found.at_within) = (Some(at), within);
+                }
                 let bit = |bit: Option<u32>| Some(values.bits?.checked_shr(bit?)? & 1 == 1);
                 let bits = self.dialect.bits;
                 found.angle_rad = values.angle_rad.unwrap_or(found.angle_rad);
