@@ -37,6 +37,8 @@ pub struct Driver<P: Port> {
     pending: Vec<u8>,
     /// A reply that nobody waits for may still come.
     stale: bool,
+    /// It has taken the table over, and stops it in the end.
+    drives: bool,
 }
 
 impl<P: Port> Driver<P> {
@@ -46,21 +48,34 @@ impl<P: Port> Driver<P> {
     /// # Errors
     /// If the limits can't be kept, the language has no watchdog though one is asked for, or the table
     /// doesn't answer.
-    pub fn new(
+    pub fn new(port: P, name: &str, dialect: Dialect, settings: Settings) -> Result<Self, Error> {
+        settings.limits.check()?;
+        let lacking = settings.watchdog.is_some() && dialect.lines(Command::Feed).is_empty();
+        if lacking {
+            return Err(Error::Lacking { dialect: dialect.name, what: "watchdog" });
+        }
+        let mut driver = Self::on(port, name, dialect, settings)?;
+        driver.drives = true;
+        driver.command(Command::Begin, &Values::default())?;
+        for axis in Axis::ALL {
+            driver.command(Command::Enable, &Values { axis: Some(axis), ..Values::default() })?;
+        }
+        driver.feed()?;
+        driver.status()?;
+        Ok(driver)
+    }
+
+    /// On a port, before anything is sent: as long as it doesn't drive the table it only asks.
+    pub(crate) fn on(
         mut port: P,
         name: &str,
         dialect: Dialect,
         settings: Settings,
     ) -> Result<Self, Error> {
-        settings.limits.check()?;
         let gone = |reason| Error::Gone { port: name.to_owned(), reason };
         port.set_wait(WAIT).map_err(gone)?;
         let stop = EmergencyStop::new(port.writer().map_err(gone)?, dialect.emergency());
-        let lacking = settings.watchdog.is_some() && dialect.lines(Command::Feed).is_empty();
-        if lacking {
-            return Err(Error::Lacking { dialect: dialect.name, what: "watchdog" });
-        }
-        let mut driver = Self {
+        Ok(Self {
             port,
             name: name.into(),
             dialect,
@@ -69,14 +84,8 @@ impl<P: Port> Driver<P> {
             guard: None,
             pending: Vec::new(),
             stale: true,
-        };
-        driver.command(Command::Begin, &Values::default())?;
-        for axis in Axis::ALL {
-            driver.command(Command::Enable, &Values { axis: Some(axis), ..Values::default() })?;
-        }
-        driver.feed()?;
-        driver.status()?;
-        Ok(driver)
+            drives: false,
+        })
     }
 
     /// Starts a guard: a process that stops the table when this one dies or is silent for a time.
@@ -388,6 +397,8 @@ impl<P: Port> Turntable for Driver<P> {
 impl<P: Port> Drop for Driver<P> {
     fn drop(&mut self) {
         // After `finish` it rests, and a table at rest isn't hurt by being stopped.
-        self.stop.trip("its driver is gone");
+        if self.drives {
+            self.stop.trip("its driver is gone");
+        }
     }
 }

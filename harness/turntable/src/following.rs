@@ -215,7 +215,7 @@ impl Following {
 }
 
 /// Waits until both axes have rested for a while; where they are then.
-fn rest<T: Turntable>(
+pub(crate) fn rest<T: Turntable>(
     table: &mut T,
     port: &str,
     within: Duration,

@@ -20,6 +20,7 @@
 //! None of this replaces the emergency stop button.
 
 mod button;
+mod by_hand;
 mod dialect;
 mod driver;
 mod error;
@@ -35,6 +36,7 @@ mod table;
 mod track;
 
 pub use button::{Button, Pressed, press};
+pub use by_hand::{Move, look, move_by_hand};
 pub use dialect::Dialect;
 pub use driver::{Driver, Settings};
 pub use error::Error;

@@ -23,7 +23,8 @@ fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
     let result = match words[..] {
-        ["guard"] => return run_guard(),
+        ["guard"] if run_guard() => return ExitCode::SUCCESS,
+        ["guard"] => return ExitCode::FAILURE,
         ["simulate", ref options @ ..] => simulate(options),
         ["stop", port, ref options @ ..] => stop(port, options),
         _ => Err(Failure::Usage),

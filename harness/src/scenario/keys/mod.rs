@@ -4,6 +4,7 @@
 
 mod calibration;
 mod connection;
+mod drive;
 mod faults;
 mod fmu;
 mod instrument;

@@ -1,15 +1,23 @@
-//! A real instrument on a port, as it sends.
+//! A real instrument on a port, as it sends, and the real table under it.
 //!
 //! A sample is delivered when its reading has come: the run goes as fast as the instrument. What the
-//! line damaged is looked over, a gap stays one, and a silence ends the run.
+//! line damaged is looked over, a gap stays one, and a silence ends the run. A table that is turned goes
+//! where the core wants it; its angles stand in the samples where the instrument has none of its own.
 
+mod clock;
+mod feed;
+mod table;
+
+use self::clock::Clock;
+use self::feed::Feed;
+use self::table::Table;
 use super::{Epoch, Source, SourceError};
-use crate::scenario::Instrument;
-use octant_instruments::{AnyDecoder, Event, Sampler, Settings, Unusable};
-use octant_link::port::{self, Bytes, Port};
+use crate::scenario::{Instrument, Scenario, Speaks};
+use octant_instruments::{Sampler, Settings, Unusable};
 use octant_plant::Truth;
-use octant_sample::GimbalCommand;
-use octant_wire::Role;
+use octant_sample::{GimbalCommand, Status};
+use serde_json::json;
+use std::path::Path;
 use std::time::{Duration, Instant};
 
 /// How long one look at the port waits.
@@ -18,42 +26,63 @@ const WAIT: Duration = Duration::from_millis(50);
 /// An instrument on a port.
 #[derive(Debug)]
 pub struct LiveSource {
-    port: Box<dyn Bytes>,
+    feed: Feed,
     instrument: Instrument,
-    decoder: AnyDecoder,
     sampler: Sampler,
-    buffer: Box<[u8; 4096]>,
-    /// What of the buffer was not decoded yet.
-    rest: std::ops::Range<usize>,
+    clock: Clock,
+    table: Option<Table>,
     total: u64,
     delivered: u64,
 }
 
 impl LiveSource {
-    /// Opens the port of an instrument, which will be asked for so many samples.
+    /// Opens the port of a scenario's instrument, and takes the table over that it has.
     ///
     /// # Errors
-    /// If the port can't be opened, or carries no bytes.
+    /// If a port can't be opened, or the table doesn't do what it is told.
+    pub fn of(scenario: &Scenario, instrument: &Instrument) -> Result<Self, SourceError> {
+        let (period_ns, samples) = (scenario.sample_period_ns, scenario.samples());
+        let mut source = Self::open(instrument, &scenario.folder, period_ns, samples)?;
+        if let Some(drive) = &scenario.drive {
+            source.table = Some(Table::start(drive, &scenario.folder)?);
+            source.forget()?;
+        }
+        Ok(source)
+    }
+
+    /// What a scenario's files say can be used; nothing is opened, and nothing moves.
+    ///
+    /// # Errors
+    /// If a file can't be read, or isn't what it should be.
+    pub fn check(scenario: &Scenario, instrument: &Instrument) -> Result<(), SourceError> {
+        if let Speaks::Can(messages) = &instrument.speaks {
+            messages.gatherer(&scenario.folder)?;
+        }
+        match &scenario.drive {
+            Some(drive) => drive.plan(&scenario.folder).map(drop).map_err(SourceError::Table),
+            None => Ok(()),
+        }
+    }
+
+    /// Opens the port of an instrument, which will be asked for so many samples. Its files are relative to
+    /// a folder.
+    ///
+    /// # Errors
+    /// If the port can't be opened, or a file can't be used.
     pub fn open(
         instrument: &Instrument,
+        folder: &Path,
         sample_period_ns: u64,
         samples: Option<u64>,
     ) -> Result<Self, SourceError> {
-        let gone = |reason: String| SourceError::Gone { uri: instrument.uri.to_string(), reason };
-        // It waits for who sends, as a device does.
-        let port = match port::open(&instrument.uri, Role::Device) {
-            Ok(Port::Bytes(port)) => port,
-            Ok(Port::Frames(_)) => return Err(gone("it carries no bytes".to_owned())),
-            Err(error) => return Err(gone(error.to_string())),
-        };
+        let feed = Feed::open(instrument, folder)?;
         let settings = Settings { axes: instrument.axes, period_ns: sample_period_ns };
         Ok(Self {
-            port,
-            decoder: AnyDecoder::new(instrument.protocol),
+            feed,
             instrument: instrument.clone(),
             sampler: Sampler::new(settings),
-            buffer: Box::new([0; 4096]),
-            rest: 0..0,
+            clock: Clock::new(),
+            table: None,
             total: samples.unwrap_or(u64::MAX),
             delivered: 0,
         })
@@ -62,16 +91,21 @@ impl LiveSource {
     /// The name by which the instrument reaches the port.
     #[must_use]
     pub fn reached_at(&self) -> String {
-        self.port.reached_at()
+        self.feed.reached_at().unwrap_or_else(|| self.instrument.uri.to_string())
     }
 
-    /// What the decoder says of the bytes that are there.
-    fn decoded(&mut self) -> Option<Event> {
-        let mut bytes = &self.buffer[self.rest.clone()];
-        let event = self.decoder.next(&mut bytes);
-        self.rest.start = self.rest.end - bytes.len();
-        // A frame doesn't go on in the next datagram.
-        if event.is_none() && self.port.datagrams() { self.decoder.end() } else { event }
+    /// What came while nobody listened is old: the run begins with what comes from now on.
+    fn forget(&mut self) -> Result<(), SourceError> {
+        let until = Instant::now() + WAIT;
+        while Instant::now() < until {
+            while self.feed.reading().is_some() {}
+            let came = self.feed.receive(Duration::ZERO);
+            if !came.map_err(|reason| self.gone(reason))? {
+                break;
+            }
+        }
+        while self.feed.reading().is_some() {}
+        Ok(())
     }
 
     fn gone(&self, reason: String) -> SourceError {
@@ -79,33 +113,36 @@ impl LiveSource {
     }
 
     fn silent(&self) -> SourceError {
-        let counters = self.decoder.counters();
         self.gone(format!(
-            "no reading for {} s; so far {} bytes came, {} readings, {} other frames of protocol {}, \
-             and {} with another checksum",
+            "no reading for {} s; {}",
             self.instrument.silence_s,
-            counters.bytes,
-            counters.readings,
-            counters.other,
-            self.instrument.protocol.name(),
-            counters.checksum,
+            self.feed.said(self.instrument.speaks.name())
         ))
     }
 }
 
 impl Source for LiveSource {
-    fn next(&mut self, _command: &GimbalCommand, epoch: &mut Epoch) -> Result<bool, SourceError> {
+    fn next(&mut self, command: &GimbalCommand, epoch: &mut Epoch) -> Result<bool, SourceError> {
         if self.delivered == self.total {
             return Ok(false);
         }
+        if let Some(table) = &mut self.table {
+            table.command(command)?;
+        }
         let until = Instant::now() + Duration::from_secs_f64(self.instrument.silence_s);
         loop {
-            while let Some(event) = self.decoded() {
-                let Event::Reading(reading) = event else { continue };
+            while let Some((mut reading, came)) = self.feed.reading() {
+                let stamp_ns = reading.stamp.map(|stamp| stamp.ns);
+                let when = self.clock.when(stamp_ns, came);
+                let has_own =
+                    reading.gimbal.is_some() && !reading.status.contains(Status::GIMBAL_INVALID);
+                if !has_own && let Some(table) = &mut self.table {
+                    reading.gimbal = table.angles(when);
+                    reading.status.set(Status::GIMBAL_INVALID, reading.gimbal.is_none());
+                }
                 match self.sampler.sample(&reading, None) {
                     Ok(sample) => {
-                        // From now on nobody else is heard.
-                        self.port.hold_peer(true);
+                        self.feed.hold_peer();
                         self.delivered += 1;
                         (epoch.sample, epoch.aiding) = (sample, None);
                         return Ok(true);
@@ -114,11 +151,14 @@ impl Source for LiveSource {
                     Err(unusable) => return Err(self.gone(unusable.to_string())),
                 }
             }
+            if let Some(table) = &self.table {
+                table.check()?;
+            }
             if Instant::now() >= until {
                 return Err(self.silent());
             }
-            let came = self.port.receive(&mut self.buffer[..], WAIT);
-            self.rest = 0..came.map_err(|error| self.gone(error.to_string()))?;
+            let came = self.feed.receive(WAIT);
+            came.map_err(|reason| self.gone(reason))?;
         }
     }
 
@@ -129,8 +169,42 @@ impl Source for LiveSource {
     fn samples_total(&self) -> Option<u64> {
         (self.total < u64::MAX).then_some(self.total)
     }
-}
 
+    fn is_live(&self) -> bool {
+        true
+    }
+
+    fn conclude(
+        &mut self,
+        broken: Option<&str>,
+    ) -> (Option<serde_json::Value>, Option<SourceError>) {
+        let table = self.table.take();
+        let told = table.as_ref().map(Table::told);
+        // Stopped before anything else is done.
+        let ended = table.and_then(|table| table.end(broken).err());
+        let counters = self.sampler.counters();
+        let protocol = self.instrument.speaks.name();
+        let mut bench = json!({
+            "instrument": format!("{}, {protocol}", self.instrument.uri),
+            "readings": {
+                "samples": counters.samples,
+                "missing": counters.missing,
+                "behind": counters.behind,
+                "irregular": counters.irregular,
+            },
+        });
+        if let Some((words, figures)) = self.clock.told() {
+            bench["instrument's clock"] = words.into();
+            bench["clock"] = figures;
+        }
+        if let Some(told) = told {
+            bench["turntable"] = told.table.into();
+            bench["table's angles"] = told.angles.into();
+            bench["table"] = told.figures;
+        }
+        (Some(bench), ended)
+    }
+}
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -154,8 +228,10 @@ mod tests {
 
     fn source(protocol: Protocol, samples: u64) -> (LiveSource, UdpSocket) {
         let uri = "udp:127.0.0.1:0".parse().unwrap();
-        let instrument = Instrument { uri, protocol, axes: Axes::SAME, silence_s: 0.3 };
-        let source = LiveSource::open(&instrument, PERIOD_NS, Some(samples)).unwrap();
+        let speaks = Speaks::Bytes(protocol);
+        let instrument = Instrument { uri, speaks, axes: Axes::SAME, silence_s: 0.3 };
+        let source =
+            LiveSource::open(&instrument, Path::new(""), PERIOD_NS, Some(samples)).unwrap();
         let address = source.reached_at();
         let socket = UdpSocket::bind("127.0.0.1:0").unwrap();
         socket.connect(address.strip_prefix("udp:").unwrap()).unwrap();
