@@ -122,7 +122,7 @@ fn what_does_not_go_together_is_refused_with_its_place() {
     let error = refused("can:can0", "database = \"unit.dbc\"\n");
     assert!(error.contains("source.live.mapping: missing, expected a file"), "{error}");
     let error = refused("udp:127.0.0.1:0", "database = \"unit.dbc\"\n");
-    assert!(error.contains("s.toml:7:12: source.live.database: without effect"), "{error}");
+    assert!(error.contains("s.toml:8:12: source.live.database: without effect"), "{error}");
 
     // The files are read before anything is opened.
     let of = |mapping: &str| {

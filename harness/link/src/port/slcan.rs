@@ -77,9 +77,15 @@ impl Slcan {
         while begun.elapsed() < COMMAND_WAIT {
             let left = COMMAND_WAIT.saturating_sub(begun.elapsed());
             let count = self.line.receive(&mut answer, left)?;
-            for byte in &answer[..count] {
+            for (index, byte) in answer[..count].iter().enumerate() {
                 match byte {
-                    b'\r' => return Ok(true),
+                    b'\r' => {
+                        // What came with the answer are the first frames.
+                        let rest = &answer[index + 1..count];
+                        self.buffer[..rest.len()].copy_from_slice(rest);
+                        (self.from, self.to) = (0, rest.len());
+                        return Ok(true);
+                    }
                     0x07 => return Ok(false),
                     _ => {}
                 }
