@@ -35,6 +35,10 @@ pub struct Estimate {
     pub skew: Option<f64>,
     /// Time between the first and the last stamp, s.
     pub span_s: f64,
+    /// By how much readings came later than the line says: mean, and standard deviation, ns.
+    pub late_mean_ns: f64,
+    /// See `late_mean_ns`.
+    pub late_sigma_ns: f64,
     /// Readings that were taken.
     pub readings: u64,
     /// Readings whose stamp wasn't after the one before, and were not.
@@ -59,8 +63,12 @@ pub struct Alignment {
     /// Corners of the lower hull, from left to right.
     hull: [Point; CORNERS],
     corners: usize,
-    /// Sum of the times of all points, s.
+    /// Sums over all points: time, time squared, delay, delay squared, their product; s and ns.
     sum_s: f64,
+    sum_s2: f64,
+    sum_ns: f64,
+    sum_ns2: f64,
+    sum_s_ns: f64,
     readings: u64,
     behind: u64,
 }
@@ -81,6 +89,10 @@ impl Alignment {
             hull: [Point { at_s: 0.0, behind_ns: 0.0 }; CORNERS],
             corners: 0,
             sum_s: 0.0,
+            sum_s2: 0.0,
+            sum_ns: 0.0,
+            sum_ns2: 0.0,
+            sum_s_ns: 0.0,
             readings: 0,
             behind: 0,
         }
@@ -100,6 +112,10 @@ impl Alignment {
         let at_s = (stamp_ns - first_ns) as f64 * 1e-9;
         let point = Point { at_s, behind_ns: (behind - first_behind) as f64 };
         self.sum_s += at_s;
+        self.sum_s2 += at_s * at_s;
+        self.sum_ns += point.behind_ns;
+        self.sum_ns2 += point.behind_ns * point.behind_ns;
+        self.sum_s_ns += at_s * point.behind_ns;
         while self.corners >= 2
             && !turns_up(self.hull[self.corners - 2], self.hull[self.corners - 1], point)
         {
@@ -142,7 +158,15 @@ impl Alignment {
             }
             _ => (None, hull.first()?.behind_ns),
         };
+        // Of all points above the line a + b·t, from the sums alone.
+        let (n, a, b) = (self.readings as f64, behind_ns, skew.unwrap_or(0.0) * 1e9);
+        let [t, t2, d, d2, td] =
+            [self.sum_s, self.sum_s2, self.sum_ns, self.sum_ns2, self.sum_s_ns].map(|s| s / n);
+        let late_mean_ns = d - a - b * t;
+        let variance = (d2 - d * d) - 2.0 * b * (td - t * d) + b * b * (t2 - t * t);
         Some(Estimate {
+            late_mean_ns,
+            late_sigma_ns: libm::sqrt(variance.max(0.0)),
             origin_ns,
             offset_ns: origin_ns as f64 + first_behind as f64 + behind_ns,
             skew,
@@ -232,6 +256,18 @@ mod tests {
             let arrival = stamp as i64 + OFFSET_NS + drift + LEAST_NS + jitter(number);
             assert!(estimate.host_ns(stamp) <= arrival as f64 + 1.0);
         }
+    }
+
+    /// Of three readings one comes at once, one a millisecond and one two milliseconds later.
+    #[test]
+    fn it_says_how_late_readings_come() {
+        let late = |number: u64| [0, 1_000_000, 2_000_000][(number % 3) as usize];
+        let estimate = align(30e-6, 600, late).estimate().unwrap();
+        assert!((estimate.late_mean_ns - 1e6).abs() < 10.0, "{estimate:?}");
+        let sigma = libm::sqrt(2.0 / 3.0) * 1e6;
+        assert!((estimate.late_sigma_ns - sigma).abs() < 1e3, "{estimate:?}");
+        let estimate = align(30e-6, 600, |_| 0).estimate().unwrap();
+        assert!(estimate.late_mean_ns.abs() < 2.0 && estimate.late_sigma_ns < 1e3, "{estimate:?}");
     }
 
     #[test]

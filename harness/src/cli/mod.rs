@@ -20,6 +20,7 @@ mod run_system;
 mod score;
 mod serve;
 mod sweep;
+mod turntable;
 mod verify;
 mod watch;
 
@@ -64,6 +65,8 @@ enum Command {
     Faults(faults::Arguments),
     /// Make, check and step FMUs.
     Fmu(fmu::Arguments),
+    /// Look at a turntable, move it and stop it by hand, and play one.
+    Turntable(turntable::Arguments),
     /// Tell what this host can do for runs by the clock, and what to change.
     Doctor(doctor::Arguments),
     /// Print the JSON Schema of scenarios, for completion in editors.
@@ -135,7 +138,11 @@ impl From<crate::run::method::MethodError> for Failure {
         match &error {
             MethodError::Setup(
                 SetupError::Recorder(_)
-                | SetupError::Source(SourceError::Use(UseError::Gone { .. }))
+                | SetupError::Source(
+                    SourceError::Use(UseError::Gone { .. })
+                    | SourceError::Gone { .. }
+                    | SourceError::TableStopped { .. },
+                )
                 | SetupError::Endpoint(
                     OpenError::Use(UseError::Gone { .. })
                     | OpenError::Live(
@@ -146,6 +153,11 @@ impl From<crate::run::method::MethodError> for Failure {
                     ),
                 ),
             ) => Self::bench(error),
+            MethodError::Setup(SetupError::Source(SourceError::Table(table)))
+                if !matches!(table, octant_turntable::Error::Dialect { .. }) =>
+            {
+                Self::bench(error)
+            }
             // A file that can't be read to its end is bad input, not a bench that failed.
             MethodError::Setup(_)
             | MethodError::Run(RunError::Source(SourceError::Read { .. })) => Self::input(error),
@@ -184,6 +196,7 @@ pub fn main() -> ExitCode {
         Command::Watch(arguments) => watch::command(&arguments),
         Command::Faults(arguments) => faults::command(&arguments),
         Command::Doctor(arguments) => doctor::command(&arguments),
+        Command::Turntable(arguments) => turntable::command(&arguments),
         Command::Fmu(arguments) => fmu::command(&arguments),
         Command::Other(words) => Err(other(&words)),
         Command::Schema => {

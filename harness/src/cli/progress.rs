@@ -35,11 +35,16 @@ fn show(
         bar.set_style(style);
     }
     let started = Instant::now();
+    let mut stopped = false;
     while !done.load(Ordering::Relaxed) {
         std::thread::sleep(Duration::from_millis(20));
         if interrupts::seen() {
             for control in controls {
                 control.cancel.store(true, Ordering::Relaxed);
+            }
+            // A table isn't kept turning until the run has noticed.
+            if !std::mem::replace(&mut stopped, true) {
+                octant_turntable::stop_all("somebody ended the run");
             }
         }
         let passed: u64 = controls.iter().map(|c| c.epochs.load(Ordering::Relaxed)).sum();
@@ -75,6 +80,7 @@ pub(super) mod interrupts {
             // Where no handler can be set, Ctrl-C ends the program at once; the recording survives.
             let _ = ctrlc::set_handler(|| {
                 if SEEN.swap(true, Ordering::Relaxed) {
+                    octant_turntable::stop_all("somebody ended the program");
                     std::process::exit(i32::from(
                         crate::score::verdict::Verdict::Error.exit_code(),
                     ));

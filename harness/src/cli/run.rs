@@ -13,6 +13,7 @@ use crate::run::{Control, Ended, MethodRun, Recording, Run, assemble};
 use crate::scenario::{Endpoint, Method, Scenario, Source};
 use crate::score::junit::junit;
 use crate::score::verdict::Verdict;
+use crate::source::LiveSource;
 use clap::Args;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -146,7 +147,7 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         ("calibration", primary.table.clone()),
         ("baseline", baseline.as_ref().and_then(|b| b.table.clone())),
     ];
-    let link = primary.link.clone();
+    let (link, bench) = (primary.link.clone(), primary.bench.clone());
     let realtime = primary.kept.as_ref().map(|kept| kept.granted.clone());
     let refused = primary.calibration.as_ref().is_some_and(|c| c.refused.is_some());
     let estimate = primary.watcher.last_parameters.map(|e| e.parameters).filter(|_| !refused);
@@ -165,6 +166,7 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         command_line: rerun(arguments, seed),
         fmus,
         link,
+        bench,
         realtime,
         key,
     };
@@ -194,7 +196,9 @@ fn set_up(scenario: &Scenario, method: Method, seed: u64) -> Result<(), Failure>
     let (plant, core, _) = configurations(scenario, method, seed).map_err(failure)?;
     octant_calibration::Core::new(&core).map_err(|error| failure(error.into()))?;
     // An instrument's port is opened once too: what it sends meanwhile would be lost.
-    if !matches!(scenario.source, Source::Live(_)) {
+    if let Source::Live(instrument) = &scenario.source {
+        LiveSource::check(scenario, instrument).map_err(|error| failure(error.into()))?;
+    } else {
         crate::source::open(scenario, &plant).map_err(|error| failure(error.into()))?;
     }
     // A device is greeted once, when the run begins: some restart when their port is opened.

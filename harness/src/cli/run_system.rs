@@ -167,6 +167,7 @@ pub(super) fn command(
         command_line: rerun(shared, arguments, seed),
         fmus: summary.fmus.iter().map(|fmu| facts(fmu, arguments)).collect(),
         link: None,
+        bench: None,
         realtime: None,
         key,
     };

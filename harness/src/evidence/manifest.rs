@@ -47,6 +47,9 @@ pub struct Manifest {
     /// The device of a run over a wire, and what went over it; left out of others.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub link: Option<serde_json::Value>,
+    /// Clocks and counts of a real instrument and the table under it; left out of others.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub bench: Option<serde_json::Value>,
     /// What the host granted a run by the clock; left out of others.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub realtime: Option<Granted>,
@@ -139,6 +142,8 @@ pub struct RunFacts {
     pub fmus: Vec<FmuFacts>,
     /// The device of a run over a wire, and what went over it.
     pub link: Option<serde_json::Value>,
+    /// Clocks and counts of a real instrument and the table under it.
+    pub bench: Option<serde_json::Value>,
     /// What the host granted a run by the clock.
     pub realtime: Option<Granted>,
     /// The key that signs the manifest.
@@ -201,6 +206,7 @@ impl Manifest {
             command_line: facts.command_line.clone(),
             fmus: facts.fmus.clone(),
             link: facts.link.clone(),
+            bench: facts.bench.clone(),
             realtime: facts.realtime.clone(),
             files: Vec::new(),
             operator: operator(),
@@ -237,6 +243,12 @@ impl Manifest {
                 .into_iter()
                 .filter_map(|name| Some((name.to_owned(), link.get(name)?.as_str()?.to_owned())))
         });
+        // What of the bench is for people stands as text under its name.
+        let bench = self.bench.iter().flat_map(|bench| {
+            ["instrument", "instrument's clock", "turntable", "table's angles"]
+                .into_iter()
+                .filter_map(|name| Some((name.to_owned(), bench.get(name)?.as_str()?.to_owned())))
+        });
         let realtime = self.realtime.iter().flat_map(|granted| {
             [
                 ("real-time scheduling", granted.scheduling.text()),
@@ -259,6 +271,7 @@ impl Manifest {
         .into_iter()
         .chain(fmus)
         .chain(link)
+        .chain(bench)
         .chain(realtime)
         .collect()
     }
@@ -437,6 +450,7 @@ mod tests {
                 .to_vec(),
             fmus: Vec::new(),
             link: None,
+            bench: None,
             realtime: None,
             key: None,
         }

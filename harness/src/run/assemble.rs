@@ -13,6 +13,7 @@ use crate::score::summary::{
 use crate::score::verdict::{Finding, Verdict, judge};
 use octant_earth::units::{DEG, DEG_PER_SQRT_HOUR, MICRO_G};
 use octant_sample::parameters::NAMES;
+use octant_turntable::Axis;
 use std::collections::BTreeMap;
 
 /// A run of one or two methods, scored and judged.
@@ -215,9 +216,26 @@ pub fn facts(scenario: &Scenario) -> Vec<(String, String)> {
         }
         Source::Live(instrument) => facts.push((
             "source".to_owned(),
-            format!("instrument at {}, {}, no truth", instrument.uri, instrument.protocol.name()),
+            format!("instrument at {}, {}, no truth", instrument.uri, instrument.speaks.name()),
         )),
         Source::Fmu(fmu) => facts.push(("source".to_owned(), format!("FMU {}", fmu.file.0))),
+    }
+    if let Some(drive) = &scenario.drive {
+        let range = |axis: Axis| {
+            let limits = drive.settings.limits.of(axis);
+            let degrees = |angle_rad: f64| number::plain(angle_rad.to_degrees(), 6);
+            format!("{axis} {} to {}°", degrees(limits.least_rad), degrees(limits.most_rad))
+        };
+        facts.push((
+            "turntable".to_owned(),
+            format!(
+                "{}, {}, {}, {}",
+                drive.port,
+                drive.dialect.0,
+                range(Axis::Azimuth),
+                range(Axis::Roll)
+            ),
+        ));
     }
     match &scenario.endpoint {
         Endpoint::InProcess => {}

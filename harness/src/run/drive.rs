@@ -8,7 +8,7 @@ use octant_sample::{GimbalCommand, Mode, Output};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 /// Epochs between two looks at what others want: about a millisecond of wall time.
-pub(super) const CONTROL_EPOCHS: u64 = 8192;
+const CONTROL_EPOCHS: u64 = 8192;
 
 /// What others see of a run, and want of it.
 #[derive(Debug, Default)]
@@ -65,7 +65,7 @@ impl RunError {
     pub fn is_gone(&self) -> bool {
         matches!(
             self,
-            Self::Source(SourceError::Gone { .. })
+            Self::Source(SourceError::Gone { .. } | SourceError::TableStopped { .. })
                 | Self::Endpoint(_)
                 | Self::Recorder(RecorderError::Write { .. })
         )
@@ -90,6 +90,7 @@ where
     let mut command = GimbalCommand::default();
     let mut revision = 0;
     let mut epochs = 0u64;
+    let look = look_every(source);
     let (mut epoch, mut output) = (Epoch::default(), Output::default());
     loop {
         if !source.next(&command, &mut epoch)? {
@@ -103,10 +104,15 @@ where
         if let Some(ended) = over(&output) {
             return Ok(ended);
         }
-        if epochs.is_multiple_of(CONTROL_EPOCHS) && control.look(epochs) {
+        if epochs.is_multiple_of(look) && control.look(epochs) {
             return Ok(Ended::Cancelled);
         }
     }
+}
+
+/// Epochs between two looks at what others want.
+pub(super) fn look_every<S: Source + ?Sized>(source: &S) -> u64 {
+    if source.is_live() { 1 } else { CONTROL_EPOCHS }
 }
 
 /// Parameters and truth that go with an output.

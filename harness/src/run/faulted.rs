@@ -3,7 +3,7 @@
 //! One step of the source can bring the core no epoch, one or several. What the source delivered is
 //! recorded beside what reached the core, where they differ.
 
-use super::drive::{CONTROL_EPOCHS, Control, Ended, RunError, answered, over};
+use super::drive::{Control, Ended, RunError, answered, look_every, over};
 use super::host::Host;
 use super::watch::Watcher;
 use crate::endpoint::Endpoint;
@@ -111,6 +111,7 @@ where
     let mut fires = faulted.fires.iter().peekable();
     let mut epochs = 0u64;
     let mut epoch = Epoch::default();
+    let look = look_every(source);
     let total = source.samples_total().unwrap_or(u64::MAX);
     loop {
         // Nothing sets in at a sample that won't come.
@@ -144,7 +145,7 @@ where
         if let Some(ended) = ended {
             return Ok(ended);
         }
-        if epochs.is_multiple_of(CONTROL_EPOCHS) && control.look(epochs) {
+        if epochs.is_multiple_of(look) && control.look(epochs) {
             return Ok(Ended::Cancelled);
         }
     }

@@ -26,6 +26,7 @@ use octant_plant::Plant;
 use octant_sample::{Mode, Output, Parameters};
 use std::path::Path;
 use std::sync::Arc;
+use std::sync::atomic::Ordering;
 
 /// What is kept of a method's stream.
 #[derive(Clone, Copy, Debug)]
@@ -136,6 +137,8 @@ pub struct MethodRun {
     pub kept: Option<Kept>,
     /// What went over the wire to a device, and who it is; as in the recording.
     pub link: Option<serde_json::Value>,
+    /// Clocks and counts of a real instrument and its table; as in the recording.
+    pub bench: Option<serde_json::Value>,
 }
 
 /// Name of a method, for people.
@@ -305,6 +308,7 @@ struct Closed {
     estimate: ParameterEstimate,
     kept: Option<Kept>,
     link: Option<serde_json::Value>,
+    bench: Option<serde_json::Value>,
 }
 
 /// Drives until the end, whatever it is, and asks the core for its last words.
@@ -330,12 +334,26 @@ fn to_the_end<S: Source, E: Endpoint>(
             driven
         }
     };
+    // First of all what moves is stopped.
+    let broken = driven.as_ref().err().map(ToString::to_string);
+    let (bench, stopped) = source.conclude(broken.as_deref());
+    let driven = match stopped {
+        None => driven,
+        Some(error) => driven.and(Err(error.into())),
+    };
+    if let Some(detail) = &bench {
+        recorder.event(Event { kind: "bench".to_owned(), detail: detail.clone() });
+    }
     let driven = driven.and_then(|ended| match ended {
         Ended::SourceEnded => Ok((ended, endpoint.end_of_stream()?)),
         _ => Ok((ended, None)),
     });
     let (ended, last, broken) = match driven {
         Ok((ended, last)) => (ended, last, None),
+        // Somebody wanted its end, and stopped what moves without waiting for the run.
+        Err(error) if error.is_gone() && control.cancel.load(Ordering::Relaxed) => {
+            (Ended::Cancelled, None, None)
+        }
         Err(error) if error.is_gone() => {
             recorder.event(Event {
                 kind: "error".to_owned(),
@@ -349,7 +367,8 @@ fn to_the_end<S: Source, E: Endpoint>(
     let link = conclusion.events.iter().find(|event| event.kind == "link");
     let link = link.map(|event| event.detail.clone());
     conclusion.events.drain(..).for_each(|event| recorder.event(event));
-    Ok(Closed { ended, broken, last, conclusion, estimate: endpoint.parameters(), kept, link })
+    let estimate = endpoint.parameters();
+    Ok(Closed { ended, broken, last, conclusion, estimate, kept, link, bench })
 }
 
 /// The station of a scenario, with a host to which nothing can happen; `None` without faults.
@@ -436,7 +455,7 @@ fn finish(
     mut watcher: Watcher,
     truth: Option<Parameters>,
 ) -> Result<MethodRun, MethodError> {
-    let Closed { ended, broken, last, conclusion, estimate, kept, link } = closed;
+    let Closed { ended, broken, last, conclusion, estimate, kept, link, bench } = closed;
     if let Some(output) = last {
         watcher.last_parameters = Some(estimate);
         // No sample goes with this output: the recording keeps the parameters as an event.
@@ -505,6 +524,7 @@ fn finish(
         broken,
         kept,
         link,
+        bench,
     })
 }
 

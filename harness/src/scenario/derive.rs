@@ -36,11 +36,17 @@ pub(crate) fn derive(document: &mut Table) {
         }
     }
     if text(document, "source.uri").is_some_and(octant_link::Uri::is_one) {
+        let bus = text(document, "source.uri")
+            .is_some_and(|uri| uri.starts_with("can:") || uri.starts_with("slcan:"));
+        set(document, "source.live.protocol", if bus { "dbc" } else { "octant" });
         for key in SOURCE_LIVE.keys {
             if let Default::Value(value) = key.default {
                 set(document, &format!("source.live.{}", key.name), value);
             }
         }
+    }
+    if document.at("turntable.drive").is_some() {
+        set(document, "turntable.drive.guard", if cfg!(unix) { "1 s" } else { "0 s" });
     }
     for table in ["source.text", "source.mcap"] {
         if document.at(table).is_some() {
@@ -176,6 +182,19 @@ pub(crate) fn without_effect(document: &Table) -> Vec<(String, &'static str)> {
     }
     if !octant_link::Uri::is_one(uri) {
         add("source", &["live"], "without effect: source.uri names no instrument on a port");
+        add(
+            "turntable",
+            &["drive"],
+            "a real table turns a real instrument, and source.uri names none on a port: the gimbals \
+             of another source aren't those of the table",
+        );
+    }
+    if !is("source.live.protocol", "dbc") {
+        add(
+            "source.live",
+            &["database", "mapping"],
+            "without effect: source.live.protocol is not \"dbc\"",
+        );
     }
     if !text(document, "endpoint.uri").is_some_and(|uri| uri.starts_with("fmu:")) {
         add("endpoint", &["fmu"], "without effect: endpoint.uri is not fmu:FILE");

@@ -28,10 +28,11 @@ pub(crate) use ports::setting_argument;
 pub use ports::{Code, Made, Port, Set, Setting, Written};
 pub(crate) use quantity::parse as quantity_of;
 pub use quantity::{Dimension, Quantity};
+pub use read::drive::Drive;
 pub use read::faults::Fault;
 pub use read::faults::connection::{ConnectionFault, Given, connection_faults, text_of};
 pub use read::fmu::{Endpoint, Fmu, InterfaceChoice, Mapped, Process};
-pub use read::instrument_port::Instrument;
+pub use read::instrument_port::{Instrument, Messages, Speaks};
 pub use read::live::Live;
 pub use read::source::{FileName, Source};
 pub use schema::schema;
@@ -62,6 +63,8 @@ pub struct Scenario {
     pub parameters: [Distribution; 7],
     /// The two gimbals.
     pub turntable: plant::Turntable,
+    /// The real table that has them, if there is one.
+    pub drive: Option<Drive>,
     /// How the core finds its attitude.
     pub alignment: Alignment,
     /// Parameters that the core starts from.

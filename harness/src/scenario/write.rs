@@ -75,12 +75,20 @@ impl Scenario {
             "endpoint.uri",
             "source.text.gyro.file",
             "source.text.accelerometer.file",
+            "turntable.drive.dialect",
+            "source.live.database",
+            "source.live.mapping",
         ] {
             let Some(Node { value: Value::Text(written), .. }) = document.at(path) else {
                 continue;
             };
             let resolved = match (path, written.split_once(':')) {
                 ("source.uri" | "endpoint.uri", None) => continue,
+                ("turntable.drive.dialect", _)
+                    if written == octant_turntable::Dialect::BUILT_IN =>
+                {
+                    continue;
+                }
                 // A port, and no file.
                 ("source.uri", Some(_)) if octant_link::Uri::is_one(written) => continue,
                 ("endpoint.uri", Some((scheme, _))) if scheme != "fmu" => continue,

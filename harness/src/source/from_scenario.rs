@@ -30,9 +30,7 @@ pub fn open(scenario: &Scenario, plant: &Config) -> Result<Option<Box<dyn Source
             Ok(Some(Box::new(TextSource::open(&mapping)?)))
         }
         scenario::Source::Live(instrument) => {
-            let source =
-                LiveSource::open(instrument, scenario.sample_period_ns, scenario.samples())?;
-            Ok(Some(Box::new(source)))
+            Ok(Some(Box::new(LiveSource::of(scenario, instrument)?)))
         }
         scenario::Source::Fmu(fmu) => Ok(Some(super::fmu::open(scenario, fmu, plant)?)),
     }

@@ -52,6 +52,22 @@ pub trait Source {
         None
     }
 
+    /// It delivers as time goes on, and moves what can hurt: whoever wants its end doesn't wait.
+    fn is_live(&self) -> bool {
+        false
+    }
+
+    /// The run is over; `broken` says why where it broke off. What moves is stopped, and there may be
+    /// something to tell of it all; and an error if it was stopped, or doesn't stop as it should: it has
+    /// been told to in every way then.
+    fn conclude(
+        &mut self,
+        broken: Option<&str>,
+    ) -> (Option<serde_json::Value>, Option<SourceError>) {
+        let _ = broken;
+        (None, None)
+    }
+
     /// The instrument has the errors that the scenario gives it or draws.
     fn has_true_parameters(&self) -> bool {
         false
@@ -75,6 +91,17 @@ impl<S: Source + ?Sized> Source for Box<S> {
         (**self).disturbed()
     }
 
+    fn is_live(&self) -> bool {
+        (**self).is_live()
+    }
+
+    fn conclude(
+        &mut self,
+        broken: Option<&str>,
+    ) -> (Option<serde_json::Value>, Option<SourceError>) {
+        (**self).conclude(broken)
+    }
+
     fn has_true_parameters(&self) -> bool {
         (**self).has_true_parameters()
     }
@@ -94,6 +121,17 @@ pub enum SourceError {
     /// A file name could not be expanded.
     #[error("{0}")]
     FileName(String),
+    /// A table can't be had as the scenario wants it.
+    #[error("turn the table: {0}")]
+    Table(octant_turntable::Error),
+    /// A table was stopped, or doesn't do what it is told: the run is over.
+    #[error("turntable {port}: {reason}")]
+    TableStopped {
+        /// Its port.
+        port: String,
+        /// Who or what stopped it.
+        reason: String,
+    },
     /// An FMU could not be used as a source.
     #[error(transparent)]
     Use(#[from] crate::fmu::mapping::stepper::UseError),

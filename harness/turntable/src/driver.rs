@@ -37,6 +37,8 @@ pub struct Driver<P: Port> {
     pending: Vec<u8>,
     /// A reply that nobody waits for may still come.
     stale: bool,
+    /// It has taken the table over, and stops it in the end.
+    drives: bool,
 }
 
 impl<P: Port> Driver<P> {
@@ -46,21 +48,34 @@ impl<P: Port> Driver<P> {
     /// # Errors
     /// If the limits can't be kept, the language has no watchdog though one is asked for, or the table
     /// doesn't answer.
-    pub fn new(
+    pub fn new(port: P, name: &str, dialect: Dialect, settings: Settings) -> Result<Self, Error> {
+        settings.limits.check()?;
+        let lacking = settings.watchdog.is_some() && dialect.lines(Command::Feed).is_empty();
+        if lacking {
+            return Err(Error::Lacking { dialect: dialect.name, what: "watchdog" });
+        }
+        let mut driver = Self::on(port, name, dialect, settings)?;
+        driver.drives = true;
+        driver.command(Command::Begin, &Values::default())?;
+        for axis in Axis::ALL {
+            driver.command(Command::Enable, &Values { axis: Some(axis), ..Values::default() })?;
+        }
+        driver.feed()?;
+        driver.status()?;
+        Ok(driver)
+    }
+
+    /// On a port, before anything is sent: as long as it doesn't drive the table it only asks.
+    pub(crate) fn on(
         mut port: P,
         name: &str,
         dialect: Dialect,
         settings: Settings,
     ) -> Result<Self, Error> {
-        settings.limits.check()?;
         let gone = |reason| Error::Gone { port: name.to_owned(), reason };
         port.set_wait(WAIT).map_err(gone)?;
         let stop = EmergencyStop::new(port.writer().map_err(gone)?, dialect.emergency());
-        let lacking = settings.watchdog.is_some() && dialect.lines(Command::Feed).is_empty();
-        if lacking {
-            return Err(Error::Lacking { dialect: dialect.name, what: "watchdog" });
-        }
-        let mut driver = Self {
+        Ok(Self {
             port,
             name: name.into(),
             dialect,
@@ -69,14 +84,8 @@ impl<P: Port> Driver<P> {
             guard: None,
             pending: Vec::new(),
             stale: true,
-        };
-        driver.command(Command::Begin, &Values::default())?;
-        for axis in Axis::ALL {
-            driver.command(Command::Enable, &Values { axis: Some(axis), ..Values::default() })?;
-        }
-        driver.feed()?;
-        driver.status()?;
-        Ok(driver)
+            drives: false,
+        })
     }
 
     /// Starts a guard: a process that stops the table when this one dies or is silent for a time.
@@ -264,9 +273,14 @@ impl<P: Port> Driver<P> {
     }
 
     /// Asks a question until it has an answer that makes sense.
-    fn ask(&mut self, sent: &str, expected: &Pattern) -> Result<Values, Error> {
+    fn ask(
+        &mut self,
+        sent: &str,
+        expected: &Pattern,
+    ) -> Result<(Values, Instant, Duration), Error> {
         let mut asked = 1;
         loop {
+            let before = Instant::now();
             let result = self.exchange(sent, expected).and_then(|fields| {
                 self.dialect.read(&fields).ok_or_else(|| {
                     let reply = expected.write(&fields).unwrap_or_default();
@@ -278,7 +292,10 @@ impl<P: Port> Driver<P> {
                     self.stale = true;
                     asked += 1;
                 }
-                result => return result,
+                result => {
+                    let half = before.elapsed() / 2;
+                    return result.map(|values| (values, before + half, half));
+                }
             }
         }
     }
@@ -350,7 +367,10 @@ impl<P: Port> Turntable for Driver<P> {
             let mut found = AxisStatus::default();
             for question in self.dialect.status.clone() {
                 let sent = self.filled(&question.send, &fields)?;
-                let values = self.ask(&sent, &question.reply)?;
+                let (values, at, within) = self.ask(&sent, &question.reply)?;
+                if values.angle_rad.is_some() {
+                    (found.at, found.at_within) = (Some(at), within);
+                }
                 let bit = |bit: Option<u32>| Some(values.bits?.checked_shr(bit?)? & 1 == 1);
                 let bits = self.dialect.bits;
                 found.angle_rad = values.angle_rad.unwrap_or(found.angle_rad);
@@ -377,6 +397,8 @@ impl<P: Port> Turntable for Driver<P> {
 impl<P: Port> Drop for Driver<P> {
     fn drop(&mut self) {
         // After `finish` it rests, and a table at rest isn't hurt by being stopped.
-        self.stop.trip("its driver is gone");
+        if self.drives {
+            self.stop.trip("its driver is gone");
+        }
     }
 }

@@ -14,6 +14,14 @@ pub enum Error {
         /// Why.
         reason: String,
     },
+    /// A simulated table can't listen.
+    #[error("listen at {port}: {reason}, expected is tcp:HOST:PORT or pty:LINK")]
+    Listen {
+        /// Where.
+        port: String,
+        /// Why.
+        reason: String,
+    },
     /// The port is gone.
     #[error("{port} went away: {reason}")]
     Gone {
@@ -31,6 +39,32 @@ pub enum Error {
         sent: String,
         /// How long it was waited for.
         within: Duration,
+    },
+    /// It doesn't come to rest.
+    #[error("{port}: the table still moves after {within:?}")]
+    Moving {
+        /// The port.
+        port: String,
+        /// How long it was waited for.
+        within: Duration,
+    },
+    /// An axis didn't arrive.
+    #[error("{axis} rests at {found:.4}°, expected is {expected:.4}° within {tolerance:.4}°")]
+    Elsewhere {
+        /// The axis.
+        axis: Axis,
+        /// Where it is.
+        found: f64,
+        /// Where it was sent.
+        expected: f64,
+        /// How far it may be from there.
+        tolerance: f64,
+    },
+    /// An axis has no reference.
+    #[error("{axis} was told to find its reference, rests, and has none")]
+    NotHomed {
+        /// The axis.
+        axis: Axis,
     },
     /// A reply that its command has not.
     #[error("{port}: `{reply}` is no reply to `{sent}`, expected is `{expected}`")]
@@ -114,6 +148,14 @@ pub enum Error {
         place: String,
         /// What is wrong, and what was expected.
         what: String,
+    },
+    /// The stop for other programs can't be offered, or doesn't answer.
+    #[error("the stop of {port} for other programs: {reason}")]
+    Button {
+        /// Port of the table.
+        port: String,
+        /// Why.
+        reason: String,
     },
     /// The guard can't be started, or is gone.
     #[error("the guard of the table: {reason}")]

@@ -10,7 +10,7 @@
 
 use crate::Error;
 use std::io::{self, Read, Write};
-use std::process::{Child, ChildStdin, ExitCode};
+use std::process::{Child, ChildStdin};
 use std::sync::mpsc::{self, RecvTimeoutError};
 use std::time::Duration;
 
@@ -86,13 +86,11 @@ impl Drop for Guard {
 }
 
 /// What the guard does, from its standard input to its standard output. A program that is given to
-/// [`crate::Driver::guard`] calls this and nothing else. Fails if it had to stop the table.
+/// [`crate::Driver::guard`] calls this, writes nothing on its standard output, and ends. Whether the
+/// harness told it farewell: otherwise it had to stop the table.
 #[must_use]
-pub fn run_guard() -> ExitCode {
-    match guard(io::stdin(), &mut io::stdout()) {
-        Ok(true) => ExitCode::SUCCESS,
-        Ok(false) | Err(_) => ExitCode::FAILURE,
-    }
+pub fn run_guard() -> bool {
+    guard(io::stdin(), &mut io::stdout()).unwrap_or(false)
 }
 
 /// Whether there was a farewell.

@@ -13,15 +13,19 @@
 //!   panic, on a signal and when the driver is dropped, and then nothing moves until it is reset;
 //! - [`Guard`] is a process of its own with another handle: it writes them when the harness dies of whatever
 //!   it be, SIGKILL too, or hangs;
+//! - [`Button`] lets another program of the host press the stop, also where the port takes one peer at a time;
 //! - the watchdog of the controller, where it has one and is told to: it stops a table that hears nothing, when
 //!   the line is cut or the computer fails.
 //!
 //! None of this replaces the emergency stop button.
 
+mod button;
+mod by_hand;
 mod dialect;
 mod driver;
 mod error;
 mod follow;
+mod following;
 mod guard;
 mod limits;
 mod port;
@@ -29,14 +33,19 @@ pub mod simulate;
 mod stop;
 mod supervisor;
 mod table;
+mod track;
 
+pub use button::{Button, Pressed, press};
+pub use by_hand::{Move, look, move_by_hand};
 pub use dialect::Dialect;
 pub use driver::{Driver, Settings};
 pub use error::Error;
 pub use follow::Follower;
+pub use following::{Following, Plan, Told};
 pub use guard::{Guard, run_guard};
 pub use limits::{AxisLimits, Limits};
-pub use port::{Port, open};
-pub use stop::{EmergencyStop, on_panic, on_signals, stop_line};
+pub use port::{Port, check_port, open};
+pub use stop::{EmergencyStop, on_panic, on_signals, stop_all, stop_by_hand, stop_line};
 pub use supervisor::Supervisor;
 pub use table::{Axis, AxisStatus, Status, Turntable};
+pub use track::{Place, Track};

@@ -30,7 +30,10 @@ impl Limits {
     }
 
     /// They can be kept.
-    pub(crate) fn check(&self) -> Result<(), Error> {
+    ///
+    /// # Errors
+    /// If they are none.
+    pub fn check(&self) -> Result<(), Error> {
         for axis in Axis::ALL {
             let AxisLimits { least_rad, most_rad, rate_radps, acceleration_radps2 } =
                 *self.of(axis);
@@ -43,7 +46,10 @@ impl Limits {
     }
 
     /// An angle to which the axis may go.
-    pub(crate) fn angle(&self, axis: Axis, angle_rad: f64) -> Result<(), Error> {
+    ///
+    /// # Errors
+    /// If it is beyond them.
+    pub fn angle(&self, axis: Axis, angle_rad: f64) -> Result<(), Error> {
         let limits = self.of(axis);
         // A NaN is in no range.
         if (limits.least_rad..=limits.most_rad).contains(&angle_rad) && angle_rad.is_finite() {

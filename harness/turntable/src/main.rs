@@ -1,9 +1,9 @@
 //! `octant-turntable`: a simulated controller, the guard, and a stop by hand.
 
-use octant_plant::config::Turntable as Config;
-use octant_turntable::simulate::{Controller, Server};
-use octant_turntable::{Dialect, open, run_guard, stop_line};
+use octant_turntable::simulate::listen;
+use octant_turntable::{Dialect, Error, run_guard, stop_by_hand};
 use std::io::Write;
+use std::path::Path;
 use std::process::ExitCode;
 
 const USAGE: &str = "\
@@ -23,7 +23,8 @@ fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
     let result = match words[..] {
-        ["guard"] => return run_guard(),
+        ["guard"] if run_guard() => return ExitCode::SUCCESS,
+        ["guard"] => return ExitCode::FAILURE,
         ["simulate", ref options @ ..] => simulate(options),
         ["stop", port, ref options @ ..] => stop(port, options),
         _ => Err(Failure::Usage),
@@ -52,69 +53,32 @@ enum Failure {
     Bench(String),
 }
 
-fn bench(error: impl ToString) -> Failure {
-    Failure::Bench(error.to_string())
+fn bench(error: Error) -> Failure {
+    match error {
+        Error::Dialect { .. } => Failure::Input(error.to_string()),
+        _ => Failure::Bench(error.to_string()),
+    }
 }
 
 fn dialect(file: Option<&str>) -> Result<Dialect, Failure> {
-    let Some(file) = file else { return Dialect::aerotech_ensemble().map_err(bench) };
-    let text = std::fs::read_to_string(file)
-        .map_err(|error| Failure::Input(format!("read {file}: {error}")))?;
-    Dialect::parse(file, &text).map_err(|error| Failure::Input(error.to_string()))
+    Dialect::load(Path::new(file.unwrap_or(Dialect::BUILT_IN))).map_err(bench)
 }
 
 fn simulate(options: &[&str]) -> Result<(), Failure> {
-    let (mut tcp, mut pty, mut file) = (None, None, None);
+    let (mut place, mut file) = (None, None);
     for pair in options.chunks(2) {
         match *pair {
-            ["--tcp", address] => tcp = Some(address),
-            ["--pty", link] => pty = Some(link),
+            ["--tcp", address] if place.is_none() => place = Some(format!("tcp:{address}")),
+            ["--pty", link] if place.is_none() => place = Some(format!("pty:{link}")),
             ["--dialect", path] => file = Some(path),
             _ => return Err(Failure::Usage),
         }
     }
-    let degrees = f64::to_radians;
-    // The table of the default scenario, and end switches at two turns.
-    let config = Config {
-        rate_radps: degrees(10.0),
-        acceleration_radps2: degrees(10.0),
-        encoder_sigma_rad: 0.0,
-        non_orthogonality_rad: 0.0,
-        backlash_rad: 0.0,
-    };
-    let controller = Controller::new(dialect(file)?, &config, degrees(720.0));
-    let mut stderr = std::io::stderr();
-    let server = match (tcp, pty) {
-        (Some(_), Some(_)) => return Err(Failure::Usage),
-        (_, Some(link)) => on_pty(controller, link)?,
-        (address, None) => {
-            let server = Server::tcp(controller, address.unwrap_or("127.0.0.1:8000"), 1.0);
-            let server = server.map_err(bench)?;
-            if let Some(address) = server.address() {
-                let _ = writeln!(stderr, "a table listens on tcp:{address}");
-            }
-            server
-        }
-    };
+    let place = place.unwrap_or_else(|| "tcp:127.0.0.1:8000".to_owned());
+    let (server, name) = listen(&place, dialect(file)?).map_err(bench)?;
+    let _ = writeln!(std::io::stderr(), "a table listens on {name}");
     server.wait();
     Ok(())
-}
-
-#[cfg(unix)]
-fn on_pty(controller: Controller, link: &str) -> Result<Server, Failure> {
-    use serialport::SerialPort;
-    let (master, slave) = serialport::TTYPort::pair().map_err(bench)?;
-    let name = slave.name().ok_or_else(|| bench("the pseudo-terminal has no name"))?;
-    let _ = std::fs::remove_file(link);
-    std::os::unix::fs::symlink(&name, link)
-        .map_err(|error| Failure::Input(format!("link {link} to {name}: {error}")))?;
-    let _ = writeln!(std::io::stderr(), "a table listens on serial:{link}");
-    Server::line(controller, master, 1.0).map_err(bench)
-}
-
-#[cfg(not(unix))]
-fn on_pty(_: Controller, _: &str) -> Result<Server, Failure> {
-    Err(Failure::Input("there are no pseudo-terminals here: use --tcp".into()))
 }
 
 fn stop(port: &str, options: &[&str]) -> Result<(), Failure> {
@@ -123,6 +87,8 @@ fn stop(port: &str, options: &[&str]) -> Result<(), Failure> {
         ["--dialect", path] => Some(path),
         _ => return Err(Failure::Usage),
     };
-    let line = open(port).map_err(bench)?;
-    stop_line(line, port, &dialect(file)?).map_err(bench)
+    for who in stop_by_hand(port, &dialect(file)?).map_err(bench)? {
+        let _ = writeln!(std::io::stderr(), "told to stop: {who}");
+    }
+    Ok(())
 }

@@ -88,16 +88,22 @@ impl Port for Box<dyn Port> {
     }
 }
 
-/// Opens `tcp:HOST:PORT` or `serial:DEVICE?baud=RATE` (8N1, exclusive; without a rate 115200).
-///
-/// # Errors
-/// If it is no such address, or can't be opened.
-pub fn open(uri: &str) -> Result<Box<dyn Port>, Error> {
+/// What a port is called.
+enum Address<'a> {
+    Tcp(&'a str),
+    Serial(&'a str, u32),
+}
+
+fn address(uri: &str) -> Result<Address<'_>, Error> {
     let failed = |reason: String| Error::Open { port: uri.into(), reason };
     if let Some(address) = uri.strip_prefix("tcp:") {
-        let stream = TcpStream::connect(address).map_err(|error| failed(error.to_string()))?;
-        stream.set_nodelay(true).map_err(|error| failed(error.to_string()))?;
-        return Ok(Box::new(stream));
+        let port = address.rsplit_once(':').and_then(|(host, port)| {
+            port.parse::<u16>().ok().filter(|port| *port > 0 && !host.is_empty())
+        });
+        return match port {
+            Some(_) => Ok(Address::Tcp(address)),
+            None => Err(failed(format!("`{address}` is no HOST:PORT"))),
+        };
     }
     let Some(serial) = uri.strip_prefix("serial:") else {
         return Err(failed("this is no address of a table".into()));
@@ -108,6 +114,34 @@ pub fn open(uri: &str) -> Result<Box<dyn Port>, Error> {
             let rate = query.strip_prefix("baud=").and_then(|rate| rate.parse().ok());
             (device, rate.ok_or_else(|| failed(format!("`{query}` is no baud=RATE")))?)
         }
+    };
+    if device.is_empty() || baud == 0 {
+        return Err(failed("it names no device, or no rate".into()));
+    }
+    Ok(Address::Serial(device, baud))
+}
+
+/// Whether a text is the address of a table, without opening it.
+///
+/// # Errors
+/// If it is none.
+pub fn check_port(uri: &str) -> Result<(), Error> {
+    address(uri).map(|_| ())
+}
+
+/// Opens `tcp:HOST:PORT` or `serial:DEVICE?baud=RATE` (8N1, exclusive; without a rate 115200).
+///
+/// # Errors
+/// If it is no such address, or can't be opened.
+pub fn open(uri: &str) -> Result<Box<dyn Port>, Error> {
+    let failed = |reason: String| Error::Open { port: uri.into(), reason };
+    let (device, baud) = match address(uri)? {
+        Address::Tcp(address) => {
+            let stream = TcpStream::connect(address).map_err(|error| failed(error.to_string()))?;
+            stream.set_nodelay(true).map_err(|error| failed(error.to_string()))?;
+            return Ok(Box::new(stream));
+        }
+        Address::Serial(device, baud) => (device, baud),
     };
     let builder = serialport::new(device, baud).timeout(Duration::from_millis(20));
     let port = builder.open_native().map_err(|error| failed(error.to_string()))?;

@@ -112,8 +112,8 @@ impl Inner {
     }
 }
 
-/// Trips every stop of the program.
-fn trip_all(why: &str) {
+/// Trips every stop of the program: nothing that it drives moves any more.
+pub fn stop_all(why: &str) {
     // Not waited for: the thread that panics may hold it.
     let mut stops = Vec::new();
     for _ in 0..PATIENCE {
@@ -141,7 +141,7 @@ pub fn on_panic() {
     ONCE.call_once(|| {
         let before = std::panic::take_hook();
         std::panic::set_hook(Box::new(move |panic| {
-            trip_all("the harness panicked");
+            stop_all("the harness panicked");
             before(panic);
         }));
     });
@@ -158,7 +158,7 @@ pub fn on_signals() -> std::io::Result<()> {
     let mut signals = signal_hook::iterator::Signals::new([SIGHUP, SIGINT, SIGQUIT, SIGTERM])?;
     std::thread::Builder::new().name("table stop".into()).spawn(move || {
         for signal in signals.forever() {
-            trip_all("the harness was ended by a signal");
+            stop_all("the harness was ended by a signal");
             let _ = signal_hook::low_level::emulate_default_handler(signal);
         }
     })?;
@@ -172,6 +172,36 @@ pub fn on_signals() -> std::io::Result<()> {
 #[cfg(not(unix))]
 pub fn on_signals() -> std::io::Result<()> {
     Ok(())
+}
+
+/// Stops a table by hand, whoever drives it: through a program of this host that does, and on the port
+/// itself as far as that can be opened. Who stopped it.
+///
+/// # Errors
+/// If nobody could: why not.
+pub fn stop_by_hand(name: &str, dialect: &Dialect) -> Result<Vec<String>, Error> {
+    let mut stopped = Vec::new();
+    let mut failure = None;
+    match crate::press(Some(name)) {
+        Ok(pressed) => {
+            stopped.extend(
+                pressed
+                    .iter()
+                    .filter(|pressed| pressed.written)
+                    .map(|pressed| format!("the program that drives {}", pressed.port)),
+            );
+        }
+        Err(error) => failure = Some(error),
+    }
+    // Both ways, if there are two: a table is stopped as often as one likes.
+    match crate::open(name).and_then(|port| stop_line(port, name, dialect)) {
+        Ok(()) => stopped.push(format!("its own port, without waiting for an answer")),
+        Err(error) => failure = failure.or(Some(error)),
+    }
+    match failure {
+        Some(error) if stopped.is_empty() => Err(error),
+        _ => Ok(stopped),
+    }
 }
 
 /// Stops a table on a port that nobody drives: by hand. Its replies are not waited for.

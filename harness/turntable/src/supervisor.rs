@@ -40,6 +40,20 @@ impl<P: Port + 'static> Supervisor<P> {
     /// # Errors
     /// If the thread can't be started.
     pub fn new(driver: Driver<P>, period: Duration) -> Result<Self, Error> {
+        Self::with_duty(driver, period, |_, _| Ok(()))
+    }
+
+    /// As [`Supervisor::new`], with something that the same thread does after each look that found the
+    /// table well: to hand on where it is, to move it. An error of it stops the table as anything else
+    /// does that isn't well.
+    ///
+    /// # Errors
+    /// If the thread can't be started.
+    pub fn with_duty(
+        driver: Driver<P>,
+        period: Duration,
+        duty: impl FnMut(&Status, &mut Driver<P>) -> Result<(), Error> + Send + 'static,
+    ) -> Result<Self, Error> {
         let (limits, stop) = (*driver.limits(), driver.emergency());
         let shared = Arc::new(Shared {
             driver: Mutex::new(driver),
@@ -50,7 +64,7 @@ impl<P: Port + 'static> Supervisor<P> {
         let (watched, trips) = (Arc::clone(&shared), stop.clone());
         let thread = std::thread::Builder::new()
             .name("table".into())
-            .spawn(move || watch(&watched, &trips, period))
+            .spawn(move || watch(&watched, &trips, period, duty))
             .map_err(|error| Error::Guard { reason: error.to_string() })?;
         Ok(Self { shared, thread: Some(thread), limits, stop })
     }
@@ -99,13 +113,19 @@ impl<P: Port + 'static> Drop for Supervisor<P> {
     }
 }
 
-fn watch<P: Port>(shared: &Shared<P>, stop: &EmergencyStop, period: Duration) {
+fn watch<P: Port>(
+    shared: &Shared<P>,
+    stop: &EmergencyStop,
+    period: Duration,
+    mut duty: impl FnMut(&Status, &mut Driver<P>) -> Result<(), Error>,
+) {
     let mut before = None;
     while !shared.ends.load(Ordering::SeqCst) {
         let asked = Instant::now();
         let looked = {
             let mut driver = locked(&shared.driver);
-            driver.feed().and_then(|()| look(&mut *driver, before, period))
+            let looked = driver.feed().and_then(|()| look(&mut *driver, before, period));
+            looked.and_then(|status| duty(&status, &mut driver).map(|()| status))
         };
         match looked {
             Ok(status) => {
@@ -113,7 +133,11 @@ fn watch<P: Port>(shared: &Shared<P>, stop: &EmergencyStop, period: Duration) {
                 *locked(&shared.last) = Some(status);
             }
             Err(error) => {
-                let why = error.to_string();
+                // Who tripped the stop said why: that it can't be moved then is no news.
+                let why = match error {
+                    Error::Stopped { why } => why,
+                    error => error.to_string(),
+                };
                 stop.trip(&why);
                 *locked(&shared.fault) = Some(why);
                 return;

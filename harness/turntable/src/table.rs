@@ -1,6 +1,7 @@
 //! What the harness asks of a table.
 
 use crate::{EmergencyStop, Error, Limits};
+use std::time::{Duration, Instant};
 
 /// One of the two axes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -40,6 +41,10 @@ impl std::fmt::Display for Axis {
 pub struct AxisStatus {
     /// Where it is, rad.
     pub angle_rad: f64,
+    /// When it was there: in the middle between question and reply.
+    pub at: Option<Instant>,
+    /// How far from that it may have been: half of the time from question to reply.
+    pub at_within: Duration,
     /// How fast it turns, rad/s.
     pub rate_radps: Option<f64>,
     /// A move goes on.

@@ -1,5 +1,6 @@
 //! Ports as they are: lines of bytes, datagrams, CAN frames.
 
+mod listen;
 mod pty;
 mod serial;
 mod slcan;
@@ -8,6 +9,7 @@ mod udp;
 #[cfg(target_os = "linux")]
 mod socket_can;
 
+pub use listen::{Heard, Listener};
 pub use pty::Pty;
 pub use serial::SerialLine;
 pub use slcan::Slcan;

@@ -3,7 +3,7 @@
 //! `tIIILDD…` is a classic frame, `dIIILDD…` an FD frame and `bIIILDD…` one whose data is faster; each
 //! ends with a carriage return. Adapters answer `\r` (done), `\x07` (not done) and `z\r` (sent).
 
-use super::{BusEvent, Bytes, Frames, PortError, SerialLine, Trouble};
+use super::{BusEvent, Bytes, Frames, Heard, PortError, SerialLine, Trouble};
 use crate::Uri;
 use crate::uri::{self, SLCAN_BITRATES};
 use octant_wire::can::{Format, Frame};
@@ -20,8 +20,8 @@ pub struct Slcan {
     to: usize,
 }
 
-/// Bytes of the longest line: `b`, identifier, length, 64 bytes of data.
-const LINE_MAX: usize = 1 + 3 + 1 + 128;
+/// Bytes of the longest line: `B`, identifier, length, 64 bytes of data.
+const LINE_MAX: usize = 1 + 8 + 1 + 128;
 
 /// How long an adapter has for its answer to a command.
 const COMMAND_WAIT: Duration = Duration::from_millis(100);
@@ -77,15 +77,46 @@ impl Slcan {
         while begun.elapsed() < COMMAND_WAIT {
             let left = COMMAND_WAIT.saturating_sub(begun.elapsed());
             let count = self.line.receive(&mut answer, left)?;
-            for byte in &answer[..count] {
+            for (index, byte) in answer[..count].iter().enumerate() {
                 match byte {
-                    b'\r' => return Ok(true),
+                    b'\r' => {
+                        // What came with the answer are the first frames.
+                        let rest = &answer[index + 1..count];
+                        self.buffer[..rest.len()].copy_from_slice(rest);
+                        (self.from, self.to) = (0, rest.len());
+                        return Ok(true);
+                    }
                     0x07 => return Ok(false),
                     _ => {}
                 }
             }
         }
         Ok(true)
+    }
+}
+
+impl Slcan {
+    /// The next frame of anybody within a time.
+    ///
+    /// # Errors
+    /// If the port is gone.
+    pub(super) fn hear(&mut self, wait: Duration) -> Result<Option<Heard>, PortError> {
+        let begun = Instant::now();
+        loop {
+            while self.from < self.to {
+                let byte = self.buffer[self.from];
+                self.from += 1;
+                if let Some(heard) = self.text.heard(byte) {
+                    return Ok(Some(heard));
+                }
+            }
+            let left = wait.saturating_sub(begun.elapsed());
+            let count = self.line.receive(&mut self.buffer, left)?;
+            if count == 0 {
+                return Ok(None);
+            }
+            (self.from, self.to) = (0, count);
+        }
     }
 }
 
@@ -184,22 +215,45 @@ impl Default for Lines {
     }
 }
 
+/// What a byte ends.
+enum Taken {
+    /// A line of so many bytes.
+    Line(usize),
+    /// A line that is longer than any.
+    Long,
+    /// A command.
+    NotDone,
+}
+
 impl Lines {
     fn push(&mut self, byte: u8) -> Option<BusEvent> {
+        match self.take(byte)? {
+            Taken::Line(length) => read_line(&self.line[..length]),
+            Taken::Long => Some(BusEvent::Trouble(Trouble::Foreign)),
+            Taken::NotDone => Some(BusEvent::Trouble(Trouble::Overrun)),
+        }
+    }
+
+    /// As [`Self::push`], for who only listens: of any frame.
+    fn heard(&mut self, byte: u8) -> Option<Heard> {
+        match self.take(byte)? {
+            Taken::Line(length) => any_frame(&self.line[..length]),
+            Taken::Long | Taken::NotDone => None,
+        }
+    }
+
+    fn take(&mut self, byte: u8) -> Option<Taken> {
         match byte {
             b'\r' => {
                 let long = std::mem::take(&mut self.long);
                 let length = std::mem::take(&mut self.length);
-                if long {
-                    return Some(BusEvent::Trouble(Trouble::Foreign));
-                }
-                read_line(&self.line[..length])
+                Some(if long { Taken::Long } else { Taken::Line(length) })
             }
             // Not done: the channel is closed, or the adapter's queue is full.
             0x07 => {
                 self.length = 0;
                 self.long = false;
-                Some(BusEvent::Trouble(Trouble::Overrun))
+                Some(Taken::NotDone)
             }
             byte => {
                 match self.line.get_mut(self.length) {
@@ -242,10 +296,29 @@ fn read_line(line: &[u8]) -> Option<BusEvent> {
 }
 
 fn frame(format: Format, rest: &[u8]) -> Option<Frame> {
-    let (head, data) = rest.split_first_chunk::<4>()?;
-    let [a, b, c, length] = head.map(|byte| digit(byte).map(u16::from));
-    let id = a? << 8 | b? << 4 | c?;
-    let length = LENGTHS[usize::from(length?)];
+    let heard = identified(3, rest)?;
+    Frame::new(u16::try_from(heard.id).ok()?, format, heard.data())
+}
+
+/// A frame of any identifier; `None`: a line that is none with data.
+fn any_frame(line: &[u8]) -> Option<Heard> {
+    let (first, rest) = line.split_first()?;
+    let classic = matches!(first, b't' | b'T');
+    let heard = match first {
+        b't' | b'd' | b'b' => identified(3, rest)?,
+        b'T' | b'D' | b'B' => Heard { extended: true, ..identified(8, rest)? },
+        _ => return None,
+    };
+    let most = if heard.extended { 1 << 29 } else { 1 << 11 };
+    (heard.id < most && !(classic && heard.data().len() > 8)).then_some(heard)
+}
+
+/// Identifier of so many digits, length and data.
+fn identified(digits: usize, rest: &[u8]) -> Option<Heard> {
+    let (id, rest) = rest.split_at_checked(digits)?;
+    let id = id.iter().try_fold(0, |id, byte| Some(id << 4 | u32::from(digit(*byte)?)))?;
+    let (length, data) = rest.split_first()?;
+    let length = LENGTHS[usize::from(digit(*length)?)];
     if data.len() != 2 * length {
         return None;
     }
@@ -253,7 +326,7 @@ fn frame(format: Format, rest: &[u8]) -> Option<Frame> {
     for (byte, pair) in bytes.iter_mut().zip(data.chunks_exact(2)) {
         *byte = digit(pair[0])? << 4 | digit(pair[1])?;
     }
-    Frame::new(id, format, &bytes[..length])
+    Some(Heard::new(id, false, &bytes[..length]))
 }
 
 fn digit(byte: u8) -> Option<u8> {
@@ -303,6 +376,21 @@ mod tests {
         assert!(read(b"\r\rz\rV1013\rN1234\rF00\r").is_empty());
         assert_eq!(read(b"\x07"), [BusEvent::Trouble(Trouble::Overrun)]);
         assert_eq!(read(b"F20\rF04\r").len(), 2);
+    }
+
+    #[test]
+    fn who_listens_hears_frames_of_any_identifier() {
+        let mut lines = Lines::default();
+        let text = b"t12331122AF\rT18FF00A12BEEF\rtFFF0\rT200000000\rr1230\r\x07D0000012390102030405060708090A0B0C\rt12390102030405060708090A0B0C\r";
+        let heard: Vec<Heard> = text.iter().filter_map(|byte| lines.heard(*byte)).collect();
+        assert_eq!(
+            heard,
+            [
+                Heard::new(0x123, false, &[0x11, 0x22, 0xAF]),
+                Heard::new(0x18FF_00A1, true, &[0xBE, 0xEF]),
+                Heard::new(0x123, true, &[1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12]),
+            ]
+        );
     }
 
     proptest! {

@@ -1,6 +1,6 @@
 //! CAN interfaces of the Linux kernel.
 
-use super::{BusEvent, Frames, PortError, Trouble};
+use super::{BusEvent, Frames, Heard, PortError, Trouble};
 use crate::Uri;
 use crate::uri::Can;
 use octant_wire::Role;
@@ -48,6 +48,20 @@ impl SocketCan {
     /// If it isn't there, is down, can't do CAN FD where that is asked for, or has another bit rate
     /// than the URI says.
     pub fn open(can: &Can, role: Role) -> Result<Self, PortError> {
+        Self::filtered(can, role, &filters(role, can.format))
+    }
+
+    /// Opens an interface to listen to messages of some identifiers, with 29 bits or 11.
+    pub(super) fn listen(can: &Can, identifiers: &[(u32, bool)]) -> Result<Self, PortError> {
+        let filter = |&(id, extended): &(u32, bool)| {
+            let (id, mask) = if extended { (id | EXTENDED, 0x1FFF_FFFF) } else { (id, 0x7FF) };
+            CanFilter::new(id, mask | EXTENDED | REMOTE)
+        };
+        let filters: Vec<CanFilter> = identifiers.iter().map(filter).collect();
+        Self::filtered(can, Role::Device, &filters)
+    }
+
+    fn filtered(can: &Can, role: Role, filters: &[CanFilter]) -> Result<Self, PortError> {
         let uri = Uri::Can(can.clone()).to_string();
         let refused = |reason: String| PortError::open(&uri, reason);
         let interface = CanInterface::open(&can.interface)
@@ -72,7 +86,7 @@ impl SocketCan {
             CanFdSocket::open(&can.interface).map_err(|error| refused(error.to_string()))?;
         let set_up = || {
             socket.set_nonblocking(true)?;
-            socket.set_filters(&filters(role, can.format))?;
+            socket.set_filters(filters)?;
             socket.set_error_filter_accept_all()
         };
         set_up().map_err(|error: std::io::Error| refused(error.to_string()))?;
@@ -85,6 +99,37 @@ impl SocketCan {
 
     fn socket(&self) -> Result<&CanFdSocket, PortError> {
         self.socket.as_ref().ok_or_else(|| PortError::gone(&self.uri, "it is closed"))
+    }
+
+    /// The next frame of the kernel within a time.
+    fn next(&self, wait: Duration) -> Result<Option<CanAnyFrame>, PortError> {
+        let mut waited = wait.is_zero();
+        loop {
+            match self.socket()?.read_frame() {
+                Ok(frame) => return Ok(Some(frame)),
+                Err(error) if error.kind() == ErrorKind::WouldBlock => {
+                    if std::mem::replace(&mut waited, true) {
+                        return Ok(None);
+                    }
+                    self.wait(wait)?;
+                }
+                Err(error) if error.kind() == ErrorKind::Interrupted => {}
+                Err(error) => return Err(self.gone(&error)),
+            }
+        }
+    }
+
+    /// The next frame of anybody within a time; `None`: none came, or something else.
+    pub(super) fn hear(&self, wait: Duration) -> Result<Option<Heard>, PortError> {
+        let heard = |id: Id, data: &[u8]| match id {
+            Id::Standard(id) => Heard::new(u32::from(id.as_raw()), false, data),
+            Id::Extended(id) => Heard::new(id.as_raw(), true, data),
+        };
+        Ok(self.next(wait)?.and_then(|frame| match &frame {
+            CanAnyFrame::Normal(frame) => Some(heard(frame.id(), frame.data())),
+            CanAnyFrame::Fd(frame) => Some(heard(frame.id(), frame.data())),
+            CanAnyFrame::Remote(_) | CanAnyFrame::Error(_) => None,
+        }))
     }
 
     /// Waits until a frame is there.
@@ -227,20 +272,7 @@ impl Frames for SocketCan {
     }
 
     fn receive(&mut self, wait: Duration) -> Result<Option<BusEvent>, PortError> {
-        let mut waited = wait.is_zero();
-        loop {
-            match self.socket()?.read_frame() {
-                Ok(frame) => return Ok(Some(event(&frame))),
-                Err(error) if error.kind() == ErrorKind::WouldBlock => {
-                    if std::mem::replace(&mut waited, true) {
-                        return Ok(None);
-                    }
-                    self.wait(wait)?;
-                }
-                Err(error) if error.kind() == ErrorKind::Interrupted => {}
-                Err(error) => return Err(self.gone(&error)),
-            }
-        }
+        Ok(self.next(wait)?.map(|frame| event(&frame)))
     }
 
     fn format(&self) -> Format {

@@ -333,4 +333,10 @@ pub(crate) static TURNTABLE: Section = section(&[
         Default::Value("0 arcsec"),
         "Play of each gear.",
     ),
+    key(
+        "drive",
+        Kind::Table(&super::drive::DRIVE),
+        Default::Absent("no table is turned: the gimbals are those of the source"),
+        "A real table that the core's set points turn, under a real instrument. It can hurt people: read docs/turntable.md first.",
+    ),
 ]);

@@ -5,6 +5,7 @@
 mod calibration;
 mod campaign;
 mod connection;
+mod drive;
 mod faults;
 mod fmu;
 mod instrument;

@@ -17,6 +17,11 @@ pub(crate) static SOURCE: Section = section(&[
             ),
             ("serial", "an instrument on a serial line: serial:/dev/ttyUSB0?baud=921600"),
             ("udp", "an instrument that sends to a UDP port of this host: udp:HOST:PORT"),
+            ("can", "an instrument on a CAN interface: can:can0"),
+            (
+                "slcan",
+                "one behind a CAN adapter on a serial line: slcan:/dev/ttyACM0?bitrate=500000",
+            ),
         ]),
         Default::Value("plant"),
         "Where samples come from. A file name is relative to the scenario, and may start with ${OCTANT_RECORDINGS}.",
@@ -42,7 +47,7 @@ pub(crate) static SOURCE: Section = section(&[
     key(
         "live",
         Kind::Table(&SOURCE_LIVE),
-        Default::Derived("serial and udp: the defaults of its keys"),
+        Default::Derived("serial, udp, can and slcan: the defaults of its keys"),
         "What the instrument of source.uri speaks, and how it is mounted.",
     ),
 ]);
@@ -56,9 +61,22 @@ pub(crate) static SOURCE_LIVE: Section = section(&[
             ("xsens", "Xsens' MTData2"),
             ("novatel", "NovAtel's RAWIMUSX, binary or ASCII"),
             ("sbg", "SBG's sbgECom, IMU_SHORT or IMU_DATA"),
+            ("dbc", "messages on a CAN bus, by a database and a mapping"),
         ]),
-        Default::Value("octant"),
+        Default::Derived("\"octant\"; on a CAN bus \"dbc\""),
         "What the instrument speaks.",
+    ),
+    key(
+        "database",
+        Kind::Text,
+        Default::Absent("needed by protocol = \"dbc\""),
+        "The maker's CAN database, a DBC file. Relative to the scenario.",
+    ),
+    key(
+        "mapping",
+        Kind::Text,
+        Default::Absent("needed by protocol = \"dbc\""),
+        "Which signals of the database are which channels, a TOML file. Relative to the scenario.",
     ),
     key(
         "axes",

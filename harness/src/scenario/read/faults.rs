@@ -138,6 +138,16 @@ fn fault(table: &Reader<'_>, scenario: &Scenario, timing: &Timing) -> Result<Fau
     if let Some(why) = impossible(kind, &scenario.source) {
         return Err(table.problem("kind", format!("{name} {why}")));
     }
+    if kind.acts == Acts::Command
+        && matches!(scenario.source, Source::Live(_))
+        && scenario.drive.is_none()
+    {
+        let message = format!(
+            "{name} acts on set points on their way to a turntable, and this program turns none: the \
+             source is a real instrument, and there is no turntable.drive"
+        );
+        return Err(table.problem("kind", message));
+    }
     if let Some(why) = without_wire(kind, &scenario.endpoint) {
         return Err(table.problem("kind", format!("{name} {why}")));
     }
@@ -167,10 +177,6 @@ fn impossible(kind: &Kind, source: &Source) -> Option<&'static str> {
         (Acts::Plant, Source::Live(_)) => {
             Some("acts inside the simulated instrument, and the source is a real one")
         }
-        (Acts::Command, Source::Live(_)) => Some(
-            "acts on the set points of the simulated turntable, and the source is a real instrument \
-             whose turntable isn't turned by this program",
-        ),
         (Acts::Plant, _) => Some(
             "acts inside the simulated instrument, and the source is a recording: what it holds has \
              happened",

@@ -1,9 +1,13 @@
 //! A real instrument on a port, as read from `source.uri` and `[source.live]`.
 
 use super::Reader;
+use super::source::FileName;
 use crate::scenario::error::Problem;
+use crate::source::SourceError;
+use octant_instruments::dbc::{Database, Gatherer, Mapping};
 use octant_instruments::{Axes, Protocol};
 use octant_link::Uri;
+use std::path::Path;
 
 /// An instrument on a port.
 #[derive(Clone, Debug, PartialEq)]
@@ -11,11 +15,66 @@ pub struct Instrument {
     /// The port.
     pub uri: Uri,
     /// What it speaks.
-    pub protocol: Protocol,
+    pub speaks: Speaks,
     /// How it is mounted.
     pub axes: Axes,
     /// How long a reading is waited for, s.
     pub silence_s: f64,
+}
+
+/// What an instrument speaks.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Speaks {
+    /// A protocol on a line of bytes.
+    Bytes(Protocol),
+    /// Messages on a CAN bus.
+    Can(Messages),
+}
+
+impl Speaks {
+    /// Its name in a scenario.
+    #[must_use]
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Bytes(protocol) => protocol.name(),
+            Self::Can(_) => "dbc",
+        }
+    }
+}
+
+/// Messages on a CAN bus, by the files that say what is in them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Messages {
+    /// The database.
+    pub database: FileName,
+    /// Which signals are which channels.
+    pub mapping: FileName,
+}
+
+impl Messages {
+    /// What puts readings together from them. The files are relative to a folder.
+    ///
+    /// # Errors
+    /// If a file can't be read, or they don't fit each other.
+    pub fn gatherer(&self, folder: &Path) -> Result<Gatherer, SourceError> {
+        let read = |name: &FileName| {
+            let path = name.path(folder).map_err(SourceError::FileName)?;
+            let file = path.display().to_string();
+            match std::fs::read_to_string(&path) {
+                Ok(text) => Ok((file, text)),
+                Err(error) => Err(SourceError::Read { path: file, reason: error.to_string() }),
+            }
+        };
+        let wrong = |problem: octant_instruments::dbc::Problem| SourceError::Read {
+            path: problem.place,
+            reason: problem.what,
+        };
+        let (file, text) = read(&self.database)?;
+        let database = Database::parse(&file, &text).map_err(wrong)?;
+        let (file, text) = read(&self.mapping)?;
+        let mapping = Mapping::parse(&file, &text).map_err(wrong)?;
+        Gatherer::new(&database, &mapping).map_err(wrong)
+    }
 }
 
 /// Reads it.
@@ -23,15 +82,30 @@ pub(super) fn instrument(source: &Reader<'_>, uri: &str) -> Result<Instrument, P
     let uri: Uri = uri
         .parse()
         .map_err(|error: octant_link::uri::UriError| source.problem("uri", error.to_string()))?;
-    if !matches!(uri, Uri::Serial(_) | Uri::Udp(_)) {
-        let message = format!("found {uri}, expected an instrument at serial: or udp:");
+    let bus = matches!(uri, Uri::Can(_) | Uri::Slcan(_));
+    if !bus && !matches!(uri, Uri::Serial(_) | Uri::Udp(_)) {
+        let message =
+            format!("found {uri}, expected an instrument at serial:, udp:, can: or slcan:");
         return Err(source.problem("uri", message));
     }
     let live = source.table("live")?;
     let name = live.text("protocol")?;
-    let protocol = Protocol::of_name(name)
-        .ok_or_else(|| live.problem("protocol", format!("found {name:?}, which no codec reads")))?;
+    if bus != (name == "dbc") {
+        let expected = if bus { "\"dbc\" on a CAN bus" } else { "the protocol of a line of bytes" };
+        return Err(live.problem("protocol", format!("found {name:?}, expected {expected}")));
+    }
+    let file = |key: &str| match live.optional_text(key) {
+        Some(file) if !file.is_empty() => Ok(FileName(file.to_owned())),
+        _ => Err(live.problem(key, "missing, expected a file: protocol is \"dbc\"")),
+    };
+    let speaks = if bus {
+        Speaks::Can(Messages { database: file("database")?, mapping: file("mapping")? })
+    } else {
+        Speaks::Bytes(Protocol::of_name(name).ok_or_else(|| {
+            live.problem("protocol", format!("found {name:?}, which no codec reads"))
+        })?)
+    };
     let axes = Axes::parse(live.text("axes")?)
         .map_err(|error| live.problem("axes", format!("it says no mounting: {error}")))?;
-    Ok(Instrument { uri, protocol, axes, silence_s: live.si("silence")? })
+    Ok(Instrument { uri, speaks, axes, silence_s: live.si("silence")? })
 }

@@ -1,6 +1,7 @@
 //! From a checked and completed document to a [`Scenario`]: units are gone, what depends on several
 //! keys is decided here, and contradictions are told.
 
+pub(crate) mod drive;
 pub(crate) mod faults;
 pub(crate) mod fmu;
 mod instrument;
@@ -186,7 +187,9 @@ pub(crate) fn scenario(document: Table, folder: &Path) -> Result<Scenario, Probl
         height_m: site.si("height")?,
     };
     let motion = instrument::motion(&root.table("motion")?)?;
-    let turntable = instrument::turntable(&root.table("turntable")?)?;
+    let turntable_table = root.table("turntable")?;
+    let turntable = instrument::turntable(&turntable_table)?;
+    let drive = drive::drive(&turntable_table, &turntable)?;
     let screening = procedure::screening(&root.table("screening")?)?;
     let setting = procedure::Setting {
         sample_period_ns,
@@ -208,6 +211,7 @@ pub(crate) fn scenario(document: Table, folder: &Path) -> Result<Scenario, Probl
         parameters: instrument::parameters(&imu)?,
         imu: instrument::imu(&imu)?,
         turntable,
+        drive,
         alignment: procedure.alignment,
         initial_parameters: procedure.initial_parameters,
         calibration: procedure.calibration,
@@ -227,6 +231,7 @@ pub(crate) fn scenario(document: Table, folder: &Path) -> Result<Scenario, Probl
         document: Table::default(),
     };
     check_once(&root, &scenario)?;
+    drive::check_reach(&root, &scenario)?;
     let faults = faults::read(&root, &scenario)?;
     Ok(Scenario { document, faults, ..scenario })
 }

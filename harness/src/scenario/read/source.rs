@@ -110,8 +110,8 @@ pub(super) fn read(table: &Reader<'_>, sample_period_ns: u64) -> Result<Source, 
         _ => Err(table.problem(
             "uri",
             format!(
-                "found {uri:?}, expected plant, replay:FILE, text:FILE, fmu:FILE, serial:PORT or \
-                 udp:HOST:PORT"
+                "found {uri:?}, expected plant, replay:FILE, text:FILE, fmu:FILE, serial:PORT, \
+                 udp:HOST:PORT, can:INTERFACE or slcan:PORT"
             ),
         )),
     }

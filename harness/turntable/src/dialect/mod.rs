@@ -121,6 +121,28 @@ impl Dialect {
         Self::parse("dialects/aerotech-ensemble.toml", text)
     }
 
+    /// Name of the language that comes with the program.
+    pub const BUILT_IN: &'static str = "aerotech-ensemble";
+
+    /// The language of a name, or of a file with its table of patterns.
+    ///
+    /// # Errors
+    /// If the file can't be read, or is no table of patterns.
+    pub fn load(name: &std::path::Path) -> Result<Self, Error> {
+        if name == std::path::Path::new(Self::BUILT_IN) {
+            return Self::aerotech_ensemble();
+        }
+        let file = name.display().to_string();
+        let text = std::fs::read_to_string(name).map_err(|error| Error::Dialect {
+            place: file.clone(),
+            what: format!(
+                "{error}, expected is {} or a file with a table of patterns",
+                Self::BUILT_IN
+            ),
+        })?;
+        Self::parse(&file, &text)
+    }
+
     /// Reads a table of patterns; `file` is its name, for messages.
     ///
     /// # Errors

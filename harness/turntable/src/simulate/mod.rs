@@ -6,7 +6,9 @@
 //! hangs up. [`Server`] puts it on a TCP port or a pseudo-terminal.
 
 mod controller;
+mod listen;
 mod server;
 
 pub use controller::{Behaviour, Controller};
+pub use listen::listen;
 pub use server::Server;

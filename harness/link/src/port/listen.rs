@@ -1,0 +1,86 @@
+//! A CAN bus that is only listened to: what others send, with identifiers of 11 or 29 bits.
+
+use super::{PortError, Slcan};
+use crate::Uri;
+use std::time::Duration;
+
+/// A frame that was heard.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub struct Heard {
+    /// Its identifier.
+    pub id: u32,
+    /// That has 29 bits.
+    pub extended: bool,
+    pub(super) length: u8,
+    pub(super) bytes: [u8; 64],
+}
+
+impl Heard {
+    pub(super) fn new(id: u32, extended: bool, data: &[u8]) -> Self {
+        let mut bytes = [0; 64];
+        let length = data.len().min(64);
+        bytes[..length].copy_from_slice(&data[..length]);
+        Self { id, extended, length: length as u8, bytes }
+    }
+
+    /// Its data.
+    #[must_use]
+    pub fn data(&self) -> &[u8] {
+        &self.bytes[..usize::from(self.length)]
+    }
+}
+
+impl std::fmt::Debug for Heard {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{:X}{}#{:02X?}", self.id, if self.extended { "x" } else { "" }, self.data())
+    }
+}
+
+/// Who listens to a bus.
+#[derive(Debug)]
+pub struct Listener {
+    bus: Bus,
+}
+
+#[derive(Debug)]
+enum Bus {
+    #[cfg(target_os = "linux")]
+    Kernel(super::SocketCan),
+    Slcan(Box<Slcan>),
+}
+
+impl Listener {
+    /// Listens to the messages of some identifiers, with 29 bits or 11. An adapter on a serial line passes
+    /// on others too.
+    ///
+    /// # Errors
+    /// If the port is no CAN bus, or can't be opened.
+    pub fn open(uri: &Uri, identifiers: &[(u32, bool)]) -> Result<Self, PortError> {
+        let bus = match uri {
+            Uri::Slcan(slcan) => Bus::Slcan(Box::new(Slcan::open(slcan)?)),
+            #[cfg(target_os = "linux")]
+            Uri::Can(can) => Bus::Kernel(super::SocketCan::listen(can, identifiers)?),
+            #[cfg(not(target_os = "linux"))]
+            Uri::Can(_) => {
+                let _ = identifiers;
+                let reason = "CAN interfaces are part of Linux alone; expected slcan: with an adapter \
+                              on a serial line";
+                return Err(PortError::open(uri, reason));
+            }
+            _ => return Err(PortError::open(uri, "it is no CAN bus")),
+        };
+        Ok(Self { bus })
+    }
+
+    /// The next frame within a time; `None`: none came, or something else did.
+    ///
+    /// # Errors
+    /// If the port is gone.
+    pub fn hear(&mut self, wait: Duration) -> Result<Option<Heard>, PortError> {
+        match &mut self.bus {
+            #[cfg(target_os = "linux")]
+            Bus::Kernel(bus) => bus.hear(wait),
+            Bus::Slcan(bus) => bus.hear(wait),
+        }
+    }
+}

@@ -1,0 +1,158 @@
+//! Readings from a port, and when they came.
+
+use crate::scenario::{Instrument, Speaks};
+use crate::source::SourceError;
+use octant_instruments::dbc::{CanFrame, Gatherer};
+use octant_instruments::{AnyDecoder, Event, Reading};
+use octant_link::port::{self, Bytes, Heard, Listener, Port};
+use octant_wire::Role;
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+/// What an instrument's port gives.
+#[derive(Debug)]
+pub(super) enum Feed {
+    /// Frames of a protocol among bytes.
+    Line(Box<Line>),
+    /// Messages on a CAN bus.
+    Bus(Box<Bus>),
+}
+
+#[derive(Debug)]
+pub(super) struct Line {
+    port: Box<dyn Bytes>,
+    decoder: AnyDecoder,
+    buffer: [u8; 4096],
+    /// What of the buffer was not decoded yet.
+    rest: std::ops::Range<usize>,
+    /// When it came.
+    came: Instant,
+}
+
+#[derive(Debug)]
+pub(super) struct Bus {
+    listener: Listener,
+    gatherer: Gatherer,
+    /// A frame that was not taken yet, and when it came.
+    frame: Option<(Heard, Instant)>,
+}
+
+impl Feed {
+    /// Opens the port of an instrument. Files are relative to a folder.
+    pub(super) fn open(instrument: &Instrument, folder: &Path) -> Result<Self, SourceError> {
+        let uri = &instrument.uri;
+        let gone = |reason: String| SourceError::Gone { uri: uri.to_string(), reason };
+        let protocol = match &instrument.speaks {
+            Speaks::Bytes(protocol) => *protocol,
+            Speaks::Can(messages) => {
+                let gatherer = messages.gatherer(folder)?;
+                let identifiers: Vec<(u32, bool)> = gatherer.identifiers().collect();
+                let listener = Listener::open(uri, &identifiers);
+                let listener = listener.map_err(|error| gone(error.to_string()))?;
+                return Ok(Self::Bus(Box::new(Bus { listener, gatherer, frame: None })));
+            }
+        };
+        // It waits for who sends, as a device does.
+        let port = match port::open(uri, Role::Device) {
+            Ok(Port::Bytes(port)) => port,
+            Ok(Port::Frames(_)) => return Err(gone("it carries no bytes".to_owned())),
+            Err(error) => return Err(gone(error.to_string())),
+        };
+        Ok(Self::Line(Box::new(Line {
+            port,
+            decoder: AnyDecoder::new(protocol),
+            buffer: [0; 4096],
+            rest: 0..0,
+            came: Instant::now(),
+        })))
+    }
+
+    /// The name by which the instrument reaches the port, where that isn't its own.
+    pub(super) fn reached_at(&self) -> Option<String> {
+        match self {
+            Self::Line(line) => Some(line.port.reached_at()),
+            Self::Bus(_) => None,
+        }
+    }
+
+    /// The next reading of what has come, and when it came.
+    pub(super) fn reading(&mut self) -> Option<(Reading, Instant)> {
+        match self {
+            Self::Line(line) => line.reading(),
+            Self::Bus(bus) => {
+                let (heard, came) = bus.frame.take()?;
+                let (id, extended) = (heard.id, heard.extended);
+                let frame = CanFrame { id, extended, data: heard.data() };
+                bus.gatherer.receive(&frame).map(|reading| (reading, came))
+            }
+        }
+    }
+
+    /// Waits for more to come; whether it did.
+    pub(super) fn receive(&mut self, wait: Duration) -> Result<bool, String> {
+        match self {
+            Self::Line(line) => {
+                let came = line.port.receive(&mut line.buffer, wait);
+                line.came = Instant::now();
+                line.rest = 0..came.map_err(|error| error.to_string())?;
+                Ok(!line.rest.is_empty())
+            }
+            Self::Bus(bus) => {
+                let heard = bus.listener.hear(wait).map_err(|error| error.to_string())?;
+                bus.frame = heard.map(|heard| (heard, Instant::now()));
+                Ok(bus.frame.is_some())
+            }
+        }
+    }
+
+    /// From now on nobody else is heard.
+    pub(super) fn hold_peer(&mut self) {
+        if let Self::Line(line) = self {
+            line.port.hold_peer(true);
+        }
+    }
+
+    /// What came so far, for who waits for readings.
+    pub(super) fn said(&self, protocol: &str) -> String {
+        match self {
+            Self::Line(line) => {
+                let counters = line.decoder.counters();
+                format!(
+                    "so far {} bytes came, {} readings, {} other frames of protocol {protocol}, and {} \
+                     with another checksum",
+                    counters.bytes, counters.readings, counters.other, counters.checksum,
+                )
+            }
+            Self::Bus(bus) => {
+                let counters = bus.gatherer.counters();
+                format!(
+                    "so far {} frames came, {} readings, {} of other messages, {} readings of which a \
+                     message is missing, and {} of which messages are of another sample",
+                    counters.frames,
+                    counters.readings,
+                    counters.other,
+                    counters.incomplete,
+                    counters.mixed,
+                )
+            }
+        }
+    }
+}
+
+impl Line {
+    fn reading(&mut self) -> Option<(Reading, Instant)> {
+        loop {
+            let mut bytes = &self.buffer[self.rest.clone()];
+            let event = self.decoder.next(&mut bytes);
+            self.rest.start = self.rest.end - bytes.len();
+            // A frame doesn't go on in the next datagram.
+            let event =
+                if event.is_none() && self.port.datagrams() { self.decoder.end() } else { event };
+            match event {
+                Some(Event::Reading(reading)) => return Some((reading, self.came)),
+                Some(_) => {}
+                None => return None,
+            }
+        }
+    }
+}

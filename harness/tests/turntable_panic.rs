@@ -1,0 +1,36 @@
+//! A panic in the harness stops the table. A test program of its own: a panic stops every table of a program.
+#![cfg(unix)]
+#![allow(clippy::unwrap_used)]
+
+mod table;
+
+use octant::scenario::Source as Kind;
+use octant::source::{Epoch, LiveSource, Source};
+use octant_sample::{GimbalAngles, GimbalCommand};
+use table::{Bench, Stage, wait_for};
+
+/// The thread of the samples does nothing wrong: another one panics, and it is told with the next sample.
+#[test]
+fn a_panic_anywhere_stops_the_table_and_ends_the_run() {
+    let stage = Stage::new();
+    // A guard would be this test program again, which can't be one.
+    let scenario = Bench::new(&stage, 200, "guard = \"0 s\"\n").scenario();
+    let Kind::Live(instrument) = &scenario.source else { panic!() };
+    let mut source = LiveSource::of(&scenario, instrument).unwrap();
+    let target = GimbalAngles::from_rad(0.0, 200f64.to_radians());
+    let command = GimbalCommand { target };
+    let mut epoch = Epoch::default();
+    wait_for("the move", || {
+        source.next(&command, &mut epoch).unwrap();
+        stage.angle(octant_turntable::Axis::Roll) > 5.0
+    });
+    assert!(std::thread::spawn(|| panic!("somewhere else")).join().is_err());
+    wait_for("rest", || stage.rests());
+    let error = source.next(&command, &mut epoch).unwrap_err().to_string();
+    assert_eq!(error, format!("turntable {}: the harness panicked", stage.port));
+    // What is left to tell of it is told, and it stays where it is.
+    let (bench, failed) = source.conclude(Some(&error));
+    assert!(failed.is_none(), "{failed:?}");
+    assert_eq!(bench.unwrap()["table"]["stopped"], "the harness panicked");
+    assert!(stage.rests() && stage.angle(octant_turntable::Axis::Roll) < 195.0);
+}

@@ -1,0 +1,261 @@
+//! A table that follows a run.
+
+use crate::{
+    Axis, Button, Dialect, Driver, EmergencyStop, Error, Follower, Place, Port, Settings, Status,
+    Supervisor, Track, Turntable, on_panic, open,
+};
+use octant_sample::{GimbalAngles, GimbalCommand};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::time::{Duration, Instant};
+
+/// Looks that may wait for the thread of the samples. Where it is busy for longer, the oldest are missed.
+const LOOKS: usize = 256;
+/// An axis rests when it has rested for so long: a move begins a moment after its command.
+const RESTED: Duration = Duration::from_millis(250);
+/// From one look at a table that comes to rest to the next.
+const WAIT: Duration = Duration::from_millis(20);
+/// An axis that turns less than that from one look to the next rests, where its language doesn't say it, rad.
+const STILL_RAD: f64 = 1e-6;
+
+/// What a run asks of a table.
+#[derive(Clone, Debug)]
+pub struct Plan {
+    /// Its port, as [`open`] takes it.
+    pub port: String,
+    /// What it speaks.
+    pub dialect: Dialect,
+    /// Limits, patience and watchdog.
+    pub settings: Settings,
+    /// From one look to the next.
+    pub period: Duration,
+    /// After which silence of this program a guard stops it; `None`: there is no guard.
+    pub guard: Option<Duration>,
+    /// Both axes find their reference first.
+    pub home: bool,
+    /// How long homing and the way to zero may take, each.
+    pub start: Duration,
+    /// How far from zero an axis may rest at the start, rad.
+    pub tolerance_rad: f64,
+}
+
+/// What went between a run and its table.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Told {
+    /// Looks at the table.
+    pub looks: u64,
+    /// Set points that it was told.
+    pub commands: u64,
+}
+
+/// What the two threads share.
+#[derive(Default)]
+struct Shared {
+    /// The set point, both counts in one word.
+    target: AtomicU64,
+    /// From now on the table follows it.
+    follows: AtomicBool,
+    looks: AtomicU64,
+    commands: AtomicU64,
+}
+
+/// A table that follows a run, under supervision. Dropped, it is stopped.
+///
+/// The thread of the samples neither waits nor takes a lock: it lays down a set point, and takes what the
+/// table said.
+pub struct Following {
+    supervisor: Supervisor<Box<dyn Port>>,
+    stop: EmergencyStop,
+    shared: Arc<Shared>,
+    looks: rtrb::Consumer<Status>,
+    track: Track,
+    /// Goes after the table is stopped.
+    _button: Button,
+}
+
+impl std::fmt::Debug for Following {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Following").field("told", &self.told()).finish_non_exhaustive()
+    }
+}
+
+fn packed(target: GimbalAngles) -> u64 {
+    let bits = |count: i32| u64::from(count.cast_unsigned());
+    bits(target.azimuth) << 32 | bits(target.roll)
+}
+
+fn unpacked(word: u64) -> GimbalAngles {
+    let count = |bits: u64| (bits as u32).cast_signed();
+    GimbalAngles { azimuth: count(word >> 32), roll: count(word) }
+}
+
+impl Following {
+    /// Takes a table over, lets it find its reference where that is asked for, and brings both gimbals to
+    /// zero, where a run starts. From now on a panic anywhere stops it. `guard` is the program of the guard.
+    ///
+    /// # Errors
+    /// If the table can't be had, doesn't do it or doesn't arrive. It has been told to stop then.
+    pub fn start(plan: &Plan, guard: &mut std::process::Command) -> Result<Self, Error> {
+        plan.settings.limits.check()?;
+        for axis in Axis::ALL {
+            plan.settings.limits.angle(axis, 0.0)?;
+        }
+        let port = open(&plan.port)?;
+        let (dialect, settings) = (plan.dialect.clone(), plan.settings);
+        let mut driver = Driver::new(port, &plan.port, dialect, settings)?;
+        on_panic();
+        let stop = driver.emergency();
+        let button = Button::offer(&plan.port, stop.clone())?;
+        if let Some(silence) = plan.guard {
+            driver.guard(guard, silence)?;
+        }
+        if plan.home {
+            // Before it is supervised: without a reference its angles say nothing.
+            for axis in Axis::ALL {
+                driver.home(axis)?;
+                let status = rest(&mut driver, &plan.port, plan.start, Driver::feed)?;
+                if status.of(axis).homed == Some(false) {
+                    return Err(Error::NotHomed { axis });
+                }
+            }
+        }
+        let shared = Arc::new(Shared::default());
+        let (mut producer, mut looks) = rtrb::RingBuffer::new(LOOKS);
+        let (of_table, mut follower) = (Arc::clone(&shared), Follower::new());
+        let duty = move |status: &Status, driver: &mut Driver<Box<dyn Port>>| {
+            of_table.looks.fetch_add(1, Ordering::Relaxed);
+            // Without room the run doesn't take them: the angles of its samples grow old, and say so.
+            let _ = producer.push(*status);
+            if of_table.follows.load(Ordering::Acquire) {
+                let target = unpacked(of_table.target.load(Ordering::Acquire));
+                if follower.command(driver, &GimbalCommand { target })? {
+                    of_table.commands.fetch_add(1, Ordering::Relaxed);
+                }
+            }
+            Ok(())
+        };
+        let mut supervisor = Supervisor::with_duty(driver, plan.period, duty)?;
+        for axis in Axis::ALL {
+            supervisor.goto(axis, 0.0, None)?;
+        }
+        let status = rest(&mut supervisor, &plan.port, plan.start, |supervisor| {
+            supervisor.emergency().check()
+        })?;
+        for axis in Axis::ALL {
+            let found_rad = status.of(axis).angle_rad;
+            if !(found_rad.abs() <= plan.tolerance_rad) {
+                return Err(Error::Elsewhere {
+                    axis,
+                    found: found_rad.to_degrees(),
+                    expected: 0.0,
+                    tolerance: plan.tolerance_rad.to_degrees(),
+                });
+            }
+        }
+        // Those of the way here would leave no room for the next ones.
+        while looks.pop().is_ok() {}
+        Ok(Self { supervisor, stop, shared, looks, track: Track::new(), _button: button })
+    }
+
+    /// Lays down where the core wants the gimbals.
+    pub fn command(&self, command: &GimbalCommand) {
+        self.shared.target.store(packed(command.target), Ordering::Release);
+        self.shared.follows.store(true, Ordering::Release);
+    }
+
+    /// Takes what the table said since the last call.
+    pub fn take_looks(&mut self) {
+        while let Ok(status) = self.looks.pop() {
+            self.track.add(&status);
+        }
+    }
+
+    /// Where an axis was at a time, as far as its looks were taken.
+    #[must_use]
+    pub fn at(&self, axis: Axis, when: Instant) -> Option<Place> {
+        self.track.at(axis, when)
+    }
+
+    /// Somebody stopped the table. No lock is taken.
+    #[must_use]
+    pub fn is_stopped(&self) -> bool {
+        self.stop.is_tripped()
+    }
+
+    /// Why it was stopped, if it was.
+    #[must_use]
+    pub fn stopped(&self) -> Option<String> {
+        self.stop.check().err().map(|error| match error {
+            Error::Stopped { why } => why,
+            error => error.to_string(),
+        })
+    }
+
+    /// Stops it at once, and for good.
+    pub fn trip(&self, why: &str) {
+        self.stop.trip(why);
+    }
+
+    /// What went between the two so far.
+    #[must_use]
+    pub fn told(&self) -> Told {
+        Told {
+            looks: self.shared.looks.load(Ordering::Relaxed),
+            commands: self.shared.commands.load(Ordering::Relaxed),
+        }
+    }
+
+    /// Brakes the table, waits until it rests, and lets it go.
+    ///
+    /// # Errors
+    /// If it doesn't come to rest: it has been told to stop in every way then.
+    pub fn finish(self) -> Result<(), Error> {
+        self.supervisor.finish()
+    }
+}
+
+/// Waits until both axes have rested for a while; where they are then.
+pub(crate) fn rest<T: Turntable>(
+    table: &mut T,
+    port: &str,
+    within: Duration,
+    mut meanwhile: impl FnMut(&mut T) -> Result<(), Error>,
+) -> Result<Status, Error> {
+    let until = Instant::now() + within;
+    let mut before: Option<Status> = None;
+    let mut since = Instant::now();
+    loop {
+        meanwhile(table)?;
+        let status = table.status()?;
+        let rests = |axis: Axis| match status.of(axis).moving {
+            Some(moving) => !moving,
+            None => before.is_some_and(|before| {
+                (status.of(axis).angle_rad - before.of(axis).angle_rad).abs() < STILL_RAD
+            }),
+        };
+        if !Axis::ALL.into_iter().all(rests) {
+            since = Instant::now();
+        } else if since.elapsed() >= RESTED {
+            return Ok(status);
+        }
+        if Instant::now() > until {
+            return Err(Error::Moving { port: port.to_owned(), within });
+        }
+        before = Some(status);
+        std::thread::sleep(WAIT);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn a_set_point_crosses_as_it_is(azimuth: i32, roll: i32) {
+            let target = GimbalAngles { azimuth, roll };
+            prop_assert_eq!(unpacked(packed(target)), target);
+        }
+    }
+}

@@ -1,0 +1,60 @@
+//! A simulated controller by the name of its port.
+
+use super::{Controller, Server};
+use crate::{Dialect, Error};
+use octant_plant::config::Turntable;
+
+/// End switches of the table, either way, degrees: two turns.
+const END_DEG: f64 = 720.0;
+
+/// Plays the controller of a table at `tcp:HOST:PORT`, or on a new pseudo-terminal to which a link is made,
+/// `pty:LINK`. The table is that of the default scenario. The server, and the name by which it is reached.
+///
+/// # Errors
+/// If it can't listen there.
+pub fn listen(at: &str, dialect: Dialect) -> Result<(Server, String), Error> {
+    let degrees = f64::to_radians;
+    let config = Turntable {
+        rate_radps: degrees(10.0),
+        acceleration_radps2: degrees(10.0),
+        encoder_sigma_rad: 0.0,
+        non_orthogonality_rad: 0.0,
+        backlash_rad: 0.0,
+    };
+    let controller = Controller::new(dialect, &config, degrees(END_DEG));
+    let failed = |reason: String| Error::Listen { port: at.to_owned(), reason };
+    match at.split_once(':') {
+        Some(("tcp", address)) => {
+            let server =
+                Server::tcp(controller, address, 1.0).map_err(|error| failed(error.to_string()))?;
+            let name =
+                server.address().map_or_else(|| at.to_owned(), |address| format!("tcp:{address}"));
+            Ok((server, name))
+        }
+        Some(("pty", link)) if !link.is_empty() => on_pty(controller, link),
+        _ => Err(failed("this is no place for a table".to_owned())),
+    }
+}
+
+#[cfg(unix)]
+fn on_pty(controller: Controller, link: &str) -> Result<(Server, String), Error> {
+    use serialport::SerialPort;
+    let failed = |reason: String| Error::Listen { port: format!("pty:{link}"), reason };
+    let (master, slave) = serialport::TTYPort::pair().map_err(|error| failed(error.to_string()))?;
+    let name = slave.name().ok_or_else(|| failed("it has no name".to_owned()))?;
+    let is_link = |about: std::fs::Metadata| about.file_type().is_symlink();
+    if std::fs::symlink_metadata(link).is_ok_and(is_link) {
+        std::fs::remove_file(link).map_err(|error| failed(error.to_string()))?;
+    }
+    std::os::unix::fs::symlink(&name, link)
+        .map_err(|error| failed(format!("link to {name}: {error}")))?;
+    let server =
+        Server::line(controller, master, 1.0).map_err(|error| failed(error.to_string()))?;
+    Ok((server, format!("serial:{link}")))
+}
+
+#[cfg(not(unix))]
+fn on_pty(_: Controller, link: &str) -> Result<(Server, String), Error> {
+    let reason = "there are no pseudo-terminals on this system".to_owned();
+    Err(Error::Listen { port: format!("pty:{link}"), reason })
+}

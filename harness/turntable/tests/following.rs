@@ -1,0 +1,154 @@
+//! A table that follows a run: it goes where it is told, says where it was, and stops whatever happens.
+#![allow(clippy::unwrap_used)]
+
+mod common;
+
+use common::*;
+use octant_sample::{GimbalAngles, GimbalCommand};
+use octant_turntable::simulate::Behaviour;
+use octant_turntable::{Axis, Following, Plan, press, stop_by_hand};
+use std::process::Command;
+use std::time::{Duration, Instant};
+
+fn plan(port: &str) -> Plan {
+    Plan {
+        port: port.to_owned(),
+        dialect: ensemble(),
+        settings: settings(),
+        period: Duration::from_millis(10),
+        guard: None,
+        home: true,
+        start: Duration::from_secs(60),
+        tolerance_rad: degrees(0.001),
+    }
+}
+
+fn start(plan: &Plan) -> Following {
+    Following::start(plan, &mut Command::new("none")).unwrap()
+}
+
+fn set_point(azimuth: f64, roll: f64) -> GimbalCommand {
+    GimbalCommand { target: GimbalAngles::from_rad(degrees(azimuth), degrees(roll)) }
+}
+
+#[test]
+fn it_goes_where_it_is_told_and_says_where_it_was() {
+    // In our time, so that what it said can be compared with where it really was then.
+    let (server, name) = tcp_at(ensemble(), 1.0);
+    let mut table = start(&plan(&name));
+    let homed = server.with(|controller, _| {
+        controller.log().iter().filter(|line| line.starts_with("PROGRAM RUN")).count()
+    });
+    assert_eq!(homed, 2);
+    let mut compared = 0;
+    for (azimuth, roll) in [(0.0, 12.0), (-7.0, 12.0), (0.0, 0.0)] {
+        table.command(&set_point(azimuth, roll));
+        wait_for("the move", || {
+            table.take_looks();
+            // The truth before and after a moment: the turn between them is what the comparison may miss.
+            let before = angle(&server, Axis::Roll);
+            let when = Instant::now();
+            let after = angle(&server, Axis::Roll);
+            if let Some(place) = table.at(Axis::Roll, when)
+                && place.age < Duration::from_millis(50)
+            {
+                // Beyond the last look by a·t²/2, with 30 °/s². Its time is the middle of question and
+                // reply: a turn of 20 °/s for half of that, and the rate was another by as much.
+                let (age_s, within_s) = (place.age.as_secs_f64(), place.within.as_secs_f64());
+                let missed = 15.0 * (age_s + within_s).powi(2) + 1e-4;
+                // The rate is asked for a moment after the angle.
+                let moment = 20.0 * within_s + 30.0 * 4.0 * within_s * age_s;
+                let found = place.angle_rad.to_degrees();
+                let (least, most) = (before.min(after), before.max(after));
+                assert!(
+                    found >= least - missed - moment && found <= most + missed + moment,
+                    "{found} {least} {most} {place:?}"
+                );
+                compared += 1;
+            }
+            let there = |axis, expected: f64| (angle(&server, axis) - expected).abs() < 1e-5;
+            there(Axis::Azimuth, azimuth) && there(Axis::Roll, roll)
+        });
+    }
+    assert!(compared > 10, "{compared}");
+    assert_eq!(table.told().commands, 3);
+    assert_eq!(table.stopped(), None);
+    table.finish().unwrap();
+    assert!(rests(&server));
+}
+
+#[test]
+fn what_is_beyond_its_limits_stops_it() {
+    let (server, name) = tcp(ensemble());
+    let table = start(&plan(&name));
+    table.command(&set_point(0.0, 30.0));
+    wait_for("the turn", || turns(&server, Axis::Roll));
+    table.command(&set_point(0.0, 500.0));
+    wait_for("the stop", || table.is_stopped());
+    assert_eq!(table.stopped().unwrap(), "roll 500.0000° is beyond its limits, -185° to 365°");
+    wait_for("rest", || rests(&server));
+    // What is told afterwards moves nothing.
+    table.command(&set_point(0.0, 10.0));
+    let commands = table.told().commands;
+    std::thread::sleep(Duration::from_millis(100));
+    assert_eq!(table.told().commands, commands);
+}
+
+#[test]
+fn who_drops_it_stops_it_and_so_does_a_silent_controller() {
+    let (server, name) = tcp(ensemble());
+    let table = start(&plan(&name));
+    table.command(&set_point(0.0, 300.0));
+    wait_for("the turn", || turns(&server, Axis::Roll));
+    drop(table);
+    wait_for("rest", || rests(&server));
+
+    let mut quick = plan(&name);
+    quick.settings.reply_within = Duration::from_millis(200);
+    let table = start(&quick);
+    table.command(&set_point(0.0, 300.0));
+    wait_for("the turn", || turns(&server, Axis::Roll));
+    server.with(|controller, _| controller.behave(Behaviour::Silent));
+    wait_for("the stop", || table.is_stopped());
+    assert!(table.stopped().unwrap().contains("no reply to"), "{:?}", table.stopped());
+    wait_for("rest", || rests(&server));
+}
+
+#[test]
+fn a_table_that_does_not_arrive_does_not_start() {
+    let (server, name) = tcp_at(ensemble(), 1.0);
+    let mut hasty = plan(&name);
+    let table = start(&hasty);
+    table.command(&set_point(0.0, 20.0));
+    wait_for("the way", || angle(&server, Axis::Roll) > 15.0);
+    drop(table);
+    // It was stopped at some angle: the way to zero takes longer than it may.
+    (hasty.start, hasty.home) = (Duration::from_millis(300), false);
+    let error = Following::start(&hasty, &mut Command::new("none")).unwrap_err().to_string();
+    assert!(error.ends_with("the table still moves after 300ms"), "{error}");
+    let mut narrow = plan(&name);
+    narrow.settings.limits.axes[1].least_rad = degrees(5.0);
+    let error = Following::start(&narrow, &mut Command::new("none")).unwrap_err().to_string();
+    assert_eq!(error, "roll 0.0000° is beyond its limits, 5° to 365°");
+}
+
+/// The controller has one peer at a time: only who drives it can stop it.
+#[cfg(unix)]
+#[test]
+fn another_program_can_press_the_stop() {
+    let (server, name) = tcp(ensemble());
+    assert_eq!(press(Some(&name)).unwrap(), []);
+    let table = start(&plan(&name));
+    let error = Following::start(&plan(&name), &mut Command::new("none"));
+    // The second one isn't even heard: the controller listens to the first.
+    assert!(error.is_err());
+    assert!(!table.is_stopped());
+    table.command(&set_point(0.0, 300.0));
+    wait_for("the turn", || turns(&server, Axis::Roll));
+    let told = stop_by_hand(&name, &ensemble()).unwrap();
+    assert_eq!(told[0], format!("the program that drives {name}"));
+    wait_for("rest", || rests(&server));
+    assert_eq!(table.stopped().unwrap(), "somebody pressed the stop on the command line");
+    drop(table);
+    assert_eq!(press(Some(&name)).unwrap(), []);
+}
