@@ -2,6 +2,7 @@
 //! Both may be missing (a source archive, no git): then the manifest says so. And compiles the one
 //! function that Rust can't define: a callback with variable arguments.
 
+use sha2::{Digest, Sha256};
 use std::process::Command;
 
 fn output(program: &str, arguments: &[&str]) -> Option<String> {
@@ -23,13 +24,20 @@ fn main() {
         }
     }
     let commit = output("git", &["rev-parse", "HEAD"]).unwrap_or_default();
-    let changed = output("git", &["status", "--porcelain", "--untracked-files=no"]);
+    let changed = output(
+        "git",
+        // Without writing to the index, which would be a reason to build again.
+        &["--no-optional-locks", "status", "--porcelain", "--untracked-files=no"],
+    );
     let dirty = !commit.is_empty() && changed.is_none_or(|changed| !changed.is_empty());
     let rustc = std::env::var("RUSTC").unwrap_or_else(|_| "rustc".into());
     let rustc = output(&rustc, &["--version"]).unwrap_or_default();
     println!("cargo:rustc-env=OCTANT_GIT_COMMIT={commit}");
     println!("cargo:rustc-env=OCTANT_GIT_DIRTY={dirty}");
     println!("cargo:rustc-env=OCTANT_RUSTC={rustc}");
+    let lock = std::fs::read("../Cargo.lock").map(|lock| Sha256::digest(lock));
+    let lock = lock.map(|hash| hash.iter().map(|byte| format!("{byte:02x}")).collect::<String>());
+    println!("cargo:rustc-env=OCTANT_LOCK_FILE={}", lock.unwrap_or_default());
     cc::Build::new()
         .file("src/fmu/instance/logger.c")
         .extra_warnings(true)

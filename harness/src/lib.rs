@@ -4,6 +4,7 @@
 //! **source → endpoint → recorder → score → report**.
 
 pub mod calibrate;
+pub mod campaign;
 pub mod cli;
 pub mod endpoint;
 pub mod evidence;

@@ -7,7 +7,8 @@ use octant::recorder::reader::{Epochs, RecordedEpoch, Recording as Reader, strea
 use octant::recorder::{Event, Policy, Recorder, RecorderOptions, RecorderSummary, Samples};
 use octant::run::method::configurations;
 use octant::run::{
-    Control, Ended, Faulted, MethodRun, Recording, Watcher, assemble, drive_faulted, run_method,
+    Control, Ended, Faulted, Host, MethodRun, Recording, Watcher, assemble, drive_faulted,
+    run_method,
 };
 use octant::scenario::{Method, Scenario};
 use octant::score::summary::FaultResult;
@@ -322,7 +323,7 @@ fn drive_with(kind: &'static Kind, first: u64, epochs: u64, policy: Policy) -> D
         },
     };
     let station = Station::new(&[spec], &scenario.fault_setup(1)).unwrap();
-    let mut faulted = Faulted { station, fires: Vec::new() };
+    let mut faulted = Faulted { station, fires: Vec::new(), host: Host::default() };
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("recording.mcap");
     let options = RecorderOptions {

@@ -4,7 +4,7 @@
 use octant::scenario::resolve::{Draws, Seeded};
 use octant::scenario::{Place, Problem, Scenario, fault_example};
 use octant_earth::units::DEG_PER_HOUR;
-use octant_faults::catalogue::Dimension;
+use octant_faults::catalogue::{Acts, Dimension};
 use octant_faults::trigger::{Comparison, Repeat, Signal, Trigger};
 use octant_faults::{Channels, Station, Value, kinds};
 use octant_sample::Mode;
@@ -136,10 +136,14 @@ fn every_kind_has_an_example_that_parses_and_builds() {
         let example = fault_example(kind.name).unwrap();
         // Faults of the wire need one; which, their name says.
         let port = if kind.name.starts_with("can-") { "can:can0" } else { "serial:/dev/ttyUSB0" };
-        let wire = kind.acts == octant_faults::catalogue::Acts::Wire;
         let endpoint = format!("[endpoint]\nuri = {port:?}\n");
-        let endpoint = if wire { endpoint.as_str() } else { "" };
-        let scenario = match parse(&format!("{HEAD}{endpoint}{example}")) {
+        let more = match kind.acts {
+            Acts::Wire => endpoint.as_str(),
+            // Without the clock nothing can be late.
+            Acts::Host => "[realtime]\npace = \"clock\"\n",
+            _ => "",
+        };
+        let scenario = match parse(&format!("{HEAD}{more}{example}")) {
             Ok(scenario) => scenario,
             Err(problems) => {
                 wrong.push(format!("{example}{problems:?}"));

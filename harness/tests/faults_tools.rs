@@ -1,6 +1,7 @@
 //! `octant faults sweep`, `minimise` and `describe` as a user runs them.
 #![allow(clippy::unwrap_used)]
 
+use octant_faults::catalogue::Acts;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
@@ -208,8 +209,8 @@ fn the_committed_pages_are_those_of_the_program() {
     for kind in octant_faults::kinds::all() {
         let name = kind.name;
         let picture = folder.path().join("p.svg");
-        // Faults of the wire alter no sample that could be drawn.
-        let drawn = kind.acts != octant_faults::catalogue::Acts::Wire;
+        // Faults of the wire and of the host alter no sample that could be drawn.
+        let drawn = !matches!(kind.acts, Acts::Wire | Acts::Host);
         let options = ["--markdown", "--picture", picture.to_str().unwrap()];
         let options = &options[..if drawn { 3 } else { 1 }];
         let page = succeeds(&[&["faults", "describe", name], options].concat());

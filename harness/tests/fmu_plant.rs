@@ -409,8 +409,8 @@ fn four_at_once_and_what_has_no_place() {
     for kind in kinds::all().filter(|kind| !can_act().contains(&kind.name)) {
         let why = match kind.acts {
             Acts::Unit => "acts on the unit under test, and a plant has none",
-            // It needs a device, and has no scenario here.
-            Acts::Wire => continue,
+            // They need a device, or a harness, and have no scenario here.
+            Acts::Wire | Acts::Host => continue,
             _ => "can deliver several samples at once, and a plant gives one sample a step",
         };
         let fault = fault_of(kind.name);

@@ -7,7 +7,7 @@ use octant::endpoint::{Endpoint, EndpointError, InProcess, ParameterEstimate, Se
 use octant::recorder::{Recorder, RecorderOptions};
 use octant::run::method::configurations;
 use octant::run::realtime::{Line, drive_by_clock};
-use octant::run::{Control, Ended, Watcher};
+use octant::run::{Control, Ended, Faulted, Host, Recording, Watcher};
 use octant::scenario::{Method, Scenario};
 use octant::source::{Epoch, PlantSource};
 use octant_realtime::clock::{HostTime, now};
@@ -218,9 +218,16 @@ fn drive(
     let mut source = PlantSource::new(&plant, scenario.samples().unwrap()).unwrap();
     let mut endpoint = Slow::new(InProcess::new(&core).unwrap(), held);
     endpoint.watched = watched;
-    let mut recorder = Recorder::to_writer(std::io::sink(), &RecorderOptions::default()).unwrap();
+    let options = RecorderOptions::default();
+    let mut faulted = scenario.station(1).unwrap().map(|station| Faulted {
+        station,
+        fires: Vec::new(),
+        host: Host::new(&scenario, &Recording::Hash, &options.trouble).unwrap(),
+    });
+    let mut recorder = Recorder::to_writer(std::io::sink(), &options).unwrap();
     let mut watcher = Watcher::new(0.0);
-    let line = Line { source: &mut source, faulted: None, endpoint: &mut endpoint };
+    let faulted = faulted.as_mut();
+    let line = Line { source: &mut source, faulted, endpoint: &mut endpoint };
     let (ended, kept) = drive_by_clock(
         &scenario.realtime,
         scenario.sample_period_ns,
@@ -273,4 +280,15 @@ fn the_thread_of_the_samples_allocates_nothing() {
     COUNTED.set(Some(0));
     let boxed = std::hint::black_box(Box::new(1));
     assert_eq!(COUNTED.replace(None), Some(*boxed));
+}
+
+#[test]
+fn a_fault_of_the_host_is_raised_without_an_allocation() {
+    let faults = "pace = \"clock\"\n[[faults]]\nid = \"starved\"\nkind = \"host-cpu-starved\"\n\
+        length = \"20 ms\"\ntrigger = { every = \"0.5 s\" }\n[[faults]]\nid = \"stalled\"\n\
+        kind = \"host-recorder-stalled\"\npause = \"100 ms\"\ntrigger = { at = \"1 s\" }\n";
+    let (ended, kept, recorded, counted) = drive(|_| 0, faults, Some((10, 390)));
+    assert_eq!(ended, Ok(Ended::Done));
+    assert_eq!(counted, Some(0));
+    assert_eq!((recorded.epochs, kept.pacing.dropped_records), (400, 0));
 }

@@ -336,7 +336,7 @@ fn what_can_not_be_asked_for_twice_or_at_another_time_is_refused() {
     let fine = format!("schema = 1\n{navigation}{instrument}");
     assert!(problems_with(&fine, &[]).is_empty());
     let (place, path, message) = problem(&format!("{fine}{clock}"));
-    assert_eq!((place, path.as_str()), (at(8, 8), "realtime.pace"));
+    assert_eq!((place, path.as_str()), (at(9, 8), "realtime.pace"));
     assert_says(&message, &["a clock of its own", "expected \"free\""]);
     let calibration = "schema = 1\n[procedure.calibration]\nduration = \"1 h\"\n";
     let (_, path, message) =

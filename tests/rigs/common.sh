@@ -66,3 +66,7 @@ apt_packages() {
   DEBIAN_FRONTEND=noninteractive install_quietly apt-get install -y --no-install-recommends "$@" \
     || skip "apt-get could not install $*"
 }
+
+# cargo test, with what the test command builds everything with: another choice of packages or features
+# would build all of it again.
+test_profile=(--workspace --features octant/foxglove)

@@ -162,8 +162,19 @@ class Case:
     def during(self, bench):
         """Does it, after a while of the run."""
 
+    # The recording ends early.
+    fills_disk = False
+    # A fault that the run has.
+    fault = None
+
     def scenario(self):
         return SCENARIO.replace("DURATION", f"{self.duration_s} s")
+
+    def faulted_scenario(self):
+        if not self.fault:
+            return self.scenario()
+        fault = f'[[faults]]\nid = "f"\nkind = "{self.fault}"\ntrigger = {{ at = "1.5 s" }}\n'
+        return self.scenario().replace("[realtime]", '[realtime]\npace = "clock"') + fault
 
     def after(self, bench, status):
         """What has to be so beside the usual."""
@@ -278,14 +289,48 @@ class Unplugged(Case):
 class FullDisk(Case):
     statuses = (4,)
     duration_s = 15
+    fills_disk = True
 
     def after(self, bench, status):
         bench.expect("o space left" in bench.said or "File too large" in bench.said, "the error names it")
 
 
+class HostFault(Case):
+    """What the harness does to its own host."""
+
+    statuses = (0, 3)
+
+    def after(self, bench, status):
+        summary = json.loads((bench.recording.parent / "summary.json").read_text())
+        # A run that broke off for another reason may not have come that far.
+        if status != 4 or self.fills_disk:
+            bench.expect(summary["faults"][0]["fired"], "the fault fired")
+
+
+class Starved(HostFault):
+    fault = "host-cpu-starved"
+    # The device is starved too.
+    statuses = (0, 3, 4)
+
+
+class Stalled(HostFault):
+    fault = "host-recorder-stalled"
+
+
+class DiskFilled(HostFault, FullDisk):
+    fault = "host-disk-full"
+    statuses = (4,)
+    duration_s = 4
+
+    def after(self, bench, status):
+        FullDisk.after(self, bench, status)
+        HostFault.after(self, bench, status)
+
+
 CASES = [
     Nothing, KillDevice, KillHarness, Interrupt, Cut, CutForAMoment, CutForAMomentInLockStep, Garbage,
-    GarbageInLockStep, Twice, Late, SlowReader, Unplugged, FullDisk,
+    GarbageInLockStep, Twice, Late, SlowReader, Unplugged, FullDisk, Starved, Stalled,
+    DiskFilled,
 ]
 
 
@@ -312,10 +357,13 @@ class Bench:
         with tempfile.TemporaryDirectory() as folder:
             folder = Path(folder)
             scenario = folder / "scenario.toml"
-            scenario.write_text(case.scenario())
+            scenario.write_text(case.faulted_scenario())
+            # The device's, and that of the next run.
+            plain = folder / "plain.toml"
+            plain.write_text(case.scenario())
             out = folder / "run"
             mounted = False
-            if isinstance(case, FullDisk):
+            if type(case) is FullDisk:
                 small = folder / "small"
                 small.mkdir()
                 mounted = not subprocess.run(
@@ -326,7 +374,7 @@ class Bench:
                 out = small / "run"
             self.out = out
             self.line = Line(folder)
-            self.device = device(folder, scenario, self.line)
+            self.device = device(folder, plain, self.line)
             more = ["--realtime"] if case.realtime else []
             self.harness = harness(folder, scenario, self.line, more, out)
             began = time.monotonic()
@@ -348,7 +396,8 @@ class Bench:
             recording = out / "recording.mcap"
             if not recording.exists():
                 recording = partial
-            if isinstance(case, FullDisk):
+            self.recording = recording
+            if case.fills_disk:
                 seconds, _ = recorded(recording)
                 self.expect(seconds > 0.2, f"{seconds:.2f} s recorded before the disk was full")
             elif case.realtime:
@@ -361,10 +410,8 @@ class Bench:
             self.line.delay_s, self.line.garbage = 0.0, None
             if not isinstance(case, Unplugged):
                 if self.device.poll() is not None:
-                    self.device = device(folder, scenario, self.line)
-                again = folder / "again.toml"
-                again.write_text(scenario.read_text())
-                status = wait(harness(folder, again, self.line, out=folder / "again"), 30)
+                    self.device = device(folder, plain, self.line)
+                status = wait(harness(folder, plain, self.line, out=folder / "again"), 30)
                 said = (folder / "run.log").read_text()
                 self.expect(status == 0, f"the next run on the port: status {status}: {said}")
             self.device.send_signal(signal.SIGINT)

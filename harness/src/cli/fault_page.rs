@@ -65,17 +65,18 @@ pub(super) fn markdown(kind: &'static Kind) -> String {
     out
 }
 
-/// A fault of the wire alters frames, and no sample that could be drawn.
+/// A fault of the wire alters frames, one of the host nothing but when: no sample that could be drawn.
 pub(super) fn has_picture(kind: &Kind) -> bool {
-    kind.acts != Acts::Wire
+    !matches!(kind.acts, Acts::Wire | Acts::Host)
 }
 
 /// The picture of a kind: its example, simulated.
 pub(super) fn picture(kind: &'static Kind) -> Result<String, Failure> {
     if !has_picture(kind) {
         return Err(Failure::input(format!(
-            "{} acts on the wire to a device, of which there is no picture",
-            kind.name
+            "{} acts {}, of which there is no picture",
+            kind.name,
+            super::faults::acts(kind.acts)
         )));
     }
     let example = fault_example(kind.name).unwrap_or_default();

@@ -218,6 +218,7 @@ pub(super) fn acts(acts: Acts) -> &'static str {
         Acts::Delivery => "on the delivery of samples: lost, late, in another order",
         Acts::Unit => "on the unit under test itself",
         Acts::Wire => "on the wire between the harness and a device",
+        Acts::Host => "on the host that the harness runs on",
         _ => "elsewhere",
     }
 }

@@ -3,6 +3,7 @@
 //! Exit status: 0 pass, 1 fail, 2 bad input or usage, 3 inconclusive, 4 error (the bench failed).
 #![allow(clippy::print_stdout, reason = "results go to stdout")]
 
+mod campaign;
 mod compare;
 mod doctor;
 mod fault_page;
@@ -19,6 +20,7 @@ mod run_system;
 mod score;
 mod serve;
 mod sweep;
+mod verify;
 mod watch;
 
 use crate::scenario::{Dimension, quantity_of};
@@ -44,6 +46,8 @@ enum Command {
     Compare(compare::Arguments),
     /// Put a recorded stream through the core again.
     Replay(replay::Arguments),
+    /// Run many cases: plan them, run them anywhere, merge what came of them.
+    Campaign(campaign::Arguments),
     /// Serve the core as a device, that a harness drives over a port.
     Serve(serve::Arguments),
     /// Score a recording.
@@ -52,6 +56,8 @@ enum Command {
     Observe(observe::Arguments),
     /// Write the report of a finished run again.
     Report(report::Arguments),
+    /// Tell whether a folder of evidence is what was written, to the last bit.
+    Verify(verify::Arguments),
     /// Watch a run: how far it is, its drift, parameters, faults and lateness.
     Watch(watch::Arguments),
     /// Tell what kinds of faults there are, and what each does.
@@ -67,7 +73,7 @@ enum Command {
 }
 
 /// Commands that belong to the plan of the program and are not in this version.
-const LATER: [&str; 4] = ["campaign", "nightly", "selftest", "verify"];
+const LATER: [&str; 2] = ["nightly", "selftest"];
 
 /// A command that isn't there.
 fn other(words: &[OsString]) -> Failure {
@@ -167,12 +173,14 @@ pub fn main() -> ExitCode {
     let cli = Cli::parse();
     let outcome = match cli.command {
         Command::Run(arguments) => run::command(&arguments),
+        Command::Campaign(arguments) => campaign::command(&arguments),
         Command::Compare(arguments) => compare::command(&arguments),
         Command::Replay(arguments) => replay::command(&arguments),
         Command::Serve(arguments) => serve::command(&arguments),
         Command::Score(arguments) => score::command(&arguments),
         Command::Observe(arguments) => observe::command(&arguments),
         Command::Report(arguments) => report::command(&arguments),
+        Command::Verify(arguments) => verify::command(&arguments),
         Command::Watch(arguments) => watch::command(&arguments),
         Command::Faults(arguments) => faults::command(&arguments),
         Command::Doctor(arguments) => doctor::command(&arguments),
@@ -213,8 +221,13 @@ fn print(text: &str) -> Result<(), Failure> {
 
 /// Writes a file of a run.
 fn write(path: &std::path::Path, contents: impl AsRef<[u8]>) -> Result<(), Failure> {
-    std::fs::write(path, contents)
-        .map_err(|error| Failure::bench(format!("failed to write {}: {error}", path.display())))
+    std::fs::write(path, contents).map_err(|error| {
+        if error.kind() == std::io::ErrorKind::StorageFull {
+            // Half a file would be taken for a whole one.
+            let _ = std::fs::remove_file(path);
+        }
+        Failure::bench(format!("failed to write {}: {error}", path.display()))
+    })
 }
 
 /// One JSON value and a newline on stdout.

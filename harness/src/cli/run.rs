@@ -40,6 +40,9 @@ pub(super) struct Arguments {
     /// Fire a fault whose trigger is manual, such as spike-1="5050 s".
     #[arg(long, value_name = "ID=TIME")]
     fire: Vec<String>,
+    /// Inject these of the scenario's faults alone; --faults= none of them.
+    #[arg(long, value_name = "ID,ID", value_delimiter = ',', require_equals = true, num_args = 0..)]
+    faults: Option<Vec<String>>,
     /// Go by the clock: a sample leaves when its time has come, as with realtime.pace = "clock".
     #[arg(long)]
     realtime: bool,
@@ -82,7 +85,13 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     if arguments.realtime {
         more.push("realtime.pace=\"clock\"".to_owned());
     }
-    let scenario = load_fired(&arguments.scenario, &more, &arguments.fire)?;
+    let mut scenario = load_fired(&arguments.scenario, &more, &arguments.fire)?;
+    if let Some(faults) = &arguments.faults {
+        scenario = scenario.with_only(faults).map_err(|reason| {
+            let file = arguments.scenario.scenario.display();
+            Failure::input(format!("{file}: --faults: {reason}"))
+        })?;
+    }
     let seed = arguments.seed.unwrap_or(scenario.seed);
     // What contradicts itself, or can't be opened, is said before anything is written.
     // A real instrument doesn't measure the same a second time.
@@ -98,6 +107,7 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         set_up(&scenario, method, seed)?;
     }
     let fmus = fmus(&scenario, tasks)?;
+    let key = super::verify::signing_key()?;
     let mut live = arguments.live.as_deref().map(Live::start).transpose()?;
     let (path, existing) = match &arguments.out {
         Some(path) if arguments.force => (path.clone(), Existing::Replace),
@@ -119,7 +129,15 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     let interrupted = runs.iter().any(|run| {
         unfinished(run.ended) || run.twin.as_ref().is_some_and(|twin| twin.ended == Ended::Broken)
     });
-    let broken = runs.iter().any(|run| run.broken.is_some());
+    let broken = runs.iter().find_map(|run| run.broken.as_ref().map(ToString::to_string));
+    // Where the disk is full, there may be no room for the results either.
+    let failed = |failure: Failure| match &broken {
+        None => failure,
+        Some(reason) => {
+            let message = format!("failed to {reason}; and {}", failure.message);
+            Failure { message, ..failure }
+        }
+    };
     let mut runs = runs.into_iter();
     let (Some(primary), baseline) = (runs.next(), runs.next()) else {
         return Err(Failure::bench("failed to run the scenario: no method ran"));
@@ -136,7 +154,8 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         .map_err(|error| Failure::bench(format!("failed to write the summary: {error}")))?;
     for (name, table) in tables {
         if let Some(table) = table {
-            write(&folder.path().join(format!("{name}.octcal")), table.to_bytes())?;
+            let path = folder.path().join(format!("{name}.octcal"));
+            write(&path, table.to_bytes()).map_err(failed)?;
         }
     }
     let facts = RunFacts {
@@ -147,16 +166,17 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         fmus,
         link,
         realtime,
+        key,
     };
     let raw = estimate.map_or(String::new(), |e| raw_counts::text(&scenario.source, &e));
-    let (verdict, json) = write_results(folder.path(), run, &facts)?;
+    let (verdict, json) = write_results(folder.path(), run, &facts).map_err(failed)?;
     let place = if interrupted {
         // An unfinished run keeps the name of one.
         folder.path().to_owned()
     } else {
         folder.finish().map_err(|error| Failure::bench(format!("failed to {error}")))?
     };
-    if broken {
+    if broken.is_some() {
         eprintln!("octant: the run broke off; what was recorded is in {}", place.display());
     }
     if arguments.json {
@@ -213,6 +233,7 @@ fn system(arguments: &Arguments) -> Result<Verdict, Failure> {
         ("--endpoint", arguments.endpoint.is_some()),
         ("--realtime", arguments.realtime),
         ("--no-twin", arguments.no_twin),
+        ("--faults", arguments.faults.is_some()),
         ("--live", arguments.live.is_some()),
     ];
     if let Some((option, _)) = given.into_iter().find(|(_, given)| *given) {
@@ -391,6 +412,9 @@ fn rerun(arguments: &Arguments, seed: u64) -> Vec<String> {
     for fire in &arguments.fire {
         line.extend(["--fire".to_owned(), fire.clone()]);
     }
+    if let Some(faults) = &arguments.faults {
+        line.push(format!("--faults={}", faults.join(",")));
+    }
     if arguments.realtime {
         line.push("--realtime".to_owned());
     }
@@ -438,10 +462,34 @@ pub(super) fn on_recording(
         source: Some(format!("{kind}:{}", recording.display())),
         endpoint: None,
         fire: Vec::new(),
+        faults: None,
         realtime: false,
         no_twin: false,
         live: None,
         json,
+        system: super::run_system::SystemArguments::default(),
+    })
+}
+
+/// Runs a case of a campaign with all the evidence of a run.
+pub(super) fn case(
+    scenario: &Path,
+    case: &crate::campaign::plan::Case,
+    out: &Path,
+) -> Result<Verdict, Failure> {
+    command(&Arguments {
+        scenario: ScenarioArguments { scenario: scenario.to_owned(), set: case.set.clone() },
+        out: Some(out.to_owned()),
+        force: false,
+        seed: Some(case.seed),
+        source: None,
+        endpoint: None,
+        fire: Vec::new(),
+        faults: case.faults.clone(),
+        realtime: false,
+        no_twin: false,
+        live: None,
+        json: false,
         system: super::run_system::SystemArguments::default(),
     })
 }

@@ -103,6 +103,7 @@ pub(super) fn command(
     arguments: &SystemArguments,
     folder: impl FnOnce() -> Result<RunFolder, Failure>,
 ) -> Result<Verdict, Failure> {
+    let key = super::verify::signing_key()?;
     let place = if arguments.in_process { Place::ThisProcess } else { Place::OwnProcess };
     let prepared = Prepared::new(Request {
         path: shared.path.to_owned(),
@@ -167,6 +168,7 @@ pub(super) fn command(
         fmus: summary.fmus.iter().map(|fmu| facts(fmu, arguments)).collect(),
         link: None,
         realtime: None,
+        key,
     };
     Manifest::write(folder.path(), &facts)
         .map_err(|error| Failure::bench(format!("failed to {error}")))?;

@@ -1,5 +1,7 @@
 //! `manifest.json`: who made a run, with what, and the hashes of everything in its folder.
 
+use super::folder::LOCK;
+use super::signature::{self, Key, SignatureError};
 use octant_realtime::schedule::Granted;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
@@ -7,6 +9,7 @@ use std::collections::BTreeSet;
 use std::fs::File;
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::time::SystemTime;
 
 /// Name of the manifest in a run folder.
@@ -49,7 +52,14 @@ pub struct Manifest {
     pub realtime: Option<Granted>,
     /// Every other file of the folder, by path.
     pub files: Vec<FileHash>,
-    /// Runs are not signed in this version: always `null`.
+    /// Who ran it: what `OCTANT_OPERATOR` says, or the name of the account; `null` without either.
+    #[serde(default)]
+    pub operator: Option<String>,
+    /// SHA-256 of the lock file that octant was built by, hexadecimal.
+    #[serde(default)]
+    pub lock_file: Option<String>,
+    /// The key whose signature of this file is beside it, in `manifest.json.minisig`; `null` of one
+    /// that isn't signed.
     pub signature: Option<String>,
 }
 
@@ -131,6 +141,8 @@ pub struct RunFacts {
     pub link: Option<serde_json::Value>,
     /// What the host granted a run by the clock.
     pub realtime: Option<Granted>,
+    /// The key that signs the manifest.
+    pub key: Option<Arc<Key>>,
 }
 
 /// Why a manifest could not be written or read.
@@ -154,6 +166,9 @@ pub enum ManifestError {
         /// Found and expected.
         reason: String,
     },
+    /// It can't be signed.
+    #[error(transparent)]
+    Signature(#[from] SignatureError),
 }
 
 /// A difference between a folder and its manifest.
@@ -188,7 +203,9 @@ impl Manifest {
             link: facts.link.clone(),
             realtime: facts.realtime.clone(),
             files: Vec::new(),
-            signature: None,
+            operator: operator(),
+            lock_file: some(env!("OCTANT_LOCK_FILE")),
+            signature: facts.key.as_ref().map(|key| format!("minisign key {}", key.id())),
         }
     }
 
@@ -233,6 +250,7 @@ impl Manifest {
             ("source revision", git),
             ("compiler", self.rustc.clone().unwrap_or_else(|| "not known".to_owned())),
             ("host", format!("{}, {}, {cpu}, {} processors", host.name, host.os, host.cpus)),
+            ("operator", self.operator.clone().unwrap_or_else(|| "not known".to_owned())),
             ("started", self.started.clone()),
             ("ended", self.ended.clone()),
             ("signature", self.signature.clone().unwrap_or_else(|| "unsigned".to_owned())),
@@ -245,7 +263,7 @@ impl Manifest {
         .collect()
     }
 
-    /// Hashes everything in the folder of a run and writes its manifest.
+    /// Hashes everything in the folder of a run, writes its manifest, and signs it where there is a key.
     ///
     /// # Errors
     /// If a file can't be read or the manifest not written.
@@ -263,6 +281,9 @@ impl Manifest {
         })?;
         text.push('\n');
         system("write", &path, std::fs::write(&path, text))?;
+        if let Some(key) = &facts.key {
+            key.sign(&path)?;
+        }
         Ok(manifest)
     }
 
@@ -330,7 +351,13 @@ fn cpu_model() -> Option<String> {
     line.split_once(':').map(|(_, model)| model.trim().to_owned())
 }
 
-/// Files of a folder by path, without the manifest and hidden ones at the top.
+/// The name that a run is made under.
+fn operator() -> Option<String> {
+    let variable = |name: &str| std::env::var(name).ok().filter(|name| !name.trim().is_empty());
+    ["OCTANT_OPERATOR", "USER", "LOGNAME", "USERNAME"].into_iter().find_map(variable)
+}
+
+/// Files of a folder by path, without the manifest, its signature, and the lock of a run that goes on.
 fn files(folder: &Path) -> Result<BTreeSet<String>, ManifestError> {
     let mut found = BTreeSet::new();
     let mut open = vec![String::new()];
@@ -340,7 +367,8 @@ fn files(folder: &Path) -> Result<BTreeSet<String>, ManifestError> {
             let entry = system("list", &path, entry)?;
             let name = entry.file_name().to_string_lossy().into_owned();
             let kind = system("list", &path, entry.file_type())?;
-            if prefix.is_empty() && (name == FILE_NAME || name.starts_with('.')) {
+            let own = [FILE_NAME, signature::FILE_NAME, LOCK];
+            if prefix.is_empty() && own.contains(&name.as_str()) {
                 continue;
             }
             if kind.is_dir() {
@@ -410,6 +438,7 @@ mod tests {
             fmus: Vec::new(),
             link: None,
             realtime: None,
+            key: None,
         }
     }
 

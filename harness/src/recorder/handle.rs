@@ -8,6 +8,7 @@
 
 use super::altered::{self, AlteredStreams};
 use super::block::Block;
+use super::trouble::{Disk, Trouble};
 use super::writer::{RecordingWriter, next_on_grid};
 use super::{
     Counts, Event, Extra, FLUSH_INTERVAL, Frame, RecorderError, RecorderOptions, StreamHash,
@@ -80,7 +81,8 @@ impl Recorder {
         let kept = file
             .try_clone()
             .map_err(|source| RecorderError::Create { path: path.display().to_string(), source })?;
-        let writer = RecordingWriter::new(file, options)?;
+        let disk = Disk::new(file, options.trouble.clone());
+        let writer = RecordingWriter::new(disk, options)?;
         Self::start(options, Some(writer), Some(kept))
     }
 
@@ -135,10 +137,12 @@ impl Recorder {
             let _ = empty_sender.send(Block::new(epochs_per_block));
         }
         let wanted = Arc::new(AtomicBool::new(false));
-        let wanted_here = Arc::clone(&wanted);
+        let (wanted_here, trouble) = (Arc::clone(&wanted), options.trouble.clone());
         let thread = std::thread::Builder::new()
             .name("recorder".into())
-            .spawn(move || work(writer, sync, &full_receiver, &empty_sender, &wanted_here))
+            .spawn(move || {
+                work(writer, sync, &full_receiver, &empty_sender, &wanted_here, &trouble)
+            })
             .map_err(|error| RecorderError::Format {
                 reason: format!("no thread for the recorder: {error}"),
             })?;
@@ -351,13 +355,16 @@ fn work<W: Write>(
     full: &Receiver<Block>,
     empty: &SyncSender<Block>,
     wanted: &AtomicBool,
+    trouble: &Trouble,
 ) -> Result<RecorderSummary, RecorderError> {
     let mut hash = StreamHash::new();
     let mut streams = None;
     let mut summary = RecorderSummary::default();
     let mut asked = std::time::Instant::now();
     loop {
-        match full.recv_timeout(FLUSH_INTERVAL) {
+        let received = full.recv_timeout(FLUSH_INTERVAL);
+        trouble.stand_still();
+        match received {
             Ok(mut block) => {
                 hash_block(&mut hash, &block);
                 altered::take(&mut streams, &block);

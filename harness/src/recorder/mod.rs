@@ -12,11 +12,13 @@ pub mod reader;
 pub mod records;
 mod sink;
 mod stream_hash;
+mod trouble;
 mod writer;
 
 pub use altered::AlteredStreams;
 pub use handle::{Recorder, RecorderSummary};
 pub use stream_hash::StreamHash;
+pub use trouble::Trouble;
 
 use crate::endpoint::ParameterEstimate;
 use crate::source::Epoch;
@@ -122,6 +124,8 @@ pub struct RecorderOptions {
     pub epochs_per_block: usize,
     /// Blocks in circulation; when all are full the run loop waits.
     pub blocks: usize,
+    /// What faults do to disk and thread.
+    pub trouble: Trouble,
 }
 
 impl Default for RecorderOptions {
@@ -132,6 +136,7 @@ impl Default for RecorderOptions {
             metadata: BTreeMap::new(),
             epochs_per_block: 256,
             blocks: 4,
+            trouble: Trouble::default(),
         }
     }
 }

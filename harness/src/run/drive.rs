@@ -38,7 +38,7 @@ pub enum Ended {
     SourceEnded,
     /// Somebody asked for it.
     Cancelled,
-    /// Source or endpoint went away.
+    /// Source, endpoint or the disk of the recording went away.
     Broken,
 }
 
@@ -60,10 +60,15 @@ pub enum RunError {
 }
 
 impl RunError {
-    /// Source or endpoint went away: what was done before stands.
+    /// Source, endpoint or the disk of the recording went away: what was done before stands.
     #[must_use]
     pub fn is_gone(&self) -> bool {
-        matches!(self, Self::Source(SourceError::Gone { .. }) | Self::Endpoint(_))
+        matches!(
+            self,
+            Self::Source(SourceError::Gone { .. })
+                | Self::Endpoint(_)
+                | Self::Recorder(RecorderError::Write { .. })
+        )
     }
 }
 

@@ -4,12 +4,14 @@
 //! recorded beside what reached the core, where they differ.
 
 use super::drive::{CONTROL_EPOCHS, Control, Ended, RunError, answered, over};
+use super::host::Host;
 use super::watch::Watcher;
 use crate::endpoint::Endpoint;
 use crate::recorder::{Event, Extra, Frame, Recorder};
 use crate::source::{Epoch, Source};
 use octant_faults::catalogue::Acts;
 use octant_faults::disturbance::Disturbed;
+use octant_faults::host::Hosted;
 use octant_faults::rule::UnitEvent;
 use octant_faults::station::{Delivered, World};
 use octant_faults::wire::Wired;
@@ -23,10 +25,24 @@ pub struct Faulted {
     pub station: Station,
     /// Epochs at which faults are fired by hand, in order, with their ids.
     pub fires: Vec<(u64, String)>,
+    /// What faults of the host happen to.
+    pub host: Host,
 }
 
-/// Source and endpoint as the station's world.
-pub(super) struct Behind<'a, S: ?Sized, E: ?Sized>(pub(super) &'a mut S, pub(super) &'a mut E);
+impl Faulted {
+    /// What is recorded at the end of a run.
+    pub(super) fn last_words(&self) -> Vec<Event> {
+        let receipts = receipts_event(&self.station.receipts());
+        self.host.event().into_iter().chain([receipts]).collect()
+    }
+}
+
+/// Source, endpoint and host as the station's world.
+pub(super) struct Behind<'a, S: ?Sized, E: ?Sized>(
+    pub(super) &'a mut S,
+    pub(super) &'a mut E,
+    pub(super) &'a mut Host,
+);
 
 impl<S: Source + ?Sized, E: Endpoint + ?Sized> World for Behind<'_, S, E> {
     fn disturbed(&mut self) -> Option<&mut dyn Disturbed> {
@@ -35,6 +51,10 @@ impl<S: Source + ?Sized, E: Endpoint + ?Sized> World for Behind<'_, S, E> {
 
     fn wired(&mut self) -> Option<&mut dyn Wired> {
         self.1.wired()
+    }
+
+    fn host(&mut self) -> Option<&mut dyn Hosted> {
+        Some(self.2)
     }
 
     fn truth(&self) -> Option<Truth> {
@@ -60,7 +80,7 @@ where
     E: Endpoint + ?Sized,
 {
     let ended = pass(source, faulted, endpoint, recorder, watcher, control);
-    recorder.event(receipts_event(&faulted.station.receipts()));
+    faulted.last_words().into_iter().for_each(|event| recorder.event(event));
     ended
 }
 
@@ -86,7 +106,7 @@ where
         revision: 0,
         powered: true,
     };
-    let station = &mut faulted.station;
+    let (station, host) = (&mut faulted.station, &mut faulted.host);
     let wires = station.acts_on(Acts::Wire);
     let mut fires = faulted.fires.iter().peekable();
     let mut epochs = 0u64;
@@ -101,7 +121,7 @@ where
             station.fire(id);
         }
         let mut command = run.command;
-        station.before(&mut command, &run.output, &mut Behind(source, &mut *run.endpoint));
+        station.before(&mut command, &run.output, &mut Behind(source, &mut *run.endpoint, host));
         if !source.next(&command, &mut epoch)? {
             return Ok(Ended::SourceEnded);
         }
@@ -207,7 +227,7 @@ pub(super) fn occurrence_event(id: &str, kind: &str, begins: bool, sample: u64) 
 }
 
 /// The receipts of a run as an event.
-pub(super) fn receipts_event(receipts: &[Receipt]) -> Event {
+fn receipts_event(receipts: &[Receipt]) -> Event {
     let one = |receipt: &Receipt| {
         serde_json::to_value(crate::score::summary::FaultResult::from(receipt))
             .unwrap_or(serde_json::Value::Null)

@@ -3,12 +3,13 @@
 use super::concluded;
 use super::drive::{Control, Ended, RunError, drive};
 use super::faulted::{Faulted, drive_faulted};
+use super::host::Host;
 use super::realtime::{Kept, Line, drive_by_clock};
 use super::watch::Watcher;
 use crate::calibrate::{PassError, in_passes};
 use crate::endpoint::{Conclusion, Endpoint, InProcess, ParameterEstimate};
 use crate::recorder::{
-    Event, Policy, Recorder, RecorderError, RecorderOptions, RecorderSummary, Samples,
+    Event, Policy, Recorder, RecorderError, RecorderOptions, RecorderSummary, Samples, Trouble,
 };
 use crate::scenario::resolve::{Draws, Seeded};
 use crate::scenario::{Method, Realtime, Scenario, Source as SourceKind};
@@ -223,11 +224,11 @@ pub fn run_method(
     }
 }
 
-/// As [`run_method`]; where source or endpoint go away in the middle, the run ends there, with a
-/// recording that is complete up to there, and says so.
+/// As [`run_method`]; where source, endpoint or the disk of the recording go away in the middle, the
+/// run ends there, with a recording that is complete up to there, and says so.
 ///
 /// # Errors
-/// If it can't be set up, a file can't be read to its end, or the recorder fails.
+/// If it can't be set up, a file can't be read to its end, or the recorder fails otherwise.
 pub fn run_as_far_as_it_goes(
     scenario: &Scenario,
     method: Method,
@@ -239,10 +240,19 @@ pub fn run_as_far_as_it_goes(
     if scenario.source.is_recorded() {
         settle(scenario, &plant, &mut core)?;
     }
+    let trouble = Trouble::default();
+    let mut faulted = faulted(scenario, seed)?;
+    if let Some(faulted) = &mut faulted {
+        // Before a device is greeted: it waits for its first sample from then on.
+        faulted.host = Host::new(scenario, &recording, &trouble)?;
+    }
     let opened = crate::source::open(scenario, &plant).map_err(SetupError::Source)?;
     let elsewhere = crate::endpoint::open(scenario, &core).map_err(SetupError::from)?;
     let true_parameters = opened.as_ref().is_none_or(|source| source.has_true_parameters());
-    let options = recorder_options(scenario, seed, &draws, method, true_parameters);
+    let options = RecorderOptions {
+        trouble,
+        ..recorder_options(scenario, seed, &draws, method, true_parameters)
+    };
     let mut recorder = match recording {
         Recording::File(path) => Recorder::to_file(path, &options).map_err(SetupError::Recorder)?,
         Recording::Hash => Recorder::hash_only(&options).map_err(SetupError::Recorder)?,
@@ -253,7 +263,6 @@ pub fn run_as_far_as_it_goes(
     if !scenario.faults.is_empty() || matches!(recording, Recording::Hash) {
         watcher.trace = Some(Trace::new());
     }
-    let mut faulted = faulted(scenario, seed)?;
     let samples = scenario.samples().unwrap_or(u64::MAX);
     let realtime =
         scenario.realtime.by_clock.then_some((&scenario.realtime, scenario.sample_period_ns));
@@ -343,7 +352,7 @@ fn to_the_end<S: Source, E: Endpoint>(
     Ok(Closed { ended, broken, last, conclusion, estimate: endpoint.parameters(), kept, link })
 }
 
-/// The station of a scenario; `None` without faults.
+/// The station of a scenario, with a host to which nothing can happen; `None` without faults.
 pub(super) fn faulted(scenario: &Scenario, seed: u64) -> Result<Option<Faulted>, SetupError> {
     let station = scenario
         .station(seed)
@@ -352,7 +361,7 @@ pub(super) fn faulted(scenario: &Scenario, seed: u64) -> Result<Option<Faulted>,
         .flat_map(|fault| fault.fires.iter().map(|at| (*at, fault.spec.id.clone())))
         .collect();
     fires.sort_unstable();
-    Ok(station.map(|station| Faulted { station, fires }))
+    Ok(station.map(|station| Faulted { station, fires, host: Host::default() }))
 }
 
 /// Least squares linearises about its initial parameters, and a real instrument's errors can be
@@ -473,7 +482,15 @@ fn finish(
         None => None,
     };
     let table = conclusion.table;
-    let recorder = recorder.finish().map_err(RunError::from)?;
+    let (recorder, broken) = match recorder.finish() {
+        Ok(summary) => (summary, broken),
+        // The last of it found no room: the file is readable up to there, as after any other end.
+        Err(error @ RecorderError::Write { .. }) => {
+            (RecorderSummary::default(), broken.or(Some(error.into())))
+        }
+        Err(error) => return Err(RunError::from(error).into()),
+    };
+    let ended = if broken.is_some() { Ended::Broken } else { ended };
     Ok(MethodRun {
         label: label(scenario, method),
         ended,

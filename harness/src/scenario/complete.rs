@@ -203,6 +203,17 @@ pub(crate) fn check(
         (Kind::Settings, Value::Table(table)) => {
             problems.extend(ports::settings(table, path).err())
         }
+        (Kind::Values, Value::Array(entries)) if !entries.is_empty() => {}
+        (Kind::Lists, Value::Array(entries)) if !entries.is_empty() => {
+            for entry in entries.iter().filter(|entry| !is_names(entry)) {
+                let found = entry.value.describe();
+                problems.push(Problem {
+                    place: entry.place.clone(),
+                    path: path.to_owned(),
+                    message: format!("found {found}, expected a list of names, which may be empty"),
+                });
+            }
+        }
         (Kind::Codes, value) if ports::codes(value).is_some_and(|codes| !codes.is_empty()) => {}
         (Kind::Table(section), Value::Table(table)) => {
             complete(table, section, path, &place, problems);
@@ -351,6 +362,11 @@ pub(crate) fn number(value: &Value) -> Option<f64> {
     }
 }
 
+fn is_names(node: &Node) -> bool {
+    let Value::Array(entries) = &node.value else { return false };
+    entries.iter().all(|entry| matches!(entry.value, Value::Text(_)))
+}
+
 /// Whether a kind is meant by a TOML value of this type.
 fn takes(kind: &Kind, value: &Value) -> bool {
     matches!(
@@ -398,6 +414,8 @@ pub(crate) fn expected(kind: &Kind) -> String {
         Kind::Column => "a column number from 1, or a column's name".to_owned(),
         Kind::Port(channel) => ports::expected_port(channel),
         Kind::Settings => "a table of names and values".to_owned(),
+        Kind::Values => "a list of at least one value".to_owned(),
+        Kind::Lists => "a list of lists of names".to_owned(),
         Kind::Codes => {
             "a whole number or the name of an enumeration's item, or an array of them".to_owned()
         }

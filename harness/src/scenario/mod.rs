@@ -5,16 +5,16 @@
 //! ([`resolve`]) and put into the configurations of plant and core, so that two methods compared
 //! on one seed meet the same instrument.
 
-mod complete;
+pub(crate) mod complete;
 mod condition;
 mod derive;
-mod document;
-mod error;
+pub(crate) mod document;
+pub(crate) mod error;
 mod examples;
-mod keys;
+pub(crate) mod keys;
 mod ports;
 pub(crate) mod quantity;
-mod read;
+pub(crate) mod read;
 pub mod resolve;
 mod schema;
 pub mod suite;
@@ -360,6 +360,20 @@ impl Scenario {
             entries.retain(|_| numbers.next().is_some_and(&keep));
         }
         some
+    }
+
+    /// The same scenario with the faults of these ids alone.
+    ///
+    /// # Errors
+    /// In words, if it has no fault of an id.
+    pub fn with_only(&self, faults: &[String]) -> Result<Self, String> {
+        let ids: Vec<&str> = self.faults.iter().map(|fault| fault.spec.id.as_str()).collect();
+        if let Some(unknown) = faults.iter().find(|id| !ids.contains(&id.as_str())) {
+            let known = suggestion(unknown, ids.iter().copied(), "its faults");
+            return Err(format!("no fault has the id {unknown:?}, {known}"));
+        }
+        let keep: Vec<bool> = ids.iter().map(|id| faults.iter().any(|kept| kept == id)).collect();
+        Ok(self.with_faults(|index| keep.get(index).copied().unwrap_or(false)))
     }
 
     /// Samples of the calibration phase.

@@ -111,6 +111,11 @@ fn kind(kind: &Kind) -> Value {
         }
         Kind::Port(channel) => port(channel),
         Kind::Settings => json!({ "type": "object" }),
+        Kind::Values => json!({ "type": "array", "minItems": 1 }),
+        Kind::Lists => {
+            let names = json!({ "type": "array", "items": { "type": "string" } });
+            json!({ "type": "array", "items": names, "minItems": 1 })
+        }
         Kind::Codes => {
             let one = json!({ "anyOf": [{ "type": "integer" }, { "type": "string" }] });
             json!({ "anyOf": [one, { "type": "array", "items": one, "minItems": 1 }] })

@@ -256,6 +256,8 @@ fn example(kind: &Kind) -> String {
         Kind::Column => "2".to_owned(),
         Kind::Port(channel) => ports::example_port(channel),
         Kind::Settings => r#"{ "ship.mass" = 3.2e6 }"#.to_owned(),
+        Kind::Values => "[1]".to_owned(),
+        Kind::Lists => "[[]]".to_owned(),
         Kind::Codes => "1".to_owned(),
         Kind::Table(section) | Kind::Tables(section, ..) => {
             let keys = section.keys.iter().take(if section.one_of { 1 } else { usize::MAX });

@@ -102,13 +102,14 @@ impl<P: Port + 'static> Drop for Supervisor<P> {
 fn watch<P: Port>(shared: &Shared<P>, stop: &EmergencyStop, period: Duration) {
     let mut before = None;
     while !shared.ends.load(Ordering::SeqCst) {
+        let asked = Instant::now();
         let looked = {
             let mut driver = locked(&shared.driver);
             driver.feed().and_then(|()| look(&mut *driver, before, period))
         };
         match looked {
             Ok(status) => {
-                before = Some((Instant::now(), status));
+                before = Some((asked, Instant::now(), status));
                 *locked(&shared.last) = Some(status);
             }
             Err(error) => {
@@ -125,7 +126,7 @@ fn watch<P: Port>(shared: &Shared<P>, stop: &EmergencyStop, period: Duration) {
 /// Asks a table where it is, and whether that is well.
 fn look(
     table: &mut impl Turntable,
-    before: Option<(Instant, Status)>,
+    before: Option<(Instant, Instant, Status)>,
     period: Duration,
 ) -> Result<Status, Error> {
     let status = table.status()?;
@@ -135,15 +136,19 @@ fn look(
         if let Some(fault) = found.fault.filter(|fault| *fault != 0) {
             return Err(Error::Fault { axis, fault });
         }
-        // From where it was, if the language doesn't say it.
-        let rate = found.rate_radps.unwrap_or_else(|| match before {
-            Some((then, status)) => {
-                let passed_s = then.elapsed().as_secs_f64().max(1e-3);
-                (found.angle_rad - status.of(axis).angle_rad) / passed_s
+        // From where it was, if the language doesn't say it. When it was there is known between a
+        // question and its answer only, which is long on a busy host: it turns at least at the first
+        // of these, and about at the second.
+        let (least, rate) = match (found.rate_radps, before) {
+            (Some(rate), _) => (rate, rate),
+            (None, Some((asked, answered, status))) => {
+                let turned = found.angle_rad - status.of(axis).angle_rad;
+                let over = |since: Instant| turned / since.elapsed().as_secs_f64().max(1e-3);
+                (over(asked), over(answered))
             }
-            None => 0.0,
-        });
-        limits.rate(axis, rate / RATE_SLACK)?;
+            (None, None) => (0.0, 0.0),
+        };
+        limits.rate(axis, least / RATE_SLACK)?;
         // Until it is looked at again twice over.
         limits.can_stop(axis, found.angle_rad, rate, 2.0 * period.as_secs_f64())?;
     }

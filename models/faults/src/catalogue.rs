@@ -55,11 +55,13 @@ pub enum Family {
     Aiding,
     /// The wire to a device.
     Wire,
+    /// The host that the harness runs on.
+    Host,
 }
 
 impl Family {
     /// All families, in the order of the documentation.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 10] = [
         Self::Physics,
         Self::Analogue,
         Self::RingLaser,
@@ -69,6 +71,7 @@ impl Family {
         Self::Unit,
         Self::Aiding,
         Self::Wire,
+        Self::Host,
     ];
 
     /// Name for people.
@@ -84,6 +87,7 @@ impl Family {
             Self::Unit => "unit under test",
             Self::Aiding => "aiding",
             Self::Wire => "wire",
+            Self::Host => "host",
         }
     }
 }
@@ -105,6 +109,8 @@ pub enum Acts {
     Unit,
     /// On the wire to the unit under test. Needs an endpoint with a wire.
     Wire,
+    /// On the host that the harness runs on. What it needs is said by its kind.
+    Host,
 }
 
 /// How long a fault of a kind lasts.

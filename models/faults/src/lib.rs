@@ -14,7 +14,7 @@
 //!
 //! Faults of the physical world act inside the plant, before its sensors integrate
 //! ([`disturbance`]), so that gyros and accelerometers feel the same motion. Faults of a wire are
-//! described here ([`wire`]) and realised by who has it.
+//! described here ([`wire`]) and realised by who has it; those of the host ([`host`]) by who runs on it.
 //!
 //! Nothing here allocates after the station is built, and a station whose faults wait costs two
 //! comparisons an epoch.
@@ -27,6 +27,7 @@ extern crate std;
 pub mod catalogue;
 pub mod connection;
 pub mod disturbance;
+pub mod host;
 pub mod kinds;
 pub mod receipt;
 pub mod rule;

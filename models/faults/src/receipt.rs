@@ -23,7 +23,7 @@ pub struct Receipt {
     pub last_sample: Option<u64>,
     /// Epochs that it altered. Of a fault inside the plant: epochs that it was active in; what it
     /// changed there shows in the difference to the run without it. Of a fault of the wire: epochs
-    /// in whose exchange it altered a frame.
+    /// in whose exchange it altered a frame. Of a fault of the host: those that it set in with.
     pub samples_altered: u64,
     /// CRC-32 of what it was given, over the epochs that it altered.
     pub clean_crc32: u32,

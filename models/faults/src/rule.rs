@@ -5,6 +5,7 @@
 //! [`State`]: a rule that was built from the same values and gets it goes on as the other would.
 
 use crate::disturbance::{Disturbance, Motor};
+use crate::host::HostAction;
 use crate::setup::Stream;
 use crate::wire::WireFault;
 use alloc::boxed::Box;
@@ -32,6 +33,8 @@ pub enum Rule {
     Unit(Box<dyn UnitRule>),
     /// On the wire to it.
     Wire(Box<dyn WireRule>),
+    /// On the host of the harness. It remembers nothing.
+    Host(HostAction),
 }
 
 dyn_clone::clone_trait_object!(PlantRule);
@@ -50,6 +53,7 @@ impl State for Rule {
             Self::Delivery(rule) => rule.save(to),
             Self::Unit(rule) => rule.save(to),
             Self::Wire(rule) => rule.save(to),
+            Self::Host(_) => {}
         }
     }
 
@@ -61,6 +65,7 @@ impl State for Rule {
             Self::Delivery(rule) => rule.load(from),
             Self::Unit(rule) => rule.load(from),
             Self::Wire(rule) => rule.load(from),
+            Self::Host(_) => Ok(()),
         }
     }
 }

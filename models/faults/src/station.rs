@@ -9,6 +9,7 @@ mod state;
 
 use crate::catalogue::{Acts, Kind, Lasts};
 use crate::disturbance::Disturbed;
+use crate::host::Hosted;
 use crate::receipt::{Ledger, Receipt};
 use crate::rule::{Context, Rule, SetPoints, UnitEvent};
 use crate::setup::{BuildError, Setup};
@@ -41,6 +42,10 @@ pub trait World {
     fn disturbed(&mut self) -> Option<&mut dyn Disturbed>;
     /// The wire to the unit under test, where there is one.
     fn wired(&mut self) -> Option<&mut dyn Wired> {
+        None
+    }
+    /// The host of the harness, where something can happen to it.
+    fn host(&mut self) -> Option<&mut dyn Hosted> {
         None
     }
     /// Truth at the last epoch, where the source knows it.
@@ -100,7 +105,11 @@ impl Stage {
             || match &self.rule {
                 Rule::Delivery(rule) => rule.holds() > 0,
                 Rule::Samples(rule) => rule.lingers() || self.is_owed(),
-                Rule::Plant(_) | Rule::Command(_) | Rule::Unit(_) | Rule::Wire(_) => false,
+                Rule::Plant(_)
+                | Rule::Command(_)
+                | Rule::Unit(_)
+                | Rule::Wire(_)
+                | Rule::Host(_) => false,
             }
     }
 
@@ -472,7 +481,11 @@ impl Station {
                 self.events.extend(event);
             }
             Rule::Plant(_) => stage.ledger.touched(shared.epoch),
-            Rule::Command(_) | Rule::Samples(_) | Rule::Delivery(_) | Rule::Wire(_) => {}
+            Rule::Command(_)
+            | Rule::Samples(_)
+            | Rule::Delivery(_)
+            | Rule::Wire(_)
+            | Rule::Host(_) => {}
         }
     }
 
@@ -523,7 +536,11 @@ impl Station {
                     }
                     core::mem::swap(&mut self.flight, &mut self.landed);
                 }
-                Rule::Plant(_) | Rule::Command(_) | Rule::Unit(_) | Rule::Wire(_) => {}
+                Rule::Plant(_)
+                | Rule::Command(_)
+                | Rule::Unit(_)
+                | Rule::Wire(_)
+                | Rule::Host(_) => {}
             }
         }
         self.last = *epoch;
@@ -640,6 +657,11 @@ fn begin(stage: &mut Stage, handle: u32, now: &Context<'_>, world: &mut dyn Worl
     }
     if let (Rule::Wire(rule), Some(wire)) = (&mut stage.rule, world.wired()) {
         wire.begin(handle, &rule.begin(now));
+    }
+    if let (Rule::Host(action), Some(host)) = (&stage.rule, world.host())
+        && host.begin(action)
+    {
+        stage.ledger.touched(now.epoch);
     }
 }
 

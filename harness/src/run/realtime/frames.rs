@@ -178,9 +178,9 @@ impl<'a> Frames<'a> {
         S: Source + ?Sized,
         E: Endpoint + ?Sized,
     {
-        let station = &mut faulted.station;
+        let (station, host) = (&mut faulted.station, &mut faulted.host);
         let mut command = self.command;
-        station.before(&mut command, &self.output, &mut Behind(source, endpoint));
+        station.before(&mut command, &self.output, &mut Behind(source, endpoint, host));
         if !source.next(&command, epoch)? {
             return Ok(None);
         }
@@ -303,22 +303,29 @@ impl<'a> Frames<'a> {
         let Some(sent) = self.outstanding.pop_front() else { return clean_told };
         self.found.answers.record(now().since(sent.at));
         let is_new = self.output.parameters_revision != self.revision;
-        self.revision = self.output.parameters_revision;
         self.command = self.output.gimbal_command;
         let answer =
             Answer { output: self.output, estimate: is_new.then(|| endpoint.parameters()), truth };
         if sent.step_ns == step_ns && !clean_told {
-            self.lay(Entry::Frame { clean: *clean, faulted: sent.epoch, answer });
+            self.lay_answer(Entry::Frame { clean: *clean, faulted: sent.epoch, answer });
             return true;
         }
-        self.lay(Entry::Added { step_ns: sent.step_ns, faulted: sent.epoch, answer });
+        self.lay_answer(Entry::Added { step_ns: sent.step_ns, faulted: sent.epoch, answer });
         clean_told
     }
 
-    /// Lays an entry into the ring; where that is full, counts it as dropped.
-    fn lay(&mut self, entry: Entry) {
-        if self.ring.push(entry).is_err() {
-            self.found.dropped += 1;
+    /// Lays an entry into the ring; where that is full, counts it as dropped. True if it is in.
+    fn lay(&mut self, entry: Entry) -> bool {
+        let is_in = self.ring.push(entry).is_ok();
+        self.found.dropped += u64::from(!is_in);
+        is_in
+    }
+
+    /// Lays an entry with the last output. New parameters that find no room go with the next one:
+    /// the recorder waits for those that an output announces.
+    fn lay_answer(&mut self, entry: Entry) {
+        if self.lay(entry) {
+            self.revision = self.output.parameters_revision;
         }
     }
 

@@ -13,7 +13,7 @@ mod frames;
 mod keep;
 
 use super::drive::{Control, Ended, RunError};
-use super::faulted::{Faulted, receipts_event};
+use super::faulted::Faulted;
 use super::watch::Watcher;
 use crate::endpoint::{Endpoint, RemoteClock};
 use crate::recorder::Recorder;
@@ -67,7 +67,6 @@ where
     let names: Vec<(String, String)> = line.faulted.as_ref().map_or_else(Vec::new, |faulted| {
         faulted.station.names().map(|(id, kind)| (id.to_owned(), kind.to_owned())).collect()
     });
-    let receipts = line.faulted.is_some();
     let stop = AtomicBool::new(false);
     let (ended, kept, time) = std::thread::scope(|scope| {
         let stop = &stop;
@@ -89,15 +88,13 @@ where
         let found = frames.found();
         schedule::release(&granted);
         let kept = keeper.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic));
-        let last = receipts.then(|| faulted.map(|f| f.station.receipts())).flatten();
+        let last = faulted.map_or_else(Vec::new, |faulted| faulted.last_words());
         let time = Kept { pacing: pacing(settings, &found, endpoint.remote_clock()), granted };
         (ended, kept.map(|()| last), time)
     });
     let ended = match kept {
-        Ok(receipts) => {
-            if let Some(receipts) = receipts {
-                recorder.event(receipts_event(&receipts));
-            }
+        Ok(last) => {
+            last.into_iter().for_each(|event| recorder.event(event));
             ended
         }
         Err(error) => Err(error.into()),

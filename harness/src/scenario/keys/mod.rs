@@ -3,6 +3,7 @@
 //! Checking, defaults, error messages, the JSON Schema and the test of the tour all read it.
 
 mod calibration;
+mod campaign;
 mod connection;
 mod faults;
 mod fmu;
@@ -15,6 +16,7 @@ mod suite;
 use super::quantity::Dimension;
 use crate::fmu::mapping::channel::Channel;
 
+pub(crate) use campaign::CAMPAIGN;
 pub(crate) use connection::{CONNECTIONS, connection_section};
 pub(crate) use faults::{dimension, kind_section};
 pub(crate) use fmu::{ENDPOINT_FMU, ENDPOINT_MAP, SOURCE_FMU, SOURCE_MAP};
@@ -92,6 +94,10 @@ pub(crate) enum Kind {
     Port(&'static Channel),
     /// A table of names of an FMU's variables with their values. Tables in it are parts of names.
     Settings,
+    /// A list of values, at least one, each as any key may take it.
+    Values,
+    /// A list of lists of names, at least one list.
+    Lists,
     /// Values of an FMU's variable: whole numbers or names of an enumeration, one or an array.
     Codes,
     Table(&'static Section),

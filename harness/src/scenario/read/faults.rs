@@ -12,6 +12,7 @@ use crate::scenario::error::{Place, Problem};
 use crate::scenario::{Endpoint, Method, Scenario, keys, quantity};
 use grid::{Waiting, check_chains};
 use octant_faults::catalogue::{Acts, Kind, Parameter, Takes};
+use octant_faults::kinds::host::{FULL, STARVED};
 use octant_faults::kinds::wire::happens_on;
 use octant_faults::station::Spec;
 use octant_faults::wire::Medium;
@@ -140,6 +141,9 @@ fn fault(table: &Reader<'_>, scenario: &Scenario, timing: &Timing) -> Result<Fau
     if let Some(why) = without_wire(kind, &scenario.endpoint) {
         return Err(table.problem("kind", format!("{name} {why}")));
     }
+    if let Some((key, why)) = on_this_host(kind, scenario, table) {
+        return Err(table.problem(key, format!("{name} {why}")));
+    }
     let mut values = Values::default();
     for parameter in kind.parameters {
         values.set(parameter.name, value(table, parameter)?);
@@ -197,6 +201,25 @@ fn without_wire(kind: &Kind, endpoint: &Endpoint) -> Option<String> {
     };
     (!happens_on(kind, medium))
         .then(|| format!("doesn't happen on {}, which endpoint.uri names", medium.name()))
+}
+
+/// Why nothing would come of a kind of the host, and the key that says so.
+fn on_this_host(
+    kind: &Kind,
+    scenario: &Scenario,
+    table: &Reader<'_>,
+) -> Option<(&'static str, &'static str)> {
+    if kind.name == STARVED.name && !scenario.realtime.by_clock {
+        return Some((
+            "kind",
+            "makes samples late that leave by the clock, and these don't: expected realtime.pace = \
+             \"clock\", or `octant run --realtime`",
+        ));
+    }
+    if kind.name == FULL.name && table.node("repeat").is_some() {
+        return Some(("repeat", "ends the run: the disk stays full, expected no repetition"));
+    }
+    None
 }
 
 /// The value of a parameter. What the check has passed is there.

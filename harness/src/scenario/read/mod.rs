@@ -23,23 +23,23 @@ use std::path::Path;
 /// A table of the completed document with its path and place. What the check has passed is there;
 /// an accessor that meets anything else reports a problem all the same.
 #[derive(Clone)]
-pub(super) struct Reader<'a> {
+pub(crate) struct Reader<'a> {
     table: &'a Table,
     path: String,
     place: Place,
 }
 
 impl<'a> Reader<'a> {
-    pub(super) fn root(table: &'a Table) -> Self {
+    pub(crate) fn root(table: &'a Table) -> Self {
         Self { table, path: String::new(), place: Place::File { line: 1, column: 1 } }
     }
 
-    pub(super) fn new(table: &'a Table, path: &str, place: &Place) -> Self {
+    pub(crate) fn new(table: &'a Table, path: &str, place: &Place) -> Self {
         Self { table, path: path.to_owned(), place: place.clone() }
     }
 
     /// A problem with a key, or with the table where the key is left out.
-    pub(super) fn problem(&self, key: &str, message: impl Into<String>) -> Problem {
+    pub(crate) fn problem(&self, key: &str, message: impl Into<String>) -> Problem {
         let place = match self.table.get(key) {
             Some(Node { place: Place::Default, .. }) | None => &self.place,
             Some(node) => &node.place,
@@ -47,22 +47,22 @@ impl<'a> Reader<'a> {
         Problem { place: place.clone(), path: join(&self.path, key), message: message.into() }
     }
 
-    pub(super) fn node(&self, key: &str) -> Option<&'a Node> {
+    pub(crate) fn node(&self, key: &str) -> Option<&'a Node> {
         self.table.get(key)
     }
 
     /// Dotted path of a key.
-    pub(super) fn join(&self, key: &str) -> String {
+    pub(crate) fn join(&self, key: &str) -> String {
         join(&self.path, key)
     }
 
     /// Whether the scenario itself gives the key, not its default.
-    pub(super) fn given(&self, key: &str) -> bool {
+    pub(crate) fn given(&self, key: &str) -> bool {
         self.table.get(key).is_some_and(|node| node.place != Place::Default)
     }
 
     /// The key that was written first.
-    pub(super) fn first_key(&self) -> &'a str {
+    pub(crate) fn first_key(&self) -> &'a str {
         let given = |entry: &&super::document::Entry| entry.node.place != Place::Default;
         self.table.entries.iter().find(given).map_or("", |entry| &entry.key)
     }
@@ -71,17 +71,17 @@ impl<'a> Reader<'a> {
         self.problem(key, "missing")
     }
 
-    pub(super) fn table(&self, key: &str) -> Result<Reader<'a>, Problem> {
+    pub(crate) fn table(&self, key: &str) -> Result<Reader<'a>, Problem> {
         self.optional_table(key).ok_or_else(|| self.missing(key))
     }
 
-    pub(super) fn optional_table(&self, key: &str) -> Option<Reader<'a>> {
+    pub(crate) fn optional_table(&self, key: &str) -> Option<Reader<'a>> {
         let Some(Node { value: Value::Table(table), place }) = self.node(key) else { return None };
         let place = if *place == Place::Default { &self.place } else { place };
         Some(Reader::new(table, &join(&self.path, key), place))
     }
 
-    pub(super) fn tables(&self, key: &str) -> Vec<Reader<'a>> {
+    pub(crate) fn tables(&self, key: &str) -> Vec<Reader<'a>> {
         let Some(Node { value: Value::Array(entries), .. }) = self.node(key) else {
             return Vec::new();
         };
@@ -98,18 +98,18 @@ impl<'a> Reader<'a> {
             .collect()
     }
 
-    pub(super) fn optional_text(&self, key: &str) -> Option<&'a str> {
+    pub(crate) fn optional_text(&self, key: &str) -> Option<&'a str> {
         match &self.node(key)?.value {
             Value::Text(text) => Some(text),
             _ => None,
         }
     }
 
-    pub(super) fn text(&self, key: &str) -> Result<&'a str, Problem> {
+    pub(crate) fn text(&self, key: &str) -> Result<&'a str, Problem> {
         self.optional_text(key).ok_or_else(|| self.missing(key))
     }
 
-    pub(super) fn texts(&self, key: &str) -> Vec<&'a str> {
+    pub(crate) fn texts(&self, key: &str) -> Vec<&'a str> {
         let Some(Node { value: Value::Array(entries), .. }) = self.node(key) else {
             return Vec::new();
         };
@@ -120,14 +120,14 @@ impl<'a> Reader<'a> {
         entries.iter().filter_map(text).collect()
     }
 
-    pub(super) fn boolean(&self, key: &str) -> Result<bool, Problem> {
+    pub(crate) fn boolean(&self, key: &str) -> Result<bool, Problem> {
         match self.node(key) {
             Some(Node { value: Value::Boolean(value), .. }) => Ok(*value),
             _ => Err(self.missing(key)),
         }
     }
 
-    pub(super) fn integer<T: TryFrom<i64>>(&self, key: &str) -> Result<T, Problem> {
+    pub(crate) fn integer<T: TryFrom<i64>>(&self, key: &str) -> Result<T, Problem> {
         match self.node(key) {
             Some(Node { value: Value::Integer(value), .. }) => {
                 T::try_from(*value).map_err(|_| self.problem(key, format!("{value} is too large")))
@@ -136,11 +136,11 @@ impl<'a> Reader<'a> {
         }
     }
 
-    pub(super) fn number(&self, key: &str) -> Result<f64, Problem> {
+    pub(crate) fn number(&self, key: &str) -> Result<f64, Problem> {
         self.node(key).and_then(|node| number(&node.value)).ok_or_else(|| self.missing(key))
     }
 
-    pub(super) fn numbers<const N: usize>(&self, key: &str) -> Result<[f64; N], Problem> {
+    pub(crate) fn numbers<const N: usize>(&self, key: &str) -> Result<[f64; N], Problem> {
         let Some(Node { value: Value::Array(entries), .. }) = self.node(key) else {
             return Err(self.missing(key));
         };
@@ -148,32 +148,32 @@ impl<'a> Reader<'a> {
         all.try_into().map_err(|_| self.missing(key))
     }
 
-    pub(super) fn optional_si(&self, key: &str) -> Option<f64> {
+    pub(crate) fn optional_si(&self, key: &str) -> Option<f64> {
         quantity::parse(self.optional_text(key)?).ok().map(|quantity| quantity.si)
     }
 
     /// A quantity in SI.
-    pub(super) fn si(&self, key: &str) -> Result<f64, Problem> {
+    pub(crate) fn si(&self, key: &str) -> Result<f64, Problem> {
         self.optional_si(key).ok_or_else(|| self.missing(key))
     }
 
-    pub(super) fn optional_si_vec(&self, key: &str) -> Option<Vec<f64>> {
+    pub(crate) fn optional_si_vec(&self, key: &str) -> Option<Vec<f64>> {
         self.node(key)?;
         let texts = self.texts(key);
         texts.iter().map(|text| quantity::parse(text).ok().map(|quantity| quantity.si)).collect()
     }
 
-    pub(super) fn optional_si_array<const N: usize>(&self, key: &str) -> Option<[f64; N]> {
+    pub(crate) fn optional_si_array<const N: usize>(&self, key: &str) -> Option<[f64; N]> {
         self.optional_si_vec(key)?.try_into().ok()
     }
 
-    pub(super) fn si_array<const N: usize>(&self, key: &str) -> Result<[f64; N], Problem> {
+    pub(crate) fn si_array<const N: usize>(&self, key: &str) -> Result<[f64; N], Problem> {
         self.optional_si_array(key).ok_or_else(|| self.missing(key))
     }
 }
 
 /// Reads a completed document.
-pub(super) fn scenario(document: Table, folder: &Path) -> Result<Scenario, Problem> {
+pub(crate) fn scenario(document: Table, folder: &Path) -> Result<Scenario, Problem> {
     let root = Reader::root(&document);
 
     let imu = root.table("imu")?;

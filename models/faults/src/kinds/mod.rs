@@ -6,6 +6,7 @@ mod analogue;
 mod chance;
 mod channel;
 mod digital;
+pub mod host;
 mod mapped;
 mod onset;
 mod physics;
@@ -31,6 +32,7 @@ pub static KINDS: &[&[&Kind]] = &[
     unit::KINDS,
     aiding::KINDS,
     wire::KINDS,
+    host::KINDS,
 ];
 
 /// All kinds one by one.

@@ -1,7 +1,7 @@
 //! Draws faults from the catalogue: any kind, any values within the bounds, any trigger.
 
 use crate::EPOCHS;
-use octant_faults::catalogue::{Bounds, Dimension, Kind, Lasts, Takes};
+use octant_faults::catalogue::{Acts, Bounds, Dimension, Kind, Lasts, Takes};
 use octant_faults::trigger::{Comparison, Repeat, Schedule, Signal, Trigger};
 use octant_faults::{Channels, Spec, Value, Values, kinds};
 use octant_sample::{Health, Mode};
@@ -159,7 +159,7 @@ fn spec_of(kind: &'static Kind) -> impl Strategy<Value = Spec> {
 
 /// A fault of any kind.
 pub(crate) fn spec() -> impl Strategy<Value = Spec> {
-    // Faults of the wire alter frames, of which there are none here.
-    let here = kinds::all().filter(|kind| kind.acts != octant_faults::catalogue::Acts::Wire);
+    // Faults of the wire alter frames, of which there are none here; those of the host no sample.
+    let here = kinds::all().filter(|kind| !matches!(kind.acts, Acts::Wire | Acts::Host));
     select(here.collect::<Vec<_>>()).prop_flat_map(spec_of)
 }

@@ -1,0 +1,280 @@
+//! Parts of shards put together: the same tables, whatever was run where and in which order.
+
+use super::execute::Shard;
+use super::plan::{Plan, short};
+use super::results::{Columns, TABLES, ordered};
+use super::stop;
+use super::table::{Kind, Table, TableError, Values, write};
+use crate::score::verdict::Verdict;
+use std::borrow::Cow;
+use std::collections::{BTreeMap, HashMap};
+use std::path::{Path, PathBuf};
+
+/// File of a table of a shard in the folder of its campaign.
+#[must_use]
+pub fn part(folder: &Path, shard: Shard, table: &str) -> PathBuf {
+    let name = format!("{}-of-{}.{table}.parquet", shard.number, shard.of);
+    folder.join("parts").join(name)
+}
+
+/// File of a merged table in the folder of its campaign.
+#[must_use]
+pub fn merged(folder: &Path, table: &str) -> PathBuf {
+    folder.join(format!("{table}.parquet"))
+}
+
+/// Why parts can't be put together.
+#[derive(Debug, thiserror::Error)]
+pub enum MergeError {
+    /// A table can't be read or written.
+    #[error(transparent)]
+    Table(#[from] TableError),
+    /// There is nothing.
+    #[error("merge {folder}: no parts of shards are there, expected parts/*.cases.parquet")]
+    Nothing {
+        /// The folder.
+        folder: PathBuf,
+    },
+    /// A part is of another plan.
+    #[error("merge {path}: it is of plan {found}, expected {expected}")]
+    Foreign {
+        /// The part.
+        path: PathBuf,
+        /// The plan that it names.
+        found: String,
+        /// This plan.
+        expected: String,
+    },
+    /// A case came to two results.
+    #[error(
+        "merge {second}: case {case} differs in {column} from {first}: the same case has to come to the same result"
+    )]
+    Differs {
+        /// The case.
+        case: String,
+        /// The first column that differs.
+        column: String,
+        /// A part that has it.
+        first: PathBuf,
+        /// Another one.
+        second: PathBuf,
+    },
+}
+
+/// What was put together.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Merged {
+    /// Parts.
+    pub parts: usize,
+    /// Cases of the plan with a result.
+    pub cases: usize,
+    /// Cases of the plan without.
+    pub missing: usize,
+}
+
+/// The parts in some folders, in order of their names.
+fn parts(folders: &[PathBuf], table: &str) -> Vec<PathBuf> {
+    let end = format!(".{table}.parquet");
+    let mut all: Vec<PathBuf> = folders
+        .iter()
+        .flat_map(|folder| std::fs::read_dir(folder.join("parts")).into_iter().flatten().flatten())
+        .map(|entry| entry.path())
+        .filter(|path| path.to_string_lossy().ends_with(&end))
+        .collect();
+    all.sort();
+    all
+}
+
+/// Where a row is.
+#[derive(Clone, Copy, Debug)]
+struct Row {
+    part: usize,
+    row: usize,
+}
+
+/// Cases of the plan that count: all, or those up to where its rule says that enough is known, by the
+/// parts in `folders`.
+///
+/// # Errors
+/// If a part can't be read.
+pub fn end(plan: &Plan, folders: &[PathBuf]) -> Result<usize, MergeError> {
+    let Some(rule) = &plan.stop else { return Ok(plan.cases.len()) };
+    let mut verdicts: HashMap<String, Verdict> = HashMap::new();
+    // A case that came to no summary checked nothing: it counts as an error.
+    for (table, of_cases) in [("cases", true), ("checks", false)] {
+        for path in parts(folders, table) {
+            let table = Table::open(&path)?;
+            let texts = |name: &str| match table.column(name) {
+                Ok(Some(Values::Text(texts))) => Ok(texts),
+                Ok(_) => Err(TableError::Form {
+                    path: path.clone(),
+                    reason: format!("it has no texts in a column {name}"),
+                }),
+                Err(error) => Err(error),
+            };
+            let which = texts(if of_cases { "error" } else { "requirement" })?;
+            for ((case, which), verdict) in
+                texts("case")?.iter().zip(&which).zip(&texts("verdict")?)
+            {
+                let counts = match which {
+                    Some(which) => of_cases || *which == rule.requirement,
+                    None => false,
+                };
+                let named = Verdict::ALL.iter().find(|v| Some(v.name()) == verdict.as_deref());
+                if let (true, Some(case), Some(verdict)) = (counts, case, named) {
+                    verdicts.insert(case.clone(), *verdict);
+                }
+            }
+        }
+    }
+    let decision = stop::decide(plan, rule, |case| verdicts.get(&case.id).copied());
+    Ok(decision.end(plan.cases.len()))
+}
+
+/// Puts the parts in `folders` together into the tables of `out`, with the cases of the plan up to
+/// `end`, in its order.
+///
+/// # Errors
+/// If a part isn't one of this plan, a case came to two results, or the system refuses.
+pub fn merge(
+    plan: &Plan,
+    folders: &[PathBuf],
+    out: &Path,
+    end: usize,
+) -> Result<Merged, MergeError> {
+    let place: HashMap<&str, usize> =
+        plan.cases.iter().enumerate().map(|(index, case)| (case.id.as_str(), index)).collect();
+    let mut merged_cases = Merged { parts: 0, cases: 0, missing: 0 };
+    for (name, first) in TABLES {
+        let paths = parts(folders, name);
+        if paths.is_empty() {
+            let folder = folders.first().cloned().unwrap_or_default();
+            return Err(MergeError::Nothing { folder });
+        }
+        let tables = paths.iter().map(|path| Table::open(path)).collect::<Result<Vec<_>, _>>()?;
+        for (table, path) in tables.iter().zip(&paths) {
+            if table.plan != plan.id {
+                return Err(MergeError::Foreign {
+                    path: path.clone(),
+                    found: short(&table.plan).to_owned(),
+                    expected: short(&plan.id).to_owned(),
+                });
+            }
+        }
+        let mut rows: BTreeMap<usize, Vec<Row>> = BTreeMap::new();
+        for (at, table) in tables.iter().enumerate() {
+            let Some(Values::Text(cases)) = table.column("case")? else {
+                let reason = "it has no column case".to_owned();
+                return Err(TableError::Form { path: paths[at].clone(), reason }.into());
+            };
+            for (row, case) in cases.iter().enumerate() {
+                let index = case.as_deref().and_then(|case| place.get(case).copied());
+                let Some(index) = index else {
+                    let reason = format!("the plan has no case {}", case.as_deref().unwrap_or(""));
+                    return Err(TableError::Form { path: paths[at].clone(), reason }.into());
+                };
+                rows.entry(index).or_default().push(Row { part: at, row });
+            }
+        }
+        let columns = columns(first, &tables);
+        refuse_differing(plan, &rows, &tables, &paths, &columns)?;
+        // Of a case that several parts have, the rows of the first.
+        let kept: Vec<Row> = rows
+            .range(..end)
+            .flat_map(|(_, rows)| {
+                let first = rows.first().map_or(0, |row| row.part);
+                rows.iter().copied().filter(move |row| row.part == first)
+            })
+            .collect();
+        // A column of cases that don't count is none.
+        let empty = |column: &str| -> Result<bool, TableError> {
+            for (part, table) in tables.iter().enumerate() {
+                let Some(values) = table.column(column)? else { continue };
+                let mut mine = kept.iter().filter(|row| row.part == part);
+                if mine.any(|row| values.at(row.row).is_some()) {
+                    return Ok(false);
+                }
+            }
+            Ok(true)
+        };
+        let mut columns = columns;
+        if end < plan.cases.len() {
+            let first = |name: &String| first.iter().any(|(other, _)| other == name);
+            let mut there = Vec::with_capacity(columns.len());
+            for (column, kind) in columns {
+                if first(&column) || !empty(&column)? {
+                    there.push((column, kind));
+                }
+            }
+            columns = there;
+        }
+        if name == "cases" {
+            merged_cases = Merged {
+                parts: paths.len(),
+                cases: kept.len(),
+                missing: end.min(plan.cases.len()) - kept.len(),
+            };
+        }
+        write(&merged(out, name), &plan.id, &columns, |index| {
+            let (column, kind) = &columns[index];
+            let of_parts =
+                tables.iter().map(|table| table.column(column)).collect::<Result<Vec<_>, _>>()?;
+            let mut values = Values::new(*kind);
+            for Row { part, row } in &kept {
+                values.push(of_parts[*part].as_ref().and_then(|values| values.at(*row)));
+            }
+            Ok(Cow::Owned(values))
+        })?;
+    }
+    Ok(merged_cases)
+}
+
+/// Every column of any part; one of different kinds is one of texts.
+fn columns(first: Columns, tables: &[Table]) -> Vec<(String, Kind)> {
+    let mut kinds: BTreeMap<&str, Kind> = BTreeMap::new();
+    for (name, kind) in tables.iter().flat_map(|table| &table.columns) {
+        let all = kinds.entry(name).or_insert(*kind);
+        if *all != *kind {
+            *all = Kind::Text;
+        }
+    }
+    ordered(first, &kinds)
+}
+
+/// A case that several parts have is the same in all of them.
+fn refuse_differing(
+    plan: &Plan,
+    rows: &BTreeMap<usize, Vec<Row>>,
+    tables: &[Table],
+    paths: &[PathBuf],
+    columns: &[(String, Kind)],
+) -> Result<(), MergeError> {
+    let several = |rows: &&Vec<Row>| {
+        rows.first().is_some_and(|first| rows.iter().any(|r| r.part != first.part))
+    };
+    if !rows.values().any(|rows| several(&rows)) {
+        return Ok(());
+    }
+    for (column, _) in columns {
+        let values =
+            tables.iter().map(|table| table.column(column)).collect::<Result<Vec<_>, _>>()?;
+        let value = |row: &Row| values[row.part].as_ref().and_then(|values| values.at(row.row));
+        for (index, rows) in rows.iter().filter(|(_, rows)| several(rows)) {
+            // Rows of the same number in different parts are the same row; one that has more differs.
+            let of = |part: usize| rows.iter().filter(move |row| row.part == part);
+            let first = rows[0].part;
+            for part in rows.iter().map(|row| row.part).filter(|part| *part != first) {
+                let same = of(first).map(value).eq(of(part).map(value));
+                if !same {
+                    return Err(MergeError::Differs {
+                        case: plan.cases[*index].id.clone(),
+                        column: column.clone(),
+                        first: paths[first].clone(),
+                        second: paths[part].clone(),
+                    });
+                }
+            }
+        }
+    }
+    Ok(())
+}

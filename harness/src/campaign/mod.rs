@@ -1,0 +1,26 @@
+//! Campaigns: many cases of scenarios, planned, run anywhere, merged and judged.
+//!
+//! [`file`] is what a user writes, [`plan`] the list of cases that it makes, [`case`] one of them run,
+//! [`execute`] all of them, each in a process of its own, [`results`] their tables, [`merge`] those of all
+//! shards.
+
+pub mod case;
+mod draw;
+pub mod emit;
+pub mod execute;
+pub mod file;
+pub mod merge;
+pub mod plan;
+pub mod results;
+pub mod status;
+pub mod stop;
+pub mod table;
+
+/// A file that gets its name when it is whole; what others may read of it is as of any new file.
+fn new_file(folder: &std::path::Path) -> std::io::Result<tempfile::NamedTempFile> {
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(".").suffix(".new");
+    #[cfg(unix)]
+    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+    builder.tempfile_in(folder)
+}

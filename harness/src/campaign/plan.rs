@@ -1,0 +1,511 @@
+//! A plan: the list of cases of a campaign, each with an id that is made of what it is.
+//!
+//! Nothing in a plan changes after it is made. A campaign that grows makes another plan, in which
+//! every case that was there before has the id that it had.
+
+use super::file::{Campaign, Factor, Levels, Limits, Member, Stop};
+use crate::scenario::{Scenario, ScenarioError};
+use octant_statistics::proportion::Demand;
+use serde::{Deserialize, Serialize};
+use std::collections::{BTreeMap, HashMap};
+use std::path::{Path, PathBuf};
+
+/// Version of `plan.json`.
+pub const SCHEMA: u32 = 1;
+/// Name of a plan in the folder of its campaign.
+pub const FILE_NAME: &str = "plan.json";
+/// Cases of a plan at most.
+pub const CASES_MAX: u64 = 10_000_000;
+
+/// The plan of a campaign.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Plan {
+    /// Version of this form: [`SCHEMA`].
+    pub schema: u32,
+    /// BLAKE3 of everything below but names of files, hexadecimal.
+    pub id: String,
+    /// Name of the campaign.
+    pub title: String,
+    /// File of the campaign.
+    pub campaign: PathBuf,
+    /// What a case may use.
+    pub limits: CaseLimits,
+    /// When enough is known.
+    pub stop: Option<StopRule>,
+    /// Names of the factors, in the order of the campaign.
+    pub factors: Vec<String>,
+    /// The scenarios.
+    pub scenarios: Vec<PlannedScenario>,
+    /// Every case, in the order in which they are begun.
+    pub cases: Vec<Case>,
+}
+
+/// What a case may use.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct CaseLimits {
+    /// Time, s.
+    pub time_s: f64,
+    /// Address space, MiB.
+    pub memory_mib: u64,
+}
+
+impl From<Limits> for CaseLimits {
+    fn from(limits: Limits) -> Self {
+        Self { time_s: limits.time_s, memory_mib: limits.memory_mib }
+    }
+}
+
+/// When enough is known.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct StopRule {
+    /// The requirement that decides.
+    pub requirement: String,
+    /// What has to be shown of it.
+    pub demand: Demand,
+    /// After how many cases, in the order of the plan, it is looked at.
+    pub every: u64,
+}
+
+impl From<Stop> for StopRule {
+    fn from(stop: Stop) -> Self {
+        Self { requirement: stop.requirement, demand: stop.demand, every: stop.every }
+    }
+}
+
+/// A scenario of a plan.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct PlannedScenario {
+    /// Its name in the campaign.
+    pub id: String,
+    /// Its file.
+    pub file: PathBuf,
+    /// BLAKE3 of the file, hexadecimal.
+    pub blake3: String,
+    /// Ids of the requirements that its cases check.
+    pub requirements: Vec<String>,
+}
+
+/// One case: everything that makes its result.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Case {
+    /// The first 16 digits of the BLAKE3 of the scenario's, of `set`, `faults` and `seed`.
+    pub id: String,
+    /// Name of the scenario.
+    pub scenario: String,
+    /// Seed of the run.
+    pub seed: u64,
+    /// Which of the runs of its combination, from 0.
+    pub replicate: u32,
+    /// What is set in the scenario, as `KEY=VALUE`.
+    pub set: Vec<String>,
+    /// Faults that are injected; null: all that the scenario has.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub faults: Option<Vec<String>>,
+    /// Value of each factor, for people and for statistics.
+    pub factors: BTreeMap<String, FactorValue>,
+}
+
+/// What a factor is in a case.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(untagged)]
+pub enum FactorValue {
+    /// A number, in the factor's unit.
+    Number(f64),
+    /// Anything else, as it is written.
+    Text(String),
+}
+
+/// Why there is no plan.
+#[derive(Debug, thiserror::Error)]
+pub enum PlanError {
+    /// A file of the campaign isn't right.
+    #[error(transparent)]
+    File(#[from] ScenarioError),
+    /// A file can't be read or written.
+    #[error("{action} {path}: {source}")]
+    System {
+        /// What was tried.
+        action: &'static str,
+        /// On what.
+        path: PathBuf,
+        /// What the system said.
+        source: std::io::Error,
+    },
+    /// The campaign contradicts itself.
+    #[error("plan {campaign}: {reason}")]
+    Contradiction {
+        /// The campaign.
+        campaign: PathBuf,
+        /// What is wrong.
+        reason: String,
+    },
+    /// Not a plan.
+    #[error("read {path}: {reason}")]
+    Form {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it.
+        reason: String,
+    },
+}
+
+impl Plan {
+    /// The plan of a campaign file.
+    ///
+    /// # Errors
+    /// If the campaign or one of its scenarios isn't right, or any of its cases isn't.
+    pub fn of(path: &Path) -> Result<Self, PlanError> {
+        let campaign = Campaign::load(path)?;
+        let contradiction =
+            |reason: String| PlanError::Contradiction { campaign: path.to_owned(), reason };
+        let grid: u64 =
+            campaign.factors.iter().filter_map(|f| f.levels.grid()).map(|n| n as u64).product();
+        let count = grid
+            .saturating_mul(u64::from(campaign.replicates))
+            .saturating_mul(campaign.scenarios.len() as u64);
+        if count > CASES_MAX {
+            return Err(contradiction(format!(
+                "it has {count} cases, at most {CASES_MAX} are expected"
+            )));
+        }
+        let draws = super::draw::draws(&campaign).map_err(&contradiction)?;
+        let scenarios = campaign.scenarios.iter().map(planned).collect::<Result<Vec<_>, _>>()?;
+        let mut cases = Vec::new();
+        // More replicates are added at the end.
+        for replicate in 0..campaign.replicates {
+            for (member, planned) in campaign.scenarios.iter().zip(&scenarios) {
+                for cell in 0..grid {
+                    let mut case = Case {
+                        id: String::new(),
+                        scenario: member.id.clone(),
+                        seed: campaign.seed.wrapping_add(u64::from(replicate)),
+                        replicate,
+                        set: member.set.clone(),
+                        faults: None,
+                        factors: BTreeMap::new(),
+                    };
+                    for (index, factor) in campaign.factors.iter().enumerate() {
+                        let at = match factor.levels.grid() {
+                            Some(_) => At::Level(level_of(&campaign.factors, cell, index)),
+                            None => draws.at(index, replicate),
+                        };
+                        give(&mut case, factor, at);
+                    }
+                    case.id = id_of(&planned.blake3, &case);
+                    cases.push(case);
+                }
+            }
+        }
+        let mut seen: HashMap<&str, &Case> = HashMap::new();
+        for case in &cases {
+            if let Some(other) = seen.insert(&case.id, case) {
+                return Err(contradiction(format!(
+                    "scenario {:?} and scenario {:?} give the same case {}: expected something that \
+                     differs between them",
+                    other.scenario, case.scenario, case.id
+                )));
+            }
+        }
+        if let Some(stop) = &campaign.stop
+            && !scenarios.iter().any(|s| s.requirements.contains(&stop.requirement))
+        {
+            return Err(contradiction(format!(
+                "stop.requirement is {:?}, and no scenario checks it",
+                stop.requirement
+            )));
+        }
+        let mut plan = Self {
+            schema: SCHEMA,
+            id: String::new(),
+            title: campaign.title,
+            campaign: absolute(path)?,
+            limits: campaign.limits.into(),
+            stop: campaign.stop.map(StopRule::from),
+            factors: campaign.factors.iter().map(|factor| factor.name.clone()).collect(),
+            scenarios,
+            cases,
+        };
+        plan.check_cases()?;
+        plan.id = plan.hash();
+        Ok(plan)
+    }
+
+    /// Reads a plan.
+    ///
+    /// # Errors
+    /// If it can't be read, isn't a plan of this version, or was changed after it was made.
+    pub fn read(path: &Path) -> Result<Self, PlanError> {
+        let form = |reason: String| PlanError::Form { path: path.to_owned(), reason };
+        let text = system("read", path, std::fs::read_to_string(path))?;
+        let version: Version = serde_json::from_str(&text)
+            .map_err(|error| form(format!("expected a plan of a campaign: {error}")))?;
+        if version.schema != SCHEMA {
+            return Err(form(format!(
+                "found version {}, this program reads version {SCHEMA}{}",
+                version.schema,
+                if version.schema > SCHEMA { ": a newer Octant wrote it" } else { "" }
+            )));
+        }
+        let plan: Self = serde_json::from_str(&text)
+            .map_err(|error| form(format!("expected a plan of a campaign: {error}")))?;
+        let hash = plan.hash();
+        if hash != plan.id {
+            return Err(form(format!(
+                "it was changed after it was made: its contents give the id {}, expected {}",
+                short(&hash),
+                short(&plan.id)
+            )));
+        }
+        Ok(plan)
+    }
+
+    /// Writes the plan as `plan.json` into a folder, which is made. A plan that is there already is
+    /// left where it is the same, and replaced where it is a part of this one and `extend` is set.
+    ///
+    /// # Errors
+    /// If there is another plan, or the system refuses.
+    pub fn write(&self, folder: &Path, extend: bool) -> Result<Written, PlanError> {
+        let path = folder.join(FILE_NAME);
+        let mut written = Written::New;
+        if path.exists() {
+            let there = Self::read(&path)?;
+            if there.id == self.id {
+                return Ok(Written::There);
+            }
+            let ids: std::collections::HashSet<&str> = self.ids().collect();
+            let gone = there.ids().filter(|id| !ids.contains(id)).count();
+            let form = |reason: String| PlanError::Form { path: path.clone(), reason };
+            if gone > 0 {
+                return Err(form(format!(
+                    "another plan is there, of which {gone} of {} cases are not in this one: expected \
+                     an empty folder",
+                    there.cases.len()
+                )));
+            }
+            if !extend {
+                return Err(form(format!(
+                    "a plan with {} of these {} cases is there: --extend takes it over, with its \
+                     results",
+                    there.cases.len(),
+                    self.cases.len()
+                )));
+            }
+            written = Written::Extended(self.cases.len() - there.cases.len());
+        }
+        system("create", folder, std::fs::create_dir_all(folder))?;
+        let text = self.to_json();
+        let new = system("create a file in", folder, super::new_file(folder))?;
+        system("write", &path, std::fs::write(new.path(), text))?;
+        system("write", &path, new.persist(&path).map_err(|error| error.error))?;
+        Ok(written)
+    }
+
+    fn ids(&self) -> impl Iterator<Item = &str> {
+        self.cases.iter().map(|case| case.id.as_str())
+    }
+
+    fn to_json(&self) -> String {
+        // Of these types nothing can fail.
+        serde_json::to_string_pretty(self).unwrap_or_default() + "\n"
+    }
+
+    /// The id that the contents give, wherever the files lie.
+    fn hash(&self) -> String {
+        let placeless = |scenario: &PlannedScenario| PlannedScenario {
+            file: PathBuf::new(),
+            ..scenario.clone()
+        };
+        let unnamed = Self {
+            id: String::new(),
+            campaign: PathBuf::new(),
+            scenarios: self.scenarios.iter().map(placeless).collect(),
+            ..self.clone()
+        };
+        blake3::hash(unnamed.to_json().as_bytes()).to_hex().to_string()
+    }
+
+    /// A case by its id.
+    #[must_use]
+    pub fn case(&self, id: &str) -> Option<&Case> {
+        self.cases.iter().find(|case| case.id == id)
+    }
+
+    /// The scenario of a case.
+    ///
+    /// # Errors
+    /// If there is none of its name.
+    pub fn planned(&self, case: &Case) -> Result<&PlannedScenario, PlanError> {
+        let found = self.scenarios.iter().find(|scenario| scenario.id == case.scenario);
+        found.ok_or_else(|| PlanError::Contradiction {
+            campaign: self.campaign.clone(),
+            reason: format!(
+                "case {} is of scenario {:?}, which isn't there",
+                case.id, case.scenario
+            ),
+        })
+    }
+
+    /// That the scenarios' files are those that were planned.
+    ///
+    /// # Errors
+    /// If one can't be read, or was changed.
+    pub fn check_files(&self) -> Result<(), PlanError> {
+        self.scenarios.iter().try_for_each(PlannedScenario::check_file)
+    }
+
+    /// That every case can be set up, before any is run.
+    fn check_cases(&self) -> Result<(), PlanError> {
+        // Replicates of a combination differ in their seed alone where nothing is drawn.
+        let mut seen = std::collections::HashSet::new();
+        for case in &self.cases {
+            if seen.insert((&case.scenario, &case.set, &case.faults)) {
+                let scenario = self.planned(case)?.with(case)?;
+                if !scenario.source.has_plant() || scenario.realtime.by_clock {
+                    return Err(PlanError::Contradiction {
+                        campaign: self.campaign.clone(),
+                        reason: format!(
+                            "scenario {:?} is not simulated: a campaign needs source.uri = \"plant\", \
+                             and realtime.pace = \"free\"",
+                            case.scenario
+                        ),
+                    });
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+impl PlannedScenario {
+    fn check_file(&self) -> Result<(), PlanError> {
+        let bytes = system("read", &self.file, std::fs::read(&self.file))?;
+        let found = blake3::hash(&bytes).to_hex().to_string();
+        if found == self.blake3 {
+            return Ok(());
+        }
+        Err(PlanError::Form {
+            path: self.file.clone(),
+            reason: format!(
+                "it was changed after the campaign was planned: found {}, expected {}",
+                short(&found),
+                short(&self.blake3)
+            ),
+        })
+    }
+
+    /// The scenario of a case, as its run has it.
+    ///
+    /// # Errors
+    /// If the file isn't the one that was planned, or the scenario isn't right.
+    pub fn scenario(&self, case: &Case) -> Result<Scenario, PlanError> {
+        self.check_file()?;
+        self.with(case)
+    }
+
+    fn with(&self, case: &Case) -> Result<Scenario, PlanError> {
+        let scenario = Scenario::load(&self.file, &case.set)?;
+        let Some(faults) = &case.faults else { return Ok(scenario) };
+        scenario
+            .with_only(faults)
+            .map_err(|reason| PlanError::Form { path: self.file.clone(), reason })
+    }
+}
+
+/// What became of a plan that was written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Written {
+    /// There was none.
+    New,
+    /// It was there already.
+    There,
+    /// It took the place of a smaller one: so many cases are new.
+    Extended(usize),
+}
+
+#[derive(Deserialize)]
+struct Version {
+    schema: u32,
+}
+
+/// The first digits of a hash, for people.
+pub(crate) fn short(hash: &str) -> &str {
+    hash.get(..12).unwrap_or(hash)
+}
+
+/// What a factor is in a case: which of its levels, or a number.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum At {
+    /// Index of a level.
+    Level(usize),
+    /// A number that was drawn.
+    Number(f64),
+}
+
+/// Which level of a factor a cell of the grid has; the last factor runs fastest.
+fn level_of(factors: &[Factor], cell: u64, index: usize) -> usize {
+    let levels = |factor: &Factor| factor.levels.grid().map_or(1, |levels| levels as u64);
+    let faster: u64 = factors.iter().skip(index + 1).map(levels).product();
+    factors.get(index).map_or(0, |factor| (cell / faster % levels(factor)) as usize)
+}
+
+fn absolute(path: &Path) -> Result<PathBuf, PlanError> {
+    system("find", path, std::path::absolute(path))
+}
+
+fn planned(member: &Member) -> Result<PlannedScenario, PlanError> {
+    let bytes = system("read", &member.file, std::fs::read(&member.file))?;
+    let base = Scenario::load(&member.file, &member.set)?;
+    Ok(PlannedScenario {
+        id: member.id.clone(),
+        file: absolute(&member.file)?,
+        blake3: blake3::hash(&bytes).to_hex().to_string(),
+        requirements: base.requirements.iter().map(|r| r.check.id.clone()).collect(),
+    })
+}
+
+/// Gives a factor to a case.
+fn give(case: &mut Case, factor: &Factor, at: At) {
+    let value = match (&factor.levels, at) {
+        (Levels::Values { key, values, .. }, At::Level(level)) => {
+            case.set.push(format!("{key}={}", values[level]));
+            plain(&values[level])
+        }
+        (Levels::Faults { lists, .. }, At::Level(level)) => {
+            let list = &lists[level];
+            case.faults = Some(list.clone());
+            FactorValue::Text(if list.is_empty() { "none".to_owned() } else { list.join(" ") })
+        }
+        (Levels::Distributed { key, unit, .. }, At::Number(number)) => {
+            case.set.push(match unit {
+                Some(unit) => format!("{key}=\"{number} {unit}\""),
+                None => format!("{key}={number:?}"),
+            });
+            FactorValue::Number(number)
+        }
+        // Levels and draws are made of the same factor.
+        (_, At::Level(_) | At::Number(_)) => return,
+    };
+    case.factors.insert(factor.name.clone(), value);
+}
+
+/// A value of TOML for statistics: a number, or the number of a quantity, or a text.
+fn plain(value: &str) -> FactorValue {
+    let text = value.trim().trim_matches('"');
+    let number = text.parse::<f64>().ok().filter(|number| number.is_finite());
+    number.map_or_else(|| FactorValue::Text(text.to_owned()), FactorValue::Number)
+}
+
+/// The id of a case.
+fn id_of(scenario_blake3: &str, case: &Case) -> String {
+    // One JSON text: no two different cases write the same.
+    let content = serde_json::json!([scenario_blake3, case.set, case.faults, case.seed]);
+    blake3::hash(content.to_string().as_bytes()).to_hex().as_str()[..16].to_owned()
+}
+
+fn system<T>(
+    action: &'static str,
+    path: &Path,
+    result: std::io::Result<T>,
+) -> Result<T, PlanError> {
+    result.map_err(|source| PlanError::System { action, path: path.to_owned(), source })
+}

@@ -1,0 +1,248 @@
+//! `octant campaign`: many cases of scenarios, planned, run anywhere, merged.
+
+mod run;
+
+use super::{Failure, print, print_json};
+use crate::campaign::case::{self, Job};
+use crate::campaign::execute::{ExecuteError, Shard};
+use crate::campaign::merge::{self, MergeError};
+use crate::campaign::plan::{FILE_NAME, Plan, PlanError, Written};
+use crate::campaign::{emit, status};
+use crate::run::Control;
+use crate::score::verdict::Verdict;
+use clap::{Args, Subcommand, ValueEnum};
+use std::path::{Path, PathBuf};
+
+#[derive(Debug, Args)]
+pub(super) struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Make the list of cases of a campaign, and check every one.
+    Plan {
+        /// The campaign, a TOML file.
+        #[arg(value_name = "CAMPAIGN")]
+        campaign: PathBuf,
+        /// Folder for the plan and the results; by default named for the file, in runs/.
+        #[arg(long, value_name = "DIR")]
+        out: Option<PathBuf>,
+        /// Replace a plan all of whose cases are in this one; its results stay.
+        #[arg(long)]
+        extend: bool,
+    },
+    /// Run the cases that have no result yet, each in a process of its own.
+    Run(run::Arguments),
+    /// Tell how far a campaign is, and what failed.
+    Status {
+        /// Folder of the campaign.
+        #[arg(value_name = "DIR")]
+        folder: PathBuf,
+        /// Print one JSON object.
+        #[arg(long)]
+        json: bool,
+    },
+    /// Put the parts of all shards together: cases.parquet, checks.parquet and drift.parquet.
+    Merge {
+        /// Folder of the campaign.
+        #[arg(value_name = "DIR")]
+        folder: PathBuf,
+        /// Further folders with parts of the same plan, as other machines left them.
+        #[arg(value_name = "OTHER")]
+        others: Vec<PathBuf>,
+    },
+    /// Run one case again, with all the evidence of a run.
+    Case {
+        /// Folder of the campaign.
+        #[arg(value_name = "DIR")]
+        folder: PathBuf,
+        /// Its id.
+        #[arg(value_name = "CASE")]
+        case: String,
+        /// Folder of the run; by default named for the case, in runs/.
+        #[arg(long, value_name = "DIR")]
+        out: Option<PathBuf>,
+    },
+    /// Write what a scheduler needs to run a campaign: nothing is submitted.
+    Emit {
+        /// Which one.
+        #[arg(value_enum)]
+        scheduler: Scheduler,
+        /// Folder of the campaign, as the nodes see it.
+        #[arg(value_name = "DIR")]
+        folder: PathBuf,
+        /// Parts into which it is divided.
+        #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000))]
+        shards: u32,
+        /// Cases at a time, of each part.
+        #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..))]
+        jobs: u16,
+        /// Image with the program, for Kubernetes.
+        #[arg(long, value_name = "IMAGE", default_value = "octant:latest")]
+        image: String,
+        /// Claim of the volume that holds the folder, for Kubernetes.
+        #[arg(long, value_name = "NAME", default_value = "octant")]
+        claim: String,
+    },
+    /// What `run` starts for each case: reads it on standard input.
+    #[command(hide = true)]
+    One,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum Scheduler {
+    /// An array script for sbatch.
+    Slurm,
+    /// An indexed job for kubectl.
+    K8s,
+}
+
+pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
+    match &arguments.command {
+        Command::Plan { campaign, out, extend } => plan(campaign, out.as_deref(), *extend),
+        Command::Run(arguments) => run::command(arguments),
+        Command::Status { folder, json } => {
+            let status =
+                status::of(&read(folder)?, folder, Shard::WHOLE).map_err(Failure::bench)?;
+            if *json {
+                print_json(&status)?
+            } else {
+                print(&status.text())?
+            }
+            Ok(status.verdict())
+        }
+        Command::Merge { folder, others } => merge_parts(folder, others),
+        Command::Case { folder, case, out } => again(folder, case, out.as_deref()),
+        Command::Emit { scheduler, folder, shards, jobs, image, claim } => {
+            let plan = read(folder)?;
+            let job = emit::Job { plan: &plan, folder, shards: *shards, jobs: *jobs };
+            print(&match scheduler {
+                Scheduler::Slurm => emit::slurm(&job),
+                Scheduler::K8s => emit::kubernetes(&job, image, claim),
+            })?;
+            Ok(Verdict::Pass)
+        }
+        Command::One => one(),
+    }
+}
+
+impl From<PlanError> for Failure {
+    fn from(error: PlanError) -> Self {
+        match error {
+            PlanError::File(error) => Self::input(error),
+            error => Self::input(error).failed(),
+        }
+    }
+}
+
+impl From<ExecuteError> for Failure {
+    fn from(error: ExecuteError) -> Self {
+        match error {
+            ExecuteError::Plan(error) => error.into(),
+            ExecuteError::Foreign { .. } => Self::input(error).failed(),
+            ExecuteError::System { .. } => Self::bench(error).failed(),
+        }
+    }
+}
+
+impl From<MergeError> for Failure {
+    fn from(error: MergeError) -> Self {
+        match error {
+            MergeError::Table(_) | MergeError::Nothing { .. } | MergeError::Foreign { .. } => {
+                Self::input(error).failed()
+            }
+            MergeError::Differs { .. } => Self::bench(error).failed(),
+        }
+    }
+}
+
+/// The plan of a folder.
+fn read(folder: &Path) -> Result<Plan, Failure> {
+    Ok(Plan::read(&folder.join(FILE_NAME))?)
+}
+
+fn plan(campaign: &Path, out: Option<&Path>, extend: bool) -> Result<Verdict, Failure> {
+    let plan = Plan::of(campaign)?;
+    let stem = campaign.file_stem().map_or("campaign".into(), |stem| stem.to_string_lossy());
+    let folder = out.map_or_else(|| Path::new("runs").join(stem.as_ref()), Path::to_owned);
+    let written = plan.write(&folder, extend)?;
+    let what = match written {
+        Written::New => String::new(),
+        Written::There => ", which is there already".to_owned(),
+        Written::Extended(new) => format!(", of which {new} are new"),
+    };
+    print(&format!("{} cases{what}\n{}\n", plan.cases.len(), folder.join(FILE_NAME).display()))?;
+    Ok(Verdict::Pass)
+}
+
+fn merge_parts(folder: &Path, others: &[PathBuf]) -> Result<Verdict, Failure> {
+    let plan = read(folder)?;
+    let mut folders = vec![folder.to_owned()];
+    folders.extend_from_slice(others);
+    let end = merge::end(&plan, &folders)?;
+    let merged = merge::merge(&plan, &folders, folder, end)?;
+    let missing = match merged.missing {
+        0 => String::new(),
+        missing => format!(", {missing} have no result yet"),
+    };
+    print(&format!("{} of {end} cases from {} parts{missing}\n", merged.cases, merged.parts))?;
+    for (table, _) in crate::campaign::results::TABLES {
+        print(&format!("{}\n", merge::merged(folder, table).display()))?;
+    }
+    Ok(if merged.missing == 0 { Verdict::Pass } else { Verdict::Inconclusive })
+}
+
+/// Runs one case as `octant run` would.
+fn again(folder: &Path, id: &str, out: Option<&Path>) -> Result<Verdict, Failure> {
+    let plan = read(folder)?;
+    let Some(case) = plan.case(id) else {
+        let ids = plan.cases.iter().map(|case| case.id.as_str());
+        let near: Vec<&str> = ids.filter(|other| other.starts_with(id)).take(5).collect();
+        let known = if near.is_empty() { String::new() } else { format!(": {}", near.join(", ")) };
+        return Err(Failure::input(format!(
+            "failed to run case {id}: the plan has no such case{known}"
+        )));
+    };
+    let planned = plan.planned(case)?;
+    // That it is the scenario which was planned.
+    planned.scenario(case)?;
+    let out = out.map_or_else(|| Path::new("runs").join(format!("case-{id}")), Path::to_owned);
+    super::run::case(&planned.file, case, &out)
+}
+
+/// The process of one case.
+fn one() -> Result<Verdict, Failure> {
+    let job: Job = serde_json::from_reader(std::io::stdin().lock()).map_err(|error| {
+        Failure::input(format!(
+            "failed to read a case on standard input: {error} (octant campaign run starts this)"
+        ))
+    })?;
+    limit_memory(job.memory_mib)?;
+    let result = case::run(&job.scenario, &job.case, &Control::default())
+        .map_err(|error| Failure::bench(error).failed())?;
+    let json = result.to_json().map_err(|error| Failure::bench(error).failed())?;
+    case::keep(&job.folder, &job.case.id, json.as_bytes()).map_err(|error| {
+        let path = case::file(&job.folder, &job.case.id);
+        Failure::bench(format!("failed to write {}: {error}", path.display()))
+    })?;
+    Ok(Verdict::Pass)
+}
+
+/// What wants more ends: a case takes nothing from those beside it.
+#[cfg(target_os = "linux")]
+fn limit_memory(mib: u64) -> Result<(), Failure> {
+    use rustix::process::{Resource, Rlimit, getrlimit, setrlimit};
+    let bytes = Some(mib.saturating_mul(1 << 20));
+    let most = getrlimit(Resource::As).maximum;
+    let limit = Rlimit { current: bytes.min(most.or(bytes)), maximum: most };
+    setrlimit(Resource::As, limit).map_err(|error| {
+        Failure::bench(format!("failed to limit the memory to {mib} MiB: {error}"))
+    })
+}
+
+#[cfg(not(target_os = "linux"))]
+fn limit_memory(_: u64) -> Result<(), Failure> {
+    Ok(())
+}

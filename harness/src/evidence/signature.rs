@@ -1,0 +1,206 @@
+//! Signatures of manifests, in the format of minisign (Ed25519 over BLAKE2b): what signs and verifies
+//! here, `minisign` does too.
+//!
+//! The secret key stays where its owner has it: it is named by the environment, never by a scenario, and
+//! nothing of it is written.
+
+use minisign::{PublicKey, SecretKey, SecretKeyBox, SignatureBox};
+use std::path::{Path, PathBuf};
+
+/// Name of the signature beside a manifest.
+pub const FILE_NAME: &str = "manifest.json.minisig";
+/// The variable that names the file of the secret key.
+pub const KEY: &str = "OCTANT_SIGNING_KEY";
+/// The variable with its password, where it has one.
+pub const PASSWORD: &str = "OCTANT_SIGNING_PASSWORD";
+/// The line above a signature, which no signature covers: it is always this one.
+const UNTRUSTED: &str = "signature from octant";
+/// What is signed with the manifest.
+const TRUSTED: &str = "manifest of an octant evidence folder";
+
+/// A key that signs.
+pub struct Key {
+    secret: SecretKey,
+}
+
+impl std::fmt::Debug for Key {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "Key({})", self.id())
+    }
+}
+
+/// Why a key or a signature is of no use.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum SignatureError {
+    /// The key can't be used.
+    #[error("read the key {path}: {reason}")]
+    Key {
+        /// Its file.
+        path: PathBuf,
+        /// Why.
+        reason: String,
+    },
+    /// The signature isn't one of this key on this manifest.
+    #[error("verify the signature {path}: {reason}")]
+    Signature {
+        /// Its file.
+        path: PathBuf,
+        /// Why.
+        reason: String,
+    },
+    /// It could not be made.
+    #[error("sign {path}: {reason}")]
+    Sign {
+        /// What was to be signed.
+        path: PathBuf,
+        /// Why.
+        reason: String,
+    },
+}
+
+impl Key {
+    /// The key that the environment names; `None` where it names none.
+    ///
+    /// # Errors
+    /// If it names one that can't be used.
+    pub fn of_environment() -> Result<Option<Self>, SignatureError> {
+        let Some(path) = std::env::var_os(KEY).filter(|path| !path.is_empty()) else {
+            return Ok(None);
+        };
+        Self::read(Path::new(&path), std::env::var(PASSWORD).ok()).map(Some)
+    }
+
+    /// Reads the secret key of a file that minisign made.
+    ///
+    /// # Errors
+    /// If there is none, or the password isn't its.
+    pub fn read(path: &Path, password: Option<String>) -> Result<Self, SignatureError> {
+        let wrong = |reason: String| SignatureError::Key { path: path.to_owned(), reason };
+        let text = std::fs::read_to_string(path).map_err(|error| wrong(error.to_string()))?;
+        let parsed = || {
+            SecretKeyBox::from_string(&text)
+                .map_err(|_| wrong("expected a secret key of minisign".to_owned()))
+        };
+        let secret = match password {
+            // An empty password would be asked for on a terminal.
+            Some(password) => parsed()?.into_secret_key(Some(password)),
+            None => parsed()?.into_unencrypted_secret_key(),
+        };
+        let secret = secret.map_err(|error| {
+            wrong(format!("{error}; the password of an encrypted key is expected in {PASSWORD}"))
+        })?;
+        if secret.is_encrypted() {
+            return Err(wrong(format!("it is encrypted: its password is expected in {PASSWORD}")));
+        }
+        Ok(Self { secret })
+    }
+
+    /// The id of the key, as minisign shows it.
+    #[must_use]
+    pub fn id(&self) -> String {
+        id_of(self.secret.keynum())
+    }
+
+    /// Signs the manifest of a folder.
+    ///
+    /// # Errors
+    /// If the manifest can't be read, or the signature not written.
+    pub fn sign(&self, manifest: &Path) -> Result<(), SignatureError> {
+        let failed = |reason: String| SignatureError::Sign { path: manifest.to_owned(), reason };
+        let bytes = std::fs::read(manifest).map_err(|error| failed(error.to_string()))?;
+        let signature =
+            minisign::sign(None, &self.secret, bytes.as_slice(), Some(TRUSTED), Some(UNTRUSTED))
+                .map_err(|error| failed(error.to_string()))?;
+        std::fs::write(manifest.with_file_name(FILE_NAME), signature.to_string())
+            .map_err(|error| failed(error.to_string()))
+    }
+}
+
+/// Verifies the signature of a manifest with a public key: a file of minisign, or the key itself in
+/// base64. The id of the key comes back.
+///
+/// # Errors
+/// If the key is none, or the signature isn't one of this key on this manifest, to the last bit.
+pub fn verify(manifest: &Path, key: &str) -> Result<String, SignatureError> {
+    let public = match PublicKey::from_base64(key) {
+        Ok(public) => public,
+        Err(_) => PublicKey::from_file(key).map_err(|error| SignatureError::Key {
+            path: key.into(),
+            reason: format!("{error}; expected a public key of minisign, or its file"),
+        })?,
+    };
+    let path = manifest.with_file_name(FILE_NAME);
+    let wrong = |reason: String| SignatureError::Signature { path: path.clone(), reason };
+    let text = std::fs::read_to_string(&path).map_err(|error| wrong(error.to_string()))?;
+    let signature = SignatureBox::from_string(&text)
+        .map_err(|error| wrong(format!("{error}; expected a signature of minisign")))?;
+    // Base64 has bits without a meaning, and the first line is covered by nothing.
+    let known = format!("untrusted comment: {UNTRUSTED}");
+    if signature.to_string() != text || text.lines().next() != Some(known.as_str()) {
+        return Err(wrong("it was changed: this is not how octant writes it".to_owned()));
+    }
+    let bytes = std::fs::read(manifest).map_err(|error| wrong(error.to_string()))?;
+    minisign::verify(&public, &signature, std::io::Cursor::new(bytes), true, false, false)
+        .map_err(|error| wrong(error.to_string()))?;
+    if signature.trusted_comment().ok().as_deref() != Some(TRUSTED) {
+        return Err(wrong("it was made for something else than a manifest of octant".to_owned()));
+    }
+    Ok(id_of(public.keynum()))
+}
+
+/// Eight bytes, the last first, as minisign shows them.
+fn id_of(number: &[u8]) -> String {
+    number.iter().rev().map(|byte| format!("{byte:02X}")).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use minisign::KeyPair;
+
+    /// A folder with a signed manifest, and the public key.
+    fn signed() -> (tempfile::TempDir, String) {
+        let folder = tempfile::tempdir().unwrap();
+        let pair = KeyPair::generate_unencrypted_keypair().unwrap();
+        let path = folder.path().join("key");
+        std::fs::write(&path, pair.sk.to_box(None).unwrap().to_string()).unwrap();
+        let key = Key::read(&path, None).unwrap();
+        let manifest = folder.path().join("manifest.json");
+        std::fs::write(&manifest, "{\"schema\": 1}\n").unwrap();
+        key.sign(&manifest).unwrap();
+        let public = pair.pk.to_base64();
+        assert_eq!(verify(&manifest, &public).unwrap(), key.id());
+        (folder, public)
+    }
+
+    #[test]
+    fn every_bit_of_manifest_and_signature_counts() {
+        let (folder, public) = signed();
+        let manifest = folder.path().join("manifest.json");
+        for name in ["manifest.json", FILE_NAME] {
+            let path = folder.path().join(name);
+            let whole = std::fs::read(&path).unwrap();
+            for bit in 0..8 * whole.len() {
+                let mut changed = whole.clone();
+                changed[bit / 8] ^= 1 << (bit % 8);
+                std::fs::write(&path, &changed).unwrap();
+                assert!(verify(&manifest, &public).is_err(), "bit {bit} of {name}");
+            }
+            std::fs::write(&path, &whole).unwrap();
+            assert!(verify(&manifest, &public).is_ok());
+        }
+    }
+
+    #[test]
+    fn another_key_and_no_key_are_told() {
+        let (folder, _) = signed();
+        let manifest = folder.path().join("manifest.json");
+        let other = KeyPair::generate_unencrypted_keypair().unwrap().pk.to_base64();
+        let error = verify(&manifest, &other).unwrap_err().to_string();
+        assert!(error.contains("different from public key"), "{error}");
+        let error = verify(&manifest, "no/such/file").unwrap_err().to_string();
+        assert!(error.starts_with("read the key no/such/file"), "{error}");
+        let error = Key::read(&manifest, None).unwrap_err().to_string();
+        assert!(error.contains("expected a secret key of minisign"), "{error}");
+    }
+}

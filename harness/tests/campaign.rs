@@ -1,0 +1,433 @@
+//! Campaigns: planned, run in processes of their own, in parts, interrupted, merged; and everything that
+//! must not end in a pass.
+#![allow(clippy::unwrap_used)]
+
+use octant::campaign::case::{self, CaseResult};
+use octant::campaign::execute::{Event, Options, Outcome, Shard, execute};
+use octant::campaign::merge::{self, MergeError};
+use octant::campaign::plan::{Plan, Written};
+use octant::campaign::table::{Table, Value};
+use octant::campaign::{results, status};
+use octant::score::verdict::Verdict;
+use std::path::{Path, PathBuf};
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use tempfile::TempDir;
+
+const SCENARIO: &str = "schema = 1
+title = \"short\"
+seed = 1
+[procedure.calibration]
+positions = \"eight\"
+duration = \"24 min\"
+[procedure.navigation]
+duration = \"10 min\"
+[[faults]]
+id = \"spike-1\"
+kind = \"spike\"
+trigger = { at = \"500 s\" }
+duration = \"10 samples\"
+channels = \"gyro x\"
+amplitude = \"100 deg/h\"
+[[requirements]]
+id = \"NAV-1\"
+text = \"It stays near.\"
+measure = \"navigation.radial_error_nmi.max\"
+limit = \"10 nmi\"
+";
+
+const CAMPAIGN: &str = "schema = 1
+title = \"test\"
+replicates = 3
+[[scenarios]]
+id = \"short\"
+file = \"short.toml\"
+[[factors]]
+name = \"latitude\"
+key = \"site.latitude\"
+values = [\"0 deg\", \"60 deg\"]
+[[factors]]
+name = \"fault\"
+faults = [[], [\"spike-1\"]]
+draw = true
+[[factors]]
+name = \"amplitude\"
+key = \"faults.spike-1.amplitude\"
+unit = \"deg/h\"
+uniform = [10, 1000]
+";
+
+struct Bench {
+    folder: TempDir,
+}
+
+impl Bench {
+    fn new(campaign: &str) -> Self {
+        let bench = Self { folder: tempfile::tempdir().unwrap() };
+        std::fs::write(bench.at("short.toml"), SCENARIO).unwrap();
+        std::fs::write(bench.at("campaign.toml"), campaign).unwrap();
+        bench
+    }
+
+    fn at(&self, name: &str) -> PathBuf {
+        self.folder.path().join(name)
+    }
+
+    fn plan(&self) -> Plan {
+        Plan::of(&self.at("campaign.toml")).unwrap()
+    }
+
+    fn refusal(&self) -> String {
+        Plan::of(&self.at("campaign.toml")).unwrap_err().to_string()
+    }
+}
+
+/// Runs a part of a plan, and leaves its tables.
+fn run(plan: &Plan, folder: &Path, shard: Shard, jobs: usize) -> Outcome {
+    let outcome = begin(plan, folder, shard, jobs, &AtomicBool::new(false), false).unwrap();
+    let cases = (0..plan.cases.len()).filter(|index| shard.has(*index));
+    results::tables(plan, folder, cases, |table| merge::part(folder, shard, table)).unwrap();
+    outcome
+}
+
+fn begin(
+    plan: &Plan,
+    folder: &Path,
+    shard: Shard,
+    jobs: usize,
+    cancel: &AtomicBool,
+    again: bool,
+) -> Result<Outcome, String> {
+    let program = Path::new(env!("CARGO_BIN_EXE_octant"));
+    let options = Options { folder, program, jobs, shard, end: plan.cases.len(), again, cancel };
+    execute(plan, &options, &|_| {}).map_err(|error| error.to_string())
+}
+
+fn merged(plan: &Plan, folder: &Path) -> Vec<Vec<u8>> {
+    let found = merge::merge(plan, &[folder.to_owned()], folder, plan.cases.len()).unwrap();
+    assert_eq!((found.cases, found.missing), (plan.cases.len(), 0));
+    ["cases", "checks", "drift"]
+        .map(|table| std::fs::read(merge::merged(folder, table)).unwrap())
+        .to_vec()
+}
+
+#[test]
+fn the_same_bytes_on_one_processor_in_parts_and_after_interruptions() {
+    let bench = Bench::new(CAMPAIGN);
+    let plan = bench.plan();
+    assert_eq!(plan.cases.len(), 6);
+    let whole = bench.at("whole");
+    assert_eq!(run(&plan, &whole, Shard::WHOLE, 1).run, 6);
+    let expected = merged(&plan, &whole);
+
+    let parts = bench.at("parts");
+    for number in 1..=4 {
+        run(&plan, &parts, Shard { number, of: 4 }, 2);
+    }
+    assert!(merged(&plan, &parts) == expected, "four parts");
+
+    // Told to end after each case, and gone on with.
+    let torn = bench.at("torn");
+    let mut rounds = 0;
+    loop {
+        let cancel = AtomicBool::new(false);
+        let program = Path::new(env!("CARGO_BIN_EXE_octant"));
+        let options = Options {
+            folder: &torn,
+            program,
+            jobs: 2,
+            shard: Shard::WHOLE,
+            end: plan.cases.len(),
+            again: false,
+            cancel: &cancel,
+        };
+        let tell = |event: &Event| {
+            cancel.fetch_or(matches!(event, Event::Done(_)), Ordering::Relaxed);
+        };
+        let outcome = execute(&plan, &options, &tell).unwrap();
+        rounds += 1;
+        if outcome.left == 0 {
+            break;
+        }
+        assert!(outcome.run <= 2, "{outcome:?}");
+    }
+    assert!(rounds >= 3, "{rounds}");
+    assert_eq!(run(&plan, &torn, Shard::WHOLE, 2), Outcome { skipped: 6, ..Outcome::default() });
+    assert!(merged(&plan, &torn) == expected, "interrupted");
+
+    // What the tables say is what the cases are.
+    let table = Table::open(&merge::merged(&whole, "cases")).unwrap();
+    assert_eq!((table.rows, table.plan.as_str()), (6, plan.id.as_str()));
+    let column = |name: &str| table.column(name).unwrap().unwrap();
+    for (row, case) in plan.cases.iter().enumerate() {
+        assert_eq!(column("case").at(row), Some(Value::Text(case.id.clone())));
+        let result = CaseResult::read(&case::file(&whole, &case.id)).unwrap();
+        let summary = result.summary.unwrap();
+        let radial = summary.navigation.as_ref().unwrap().radial_error_nmi.max;
+        assert_eq!(column("navigation.radial_error_nmi.max").at(row), Some(Value::Number(radial)));
+        assert_eq!(column("stream_hash").at(row), Some(Value::Text(summary.stream_hash)));
+        let spiked = case.faults.as_ref().unwrap().contains(&"spike-1".to_owned());
+        let fired = column("faults.spike-1.fired").at(row);
+        assert_eq!(fired, spiked.then_some(Value::Boolean(true)));
+    }
+    let state = status::of(&plan, &whole, Shard::WHOLE).unwrap();
+    assert_eq!((state.verdict(), state.open), (Verdict::Pass, 0), "{}", state.text());
+}
+
+#[test]
+fn a_case_that_takes_too_long_or_too_much_is_one_error() {
+    let bench = Bench::new(&format!("{CAMPAIGN}[limits]\ntime = \"20 ms\"\n"));
+    let (plan, folder) = (bench.plan(), bench.at("out"));
+    assert_eq!(run(&plan, &folder, Shard::WHOLE, 2).run, 6);
+    let state = status::of(&plan, &folder, Shard::WHOLE).unwrap();
+    assert_eq!(state.verdict(), Verdict::Error);
+    assert_eq!(state.bad[0].reason, "it took more than its 0.02 s");
+    // An error isn't taken for a result for ever.
+    let never = AtomicBool::new(false);
+    let again = |again| begin(&plan, &folder, Shard::WHOLE, 2, &never, again).unwrap();
+    assert_eq!((again(false).run, again(true).run), (0, 6));
+
+    let bench = Bench::new(&format!("{CAMPAIGN}[limits]\nmemory_mib = 64\n"));
+    let (plan, folder) = (bench.plan(), bench.at("out"));
+    run(&plan, &folder, Shard::WHOLE, 2);
+    let state = status::of(&plan, &folder, Shard::WHOLE).unwrap();
+    if cfg!(target_os = "linux") && state.verdict() == Verdict::Error {
+        assert!(state.bad[0].reason.contains("64 MiB of memory"), "{}", state.text());
+    }
+    merged(&plan, &folder);
+}
+
+#[test]
+fn a_campaign_that_grows_keeps_its_cases_and_results() {
+    let bench = Bench::new(CAMPAIGN);
+    let (plan, folder) = (bench.plan(), bench.at("out"));
+    assert_eq!(plan.write(&folder, false).unwrap(), Written::New);
+    assert_eq!(plan.write(&folder, false).unwrap(), Written::There);
+    let file = folder.join("plan.json");
+    assert_eq!(Plan::read(&file).unwrap(), plan);
+
+    let more = CAMPAIGN
+        .replace("replicates = 3", "replicates = 5")
+        .replace("60 deg\"", "60 deg\", \"80 deg\"");
+    std::fs::write(bench.at("campaign.toml"), more).unwrap();
+    let grown = bench.plan();
+    assert_eq!(grown.cases.len(), 15);
+    for case in &plan.cases {
+        assert_eq!(grown.case(&case.id), Some(case));
+    }
+    let error = grown.write(&folder, false).unwrap_err().to_string();
+    assert!(error.contains("a plan with 6 of these 15 cases is there"), "{error}");
+    assert_eq!(grown.write(&folder, true).unwrap(), Written::Extended(9));
+    let error = plan.write(&folder, true).unwrap_err().to_string();
+    assert!(error.contains("9 of 15 cases are not in this one"), "{error}");
+
+    // Wherever the files lie, the cases are the same.
+    let elsewhere = Bench::new(CAMPAIGN);
+    assert_eq!(elsewhere.plan().id, plan.id);
+}
+
+#[test]
+fn what_was_changed_after_it_was_planned_is_refused() {
+    let bench = Bench::new(CAMPAIGN);
+    let (plan, folder) = (bench.plan(), bench.at("out"));
+    plan.write(&folder, false).unwrap();
+    let file = folder.join("plan.json");
+    let text = std::fs::read_to_string(&file).unwrap();
+    std::fs::write(&file, text.replace("\"seed\": 2", "\"seed\": 9")).unwrap();
+    let error = Plan::read(&file).unwrap_err().to_string();
+    assert!(error.contains("changed after it was made"), "{error}");
+    std::fs::write(&file, text.replace("\"schema\": 1", "\"schema\": 2")).unwrap();
+    let error = Plan::read(&file).unwrap_err().to_string();
+    assert!(error.contains("found version 2") && error.contains("a newer Octant"), "{error}");
+
+    std::fs::write(bench.at("short.toml"), SCENARIO.replace("24 min", "25 min")).unwrap();
+    let never = AtomicBool::new(false);
+    let error = begin(&plan, &folder, Shard::WHOLE, 1, &never, false).unwrap_err();
+    assert!(error.contains("changed after the campaign was planned"), "{error}");
+}
+
+#[test]
+fn results_of_others_and_two_results_of_a_case_are_no_pass() {
+    let bench = Bench::new(&CAMPAIGN.replace("replicates = 3", "replicates = 1"));
+    let (plan, folder) = (bench.plan(), bench.at("out"));
+    run(&plan, &folder, Shard::WHOLE, 2);
+    let id = &plan.cases[0].id;
+    let bytes = std::fs::read(case::file(&folder, id)).unwrap();
+    assert_eq!(case::keep(&folder, id, &bytes).unwrap(), case::Kept::Same);
+
+    // The same case once more, with another result.
+    let text = String::from_utf8(bytes).unwrap();
+    let mut other: serde_json::Value = serde_json::from_str(&text).unwrap();
+    other["summary"]["stream_hash"] = "another".into();
+    let other = format!("{other}\n");
+    let kept = case::keep(&folder, id, other.as_bytes()).unwrap();
+    assert!(matches!(kept, case::Kept::Differs(_)), "{kept:?}");
+    assert_eq!(std::fs::read_to_string(case::file(&folder, id)).unwrap(), text, "the first stays");
+    let state = status::of(&plan, &folder, Shard::WHOLE).unwrap();
+    assert_eq!(state.verdict(), Verdict::Error, "{}", state.text());
+
+    // The same of another machine.
+    let elsewhere = bench.at("elsewhere");
+    run(&plan, &elsewhere, Shard::WHOLE, 2);
+    let both = [folder.clone(), elsewhere.clone()];
+    assert_eq!(merge::merge(&plan, &both, &bench.at("good"), 2).unwrap().cases, 2);
+    std::fs::write(case::file(&elsewhere, id), &other).unwrap();
+    run(&plan, &elsewhere, Shard::WHOLE, 2);
+    let error = merge::merge(&plan, &both, &bench.at("bad"), 2).unwrap_err();
+    assert!(
+        matches!(&error, MergeError::Differs { case, column, .. } if case == id && column == "stream_hash"),
+        "{error}"
+    );
+
+    // A result that no case of the plan has.
+    std::fs::write(case::file(&elsewhere, id).with_file_name("0123456789abcdef.json"), &other)
+        .unwrap();
+    let never = AtomicBool::new(false);
+    let error = begin(&plan, &elsewhere, Shard::WHOLE, 1, &never, false).unwrap_err();
+    assert!(
+        error.contains("results of 1 cases that the plan doesn't have, such as 0123456789abcdef"),
+        "{error}"
+    );
+
+    // A part of another plan.
+    let grown = Bench::new(CAMPAIGN).plan();
+    let error = merge::merge(&grown, &[folder], &bench.at("bad"), 6).unwrap_err().to_string();
+    assert!(error.contains("it is of plan"), "{error}");
+}
+
+#[test]
+fn nothing_checked_and_nothing_run_is_no_pass() {
+    let bench = Bench::new(&CAMPAIGN.replace("replicates = 3", "replicates = 1"));
+    let (plan, folder) = (bench.plan(), bench.at("out"));
+    let state = status::of(&plan, &folder, Shard::WHOLE).unwrap();
+    assert_eq!((state.verdict(), state.open), (Verdict::Inconclusive, 2));
+    let error = merge::merge(&plan, &[folder.clone()], &folder, 2).unwrap_err().to_string();
+    assert!(error.contains("no parts of shards are there"), "{error}");
+
+    let without = SCENARIO.split("[[requirements]]").next().unwrap();
+    std::fs::write(bench.at("short.toml"), without).unwrap();
+    let plan = bench.plan();
+    run(&plan, &folder, Shard::WHOLE, 2);
+    let state = status::of(&plan, &folder, Shard::WHOLE).unwrap();
+    assert_eq!(state.verdict(), Verdict::Inconclusive, "{}", state.text());
+    assert!(state.text().contains("no requirement checked"));
+}
+
+#[test]
+fn a_campaign_that_contradicts_itself_is_refused_with_its_place() {
+    let cases = [
+        ("replicates = 3", "replicates = 0", "campaign.toml:3:14: replicates: found 0"),
+        ("\"60 deg\"]", "\"0 deg\"]", "a second time, expected it once"),
+        ("uniform = [10, 1000]", "uniform = [10, 10]", "expected the smaller one first"),
+        ("name = \"fault\"", "name = \"latitude\"", "a second time, expected unique names"),
+        ("site.latitude", "site.lattitude", "did you mean \"latitude\"?"),
+        ("[[], [\"spike-1\"]]", "[[], [\"spike-2\"]]", "no fault has the id \"spike-2\""),
+        ("uniform = [10, 1000]", "unifrom = [10, 1000]", "did you mean \"uniform\"?"),
+        ("file = \"short.toml\"", "file = \"shorter.toml\"", "shorter.toml"),
+        (
+            "uniform = [10, 1000]",
+            "uniform = [10, 1000]\n[stop]\nrequirement = \"NAV-2\"",
+            "no scenario checks it",
+        ),
+    ];
+    for (what, instead, words) in cases {
+        assert!(CAMPAIGN.contains(what));
+        let error = Bench::new(&CAMPAIGN.replacen(what, instead, 1)).refusal();
+        assert!(error.contains(words), "{instead}: {error}");
+    }
+    // Two scenarios that are the same.
+    let twice = CAMPAIGN.replace(
+        "[[factors]]\nname = \"latitude\"",
+        "[[scenarios]]\nid = \"again\"\nfile = \"short.toml\"\n[[factors]]\nname = \"latitude\"",
+    );
+    let error = Bench::new(&twice).refusal();
+    assert!(error.contains("\"short\" and scenario \"again\" give the same case"), "{error}");
+}
+
+#[test]
+fn every_case_is_told_once() {
+    let bench = Bench::new(CAMPAIGN);
+    let (plan, folder) = (bench.plan(), bench.at("out"));
+    let (there, done) = (AtomicUsize::new(0), Mutex::new(Vec::new()));
+    let cancel = AtomicBool::new(false);
+    let program = Path::new(env!("CARGO_BIN_EXE_octant"));
+    let options = Options {
+        folder: &folder,
+        program,
+        jobs: 3,
+        shard: Shard::WHOLE,
+        end: plan.cases.len(),
+        again: false,
+        cancel: &cancel,
+    };
+    let tell = |event: &Event| match event {
+        Event::There(count) => _ = there.fetch_add(*count, Ordering::Relaxed),
+        Event::Done(one) => done.lock().unwrap().push(one.index),
+    };
+    execute(&plan, &options, &tell).unwrap();
+    let mut told = std::mem::take(&mut *done.lock().unwrap());
+    told.sort_unstable();
+    assert_eq!((there.load(Ordering::Relaxed), told), (0, (0..6).collect()));
+    execute(&plan, &options, &tell).unwrap();
+    assert_eq!(there.load(Ordering::Relaxed), 6);
+}
+
+#[test]
+fn it_ends_where_enough_is_known_wherever_it_ran() {
+    // Three looks share the error of 20 %: four passes of four show a half with 93.75 %.
+    let stop = "[stop]\nrequirement = \"NAV-1\"\npass = 0.5\nconfidence = 0.8\nevery = 2\n";
+    let bench = Bench::new(&format!("{CAMPAIGN}{stop}"));
+    let octant = |arguments: &[&str]| {
+        let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_octant"));
+        let output =
+            command.current_dir(bench.folder.path()).arg("campaign").args(arguments).output();
+        let output = output.unwrap();
+        assert!(output.status.success(), "{output:?}");
+        String::from_utf8(output.stdout).unwrap()
+    };
+    octant(&["plan", "campaign.toml", "--out", "a"]);
+    let said = octant(&["run", "a"]);
+    assert!(
+        said.contains("4 cases run") && said.contains("after 4 cases: no more are needed"),
+        "{said}"
+    );
+    assert!(octant(&["merge", "a"]).starts_with("4 of 4 cases from 1 parts"));
+    // In parts all six run, and the same four count.
+    octant(&["plan", "campaign.toml", "--out", "b"]);
+    for shard in ["1/2", "2/2"] {
+        octant(&["run", "b", "--shard", shard]);
+    }
+    assert!(octant(&["merge", "b"]).starts_with("4 of 4 cases from 2 parts"));
+    for table in ["cases", "checks", "drift"] {
+        let [a, b] = ["a", "b"]
+            .map(|folder| std::fs::read(merge::merged(&bench.at(folder), table)).unwrap());
+        assert!(a == b, "{table} differs");
+    }
+}
+
+#[test]
+fn a_rule_counts_what_is_not_shown_as_broken() {
+    use octant::campaign::stop::{Decision, decide};
+    let stop = "[stop]\nrequirement = \"NAV-1\"\nevery = 10\n";
+    let plan =
+        Bench::new(&format!("{CAMPAIGN}{stop}").replace("replicates = 3", "replicates = 100"))
+            .plan();
+    let rule = plan.stop.as_ref().unwrap();
+    let decided = |check: &dyn Fn(usize) -> Option<Verdict>| {
+        let place = |id: &str| plan.cases.iter().position(|case| case.id == id).unwrap();
+        decide(&plan, rule, |case| check(place(&case.id)))
+    };
+    // 20 looks at 95 %: 0.0025 each; 0.95^n falls below it at n = 117.
+    assert_eq!(decided(&|_| Some(Verdict::Pass)), Decision::Shown { end: 120 });
+    assert_eq!(decided(&|_| Some(Verdict::Inconclusive)), Decision::Refuted { end: 10 });
+    assert_eq!(decided(&|_| Some(Verdict::Error)), Decision::Refuted { end: 10 });
+    assert_eq!(decided(&|_| None), Decision::Open { next: 10 });
+    assert_eq!(
+        decided(&|index| (index != 15).then_some(Verdict::Pass)),
+        Decision::Open { next: 20 }
+    );
+    // One in twenty is just what is allowed: that is never shown.
+    let one_in_20 =
+        |index: usize| Some(if index % 20 == 0 { Verdict::Fail } else { Verdict::Pass });
+    assert_eq!(decided(&one_in_20), Decision::Open { next: 200 });
+}

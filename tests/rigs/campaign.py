@@ -1,0 +1,216 @@
+#!/usr/bin/env python3
+"""What tests/rigs/campaign does. Usage: campaign.py OCTANT REPLICATES"""
+
+import hashlib
+import json
+import os
+import pathlib
+import random
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+
+import duckdb
+import pandas
+import polars
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+OCTANT, REPLICATES = sys.argv[1], int(sys.argv[2])
+CASES = 12 * REPLICATES
+TABLES = ["cases", "checks", "drift"]
+KILLS = 10
+
+failures = []
+
+
+def check(name, holds, found=""):
+    """One line a check; a failure says what was found."""
+    print(f"{'ok  ' if holds else 'FAIL'} {name}" + ("" if holds else f"\n     found: {found}"), flush=True)
+    if not holds:
+        failures.append(name)
+
+
+def octant(*arguments, cpu=None, **more):
+    command = [OCTANT, *map(str, arguments)]
+    if cpu is not None:
+        command = ["taskset", "-c", str(cpu), *command]
+    return subprocess.run(command, capture_output=True, text=True, timeout=3600, **more)
+
+
+def good(name, result):
+    check(name, result.returncode == 0, f"status {result.returncode}: {result.stdout}{result.stderr}")
+
+
+def merged(folder):
+    """SHA-256 of the merged tables."""
+    result = octant("campaign", "merge", folder)
+    if result.returncode != 0:
+        return result.stderr
+    return [hashlib.sha256((folder / f"{table}.parquet").read_bytes()).hexdigest() for table in TABLES]
+
+
+def plan(work, name):
+    """A folder with the plan."""
+    folder = work / name
+    result = octant("campaign", "plan", work / "campaigns" / "certification.toml", "--out", folder)
+    if result.returncode != 0 or f"{CASES} cases" not in result.stdout:
+        sys.exit(f"no plan: {result.stdout}{result.stderr}")
+    return folder
+
+
+def run_and_kill(folder, seed):
+    """Kills the campaign, and sometimes a case of it, at random moments; then lets it end."""
+    dice = random.Random(seed)
+    killed = 0
+    while killed < KILLS:
+        campaign = subprocess.Popen(
+            [OCTANT, "campaign", "run", str(folder)], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
+        )
+        try:
+            campaign.wait(dice.uniform(0.2, 5.0))
+            break
+        except subprocess.TimeoutExpired:
+            campaign.send_signal(signal.SIGINT if dice.random() < 0.3 else signal.SIGKILL)
+            campaign.wait()
+            killed += 1
+    return killed, octant("campaign", "run", folder)
+
+
+def in_every_way(work):
+    """On one processor and in seven parts at the same time, then on two, then with kills."""
+    one, parts, two, torn = (plan(work, name) for name in ["one", "parts", "two", "torn"])
+    cpus = sorted(os.sched_getaffinity(0))
+
+    def in_parts():
+        order = list(range(1, 8))
+        random.Random(1).shuffle(order)
+        for number in order:
+            good(f"part {number} of 7", octant("campaign", "run", parts, "--shard", f"{number}/7", "--jobs", 1, cpu=cpus[-1]))
+
+    started = time.monotonic()
+    beside = threading.Thread(target=in_parts)
+    beside.start()
+    good("on one processor", octant("campaign", "run", one, "--jobs", 1, cpu=cpus[0]))
+    took = time.monotonic() - started
+    beside.join()
+    print(f"     {CASES} cases on one processor: {took:.0f} s, {CASES / took:.2f} a second")
+    expected = merged(one)
+    check("in seven parts: the same bytes", merged(parts) == expected, merged(parts))
+
+    started = time.monotonic()
+    good("on all processors", octant("campaign", "run", two))
+    took = time.monotonic() - started
+    print(f"     {CASES} cases on {len(cpus)} processors: {took:.0f} s, {CASES / took:.2f} a second")
+    check("on all processors: the same bytes", merged(two) == expected, merged(two))
+
+    killed, result = run_and_kill(torn, 7)
+    good(f"gone on with after {killed} kills", result)
+    check("after kills: the same bytes", merged(torn) == expected, merged(torn))
+    check("after kills: no case came to two results", not list(torn.glob("cases/*/*.differs-*")))
+    return one
+
+
+def read_by_others(folder):
+    """DuckDB, pandas and polars agree, and the queries of the docs run."""
+    path = {table: str(folder / f"{table}.parquet") for table in TABLES}
+    measure = "navigation.radial_error_nmi.max"
+    by_pandas, by_polars = pandas.read_parquet(path["cases"]), polars.read_parquet(path["cases"])
+    by_duckdb = duckdb.sql(f"""SELECT count(*), avg("{measure}") FROM '{path["cases"]}'""").fetchone()
+    check("DuckDB, pandas and polars count the cases", len(by_pandas) == len(by_polars) == by_duckdb[0] == CASES)
+    means = [by_pandas[measure].mean(), by_polars[measure].mean(), by_duckdb[1]]
+    check(f"they agree on {measure}", max(means) - min(means) < 1e-12 * max(means), means)
+    planned = [case["id"] for case in json.loads((folder / "plan.json").read_text())["cases"]]
+    check("the cases are in the order of the plan", by_pandas["case"].tolist() == planned)
+    spiked = by_pandas[by_pandas["factor.fault"] == "spike-1"]
+    fired = spiked["faults.spike-1.fired"]
+    check("every spike that was drawn fired", len(spiked) > 0 and bool(fired.all()), fired.tolist())
+    docs = (ROOT / "docs" / "campaigns.md").read_text()
+    queries = re.findall(r"```sql\n(.*?)```", docs, re.S)
+    check("the docs have queries", len(queries) >= 4)
+    os.chdir(folder)
+    for query in queries:
+        rows = duckdb.sql(query).fetchall()
+        check(f"query: {query.splitlines()[0].lstrip('- ')}", len(rows) > 0, rows)
+
+
+def for_schedulers(folder):
+    """The job of Kubernetes against its schema, the script of Slurm as a shell reads it."""
+    import kubernetes_validate
+    import yaml
+
+    job = octant("campaign", "emit", "k8s", folder, "--shards", 16, "--image", "registry/octant:1")
+    document = yaml.safe_load(job.stdout)
+    try:
+        kubernetes_validate.validate(document, "1.28", strict=True)
+        wrong = ""
+    except kubernetes_validate.ValidationError as error:
+        wrong = str(error)
+    check("the job of Kubernetes is one", job.returncode == 0 and not wrong, wrong + job.stderr)
+    check("it has 16 completions", document["spec"]["completions"] == 16)
+    script = octant("campaign", "emit", "slurm", folder, "--shards", 16)
+    shell = subprocess.run(["sh", "-n"], input=script.stdout, text=True, capture_output=True)
+    check("the script of Slurm is a shell's", script.returncode == shell.returncode == 0, shell.stderr)
+
+
+def evidence(work):
+    """A signed run: minisign verifies it, and every change is found."""
+    keys = [work / "key.pub", work / "key", work / "other.pub", work / "other"]
+    for public, secret in [keys[:2], keys[2:]]:
+        made = subprocess.run(["minisign", "-G", "-W", "-p", public, "-s", secret], capture_output=True, text=True)
+        check("minisign makes a key", made.returncode == 0, made.stderr)
+    run = work / "run"
+    short = ["--set", 'procedure.calibration.duration="30 min"', "--set", 'procedure.navigation.duration="10 min"']
+    result = octant("run", ROOT / "fixtures/campaigns/static.toml", "--faults=", *short, "--out", run,
+                    env={**os.environ, "OCTANT_SIGNING_KEY": str(keys[1]), "OCTANT_OPERATOR": "A. Tester"})
+    good("a run is signed", result)
+    stock = subprocess.run(["minisign", "-V", "-m", run / "manifest.json", "-p", keys[0]], capture_output=True, text=True)
+    check("minisign verifies it", stock.returncode == 0, stock.stderr)
+    good("octant verifies it", octant("verify", run, "--key", keys[0]))
+    check("the manifest names the operator", json.loads((run / "manifest.json").read_text())["operator"] == "A. Tester")
+
+    def found(name, status=1):
+        result = octant("verify", run, "--key", keys[0])
+        check(name, result.returncode == status, f"status {result.returncode}: {result.stdout}{result.stderr}")
+
+    dice = random.Random(3)
+    for path in sorted(path for path in run.rglob("*") if path.is_file()):
+        whole = path.read_bytes()
+        bit = dice.randrange(8 * len(whole))
+        changed = bytearray(whole)
+        changed[bit // 8] ^= 1 << bit % 8
+        path.write_bytes(changed)
+        result = octant("verify", run, "--key", keys[0])
+        check(f"bit {bit} of {path.name} is missed", result.returncode in (1, 2), result.stdout)
+        path.write_bytes(whole)
+        path.rename(work / "aside")
+        result = octant("verify", run, "--key", keys[0])
+        check(f"{path.name} is missed", result.returncode in (1, 2), result.stdout)
+        (work / "aside").rename(path)
+    for name in ["more.txt", ".hidden", "sub"]:
+        path = run / name
+        path.mkdir() if name == "sub" else path.write_text("")
+        if name == "sub":
+            (path / "deep.txt").write_text("")
+        found(f"{name} is found")
+        shutil.rmtree(path) if name == "sub" else path.unlink()
+    wrong = octant("verify", run, "--key", keys[2])
+    check("another key is told", wrong.returncode == 1 and "different from public key" in wrong.stdout, wrong.stdout)
+    good("all is well again", octant("verify", run, "--key", keys[0]))
+
+
+with tempfile.TemporaryDirectory() as name:
+    work = pathlib.Path(name)
+    shutil.copytree(ROOT / "fixtures" / "campaigns", work / "campaigns")
+    file = work / "campaigns" / "certification.toml"
+    file.write_text(file.read_text().replace("replicates = 84", f"replicates = {REPLICATES}"))
+    evidence(work)
+    folder = in_every_way(work)
+    for_schedulers(folder)
+    read_by_others(folder)
+    os.chdir("/")
+sys.exit(f"{len(failures)} failed: {failures}" if failures else 0)
