@@ -44,13 +44,14 @@ pub(crate) fn own_fields(requirement: &Requirement) -> Vec<(&'static str, String
 /// Line and value of a field, if it is there.
 pub(crate) type Lookup<'a> = dyn Fn(&str) -> Option<(usize, &'a str)> + 'a;
 
+/// A verification, and the fields that say it.
+pub(crate) type Said = (Verification, Vec<&'static str>);
+
 /// How a requirement says that it is verified, and the fields that say it; `None`: it doesn't say.
 ///
 /// # Errors
 /// Line and reason, if what it says is incomplete or isn't understood.
-pub(crate) fn verification(
-    of: &Lookup<'_>,
-) -> Result<Option<(Verification, Vec<&'static str>)>, (usize, String)> {
+pub(crate) fn verification(of: &Lookup<'_>) -> Result<Option<Said>, (usize, String)> {
     if let Some((line, measure)) = of(MEASURE) {
         let limit = of(LIMIT).ok_or_else(|| (line, format!("{MEASURE} without {LIMIT}")))?;
         let comparison = match of(COMPARISON) {

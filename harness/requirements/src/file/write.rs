@@ -4,7 +4,7 @@ use super::SCHEMA;
 use crate::requirement::{Limit, Requirement, Requirements, Verification, percent};
 use std::fmt::Write as _;
 
-/// The text of a `requirements.toml`; [`super::read`] takes it back to the same requirements. One of
+/// The text of a `requirements.toml`; [`super::read()`] takes it back to the same requirements. One of
 /// which nobody has said how it is verified is written without that, and is refused there until
 /// somebody has.
 #[must_use]

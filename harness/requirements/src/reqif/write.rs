@@ -23,7 +23,7 @@ pub(super) fn identifier(id: &str) -> String {
     out
 }
 
-/// Writes the requirements as ReqIF; [`super::read`] takes it back to the same ones.
+/// Writes the requirements as ReqIF; [`super::read()`] takes it back to the same ones.
 ///
 /// `time` is the time of the export as XML Schema writes it, `2026-01-31T12:00:00Z`: the same
 /// requirements and time give the same bytes.

@@ -44,7 +44,8 @@ pub(super) fn read(value: Node<'_, '_>) -> Plain {
             }
             let plainly = matches!(name, "br" | "div" | "p");
             let inside = edge.tag_name().namespace().is_none_or(|space| space == XHTML);
-            if !(plainly && inside) && !plain.lost.iter().any(|known| known == name) {
+            let kept = plainly && inside;
+            if !kept && !plain.lost.iter().any(|known| known == name) {
                 plain.lost.push(name.to_owned());
             }
         } else if edge.is_text() {
@@ -76,14 +77,17 @@ fn block(text: &mut String) {
     }
 }
 
+/// What XML takes for space.
+const SPACE: [char; 4] = [' ', '\t', '\n', '\r'];
+
 /// Adds running text. Space that has a line break in it is indentation, and one space; other space
 /// stays as it is.
 fn flow(text: &mut String, more: &str) {
     let mut rest = more;
-    while let Some(at) = rest.find(|c: char| matches!(c, ' ' | '\t' | '\n' | '\r')) {
+    while let Some(at) = rest.find(SPACE) {
         text.push_str(&rest[..at]);
         rest = &rest[at..];
-        let end = rest.find(|c: char| !matches!(c, ' ' | '\t' | '\n' | '\r')).unwrap_or(rest.len());
+        let end = rest.find(|c| !SPACE.contains(&c)).unwrap_or(rest.len());
         let space = &rest[..end];
         if !space.contains('\n') {
             text.push_str(space);

@@ -432,7 +432,7 @@ impl Written {
 }
 
 /// How a node says that it is verified, and the fields that say it; `None`: it doesn't say.
-fn check(fields: &[Written]) -> Result<Option<(Verification, Vec<&'static str>)>, Wrong> {
+fn check(fields: &[Written]) -> Result<Option<field::Said>, Wrong> {
     let of =
         |name: &str| fields.iter().find(|f| f.name == name).map(|f| (f.line, f.value.as_str()));
     crate::fields::verification(&of)

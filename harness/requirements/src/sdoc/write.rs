@@ -8,7 +8,7 @@ use crate::requirement::{Kind, Requirement, Requirements};
 use std::collections::HashMap;
 use std::fmt::Write as _;
 
-/// Writes the requirements as an `.sdoc`; [`super::read`] takes it back to the same ones.
+/// Writes the requirements as an `.sdoc`; [`super::read()`] takes it back to the same ones.
 ///
 /// # Errors
 /// If a requirement has what StrictDoc has no place for: an id or kind that it doesn't take, a line
