@@ -35,7 +35,7 @@ fn main() {
     println!("cargo:rustc-env=OCTANT_GIT_COMMIT={commit}");
     println!("cargo:rustc-env=OCTANT_GIT_DIRTY={dirty}");
     println!("cargo:rustc-env=OCTANT_RUSTC={rustc}");
-    let lock = std::fs::read("../Cargo.lock").map(|lock| Sha256::digest(lock));
+    let lock = std::fs::read("../Cargo.lock").map(Sha256::digest);
     let lock = lock.map(|hash| hash.iter().map(|byte| format!("{byte:02x}")).collect::<String>());
     println!("cargo:rustc-env=OCTANT_LOCK_FILE={}", lock.unwrap_or_default());
     cc::Build::new()

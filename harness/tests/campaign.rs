@@ -301,7 +301,8 @@ fn nothing_checked_and_nothing_run_is_no_pass() {
     let (plan, folder) = (bench.plan(), bench.at("out"));
     let state = status::of(&plan, &folder, Shard::WHOLE).unwrap();
     assert_eq!((state.verdict(), state.open), (Verdict::Inconclusive, 2));
-    let error = merge::merge(&plan, &[folder.clone()], &folder, 2).unwrap_err().to_string();
+    let error =
+        merge::merge(&plan, std::slice::from_ref(&folder), &folder, 2).unwrap_err().to_string();
     assert!(error.contains("no parts of shards are there"), "{error}");
 
     let without = SCENARIO.split("[[requirements]]").next().unwrap();
@@ -428,6 +429,6 @@ fn a_rule_counts_what_is_not_shown_as_broken() {
     );
     // One in twenty is just what is allowed: that is never shown.
     let one_in_20 =
-        |index: usize| Some(if index % 20 == 0 { Verdict::Fail } else { Verdict::Pass });
+        |index: usize| Some(if index.is_multiple_of(20) { Verdict::Fail } else { Verdict::Pass });
     assert_eq!(decided(&one_in_20), Decision::Open { next: 200 });
 }

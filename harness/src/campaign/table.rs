@@ -381,17 +381,11 @@ mod tests {
     use proptest::prelude::*;
     use std::borrow::Cow;
 
-    fn values()
-    -> impl Strategy<Value = Vec<(Option<String>, Option<f64>, Option<i64>, Option<bool>)>> {
-        proptest::collection::vec(
-            any::<(Option<String>, Option<f64>, Option<i64>, Option<bool>)>(),
-            0..50,
-        )
-    }
+    type Row = (Option<String>, Option<f64>, Option<i64>, Option<bool>);
 
     proptest! {
         #[test]
-        fn what_was_written_is_read(rows in values()) {
+        fn what_was_written_is_read(rows in proptest::collection::vec(any::<Row>(), 0..50)) {
             let folder = tempfile::tempdir().unwrap();
             let path = folder.path().join("a/table.parquet");
             let all = [

@@ -195,7 +195,7 @@ pub fn stop_by_hand(name: &str, dialect: &Dialect) -> Result<Vec<String>, Error>
     }
     // Both ways, if there are two: a table is stopped as often as one likes.
     match crate::open(name).and_then(|port| stop_line(port, name, dialect)) {
-        Ok(()) => stopped.push(format!("its own port, without waiting for an answer")),
+        Ok(()) => stopped.push("its own port, without waiting for an answer".to_owned()),
         Err(error) => failure = failure.or(Some(error)),
     }
     match failure {

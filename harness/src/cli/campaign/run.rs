@@ -102,8 +102,7 @@ fn in_rounds(
     };
     let mut all = Outcome::default();
     let mut told = 0;
-    loop {
-        let Decision::Open { next } = status::decide(plan, options.folder, rule) else { break };
+    while let Decision::Open { next } = status::decide(plan, options.folder, rule) {
         options.end = next;
         let outcome = execute(plan, options, &|event| match event {
             // Those of the rounds before are told.
