@@ -432,3 +432,72 @@ fn a_rule_counts_what_is_not_shown_as_broken() {
         |index: usize| Some(if index.is_multiple_of(20) { Verdict::Fail } else { Verdict::Pass });
     assert_eq!(decided(&one_in_20), Decision::Open { next: 200 });
 }
+
+/// Requirements of a file, some of them on all cases together.
+#[test]
+fn requirements_of_a_file_are_checked_in_every_case() {
+    let campaign = CAMPAIGN
+        .replace("title = \"test\"", "title = \"test\"\nrequirements = \"requirements.toml\"");
+    let bench = Bench::new(&campaign);
+    let requirements = "schema = 1
+title = \"Navigation\"
+[[requirements]]
+id = \"NAV-2\"
+text = \"It stays nearer.\"
+measure = \"navigation.radial_error_nmi.max\"
+limit = \"9 nmi\"
+pass = \"50 %\"
+confidence = \"90 %\"
+[[requirements]]
+id = \"NAV-3\"
+text = \"It stays nearer than anything can.\"
+measure = \"navigation.radial_error_nmi.max\"
+limit = \"0 nmi\"
+pass = \"5 %\"
+confidence = \"50 %\"
+[[requirements]]
+id = \"DOC-1\"
+text = \"There is a manual.\"
+verification = \"inspection\"
+";
+    std::fs::write(bench.at("requirements.toml"), requirements).unwrap();
+    let (plan, folder) = (bench.plan(), bench.at("out"));
+    run(&plan, &folder, Shard::WHOLE, 2);
+    let state = status::of(&plan, &folder, Shard::WHOLE).unwrap();
+    let of = |id: &str| &state.requirements[id];
+    // Six of six show a half with 98 %; none of six leaves less than 11 %: 1 - 0.5^(1/6).
+    assert_eq!(of("NAV-1").verdict, Verdict::Pass, "{}", state.text());
+    assert_eq!(of("NAV-2").verdict, Verdict::Pass, "{}", state.text());
+    assert!(of("NAV-2").reason.contains("at least 68.13 %"), "{}", of("NAV-2").reason);
+    assert_eq!(of("NAV-3").verdict, Verdict::Inconclusive, "{}", state.text());
+    assert_eq!((state.besides, state.verdict()), (Verdict::Pass, Verdict::Inconclusive));
+    assert!(state.text().contains("not verified by runs: DOC-1"), "{}", state.text());
+    let checks = Table::open(&merge::part(&folder, Shard::WHOLE, "checks")).unwrap();
+    assert_eq!(checks.rows, 18);
+
+    // Another limit makes other cases.
+    std::fs::write(bench.at("requirements.toml"), requirements.replace("9 nmi", "8 nmi")).unwrap();
+    assert!(bench.plan().cases.iter().all(|case| plan.case(&case.id).is_none()));
+    let refusals = [
+        ("id = \"NAV-2\"", "id = \"NAV-1\"", "is one thing in scenario \"short\" and another"),
+        ("9 nmi", "9 deg/h", "comparable with nmi"),
+        ("radial_error_nmi.max", "radial_eror_nmi.max", "did you mean \"radial_error_nmi\"?"),
+        ("schema = 1", "schema = 2", "a newer Octant"),
+    ];
+    for (what, instead, words) in refusals {
+        std::fs::write(bench.at("requirements.toml"), requirements.replacen(what, instead, 1))
+            .unwrap();
+        let error = bench.refusal();
+        assert!(error.contains(words), "{instead}: {error}");
+    }
+    std::fs::write(bench.at("requirements.toml"), requirements).unwrap();
+    let verifies = campaign.replace("id = \"short\"", "id = \"short\"\nverifies = [\"NAV-4\"]");
+    std::fs::write(bench.at("campaign.toml"), verifies).unwrap();
+    let error = bench.refusal();
+    assert!(error.contains("verifies \"NAV-4\", which the requirements don't have"), "{error}");
+    let none = campaign.replace("id = \"short\"", "id = \"short\"\nverifies = []");
+    std::fs::write(bench.at("campaign.toml"), none).unwrap();
+    let state = status::of(&bench.plan(), &bench.at("none"), Shard::WHOLE).unwrap();
+    assert_eq!(state.requirements["NAV-2"].reason, "no case verifies it");
+    assert_eq!(state.requirements["NAV-2"].verdict, Verdict::Inconclusive);
+}

@@ -71,6 +71,8 @@ pub struct Member {
     pub file: PathBuf,
     /// What is set in it, as `KEY=VALUE`.
     pub set: Vec<String>,
+    /// Requirements of the campaign's file that its cases check; none: all that are verified by test.
+    pub verifies: Option<Vec<String>>,
 }
 
 /// One thing that is varied.
@@ -219,7 +221,8 @@ fn read(document: &Table, folder: &Path) -> Result<Campaign, Problem> {
     for table in root.tables("scenarios") {
         let id = unique(&table, "id", scenarios.iter().map(|member| member.id.as_str()))?;
         let set = table.node("set").map_or(Vec::new(), settings);
-        scenarios.push(Member { id, file: folder.join(table.text("file")?), set });
+        let verifies = table.node("verifies").map(names);
+        scenarios.push(Member { id, file: folder.join(table.text("file")?), set, verifies });
     }
     let mut factors: Vec<Factor> = Vec::new();
     for table in root.tables("factors") {

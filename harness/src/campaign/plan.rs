@@ -4,7 +4,10 @@
 //! every case that was there before has the id that it had.
 
 use super::file::{Campaign, Factor, Levels, Limits, Member, Stop};
+use super::requirements::{self, Planned};
 use crate::scenario::{Scenario, ScenarioError};
+use crate::score::verdict;
+use octant_requirements::RequirementsError;
 use octant_statistics::proportion::Demand;
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, HashMap};
@@ -34,6 +37,12 @@ pub struct Plan {
     pub stop: Option<StopRule>,
     /// Names of the factors, in the order of the campaign.
     pub factors: Vec<String>,
+    /// Requirements of the campaign's own file that runs verify.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub requirements: Vec<Planned>,
+    /// Requirements of that file which no run can verify.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub not_by_test: Vec<String>,
     /// The scenarios.
     pub scenarios: Vec<PlannedScenario>,
     /// Every case, in the order in which they are begun.
@@ -73,7 +82,7 @@ impl From<Stop> for StopRule {
 }
 
 /// A scenario of a plan.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PlannedScenario {
     /// Its name in the campaign.
     pub id: String,
@@ -83,12 +92,16 @@ pub struct PlannedScenario {
     pub blake3: String,
     /// Ids of the requirements that its cases check.
     pub requirements: Vec<String>,
+    /// Those of them that the scenario itself doesn't have.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub checks: Vec<verdict::Requirement>,
 }
 
 /// One case: everything that makes its result.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Case {
-    /// The first 16 digits of the BLAKE3 of the scenario's, of `set`, `faults` and `seed`.
+    /// The first 16 digits of the BLAKE3 of the scenario's, of what is checked besides, of `set`,
+    /// `faults` and `seed`.
     pub id: String,
     /// Name of the scenario.
     pub scenario: String,
@@ -121,6 +134,9 @@ pub enum PlanError {
     /// A file of the campaign isn't right.
     #[error(transparent)]
     File(#[from] ScenarioError),
+    /// The file of requirements isn't right.
+    #[error(transparent)]
+    Requirements(#[from] RequirementsError),
     /// A file can't be read or written.
     #[error("{action} {path}: {source}")]
     System {
@@ -169,7 +185,16 @@ impl Plan {
             )));
         }
         let draws = super::draw::draws(&campaign).map_err(&contradiction)?;
-        let scenarios = campaign.scenarios.iter().map(planned).collect::<Result<Vec<_>, _>>()?;
+        let file = campaign.requirements.as_deref().map(requirements::load).transpose()?;
+        let of_file = file.as_ref().map(requirements::planned).unwrap_or_default();
+        let by_test = |id: &str| of_file.iter().any(|planned| planned.check.id == id);
+        let not_by_test: Vec<String> = (file.iter().flat_map(|file| &file.requirements))
+            .filter(|requirement| !by_test(&requirement.id))
+            .map(|requirement| requirement.id.clone())
+            .collect();
+        let scenarios = (campaign.scenarios.iter())
+            .map(|member| planned(member, &of_file, path))
+            .collect::<Result<Vec<_>, _>>()?;
         let mut cases = Vec::new();
         // More replicates are added at the end.
         for replicate in 0..campaign.replicates {
@@ -191,7 +216,7 @@ impl Plan {
                         };
                         give(&mut case, factor, at);
                     }
-                    case.id = id_of(&planned.blake3, &case);
+                    case.id = id_of(planned, &case);
                     cases.push(case);
                 }
             }
@@ -222,6 +247,8 @@ impl Plan {
             limits: campaign.limits.into(),
             stop: campaign.stop.map(StopRule::from),
             factors: campaign.factors.iter().map(|factor| factor.name.clone()).collect(),
+            requirements: of_file,
+            not_by_test,
             scenarios,
             cases,
         };
@@ -403,7 +430,15 @@ impl PlannedScenario {
     }
 
     fn with(&self, case: &Case) -> Result<Scenario, PlanError> {
-        let scenario = Scenario::load(&self.file, &case.set)?;
+        let mut scenario = Scenario::load(&self.file, &case.set)?;
+        scenario.requirements.extend(self.checks.iter().map(|check| {
+            crate::scenario::Requirement {
+                check: check.clone(),
+                text: String::new(),
+                limit_text: check.limit.to_string(),
+                clause: None,
+            }
+        }));
         let Some(faults) = &case.faults else { return Ok(scenario) };
         scenario
             .with_only(faults)
@@ -452,14 +487,59 @@ fn absolute(path: &Path) -> Result<PathBuf, PlanError> {
     system("find", path, std::path::absolute(path))
 }
 
-fn planned(member: &Member) -> Result<PlannedScenario, PlanError> {
+fn planned(
+    member: &Member,
+    of_file: &[Planned],
+    campaign: &Path,
+) -> Result<PlannedScenario, PlanError> {
+    let contradiction =
+        |reason: String| PlanError::Contradiction { campaign: campaign.to_owned(), reason };
     let bytes = system("read", &member.file, std::fs::read(&member.file))?;
     let base = Scenario::load(&member.file, &member.set)?;
+    let named = member.verifies.iter().flatten();
+    if let Some(unknown) = named.clone().find(|id| !of_file.iter().any(|p| p.check.id == **id)) {
+        let known = of_file.iter().map(|planned| planned.check.id.as_str());
+        let known = crate::scenario::suggestion(unknown, known, "verified by test");
+        return Err(contradiction(format!(
+            "scenario {:?} verifies {unknown:?}, which the requirements don't have, {known}",
+            member.id
+        )));
+    }
+    let wanted = |id: &String| member.verifies.as_ref().is_none_or(|ids| ids.contains(id));
+    let mut requirements: Vec<String> =
+        base.requirements.iter().map(|own| own.check.id.clone()).collect();
+    let mut checks = Vec::new();
+    for Planned { check, .. } in of_file {
+        let own = base.requirements.iter().find(|own| own.check.id == check.id);
+        match own {
+            Some(own) if own.check != *check => {
+                return Err(contradiction(format!(
+                    "requirement {:?} is one thing in scenario {:?} and another in the file of \
+                     requirements: {} {} {} and {} {} {}",
+                    check.id,
+                    member.id,
+                    own.check.measure,
+                    own.check.comparison.sign(),
+                    own.check.limit,
+                    check.measure,
+                    check.comparison.sign(),
+                    check.limit
+                )));
+            }
+            Some(_) => {}
+            None if wanted(&check.id) => {
+                requirements.push(check.id.clone());
+                checks.push(check.clone());
+            }
+            None => {}
+        }
+    }
     Ok(PlannedScenario {
         id: member.id.clone(),
         file: absolute(&member.file)?,
         blake3: blake3::hash(&bytes).to_hex().to_string(),
-        requirements: base.requirements.iter().map(|r| r.check.id.clone()).collect(),
+        requirements,
+        checks,
     })
 }
 
@@ -496,9 +576,10 @@ fn plain(value: &str) -> FactorValue {
 }
 
 /// The id of a case.
-fn id_of(scenario_blake3: &str, case: &Case) -> String {
+fn id_of(scenario: &PlannedScenario, case: &Case) -> String {
     // One JSON text: no two different cases write the same.
-    let content = serde_json::json!([scenario_blake3, case.set, case.faults, case.seed]);
+    let content =
+        serde_json::json!([scenario.blake3, scenario.checks, case.set, case.faults, case.seed]);
     blake3::hash(content.to_string().as_bytes()).to_hex().as_str()[..16].to_owned()
 }
 

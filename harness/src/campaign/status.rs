@@ -3,9 +3,13 @@
 use super::case::{self, CaseResult};
 use super::execute::{Shard, differing};
 use super::plan::{Plan, StopRule};
+use super::requirements;
 use super::stop::{self, Decision};
 use crate::report::number::plain;
 use crate::score::verdict::Verdict;
+use octant_requirements::requirement::Ensemble;
+use octant_requirements::trace::{Counts, judge};
+use octant_statistics::proportion::{Demand, Needed, further_if_all_pass};
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -27,14 +31,34 @@ pub struct Status {
     pub open: usize,
     /// Cases by verdict.
     pub verdicts: BTreeMap<&'static str, usize>,
-    /// Checks of each requirement, by verdict.
-    pub requirements: BTreeMap<String, BTreeMap<&'static str, usize>>,
+    /// The worst of the cases but for their requirements: a case that ended as an error, a calibration
+    /// that was refused, a fault that never fired, a case that checks nothing.
+    pub besides: Verdict,
+    /// What each requirement comes to.
+    pub requirements: BTreeMap<String, RequirementStatus>,
+    /// Requirements that no run can verify.
+    pub not_by_test: Vec<String>,
     /// The first cases that failed or ended as errors, and why.
     pub bad: Vec<Bad>,
     /// Cases that came to two results.
     pub differing: Vec<String>,
     /// Why no more cases are run; null: all are.
     pub stopped: Option<String>,
+}
+
+/// What the cases show of a requirement.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct RequirementStatus {
+    /// What it comes to.
+    pub verdict: Verdict,
+    /// Why, in plain words.
+    pub reason: String,
+    /// Its checks.
+    pub counts: Counts,
+    /// What has to hold of all cases together; null: every case has to pass.
+    pub ensemble: Option<Ensemble>,
+    /// Runs that are still needed if all of them pass; null where nothing is asked of them together.
+    pub needed: Option<Needed>,
 }
 
 /// A case that isn't good.
@@ -60,7 +84,9 @@ pub fn of(plan: &Plan, folder: &Path, shard: Shard) -> Result<Status, String> {
         cases: 0,
         open: 0,
         verdicts: BTreeMap::new(),
+        besides: Verdict::Pass,
         requirements: BTreeMap::new(),
+        not_by_test: plan.not_by_test.clone(),
         bad: Vec::new(),
         differing: Vec::new(),
         stopped: None,
@@ -73,18 +99,34 @@ pub fn of(plan: &Plan, folder: &Path, shard: Shard) -> Result<Status, String> {
             decision.end(plan.cases.len())
         }
     };
+    let mut counts: BTreeMap<&str, Counts> = BTreeMap::new();
+    // One that no case has is there too.
+    let of_file = plan.requirements.iter().map(|planned| &planned.check.id);
+    let of_scenarios = plan.scenarios.iter().flat_map(|scenario| &scenario.requirements);
+    for id in of_file.chain(of_scenarios) {
+        counts.entry(id).or_default();
+    }
     status.cases = mine().filter(|(index, _)| *index < end).count();
     for (_, case) in mine().filter(|(index, _)| *index < end) {
         let path = case::file(folder, &case.id);
+        let checked = plan.scenarios.iter().find(|scenario| scenario.id == case.scenario);
+        let checked = checked.iter().flat_map(|scenario| &scenario.requirements);
         if !path.exists() {
             status.open += 1;
+            checked.for_each(|id| counts.entry(id).or_default().missing += 1);
             continue;
         }
         let result = CaseResult::read(&path).map_err(|reason| format!("failed to {reason}"))?;
         *status.verdicts.entry(result.verdict.name()).or_default() += 1;
-        for check in result.summary.iter().flat_map(|summary| &summary.requirements) {
-            let counts = status.requirements.entry(check.id.clone()).or_default();
-            *counts.entry(check.verdict.name()).or_default() += 1;
+        status.besides = status.besides.worst(besides(&result));
+        for id in checked {
+            let counts = counts.entry(id).or_default();
+            *match result.check(id) {
+                Verdict::Pass => &mut counts.pass,
+                Verdict::Inconclusive => &mut counts.inconclusive,
+                Verdict::Fail => &mut counts.fail,
+                Verdict::Error => &mut counts.error,
+            } += 1;
         }
         if differing(&path, &case.id).is_some() {
             status.differing.push(case.id.clone());
@@ -95,7 +137,37 @@ pub fn of(plan: &Plan, folder: &Path, shard: Shard) -> Result<Status, String> {
             status.bad.push(Bad { case: case.id.clone(), verdict: result.verdict, reason });
         }
     }
+    let of = |(id, counts): (&str, Counts)| {
+        let ensemble = requirements::ensemble(plan, id);
+        let (verdict, reason) = judge(ensemble, counts);
+        let needed = ensemble.map(|Ensemble { pass, confidence }| {
+            let runs = counts.pass + counts.fail;
+            further_if_all_pass(Demand { pass, confidence }, counts.fail, runs)
+        });
+        let verdict = Verdict::ALL.into_iter().find(|known| known.name() == verdict.name());
+        let verdict = verdict.unwrap_or(Verdict::Error);
+        (id.to_owned(), RequirementStatus { verdict, reason, counts, ensemble, needed })
+    };
+    status.requirements = counts.into_iter().map(of).collect();
     Ok(status)
+}
+
+/// What a case comes to but for its requirements.
+fn besides(result: &CaseResult) -> Verdict {
+    let Some(summary) = &result.summary else { return Verdict::Error };
+    let checks = |verdict| summary.requirements.iter().any(|check| check.verdict == verdict);
+    if summary.calibration.as_ref().is_some_and(|calibration| calibration.refused.is_some()) {
+        return Verdict::Fail;
+    }
+    if summary.requirements.is_empty() || summary.faults.iter().any(|fault| !fault.fired) {
+        return Verdict::Inconclusive;
+    }
+    // What none of the requirements says comes from elsewhere.
+    match result.verdict {
+        Verdict::Pass => Verdict::Pass,
+        verdict if checks(verdict) => Verdict::Pass,
+        verdict => verdict,
+    }
 }
 
 /// Looks at the results in a folder.
@@ -126,17 +198,17 @@ fn in_words(rule: &StopRule, decision: Decision) -> Option<String> {
 }
 
 impl Status {
-    /// What it comes to: the worst of all cases, an error where a case came to two results, and no pass
-    /// before all have run, or where there is none.
+    /// What it comes to: the worst of its requirements and of what came up besides, an error where a case
+    /// came to two results, and no pass before all cases have run, or where there is none.
     #[must_use]
     pub fn verdict(&self) -> Verdict {
         if !self.differing.is_empty() {
             return Verdict::Error;
         }
-        let there = |verdict: &&Verdict| self.verdicts.contains_key(verdict.name());
-        let worst = Verdict::ALL.iter().filter(there).max().copied();
-        let unfinished = if self.open > 0 { Verdict::Inconclusive } else { Verdict::Pass };
-        worst.unwrap_or(Verdict::Inconclusive).worst(unfinished)
+        let unfinished = self.open > 0 || self.cases == 0 || self.requirements.is_empty();
+        let least = if unfinished { Verdict::Inconclusive } else { Verdict::Pass };
+        let requirements = self.requirements.values().map(|requirement| requirement.verdict);
+        requirements.fold(self.besides.worst(least), Verdict::worst)
     }
 
     /// The state for people.
@@ -157,8 +229,21 @@ impl Status {
             self.cases,
             counts(&self.verdicts)
         );
-        for (id, checks) in &self.requirements {
-            _ = writeln!(text, "  {id}: {}", counts(checks));
+        for (id, requirement) in &self.requirements {
+            _ = writeln!(text, "  {id}: {}: {}", requirement.verdict.name(), requirement.reason);
+            match requirement.needed {
+                None | Some(Needed::Runs(0)) => {}
+                Some(Needed::Runs(runs)) => {
+                    _ = writeln!(text, "    {runs} more cases would show it, if all of them pass");
+                }
+                Some(Needed::CannotBeMet) => {
+                    text += "    no number of further cases can show it\n";
+                }
+            }
+        }
+        if !self.not_by_test.is_empty() {
+            let ids = self.not_by_test.join(", ");
+            _ = writeln!(text, "  not verified by runs: {ids}");
         }
         if self.requirements.is_empty() {
             text += "  no requirement checked\n";

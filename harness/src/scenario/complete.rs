@@ -204,6 +204,8 @@ pub(crate) fn check(
             problems.extend(ports::settings(table, path).err())
         }
         (Kind::Values, Value::Array(entries)) if !entries.is_empty() => {}
+        (Kind::Names, Value::Array(entries))
+            if entries.iter().all(|entry| matches!(entry.value, Value::Text(_))) => {}
         (Kind::Lists, Value::Array(entries)) if !entries.is_empty() => {
             for entry in entries.iter().filter(|entry| !is_names(entry)) {
                 let found = entry.value.describe();
@@ -415,6 +417,7 @@ pub(crate) fn expected(kind: &Kind) -> String {
         Kind::Port(channel) => ports::expected_port(channel),
         Kind::Settings => "a table of names and values".to_owned(),
         Kind::Values => "a list of at least one value".to_owned(),
+        Kind::Names => "a list of names".to_owned(),
         Kind::Lists => "a list of lists of names".to_owned(),
         Kind::Codes => {
             "a whole number or the name of an enumeration's item, or an array of them".to_owned()

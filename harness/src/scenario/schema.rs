@@ -112,6 +112,7 @@ fn kind(kind: &Kind) -> Value {
         Kind::Port(channel) => port(channel),
         Kind::Settings => json!({ "type": "object" }),
         Kind::Values => json!({ "type": "array", "minItems": 1 }),
+        Kind::Names => json!({ "type": "array", "items": { "type": "string" } }),
         Kind::Lists => {
             let names = json!({ "type": "array", "items": { "type": "string" } });
             json!({ "type": "array", "items": names, "minItems": 1 })

@@ -264,6 +264,7 @@ fn example(kind: &Kind) -> String {
         Kind::Port(channel) => ports::example_port(channel),
         Kind::Settings => r#"{ "ship.mass" = 3.2e6 }"#.to_owned(),
         Kind::Values => "[1]".to_owned(),
+        Kind::Names => "[]".to_owned(),
         Kind::Lists => "[[]]".to_owned(),
         Kind::Codes => "1".to_owned(),
         Kind::Table(section) | Kind::Tables(section, ..) => {

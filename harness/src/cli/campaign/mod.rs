@@ -132,6 +132,7 @@ impl From<PlanError> for Failure {
     fn from(error: PlanError) -> Self {
         match error {
             PlanError::File(error) => Self::input(error),
+            PlanError::Requirements(error) => Self::input(error),
             error => Self::input(error).failed(),
         }
     }

@@ -21,7 +21,7 @@ pub(crate) static CAMPAIGN: Section = section(&[
     key(
         "requirements",
         Kind::Text,
-        Default::Absent("those of the scenarios alone, without texts and confidence"),
+        Default::Absent("those of the scenarios alone"),
         "File with the requirements, counted from the campaign's own folder.",
     ),
     key("scenarios", Kind::Tables(&SCENARIO, 1, 1000), Default::Required, "What is run."),
@@ -50,6 +50,12 @@ static SCENARIO: Section = section(&[
         Kind::Settings,
         Default::Absent("the scenario as it is"),
         "Keys of the scenario with other values, as --set has them.",
+    ),
+    key(
+        "verifies",
+        Kind::Names,
+        Default::Absent("all that are verified by test"),
+        "Ids of the requirements of the campaign's file that its cases check.",
     ),
 ]);
 

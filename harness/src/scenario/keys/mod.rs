@@ -97,6 +97,8 @@ pub(crate) enum Kind {
     Settings,
     /// A list of values, at least one, each as any key may take it.
     Values,
+    /// A list of names, which may be empty.
+    Names,
     /// A list of lists of names, at least one list.
     Lists,
     /// Values of an FMU's variable: whole numbers or names of an enumeration, one or an array.

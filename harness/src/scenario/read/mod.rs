@@ -8,7 +8,7 @@ mod instrument;
 pub(crate) mod instrument_port;
 pub(crate) mod live;
 mod procedure;
-mod requirement;
+pub(crate) mod requirement;
 pub(crate) mod source;
 
 pub(super) use instrument::MOTIONS;

@@ -35,30 +35,7 @@ pub(super) fn read(root: &Reader<'_>) -> Result<Vec<Requirement>, Problem> {
             );
         }
         let measure = table.text("measure")?;
-        let plain = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
-        // With bars around it the magnitude is meant.
-        let bare = measure.strip_prefix('|').and_then(|rest| rest.strip_suffix('|'));
-        let bare = bare.unwrap_or(measure);
-        if bare.split('.').any(|part| part.is_empty() || !part.chars().all(plain)) {
-            return Err(table.problem(
-                "measure",
-                format!(
-                    "found {measure:?}, expected a dotted path such as \
-                     navigation.longitude_error_arcmin.max"
-                ),
-            ));
-        }
-        if let Err((place, part, keys)) = measures::check(bare) {
-            let found = match part {
-                None => format!("{place} is a table, expected a number in it: {}", keys.join(", ")),
-                Some(part) if keys.is_empty() => format!("{place} is a number and has no {part:?}"),
-                Some(part) => {
-                    let known = suggestion(&part, keys.iter().copied(), "it has");
-                    format!("{place} has no {part:?}, {known}")
-                }
-            };
-            return Err(table.problem("measure", format!("found {measure:?}: {found}")));
-        }
+        let bare = path_of(measure).map_err(|message| table.problem("measure", message))?;
         let (limit, limit_text) = limit(&table, bare)?;
         all.push(Requirement {
             check: verdict::Requirement {
@@ -85,26 +62,53 @@ fn limit(table: &Reader<'_>, measure: &str) -> Result<(f64, String), Problem> {
         let number = table.number("limit")?;
         return Ok((number, number.to_string()));
     };
-    let limit = quantity::parse(text)
-        .map_err(|_| table.problem("limit", format!("found {text:?}, expected a quantity")))?;
-    let Some((unit, one)) = unit_of(measure) else {
-        return Err(table.problem(
-            "limit",
-            format!("found {text:?}, expected a plain number: {measure} has no unit"),
+    let number = limit_of(measure, text).map_err(|message| table.problem("limit", message))?;
+    Ok((number, text.to_owned()))
+}
+
+/// The path of a measure without the bars that mean its magnitude.
+///
+/// # Errors
+/// In words, if it isn't a path, or no summary has it.
+pub(crate) fn path_of(measure: &str) -> Result<&str, String> {
+    let plain = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
+    let bare = measure.strip_prefix('|').and_then(|rest| rest.strip_suffix('|'));
+    let bare = bare.unwrap_or(measure);
+    if bare.split('.').any(|part| part.is_empty() || !part.chars().all(plain)) {
+        return Err(format!(
+            "found {measure:?}, expected a dotted path such as navigation.longitude_error_arcmin.max"
         ));
+    }
+    let Err((place, part, keys)) = measures::check(bare) else { return Ok(bare) };
+    let found = match part {
+        None => format!("{place} is a table, expected a number in it: {}", keys.join(", ")),
+        Some(part) if keys.is_empty() => format!("{place} is a number and has no {part:?}"),
+        Some(part) => {
+            let known = suggestion(&part, keys.iter().copied(), "it has");
+            format!("{place} has no {part:?}, {known}")
+        }
+    };
+    Err(format!("found {measure:?}: {found}"))
+}
+
+/// A limit that is written as a quantity, in the unit of its measure.
+///
+/// # Errors
+/// In words, if it isn't a quantity, or none of the measure's kind.
+pub(crate) fn limit_of(measure: &str, text: &str) -> Result<f64, String> {
+    let limit =
+        quantity::parse(text).map_err(|_| format!("found {text:?}, expected a quantity"))?;
+    let Some((unit, one)) = unit_of(measure) else {
+        return Err(format!("found {text:?}, expected a plain number: {measure} has no unit"));
     };
     if !limit.same_dimension(one) {
-        return Err(table.problem(
-            "limit",
-            format!("found {text:?}, expected a quantity that is comparable with {unit}, the unit of {measure}"),
+        return Err(format!(
+            "found {text:?}, expected a quantity that is comparable with {unit}, the unit of {measure}"
         ));
     }
     // Written in the measure's own unit, the number is the one written.
-    let number = match text.trim().strip_suffix(&unit).and_then(|n| n.trim().parse().ok()) {
-        Some(number) => number,
-        None => limit.si / one.si,
-    };
-    Ok((number, text.to_owned()))
+    let own = text.trim().strip_suffix(&unit).and_then(|n| n.trim().parse().ok());
+    Ok(own.unwrap_or(limit.si / one.si))
 }
 
 /// The unit of a measure, from its name: of a parameter, or the ending of a part of the path; with

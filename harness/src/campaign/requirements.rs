@@ -1,0 +1,87 @@
+//! The requirements of a campaign: from their file into its cases, and what the cases show of them.
+
+use super::plan::Plan;
+use crate::scenario::read::requirement::{limit_of, path_of};
+use crate::score::verdict;
+use octant_requirements::RequirementsError;
+use octant_requirements::file::{Checker, read};
+use octant_requirements::requirement::{Comparison, Ensemble, Limit, Requirement, Requirements};
+use serde::{Deserialize, Serialize};
+use std::path::Path;
+
+/// A requirement of a campaign's file that runs verify.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Planned {
+    /// What a case checks.
+    pub check: verdict::Requirement,
+    /// What has to hold of all cases together; without it every case has to pass.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub ensemble: Option<Ensemble>,
+}
+
+/// Knows the measures of a summary, and their units.
+#[derive(Clone, Copy, Debug)]
+pub struct Measures;
+
+impl Checker for Measures {
+    fn measure(&self, measure: &str) -> Result<(), String> {
+        path_of(measure).map(|_| ())
+    }
+
+    fn limit(&self, measure: &str, limit: &Limit) -> Result<(), String> {
+        number(measure, limit).map(|_| ())
+    }
+}
+
+fn number(measure: &str, limit: &Limit) -> Result<f64, String> {
+    match limit {
+        Limit::Number(number) => Ok(*number),
+        Limit::Quantity(text) => limit_of(path_of(measure)?, text),
+    }
+}
+
+/// Reads a file of requirements, with measures and limits that a run can have.
+///
+/// # Errors
+/// If it can't be read or isn't right: every problem with its place.
+pub fn load(path: &Path) -> Result<Requirements, RequirementsError> {
+    let file = path.display().to_string();
+    let text = std::fs::read_to_string(path).map_err(|error| RequirementsError {
+        file: file.clone(),
+        problems: vec![octant_requirements::Problem {
+            line: 1,
+            column: 1,
+            path: String::new(),
+            message: error.to_string(),
+        }],
+    })?;
+    read(&text, &file, &Measures)
+}
+
+/// The requirements of a file that runs verify.
+pub(super) fn planned(requirements: &Requirements) -> Vec<Planned> {
+    let of = |requirement: &Requirement| {
+        let check = requirement.check()?;
+        Some(Planned {
+            check: verdict::Requirement {
+                id: requirement.id.clone(),
+                measure: check.measure.clone(),
+                comparison: match check.comparison {
+                    Comparison::AtMost => verdict::Comparison::AtMost,
+                    Comparison::Below => verdict::Comparison::Below,
+                    Comparison::AtLeast => verdict::Comparison::AtLeast,
+                    Comparison::Above => verdict::Comparison::Above,
+                },
+                // It was checked when the file was read.
+                limit: number(&check.measure, &check.limit).unwrap_or(f64::NAN),
+            },
+            ensemble: check.ensemble,
+        })
+    };
+    requirements.requirements.iter().filter_map(of).collect()
+}
+
+/// What has to hold of all cases together, of a requirement of the plan.
+pub(super) fn ensemble(plan: &Plan, id: &str) -> Option<Ensemble> {
+    plan.requirements.iter().find(|planned| planned.check.id == id)?.ensemble
+}
