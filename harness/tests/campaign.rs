@@ -475,6 +475,24 @@ verification = \"inspection\"
     let checks = Table::open(&merge::part(&folder, Shard::WHOLE, "checks")).unwrap();
     assert_eq!(checks.rows, 18);
 
+    // Traced, and as StrictDoc has it.
+    plan.write(&folder, false).unwrap();
+    let trace = |arguments: &[&str]| {
+        let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_octant"));
+        command.current_dir(bench.folder.path()).args(["campaign", "trace", "out"]);
+        command.args(arguments).output().unwrap()
+    };
+    let output = trace(&["--strictdoc", "project", "--json"]);
+    assert_eq!(output.status.code(), Some(3), "{output:?}");
+    let traced: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(traced["requirements"][0]["counts"]["pass"], 6);
+    assert_eq!(traced["requirements"][2]["verdict"], serde_json::Value::Null);
+    assert_eq!(traced["without_case"], serde_json::json!([]));
+    let case =
+        std::fs::read_to_string(bench.at(&format!("project/cases/{}.toml", plan.cases[0].id)));
+    assert!(case.unwrap().contains("@relation(NAV-2, NAV-3, scope=file)"));
+    assert_eq!(trace(&["--strictdoc", "project"]).status.code(), Some(2), "it is there");
+
     // Another limit makes other cases.
     std::fs::write(bench.at("requirements.toml"), requirements.replace("9 nmi", "8 nmi")).unwrap();
     assert!(bench.plan().cases.iter().all(|case| plan.case(&case.id).is_none()));

@@ -16,6 +16,7 @@ pub mod results;
 pub mod status;
 pub mod stop;
 pub mod table;
+pub mod trace;
 
 /// A file that gets its name when it is whole; what others may read of it is as of any new file.
 fn new_file(folder: &std::path::Path) -> std::io::Result<tempfile::NamedTempFile> {

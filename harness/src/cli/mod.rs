@@ -15,6 +15,7 @@ mod observe;
 mod progress;
 mod replay;
 mod report;
+mod requirements;
 mod run;
 mod run_system;
 mod score;
@@ -49,6 +50,8 @@ enum Command {
     Replay(replay::Arguments),
     /// Run many cases: plan them, run them anywhere, merge what came of them.
     Campaign(campaign::Arguments),
+    /// Check a file of requirements, or turn it into one of another tool.
+    Requirements(requirements::Arguments),
     /// Serve the core as a device, that a harness drives over a port.
     Serve(serve::Arguments),
     /// Score a recording.
@@ -186,6 +189,7 @@ pub fn main() -> ExitCode {
     let outcome = match cli.command {
         Command::Run(arguments) => run::command(&arguments),
         Command::Campaign(arguments) => campaign::command(&arguments),
+        Command::Requirements(arguments) => requirements::command(&arguments),
         Command::Compare(arguments) => compare::command(&arguments),
         Command::Replay(arguments) => replay::command(&arguments),
         Command::Serve(arguments) => serve::command(&arguments),

@@ -2,11 +2,12 @@
 
 mod run;
 
-use super::{Failure, print, print_json};
+use super::{Failure, print, print_json, write};
 use crate::campaign::case::{self, Job};
 use crate::campaign::execute::{ExecuteError, Shard};
 use crate::campaign::merge::{self, MergeError};
 use crate::campaign::plan::{FILE_NAME, Plan, PlanError, Written};
+use crate::campaign::trace::requirements_of;
 use crate::campaign::{emit, status};
 use crate::run::Control;
 use crate::score::verdict::Verdict;
@@ -52,6 +53,18 @@ enum Command {
         /// Further folders with parts of the same plan, as other machines left them.
         #[arg(value_name = "OTHER")]
         others: Vec<PathBuf>,
+    },
+    /// Trace the requirements of the campaign's file to cases and results, and back.
+    Trace {
+        /// Folder of the campaign.
+        #[arg(value_name = "DIR")]
+        folder: PathBuf,
+        /// A new folder for a project that StrictDoc shows.
+        #[arg(long, value_name = "DIR")]
+        strictdoc: Option<PathBuf>,
+        /// Print one JSON object.
+        #[arg(long)]
+        json: bool,
     },
     /// Run one case again, with all the evidence of a run.
     Case {
@@ -114,6 +127,7 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
             Ok(status.verdict())
         }
         Command::Merge { folder, others } => merge_parts(folder, others),
+        Command::Trace { folder, strictdoc, json } => trace(folder, strictdoc.as_deref(), *json),
         Command::Case { folder, case, out } => again(folder, case, out.as_deref()),
         Command::Emit { scheduler, folder, shards, jobs, image, claim } => {
             let plan = read(folder)?;
@@ -193,6 +207,56 @@ fn merge_parts(folder: &Path, others: &[PathBuf]) -> Result<Verdict, Failure> {
         print(&format!("{}\n", merge::merged(folder, table).display()))?;
     }
     Ok(if merged.missing == 0 { Verdict::Pass } else { Verdict::Inconclusive })
+}
+
+fn trace(folder: &Path, strictdoc: Option<&Path>, json: bool) -> Result<Verdict, Failure> {
+    let plan = read(folder)?;
+    let requirements = requirements_of(&plan)?;
+    let trace = crate::campaign::trace::trace(&plan, &requirements, folder)
+        .map_err(|reason| Failure::bench(format!("failed to {reason}")))?;
+    if let Some(out) = strictdoc {
+        if out.exists() {
+            let message = format!("failed to write {}: it is there already", out.display());
+            return Err(Failure::input(message));
+        }
+        let files = octant_requirements::strictdoc::folder(&requirements, &trace, &plan.title)
+            .map_err(Failure::input)?;
+        for (path, text) in files {
+            let path = out.join(path);
+            let parent = path.parent().unwrap_or(out);
+            std::fs::create_dir_all(parent).map_err(|error| {
+                Failure::bench(format!("failed to create {}: {error}", parent.display()))
+            })?;
+            write(&path, text)?;
+        }
+    }
+    let verdict = Verdict::ALL.into_iter().find(|known| known.name() == trace.verdict().name());
+    if json {
+        print_json(&trace)?;
+    } else {
+        let mut text = String::new();
+        for row in &trace.requirements {
+            let verdict = row.verdict.map_or("not by a run", |verdict| verdict.name());
+            let cases = row.cases.len();
+            text += &format!("{}: {verdict}, {cases} cases: {}\n", row.id, row.reason);
+        }
+        for (what, ids) in [
+            ("requirements without a case", &trace.without_case),
+            ("cases without a requirement", &trace.without_requirement),
+        ] {
+            if !ids.is_empty() {
+                let named = ids.iter().take(10).cloned().collect::<Vec<_>>().join(", ");
+                let more = if ids.len() > 10 {
+                    format!(" and {} more", ids.len() - 10)
+                } else {
+                    String::new()
+                };
+                text += &format!("{what}: {named}{more}\n");
+            }
+        }
+        print(&text)?;
+    }
+    Ok(verdict.unwrap_or(Verdict::Error))
 }
 
 /// Runs one case as `octant run` would.

@@ -1,0 +1,72 @@
+//! From the requirements of a campaign to its cases and their results, and back.
+
+use super::case::{self, CaseResult};
+use super::file::Campaign;
+use super::plan::{Plan, PlanError};
+use super::requirements;
+use crate::score::verdict;
+use octant_requirements::requirement::Requirements;
+use octant_requirements::trace::{Case, CaseResult as Traced, Trace, Verdict};
+use std::path::Path;
+
+/// The requirements of the campaign that a plan was made of.
+///
+/// # Errors
+/// If it names no file of them, or the file was changed after the campaign was planned.
+pub fn requirements_of(plan: &Plan) -> Result<Requirements, PlanError> {
+    let contradiction =
+        |reason: String| PlanError::Contradiction { campaign: plan.campaign.clone(), reason };
+    let campaign = Campaign::load(&plan.campaign)?;
+    let Some(path) = campaign.requirements else {
+        return Err(contradiction("it names no file of requirements".to_owned()));
+    };
+    let requirements = requirements::load(&path)?;
+    if requirements::planned(&requirements) != plan.requirements {
+        return Err(PlanError::Form {
+            path,
+            reason: "it was changed after the campaign was planned".to_owned(),
+        });
+    }
+    Ok(requirements)
+}
+
+/// Traces a campaign by the results in its folder.
+///
+/// # Errors
+/// In words, if a result is there and can't be read.
+pub fn trace(plan: &Plan, requirements: &Requirements, folder: &Path) -> Result<Trace, String> {
+    let of = |case: &super::plan::Case| -> Result<Case, String> {
+        let planned = plan.scenarios.iter().find(|scenario| scenario.id == case.scenario);
+        let of_file = |id: &&String| requirements.get(id).is_some();
+        let verifies: Vec<String> = (planned.iter())
+            .flat_map(|scenario| scenario.requirements.iter().filter(of_file))
+            .cloned()
+            .collect();
+        let path = case::file(folder, &case.id);
+        let result = if path.exists() {
+            let result = CaseResult::read(&path)?;
+            let checks = verifies.iter().map(|id| (id.clone(), traced(result.check(id)))).collect();
+            Some(Traced {
+                verdict: traced(result.verdict),
+                checks,
+                // A campaign keeps summaries; a recording is made by running the case again.
+                recording: None,
+                folder: Some(path.display().to_string()),
+            })
+        } else {
+            None
+        };
+        Ok(Case { id: case.id.clone(), verifies, result })
+    };
+    let cases = plan.cases.iter().map(of).collect::<Result<Vec<_>, _>>()?;
+    Ok(Trace::new(requirements, &cases))
+}
+
+const fn traced(verdict: verdict::Verdict) -> Verdict {
+    match verdict {
+        verdict::Verdict::Pass => Verdict::Pass,
+        verdict::Verdict::Inconclusive => Verdict::Inconclusive,
+        verdict::Verdict::Fail => Verdict::Fail,
+        verdict::Verdict::Error => Verdict::Error,
+    }
+}
