@@ -41,9 +41,9 @@ pub(super) struct Arguments {
     /// Fire a fault whose trigger is manual, such as spike-1="5050 s".
     #[arg(long, value_name = "ID=TIME")]
     fire: Vec<String>,
-    /// Inject these of the scenario's faults alone; --faults= none of them.
+    /// Inject these of the scenario's faults alone; --only-faults= none of them.
     #[arg(long, value_name = "ID,ID", value_delimiter = ',', require_equals = true, num_args = 0..)]
-    faults: Option<Vec<String>>,
+    only_faults: Option<Vec<String>>,
     /// Go by the clock: a sample leaves when its time has come, as with realtime.pace = "clock".
     #[arg(long)]
     realtime: bool,
@@ -87,10 +87,10 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         more.push("realtime.pace=\"clock\"".to_owned());
     }
     let mut scenario = load_fired(&arguments.scenario, &more, &arguments.fire)?;
-    if let Some(faults) = &arguments.faults {
+    if let Some(faults) = &arguments.only_faults {
         scenario = scenario.with_only(faults).map_err(|reason| {
             let file = arguments.scenario.scenario.display();
-            Failure::input(format!("{file}: --faults: {reason}"))
+            Failure::input(format!("{file}: --only-faults: {reason}"))
         })?;
     }
     let seed = arguments.seed.unwrap_or(scenario.seed);
@@ -237,7 +237,7 @@ fn system(arguments: &Arguments) -> Result<Verdict, Failure> {
         ("--endpoint", arguments.endpoint.is_some()),
         ("--realtime", arguments.realtime),
         ("--no-twin", arguments.no_twin),
-        ("--faults", arguments.faults.is_some()),
+        ("--only-faults", arguments.only_faults.is_some()),
         ("--live", arguments.live.is_some()),
     ];
     if let Some((option, _)) = given.into_iter().find(|(_, given)| *given) {
@@ -416,8 +416,8 @@ fn rerun(arguments: &Arguments, seed: u64) -> Vec<String> {
     for fire in &arguments.fire {
         line.extend(["--fire".to_owned(), fire.clone()]);
     }
-    if let Some(faults) = &arguments.faults {
-        line.push(format!("--faults={}", faults.join(",")));
+    if let Some(faults) = &arguments.only_faults {
+        line.push(format!("--only-faults={}", faults.join(",")));
     }
     if arguments.realtime {
         line.push("--realtime".to_owned());
@@ -466,7 +466,7 @@ pub(super) fn on_recording(
         source: Some(format!("{kind}:{}", recording.display())),
         endpoint: None,
         fire: Vec::new(),
-        faults: None,
+        only_faults: None,
         realtime: false,
         no_twin: false,
         live: None,
@@ -489,7 +489,7 @@ pub(super) fn case(
         source: None,
         endpoint: None,
         fire: Vec::new(),
-        faults: case.faults.clone(),
+        only_faults: case.faults.clone(),
         realtime: false,
         no_twin: false,
         live: None,

@@ -87,7 +87,10 @@ impl Key {
             None => parsed()?.into_unencrypted_secret_key(),
         };
         let secret = secret.map_err(|error| {
-            wrong(format!("{error}; the password of an encrypted key is expected in {PASSWORD}"))
+            wrong(format!(
+                "{error}; expected a secret key of minisign, and its password, if it has one, in \
+                 {PASSWORD}"
+            ))
         })?;
         if secret.is_encrypted() {
             return Err(wrong(format!("it is encrypted: its password is expected in {PASSWORD}")));
