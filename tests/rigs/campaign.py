@@ -164,8 +164,7 @@ def evidence(work):
         made = subprocess.run(["minisign", "-G", "-W", "-p", public, "-s", secret], capture_output=True, text=True)
         check("minisign makes a key", made.returncode == 0, made.stderr)
     run = work / "run"
-    short = ["--set", 'procedure.calibration.duration="30 min"', "--set", 'procedure.navigation.duration="10 min"']
-    result = octant("run", ROOT / "fixtures/campaigns/static.toml", "--only-faults=", *short, "--out", run,
+    result = octant("run", ROOT / "fixtures/scenarios/lockstep.toml", "--out", run,
                     env={**os.environ, "OCTANT_SIGNING_KEY": str(keys[1]), "OCTANT_OPERATOR": "A. Tester"})
     good("a run is signed", result)
     stock = subprocess.run(["minisign", "-V", "-m", run / "manifest.json", "-p", keys[0]], capture_output=True, text=True)

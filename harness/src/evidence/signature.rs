@@ -4,6 +4,7 @@
 //! The secret key stays where its owner has it: it is named by the environment, never by a scenario, and
 //! nothing of it is written.
 
+use ct_codecs::{Base64, Decoder};
 use minisign::{PublicKey, SecretKey, SecretKeyBox, SignatureBox};
 use std::path::{Path, PathBuf};
 
@@ -84,7 +85,10 @@ impl Key {
         let secret = match password {
             // An empty password would be asked for on a terminal.
             Some(password) => parsed()?.into_secret_key(Some(password)),
-            None => parsed()?.into_unencrypted_secret_key(),
+            None => match unchecked(&text) {
+                Some(secret) => Ok(secret),
+                None => parsed()?.into_unencrypted_secret_key(),
+            },
         };
         let secret = secret.map_err(|error| {
             wrong(format!(
@@ -111,9 +115,17 @@ impl Key {
     pub fn sign(&self, manifest: &Path) -> Result<(), SignatureError> {
         let failed = |reason: String| SignatureError::Sign { path: manifest.to_owned(), reason };
         let bytes = std::fs::read(manifest).map_err(|error| failed(error.to_string()))?;
-        let signature =
-            minisign::sign(None, &self.secret, bytes.as_slice(), Some(TRUSTED), Some(UNTRUSTED))
-                .map_err(|error| failed(error.to_string()))?;
+        // Verified at once: a damaged key would make signatures that nobody can verify.
+        let public =
+            PublicKey::from_secret_key(&self.secret).map_err(|error| failed(error.to_string()))?;
+        let signature = minisign::sign(
+            Some(&public),
+            &self.secret,
+            bytes.as_slice(),
+            Some(TRUSTED),
+            Some(UNTRUSTED),
+        )
+        .map_err(|error| failed(error.to_string()))?;
         std::fs::write(manifest.with_file_name(FILE_NAME), signature.to_string())
             .map_err(|error| failed(error.to_string()))
     }
@@ -149,6 +161,16 @@ pub fn verify(manifest: &Path, key: &str) -> Result<String, SignatureError> {
         return Err(wrong("it was made for something else than a manifest of octant".to_owned()));
     }
     Ok(id_of(public.keynum()))
+}
+
+/// A key without a password as `minisign -G -W` writes it: its checksum is left zero, which the library
+/// takes for damage.
+fn unchecked(text: &str) -> Option<SecretKey> {
+    let bytes = Base64::decode_to_vec(text.lines().nth(1)?.trim(), None).ok()?;
+    // Signature algorithm, key derivation and checksum algorithm, two bytes each; the checksum last.
+    let (derivation, checksum) = (bytes.get(2..4)?, bytes.get(bytes.len().checked_sub(32)?..)?);
+    let plain = derivation == [0; 2] && checksum == [0; 32];
+    plain.then(|| SecretKey::from_bytes(&bytes).ok())?
 }
 
 /// Eight bytes, the last first, as minisign shows them.
@@ -192,6 +214,34 @@ mod tests {
             std::fs::write(&path, &whole).unwrap();
             assert!(verify(&manifest, &public).is_ok());
         }
+    }
+
+    /// Made by minisign 0.11 with `-G -W`, for this test alone.
+    #[test]
+    fn a_key_of_the_stock_tool_without_a_password_signs() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("key");
+        let secret = "untrusted comment: minisign encrypted secret key\nRWQAAEIyAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAGGJejVhEWMtXozaAVo8D+2wN2PE7YWyElsXM4PcvXS1lbGnvT2wBClem2MIozcVtChEQeclEDPNjZCh+b3hwAwE7eVEg1H7jAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAA=\n";
+        std::fs::write(&path, secret).unwrap();
+        let key = Key::read(&path, None).unwrap();
+        assert_eq!(key.id(), "CB5844588D5E6218");
+        let manifest = folder.path().join("manifest.json");
+        std::fs::write(&manifest, "{}\n").unwrap();
+        key.sign(&manifest).unwrap();
+        assert_eq!(
+            verify(&manifest, "RWQYYl6NWERYy1em2MIozcVtChEQeclEDPNjZCh+b3hwAwE7eVEg1H7j").unwrap(),
+            key.id()
+        );
+        // A key that was damaged is told before it signs anything.
+        let mut lines = secret.lines();
+        let damaged = format!(
+            "{}\n{}\n",
+            lines.next().unwrap(),
+            lines.next().unwrap().replacen("YWyElsXM", "MXslEyWY", 1)
+        );
+        std::fs::write(&path, damaged).unwrap();
+        let error = Key::read(&path, None).unwrap().sign(&manifest).unwrap_err().to_string();
+        assert!(error.starts_with("sign "), "{error}");
     }
 
     #[test]
