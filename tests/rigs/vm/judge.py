@@ -47,7 +47,8 @@ for line in said:
             f"{found[:16]}, {samples / seconds:.0f} samples/s",
         )
     elif line.startswith("instrument "):
-        _, name, status, found, readings = line.split(maxsplit=4)
+        _, name, status, found, *readings = line.split(maxsplit=4)
+        readings = "".join(readings)
         count = {key: int(value) for key, value in re.findall(r'"(\w+)":(\d+)', readings)}
         instruments[name] = found
         check(
