@@ -53,7 +53,7 @@ for line in said:
         instruments[name] = found
         check(
             f"instrument on {name}: status {status}, {count.get('samples')} samples",
-            status == "0" and count.get("samples") == 1000 and count.get("missing") == 0,
+            status == "0" and count.get("samples") == 200 and count.get("missing") == 0,
             readings,
         )
     elif line.startswith("failed"):
