@@ -391,13 +391,11 @@ fn not_modelled(scenario: &Scenario) -> Vec<String> {
     let spectrum = matches!(&scenario.motion, Motion::Dockside(ship) if ship.spectrum.is_some());
     let dockside = matches!(scenario.motion, Motion::Dockside(_));
     let quantized = extensions.gyro_quantization_rad > 0.0 || extensions.accel_quantization_mps > 0.0;
-    let limited = extensions.gyro_range_radps > 0.0 || extensions.accel_range_mps2 > 0.0;
-    let all: [(bool, &str); 13] = [
+    let all: [(bool, &str); 12] = [
         (true, "anything that isn't linear: products of errors, and screens and gates that leave samples out"),
         (even, "the shape of even draws: they count with their variance, and percentiles are those of normal errors"),
-        (true, "the encoders' errors: the filter doesn't use the angles"),
+        (scenario.turntable.encoder_sigma_rad != 0.0, "errors of the encoders: the filter doesn't use their angles"),
         (quantized, "quantization"),
-        (limited, "the range of the sensors"),
         (extensions.vibration.is_some(), "vibration"),
         (extensions.lever_arm_m != [[0.0; 3]; 3], "lever arms of the accelerometers"),
         (extensions.time_skew_s != 0.0, "the time skew of the inertial unit"),
