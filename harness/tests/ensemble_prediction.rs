@@ -45,8 +45,9 @@ fn run(scenario: &Scenario, seed: u64, change: impl Fn(&mut Config)) -> Run {
     let mut plant = Plant::new(&plant).unwrap();
     let mut core = Core::new(&config).unwrap();
     // One that stops there tells what it stopped with: navigation starts at the site.
-    let mut alone = Core::new(&octant_calibration::config::Config { navigation: None, ..config.clone() })
-        .unwrap();
+    let mut alone =
+        Core::new(&octant_calibration::config::Config { navigation: None, ..config.clone() })
+            .unwrap();
     let hour = 3_600_000_000_000 / scenario.sample_period_ns;
     let calibration = scenario.calibration_samples();
     let earth = Ellipsoid::at(config.site.latitude_rad, config.site.height_m);
@@ -74,7 +75,8 @@ fn run(scenario: &Scenario, seed: u64, change: impl Fn(&mut Config)) -> Run {
                     run.errors[DV + axis] = at.velocity_mps[axis] - truth.velocity_mps[axis];
                     run.errors[DR + axis] = position[axis];
                 }
-                let (estimate, truth) = (alone.parameters().to_array(), draws.parameters.to_array());
+                let (estimate, truth) =
+                    (alone.parameters().to_array(), draws.parameters.to_array());
                 for (i, (estimate, truth)) in estimate.iter().zip(truth).enumerate() {
                     run.errors[PARAMETERS + i] = estimate - truth;
                 }
@@ -135,7 +137,10 @@ velocity_error = [\"0.01 m/s\", \"-0.02 m/s\", \"0.01 m/s\"]
 fn assert_same(predicted: &Ensemble, run: &Run, part: f64) {
     for (state, error) in predicted.states.iter().zip(&run.errors) {
         let size = state.believed.unwrap_or(0.0).max(error.abs());
-        println!("{:24} {:12.5e} {error:12.5e} of {size:.3e} {}", state.name, state.mean, state.unit);
+        println!(
+            "{:24} {:12.5e} {error:12.5e} of {size:.3e} {}",
+            state.name, state.mean, state.unit
+        );
         assert!(
             (state.mean - error).abs() < part * size,
             "{}: {} predicted, {error} run",
@@ -146,7 +151,8 @@ fn assert_same(predicted: &Ensemble, run: &Run, part: f64) {
     let largest = |axis: usize| run.drift.iter().map(|d| d[axis].abs()).fold(0.0, f64::max);
     let largest = [largest(0), largest(1)];
     for (hour, drift) in run.drift.iter().enumerate() {
-        let band = predicted.drift.iter().find(|b| (b.hours - hour as f64 - 1.0).abs() < 1e-6).unwrap();
+        let band =
+            predicted.drift.iter().find(|b| (b.hours - hour as f64 - 1.0).abs() < 1e-6).unwrap();
         let means = [band.latitude_arcmin.mean, band.longitude_arcmin.mean];
         println!("{:3} h {means:9.5?} {drift:9.5?}", hour + 1);
         for axis in 0..2 {
@@ -286,7 +292,10 @@ fn assert_ensemble(scenario: &Scenario, count: u64, drift_hours: std::ops::Range
         let errors: Vec<f64> = runs.iter().map(|run| run.errors[i] - state.mean).collect();
         let simulated = rms(&errors).unwrap();
         let ratio = state.sigma / simulated;
-        println!("{:24} {:11.4e} {simulated:11.4e} {ratio:.3} {}", state.name, state.sigma, state.unit);
+        println!(
+            "{:24} {:11.4e} {simulated:11.4e} {ratio:.3} {}",
+            state.name, state.sigma, state.unit
+        );
         if !((ratio - 1.0).abs() <= 0.2) {
             wrong.push(format!("{}: {ratio:.3}", state.name));
         }
@@ -302,7 +311,8 @@ fn assert_ensemble(scenario: &Scenario, count: u64, drift_hours: std::ops::Range
     let hours = drift_hours.clone().count() as f64;
     for hour in drift_hours {
         let band = predicted.drift.iter().find(|b| (b.hours - hour as f64).abs() < 1e-6).unwrap();
-        let column = |axis: usize| runs.iter().map(|run| run.drift[hour - 1][axis]).collect::<Vec<_>>();
+        let column =
+            |axis: usize| runs.iter().map(|run| run.drift[hour - 1][axis]).collect::<Vec<_>>();
         let of = |values: &[f64], p: f64| percentile(values, p).unwrap();
         let mut found = Vec::new();
         for (axis, band) in [band.latitude_arcmin, band.longitude_arcmin].into_iter().enumerate() {

@@ -42,9 +42,8 @@ fn changed(name: &str, from: &str, to: &str) -> (TempDir, PathBuf) {
 
 /// A refusal names the version that was found and the one that is read, and nothing else went wrong.
 fn assert_refused(refusal: &str) {
-    let has = |number: &str| {
-        refusal.split(|c: char| !c.is_ascii_digit()).any(|word| word == number)
-    };
+    let has =
+        |number: &str| refusal.split(|c: char| !c.is_ascii_digit()).any(|word| word == number);
     assert!(has("2") && has("1"), "{refusal}");
     let plain = ["version", "schema"].iter().any(|word| refusal.contains(word));
     assert!(plain, "{refusal}");

@@ -288,11 +288,7 @@ fn result(id: &str, parts: &Parts) -> CaseResult {
 }
 
 /// A campaign in a folder, and its requirements.
-fn campaign(
-    folder: &Path,
-    outcomes: &[Came],
-    ensemble: Option<Ensemble>,
-) -> (Plan, Requirements) {
+fn campaign(folder: &Path, outcomes: &[Came], ensemble: Option<Ensemble>) -> (Plan, Requirements) {
     let id = |i: usize| format!("{i:016x}");
     let cases = (0..outcomes.len()).map(|i| Case {
         id: id(i),
@@ -347,14 +343,18 @@ fn campaign(
         ensemble,
     };
     let requirement = required::Requirement::new("NAV-1", "Near.", Verification::Test(check));
-    let requirements =
-        Requirements { title: "T".to_owned(), requirements: vec![requirement], ..Requirements::default() };
+    let requirements = Requirements {
+        title: "T".to_owned(),
+        requirements: vec![requirement],
+        ..Requirements::default()
+    };
     (plan, requirements)
 }
 
 fn ensemble() -> impl Strategy<Value = Option<Ensemble>> {
     // So little is asked of the ensemble that a few cases show it.
-    let weak = (0.01f64..0.4, 0.01f64..0.6).prop_map(|(pass, confidence)| Ensemble { pass, confidence });
+    let weak =
+        (0.01f64..0.4, 0.01f64..0.6).prop_map(|(pass, confidence)| Ensemble { pass, confidence });
     prop::option::of(weak)
 }
 
@@ -441,7 +441,10 @@ fn a_failure_that_an_ensemble_allows_hides_no_silent_fault() {
     assert_eq!(verdict(bad(vec![Verdict::Inconclusive], None)), Verdict::Inconclusive);
     assert_eq!(verdict(bad(vec![Verdict::Error], None)), Verdict::Error);
     assert_eq!(verdict(bad(Vec::new(), Some((vec![false], false)))), Verdict::Inconclusive);
-    assert_eq!(verdict(Parts { fired: vec![false], ..bad(Vec::new(), None) }), Verdict::Inconclusive);
+    assert_eq!(
+        verdict(Parts { fired: vec![false], ..bad(Vec::new(), None) }),
+        Verdict::Inconclusive
+    );
     // Checked twice, and only the second one fails.
     let twice = Parts { checks: vec![Found::Kept, Found::Broken], ..good.clone() };
     let folder = tempfile::tempdir().unwrap();
@@ -515,9 +518,8 @@ fn a_baseline_that_was_interrupted_shows_nothing() {
                 [[requirements]]\nid = \"A\"\ntext = \"x\"\n\
                 measure = \"navigation.radial_error_nmi.max\"\nlimit = \"10 nmi\"\n";
     let scenario = Scenario::parse(text, "f", Path::new(""), &[]).unwrap();
-    let run = || {
-        run_method(&scenario, Method::Primary, 1, Recording::None, &Control::default()).unwrap()
-    };
+    let run =
+        || run_method(&scenario, Method::Primary, 1, Recording::None, &Control::default()).unwrap();
     let mut baseline = run();
     baseline.ended = octant::run::Ended::Cancelled;
     let summary = assemble(&scenario, 1, run(), Some(baseline)).unwrap().summary;

@@ -121,9 +121,8 @@ impl CaseResult {
     pub fn read(path: &Path) -> Result<Self, String> {
         let text = std::fs::read_to_string(path)
             .map_err(|error| format!("read {}: {error}", path.display()))?;
-        let form = |error| {
-            format!("read {}: expected the result of a case: {error}", path.display())
-        };
+        let form =
+            |error| format!("read {}: expected the result of a case: {error}", path.display());
         // The version first: nothing else can be relied on in a newer one.
         let Version { schema } = serde_json::from_str(&text).map_err(form)?;
         if schema != SCHEMA {

@@ -69,7 +69,11 @@ struct DriftRow {
 
 pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     if arguments.ensemble {
-        return ensemble::command(&arguments.scenario, arguments.against.as_deref(), arguments.json);
+        return ensemble::command(
+            &arguments.scenario,
+            arguments.against.as_deref(),
+            arguments.json,
+        );
     }
     let scenario = load(&arguments.scenario, &[])?;
     let methods = std::iter::once(Method::Primary)

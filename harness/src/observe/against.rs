@@ -209,10 +209,7 @@ impl Sample {
 
     /// Calibrations that were published, with the navigation after them.
     fn of(&self, method: Method) -> Vec<(&Calibration, Option<&Navigation>)> {
-        fn one(
-            summary: &Summary,
-            method: Method,
-        ) -> Option<(&Calibration, Option<&Navigation>)> {
+        fn one(summary: &Summary, method: Method) -> Option<(&Calibration, Option<&Navigation>)> {
             let (calibration, navigation) = match method {
                 Method::Primary => (&summary.calibration, &summary.navigation),
                 Method::Baseline => {
@@ -271,8 +268,10 @@ fn compare(
     let mut drift = Vec::with_capacity(2 * times.len());
     for (axis, what) in ["latitude", "longitude"].into_iter().enumerate() {
         for time in &times {
-            let values: Option<Vec<f64>> =
-                runs.iter().map(|(_, navigation)| Some(at((*navigation)?, time.hours)?[axis])).collect();
+            let values: Option<Vec<f64>> = runs
+                .iter()
+                .map(|(_, navigation)| Some(at((*navigation)?, time.hours)?[axis]))
+                .collect();
             let values = values
                 .ok_or_else(|| format!("one of its cases has no drift at {:.1} h", time.hours))?;
             let band = if axis == 0 { time.latitude_arcmin } else { time.longitude_arcmin };
@@ -322,7 +321,8 @@ fn row(
         interval.low - rounding <= predicted && predicted <= interval.high + rounding
     };
     Row {
-        agrees: within(predicted_sigma, &simulated_sigma) && within(predicted_mean, &simulated_mean),
+        agrees: within(predicted_sigma, &simulated_sigma)
+            && within(predicted_mean, &simulated_mean),
         ratio: (value > 0.0).then(|| predicted_sigma / value),
         unit: unit.to_owned(),
         name,
@@ -365,7 +365,9 @@ fn conclude(comparison: &mut Comparison) {
         Some(true)
     };
     if let Some(ratio) = comparison.mean_ratio {
-        words.push(format!("predicted over simulated σ is {ratio:.3} in the mean over the parameters"));
+        words.push(format!(
+            "predicted over simulated σ is {ratio:.3} in the mean over the parameters"
+        ));
     }
     if comparison.open > 0 {
         words.push(format!("{} more cases have not been run", comparison.open));
@@ -381,8 +383,11 @@ fn conclude(comparison: &mut Comparison) {
 }
 
 fn in_words(row: &Row) -> String {
-    let Row { name, unit, predicted_sigma, predicted_mean, simulated_sigma, simulated_mean, .. } = row;
-    let outside = |value: f64, interval: &Interval| !(interval.low..=interval.high).contains(&value);
+    let Row {
+        name, unit, predicted_sigma, predicted_mean, simulated_sigma, simulated_mean, ..
+    } = row;
+    let outside =
+        |value: f64, interval: &Interval| !(interval.low..=interval.high).contains(&value);
     if outside(*predicted_sigma, simulated_sigma) {
         format!(
             "{name}: σ is {predicted_sigma:.4} {unit} predicted and {:.4} simulated",

@@ -129,10 +129,7 @@ impl PositionError {
 
 /// Metres of an arc minute of latitude and of longitude.
 pub(super) fn arcmin_m(earth: &Ellipsoid) -> [f64; 2] {
-    [
-        earth.meridian_radius_m * ARCMIN,
-        earth.transverse_radius_m * earth.cos_latitude * ARCMIN,
-    ]
+    [earth.meridian_radius_m * ARCMIN, earth.transverse_radius_m * earth.cos_latitude * ARCMIN]
 }
 
 /// White noise as the filter takes it: of gyros, rad²/s, and accelerometers, (m/s)²/s.

@@ -10,7 +10,9 @@ use super::platform::{Platform, SAMPLE_S};
 use super::truth::{Swing, Truth, Unseen, Wander};
 use crate::run::method::{SetupError, configurations, label};
 use crate::scenario::resolve::{Draws, Seeded};
-use crate::scenario::{Alignment, Distribution, Dockside, Endpoint, Method, Motion, Scenario, Source};
+use crate::scenario::{
+    Alignment, Distribution, Dockside, Endpoint, Method, Motion, Scenario, Source,
+};
 use nalgebra::{Matrix3, Vector3};
 use octant_calibration::config::{Config, ErrorModel, Estimator};
 use octant_calibration::covariance::{Covariance, DR, DV, PARAMETERS, PHI, STATE_COUNT};
@@ -150,8 +152,7 @@ pub fn ensemble(scenario: &Scenario, method: Method) -> Result<Ensemble, Ensembl
     let states = (0..STATE_COUNT).map(|state| {
         let (unit, si) = state_unit(state);
         let parameter = state >= PARAMETERS;
-        let estimated =
-            !parameter || kalman.estimated[Group::of(state - PARAMETERS) as usize];
+        let estimated = !parameter || kalman.estimated[Group::of(state - PARAMETERS) as usize];
         let sign = if parameter { -1.0 } else { 1.0 };
         State {
             name: state_name(state),
@@ -271,7 +272,8 @@ fn truth(
         (Group::GyroBias, &extensions.gyro_gauss_markov),
         (Group::AccelBias, &extensions.accel_gauss_markov),
     ] {
-        let wander = |p: &plant::GaussMarkov| Wander::gauss_markov(group, p.sigma, p.correlation_time_s);
+        let wander =
+            |p: &plant::GaussMarkov| Wander::gauss_markov(group, p.sigma, p.correlation_time_s);
         wanders.extend(process.iter().map(wander));
     }
     if extensions.gyro_rate_random_walk > 0.0 {
@@ -390,20 +392,36 @@ fn not_modelled(scenario: &Scenario) -> Vec<String> {
     let even = scenario.parameters.iter().any(|d| matches!(d, Distribution::Uniform(_)));
     let spectrum = matches!(&scenario.motion, Motion::Dockside(ship) if ship.spectrum.is_some());
     let dockside = matches!(scenario.motion, Motion::Dockside(_));
-    let quantized = extensions.gyro_quantization_rad > 0.0 || extensions.accel_quantization_mps > 0.0;
+    let quantized =
+        extensions.gyro_quantization_rad > 0.0 || extensions.accel_quantization_mps > 0.0;
     let all: [(bool, &str); 12] = [
-        (true, "anything that isn't linear: products of errors, and screens and gates that leave samples out"),
-        (even, "the shape of even draws: they count with their variance, and percentiles are those of normal errors"),
-        (scenario.turntable.encoder_sigma_rad != 0.0, "errors of the encoders: the filter doesn't use their angles"),
+        (
+            true,
+            "anything that isn't linear: products of errors, and screens and gates that leave samples out",
+        ),
+        (
+            even,
+            "the shape of even draws: they count with their variance, and percentiles are those of normal errors",
+        ),
+        (
+            scenario.turntable.encoder_sigma_rad != 0.0,
+            "errors of the encoders: the filter doesn't use their angles",
+        ),
         (quantized, "quantization"),
         (extensions.vibration.is_some(), "vibration"),
         (extensions.lever_arm_m != [[0.0; 3]; 3], "lever arms of the accelerometers"),
         (extensions.time_skew_s != 0.0, "the time skew of the inertial unit"),
         (scenario.turntable.backlash_rad != 0.0, "backlash of the gears"),
         (dockside, "the ship's roll, pitch and yaw: of its motion the displacement enters"),
-        (spectrum, "that the periods of the ship's spectrum are drawn: those of the scenario's seed stand for all"),
+        (
+            spectrum,
+            "that the periods of the ship's spectrum are drawn: those of the scenario's seed stand for all",
+        ),
         (!scenario.faults.is_empty(), "the scenario's faults"),
-        (!matches!(scenario.endpoint, Endpoint::InProcess), "the core at endpoint.uri: the built-in one stands for it"),
+        (
+            !matches!(scenario.endpoint, Endpoint::InProcess),
+            "the core at endpoint.uri: the built-in one stands for it",
+        ),
     ];
     let named = all.into_iter().filter(|(there, _)| *there);
     named.map(|(_, what)| what.to_owned()).collect()

@@ -7,7 +7,9 @@
 //! only the phase is drawn goes by its answer to a sine and to a cosine, half the variance each.
 
 use nalgebra::Vector3;
-use octant_calibration::covariance::{Covariance, DR, DV, MOVING, PARAMETERS, STATE_COUNT, Transition};
+use octant_calibration::covariance::{
+    Covariance, DR, DV, MOVING, PARAMETERS, STATE_COUNT, Transition,
+};
 use octant_calibration::filter::add_process_noise;
 use octant_plant::config::Temperature;
 use octant_sample::parameters::Group;
@@ -232,7 +234,8 @@ impl TrueErrors {
                 answer([0.0; STATE_COUNT], vec![Swing { phase_rad, ..swing }]).begun(truth.start_s)
             })
         };
-        let mean = Answer { temperature: truth.temperature, ..answer(truth.mean, truth.mooring.clone()) };
+        let mean =
+            Answer { temperature: truth.temperature, ..answer(truth.mean, truth.mooring.clone()) };
         Self {
             noise: truth.noise,
             reference_variance: truth.reference_sigma.map(|sigma| sigma * sigma),
@@ -330,8 +333,7 @@ impl Wandering {
         let (decay, mean, came) = self.process.over(h);
         // White noise in the bias over the step acts half a step later in the mean: over steps that
         // are short against the correlation time that is nothing.
-        let input: [f64; MOVING] =
-            core::array::from_fn(|i| transition.rows[i][self.like] * mean);
+        let input: [f64; MOVING] = core::array::from_fn(|i| transition.rows[i][self.like] * mean);
         let mut carried = self.cross;
         for (i, row) in transition.rows.iter().enumerate() {
             carried[i] = row.iter().zip(&self.cross).map(|(a, b)| a * b).sum();

@@ -114,7 +114,9 @@ fn findings(scenario: &Scenario, run: &MethodRun, baseline: Option<&MethodRun>) 
         }
         if run.watcher.health.unlisted() > 0 {
             let unlisted = run.watcher.health.unlisted();
-            inconclusive(format!("{unlisted} reports of the core found no place in the list{place}"));
+            inconclusive(format!(
+                "{unlisted} reports of the core found no place in the list{place}"
+            ));
         }
     }
     findings

@@ -3,9 +3,9 @@
 
 use octant_statistics::envelope::{EnvelopeError, envelope};
 use octant_statistics::outlier::{LIMIT, Scale, outliers};
+use octant_statistics::radius::Plane;
 use octant_statistics::rate::{RadialSample, radial_rate_nmi_per_h, time_rms_nmi};
 use octant_statistics::sobol::{Design, Role, SobolError};
-use octant_statistics::radius::Plane;
 use octant_statistics::{
     convergence, deviation, normal, paired, position, quantile, rank, rate, sample,
 };
