@@ -1,6 +1,7 @@
 //! Statistics of many runs.
 //!
 //! - [`sample`] has the figures of a sample, [`position`] those of position errors: CEP50, R95, drms
+//! - [`mod@deviation`] says how well a σ is known, [`radius`] how far a normal error in the plane gets
 //! - [`quantile`] bounds them without a distribution, [`proportion`] a pass probability
 //! - [`rate`] is the radial error rate and the time-RMS, [`mod@envelope`] percentiles over time
 //! - [`rank`] and [`sobol`] say what an output is sensitive to, [`outlier`] which runs stand out
@@ -11,6 +12,7 @@
 //! Every function names its source. Nothing here knows scenarios or files.
 
 pub mod convergence;
+pub mod deviation;
 pub mod draw;
 pub mod envelope;
 pub mod normal;
@@ -19,6 +21,7 @@ pub mod paired;
 pub mod position;
 pub mod proportion;
 pub mod quantile;
+pub mod radius;
 pub mod rank;
 pub mod rate;
 pub mod sample;
