@@ -6,6 +6,7 @@ use super::suite::SuiteResult;
 use crate::report::number::{plain, significant};
 use crate::score::verdict::Verdict;
 use serde::Serialize;
+use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
 /// Rows of a table that are told; the rest is in `nightly.json`.
@@ -114,8 +115,12 @@ impl Report {
             let errors = if count > 0 { format!(", {count} as errors") } else { String::new() };
             self.because(verdict, format!("{} cases newly end worse{errors}", failing.len()));
         }
+        let mut worse: BTreeMap<(&str, &str), Vec<&Tested>> = BTreeMap::new();
         for test in comparison.found(Change::Worse) {
-            self.because(Verdict::Fail, in_words(test));
+            worse.entry((&test.campaign, &test.scenario)).or_default().push(test);
+        }
+        for ((campaign, scenario), tests) in worse {
+            self.because(Verdict::Fail, in_words(campaign, scenario, &tests));
         }
         if self.verdict == Verdict::Pass {
             self.reasons.push("nothing got worse".to_owned());
@@ -194,7 +199,7 @@ impl Report {
                 let evidence = result
                     .evidence
                     .as_deref()
-                    .map_or("–".to_owned(), |path| format!("[{path}]({}/{path})", self.folder));
+                    .map_or("–".to_owned(), |path| format!("[{path}]({path})"));
                 _ = writeln!(text, "| {} | {problem} | {evidence} |", result.name);
             }
             more(&mut text, self.suite_broken.len());
@@ -293,17 +298,24 @@ fn more(text: &mut String, count: usize) {
     }
 }
 
-fn in_words(test: &Tested) -> String {
-    format!(
-        "{}: {} of {}: {} before, {} now ({} pairs, p = {})",
-        test.campaign,
-        test.measure,
-        test.scenario,
-        significant(test.baseline, 4),
-        significant(test.tonight, 4),
-        test.pairs,
-        significant(test.p_adjusted, 2)
-    )
+/// What got worse in a scenario: how many measures, and the one that is the clearest.
+fn in_words(campaign: &str, scenario: &str, tests: &[&Tested]) -> String {
+    let what = match tests.len() {
+        1 => "a measure".to_owned(),
+        count => format!("{count} measures"),
+    };
+    let clearest = tests.iter().min_by(|a, b| a.p.total_cmp(&b.p));
+    let clearest = clearest.map_or(String::new(), |test| {
+        format!(
+            ", first {}: {} before, {} now ({} pairs, p = {})",
+            test.measure,
+            significant(test.baseline, 4),
+            significant(test.tonight, 4),
+            test.pairs,
+            significant(test.p_adjusted, 2)
+        )
+    });
+    format!("{campaign}: {what} of {scenario} worse{clearest}")
 }
 
 /// A text in a cell of a table, on one line.

@@ -40,14 +40,14 @@ fn table(nights: &[BTreeMap<&'static str, String>], baseline: Option<&str>) -> M
     html! {
         table {
             thead { tr {
-                th.n { "number" } th { "night" } th { "verdict" } th { "against" } th { "octant" }
+                th { "number" } th { "night" } th { "verdict" } th { "against" } th { "octant" }
                 th { "commit" } th { "program" }
             } }
             tbody { @for (index, night) in nights.iter().enumerate() {
                 @let get = |name: &str| night.get(name).cloned().unwrap_or_default();
                 @let short = |name: &str| get(name).chars().take(12).collect::<String>();
                 tr {
-                    td.n { (index + 1) }
+                    td { (index + 1) }
                     td { (get("night")) @if baseline == Some(get("night").as_str()) { " (baseline)" } }
                     td { span class={ "badge " (get("verdict")) } { (get("verdict")) } }
                     td { (get("baseline")) }
@@ -81,8 +81,8 @@ fn chart(line: &Line, baseline: Option<usize>) -> Markup {
     };
     let (worse, better) = (told("worse"), told("better"));
     html! {
-        h3 { (line.measure) }
         @if let [only] = line.points.as_slice() {
+            h3 { (line.measure) }
             p { "median " (crate::report::number::significant(only.1, 4)) ", 95th percentile "
                 (crate::report::number::significant(only.2, 4)) ", in one night" }
         } @else { (chart.render()) }
