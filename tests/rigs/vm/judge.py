@@ -34,7 +34,7 @@ said = [
 ]
 expected = {name: hash_of(name) for name in ("lockstep", "short")}
 scenario_of = {"vcan-fd": "lockstep"}
-seen = set()
+seen, instruments = set(), {}
 for line in said:
     if line.startswith("run "):
         _, name, status, found, start, end = line.split()
@@ -46,10 +46,27 @@ for line in said:
             status == "0" and found == expected[scenario_of.get(name, "short")],
             f"{found[:16]}, {samples / seconds:.0f} samples/s",
         )
+    elif line.startswith("instrument "):
+        _, name, status, found, *readings = line.split(maxsplit=4)
+        readings = "".join(readings)
+        count = {key: int(value) for key, value in re.findall(r'"(\w+)":(\d+)', readings)}
+        instruments[name] = found
+        check(
+            f"instrument on {name}: status {status}, {count.get('samples')} samples",
+            status == "0" and count.get("samples") == 1000 and count.get("missing") == 0,
+            readings,
+        )
     elif line.startswith("failed"):
         check(line, False)
 for name in ("vcan-classic", "vcan-fd", "sja1000", "candump", "slcan"):
     check(f"{name} was run", name in seen)
+
+# That slcan gives samples to the last bit is shown by a test with an adapter that is played.
+check(
+    "the kernel's CAN and slcan give the same samples",
+    sorted(instruments) == ["SocketCAN", "slcan"] and len(set(instruments.values())) == 1,
+    instruments,
+)
 
 baud = next((line for line in said if line.startswith("baud ")), "")
 check("a rate that the driver doesn't keep is refused", "9600" in baud and not baud.startswith("baud 0"), baud)
