@@ -54,8 +54,21 @@ pub struct Line {
     pub scenario: String,
     /// The measure.
     pub measure: String,
-    /// Its nights: index, median, 95th percentile, change.
-    pub points: Vec<(usize, f64, f64, String)>,
+    /// Its nights.
+    pub points: Vec<Point>,
+}
+
+/// A measure in a night.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Point {
+    /// Index of the night.
+    pub night: usize,
+    /// Median over its cases.
+    pub median: f64,
+    /// 95th percentile.
+    pub p95: f64,
+    /// What it was against its baseline; empty: nothing was compared.
+    pub change: String,
 }
 
 /// File of the history in its folder.
@@ -189,18 +202,18 @@ impl History {
     pub fn lines(&self) -> Vec<Line> {
         let nights: Vec<String> =
             self.nights().iter().filter_map(|night| night.get("night").cloned()).collect();
-        let mut lines: BTreeMap<[String; 3], Vec<(usize, f64, f64, String)>> = BTreeMap::new();
+        let mut lines: BTreeMap<[String; 3], Vec<Point>> = BTreeMap::new();
         for row in &self.rows {
             let Some(night) = nights.iter().position(|n| *n == Self::text(row, "night")) else {
                 continue;
             };
             let key = ["campaign", "scenario", "measure"].map(|name| Self::text(row, name));
-            lines.entry(key).or_default().push((
+            lines.entry(key).or_default().push(Point {
                 night,
-                Self::number(row, "median"),
-                Self::number(row, "p95"),
-                Self::text(row, "change"),
-            ));
+                median: Self::number(row, "median"),
+                p95: Self::number(row, "p95"),
+                change: Self::text(row, "change"),
+            });
         }
         let line = |([campaign, scenario, measure], points): ([String; 3], _)| Line {
             campaign,

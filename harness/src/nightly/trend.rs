@@ -1,6 +1,6 @@
 //! `trend.html`: every measure over the nights, one file without network.
 
-use super::history::{History, Line};
+use super::history::{History, Line, Point};
 use crate::report::chart::{Chart, Line as Drawn, Role};
 use crate::report::page::page;
 use maud::{Markup, html};
@@ -64,27 +64,28 @@ fn chart(line: &Line, baseline: Option<usize>) -> Markup {
     let mut chart = Chart::new(&line.measure, "night", &line.measure);
     chart.hours = false;
     chart.height = 170.0;
-    let of = |value: fn(&(usize, f64, f64, String)) -> f64| -> Vec<[f64; 2]> {
-        line.points.iter().map(|point| [(point.0 + 1) as f64, value(point)]).collect()
+    let of = |value: fn(&Point) -> f64| -> Vec<[f64; 2]> {
+        line.points.iter().map(|point| [(point.night + 1) as f64, value(point)]).collect()
     };
     chart.lines = vec![
-        Drawn { label: "95th percentile".into(), role: Role::Baseline, points: of(|p| p.2) },
-        Drawn { label: "median".into(), role: Role::Primary, points: of(|p| p.1) },
+        Drawn { label: "95th percentile".into(), role: Role::Baseline, points: of(|p| p.p95) },
+        Drawn { label: "median".into(), role: Role::Primary, points: of(|p| p.median) },
     ];
-    let reference = baseline.and_then(|night| line.points.iter().find(|point| point.0 == night));
-    if let Some(point) = reference.filter(|point| point.1.is_finite()) {
-        chart.levels.push((point.1, "median of the baseline".to_owned()));
+    let reference =
+        baseline.and_then(|night| line.points.iter().find(|point| point.night == night));
+    if let Some(point) = reference.filter(|point| point.median.is_finite()) {
+        chart.levels.push((point.median, "median of the baseline".to_owned()));
     }
     let told = |what: &str| -> Vec<String> {
-        let nights = line.points.iter().filter(|point| point.3 == what);
-        nights.map(|point| (point.0 + 1).to_string()).collect()
+        let nights = line.points.iter().filter(|point| point.change == what);
+        nights.map(|point| (point.night + 1).to_string()).collect()
     };
     let (worse, better) = (told("worse"), told("better"));
     html! {
         @if let [only] = line.points.as_slice() {
             h3 { (line.measure) }
-            p { "median " (crate::report::number::significant(only.1, 4)) ", 95th percentile "
-                (crate::report::number::significant(only.2, 4)) ", in one night" }
+            p { "median " (crate::report::number::significant(only.median, 4)) ", 95th percentile "
+                (crate::report::number::significant(only.p95, 4)) ", in one night" }
         } @else { (chart.render()) }
         @if !worse.is_empty() { p.hint { "Worse than its baseline in night " (worse.join(", ")) "." } }
         @if !better.is_empty() { p.hint { "Better than its baseline in night " (better.join(", ")) "." } }
