@@ -1,6 +1,6 @@
 //! `octant campaign`: many cases of scenarios, planned, run anywhere, merged.
 
-mod run;
+pub(super) mod run;
 
 use super::{Failure, print, print_json, write};
 use crate::campaign::case::{self, Job};
