@@ -11,6 +11,7 @@ pub mod execute;
 pub mod file;
 pub mod merge;
 pub mod plan;
+pub mod report;
 pub mod requirements;
 pub mod results;
 pub mod status;

@@ -170,6 +170,7 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         link,
         bench,
         realtime,
+        campaign: None,
         key,
     };
     let raw = estimate.map_or(String::new(), |e| raw_counts::text(&scenario.source, &e));

@@ -80,6 +80,7 @@ impl Program {
     pub fn of(path: &Path) -> Result<Self, String> {
         let now = SystemTime::now();
         let facts = RunFacts {
+            campaign: None,
             seed: None,
             started: now,
             ended: now,

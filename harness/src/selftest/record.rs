@@ -104,6 +104,7 @@ impl Record {
     ) -> Result<Self, String> {
         let ended = SystemTime::now();
         let facts = RunFacts {
+            campaign: None,
             seed: None,
             started,
             ended,
