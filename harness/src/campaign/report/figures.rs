@@ -176,8 +176,11 @@ pub struct OutlierFigures {
     pub score: f64,
 }
 
+/// A measure of a drift.
+type Measure = fn(&Drift) -> f64;
+
 /// Measures of which outliers are looked for.
-const OUTLYING: [(&str, fn(&Drift) -> f64); 2] = [
+const OUTLYING: [(&str, Measure); 2] = [
     ("navigation.radial_error_nmi.max", |drift| drift.max_nmi),
     (DRIFT, |drift| drift.rate_nmi_per_h),
 ];
