@@ -176,7 +176,7 @@ pub struct OutlierFigures {
     pub score: f64,
 }
 
-/// A number of a drift.
+/// A measure of a drift.
 type Measure = fn(&Drift) -> f64;
 
 /// Measures of which outliers are looked for.
@@ -205,7 +205,12 @@ impl CombinationFigures {
         let of_last = |p: f64| convergence(&last, |values| interval(values, p, CONFIDENCE));
         let curves: Vec<&Curve> =
             there.iter().filter_map(|(_, drift)| drift.curve.as_ref()).collect();
-        let drawn = |name: &&String| !grid.contains(*name);
+        let values = |name: &String| {
+            let cases = combination.cases.iter().filter_map(|case| plan.cases.get(*case));
+            cases.filter_map(|case| case.factors.get(name)).collect::<Vec<_>>()
+        };
+        let is_number = |name: &String| values(name).into_iter().all(|v| number_of(v).is_some());
+        let drawn = |name: &&String| !grid.contains(*name) && is_number(name);
         Self {
             scenario: combination.scenario.clone(),
             factors: combination.factors.iter().cloned().collect(),
