@@ -21,6 +21,7 @@ use super::plan::{Plan, PlanError};
 use super::status::{self, Status};
 use super::trace::trace;
 use crate::evidence::ManifestError;
+use crate::observe::against::{Against, Selection, against};
 use crate::score::verdict::Verdict;
 use combination::Combination;
 use discrepancy::Discrepancy;
@@ -117,8 +118,18 @@ pub struct Statistics {
     pub combinations: Vec<CombinationFigures>,
     /// Cases that stand out from their combination.
     pub outliers: Vec<OutlierFigures>,
+    /// The ensembles that linear theory predicts, held against the cases.
+    pub prediction: Against,
     /// Discrepancies, and what became of them.
     pub discrepancies: Vec<Discrepancy>,
+}
+
+/// Predictions against the results; an empty campaign has none.
+fn predicted(plan: &Plan, folder: &Path) -> Result<Against, ReportError> {
+    if plan.cases.is_empty() {
+        return Ok(Against::default());
+    }
+    against(plan, folder, &Selection::default()).map_err(ReportError::Result)
 }
 
 /// Everything that a report shows.
@@ -202,6 +213,7 @@ impl<'a> Report<'a> {
                 .collect(),
             combinations: of_combinations,
             outliers: figures::standing_out(&combinations, &rows),
+            prediction: predicted(plan, folder)?,
             discrepancies: discrepancy::find(plan, &status, &combinations, &rows, &wrong),
         };
         let absolute = std::path::absolute(folder).unwrap_or_else(|_| folder.to_owned());

@@ -8,6 +8,7 @@ mod convergence;
 mod drift;
 mod findings;
 mod matrix;
+mod prediction;
 mod requirements;
 mod sensitivity;
 
@@ -22,10 +23,11 @@ use octant_statistics::sample::Interval;
 const ROWS_MAX: usize = 2000;
 
 /// The sections of the page: anchor and heading.
-const SECTIONS: [(&str, &str); 9] = [
+const SECTIONS: [(&str, &str); 10] = [
     ("requirements", "Requirements"),
     ("drift", "Drift"),
     ("envelopes", "Errors over time"),
+    ("prediction", "Predicted and simulated"),
     ("convergence", "Convergence"),
     ("sensitivity", "Sensitivity"),
     ("findings", "Cases to look at"),
@@ -47,6 +49,7 @@ pub fn render(report: &Report<'_>, beside: bool) -> String {
         (requirements::section(report))
         (drift::table(report))
         (drift::envelopes(report))
+        (prediction::section(report))
         (convergence::section(report))
         (sensitivity::section(report))
         (findings::section(report, beside))
