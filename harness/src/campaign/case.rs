@@ -101,9 +101,9 @@ impl CaseResult {
     #[must_use]
     pub fn check(&self, requirement: &str) -> Verdict {
         let Some(summary) = &self.summary else { return Verdict::Error };
-        let mut checks = summary.requirements.iter();
-        let found = checks.find(|check| check.id == requirement);
-        found.map_or(Verdict::Inconclusive, |check| check.verdict)
+        let checks = summary.requirements.iter().filter(|check| check.id == requirement);
+        // Checked more than once: all have to hold.
+        checks.map(|check| check.verdict).reduce(Verdict::worst).unwrap_or(Verdict::Inconclusive)
     }
 
     /// The bytes of its file.
@@ -121,18 +121,33 @@ impl CaseResult {
     pub fn read(path: &Path) -> Result<Self, String> {
         let text = std::fs::read_to_string(path)
             .map_err(|error| format!("read {}: {error}", path.display()))?;
-        let result: Self = serde_json::from_str(&text).map_err(|error| {
-            format!("read {}: expected the result of a case: {error}", path.display())
-        })?;
-        if result.schema != SCHEMA {
+        let form =
+            |error| format!("read {}: expected the result of a case: {error}", path.display());
+        // The version first: nothing else can be relied on in a newer one.
+        let Version { schema } = serde_json::from_str(&text).map_err(form)?;
+        if schema != SCHEMA {
             return Err(format!(
-                "read {}: found version {}, this program reads version {SCHEMA}",
+                "read {}: found version {schema}, this program reads version {SCHEMA}{}",
                 path.display(),
-                result.schema
+                if schema > SCHEMA { ": a newer Octant wrote it" } else { "" }
+            ));
+        }
+        let result: Self = serde_json::from_str(&text).map_err(form)?;
+        let name = path.file_name().map_or("".into(), |name| name.to_string_lossy());
+        if name.split('.').next() != Some(result.case.as_str()) {
+            return Err(format!(
+                "read {}: it is the result of case {}, expected that of the case it is named for",
+                path.display(),
+                result.case
             ));
         }
         Ok(result)
     }
+}
+
+#[derive(Deserialize)]
+struct Version {
+    schema: u32,
 }
 
 /// What became of a result that was to be kept.

@@ -6,7 +6,7 @@ use super::plan::{Plan, StopRule};
 use super::requirements;
 use super::stop::{self, Decision};
 use crate::report::number::plain;
-use crate::score::verdict::Verdict;
+use crate::score::verdict::{self, Verdict};
 use octant_requirements::requirement::Ensemble;
 use octant_requirements::trace::{Counts, judge};
 use octant_statistics::proportion::{Demand, Needed, further_if_all_pass};
@@ -153,21 +153,12 @@ pub fn of(plan: &Plan, folder: &Path, shard: Shard) -> Result<Status, String> {
 }
 
 /// What a case comes to but for its requirements.
-fn besides(result: &CaseResult) -> Verdict {
+pub(super) fn besides(result: &CaseResult) -> Verdict {
     let Some(summary) = &result.summary else { return Verdict::Error };
-    let checks = |verdict| summary.requirements.iter().any(|check| check.verdict == verdict);
-    if summary.calibration.as_ref().is_some_and(|calibration| calibration.refused.is_some()) {
-        return Verdict::Fail;
-    }
-    if summary.requirements.is_empty() || summary.faults.iter().any(|fault| !fault.fired) {
-        return Verdict::Inconclusive;
-    }
-    // What none of the requirements says comes from elsewhere.
-    match result.verdict {
-        Verdict::Pass => Verdict::Pass,
-        verdict if checks(verdict) => Verdict::Pass,
-        verdict => verdict,
-    }
+    let worst = verdict::besides(summary);
+    // What none of this says comes from elsewhere.
+    let known = summary.requirements.iter().map(|check| check.verdict).fold(worst, Verdict::worst);
+    if result.verdict > known { result.verdict } else { worst }
 }
 
 /// Looks at the results in a folder.

@@ -1,9 +1,11 @@
 //! From the requirements of a campaign to its cases and their results, and back.
 
 use super::case::{self, CaseResult};
+use super::execute::differing;
 use super::file::Campaign;
 use super::plan::{Plan, PlanError};
 use super::requirements;
+use super::status;
 use crate::score::verdict;
 use octant_requirements::requirement::Requirements;
 use octant_requirements::trace::{Case, CaseResult as Traced, Trace, Verdict};
@@ -45,7 +47,15 @@ pub fn trace(plan: &Plan, requirements: &Requirements, folder: &Path) -> Result<
         let path = case::file(folder, &case.id);
         let result = if path.exists() {
             let result = CaseResult::read(&path)?;
-            let checks = verifies.iter().map(|id| (id.clone(), traced(result.check(id)))).collect();
+            // A check that passes in a run which shows nothing isn't shown either, and of two results
+            // none counts.
+            let most = match status::besides(&result) {
+                _ if differing(&path, &case.id).is_some() => verdict::Verdict::Error,
+                verdict::Verdict::Fail => verdict::Verdict::Inconclusive,
+                other => other,
+            };
+            let check = |id: &String| (id.clone(), traced(result.check(id).worst(most)));
+            let checks = verifies.iter().map(check).collect();
             Some(Traced {
                 verdict: traced(result.verdict),
                 checks,

@@ -1,7 +1,10 @@
 //! `octant observe`: rank, null space, posterior σ and predicted drift, before anything is run.
 
+mod ensemble;
+
 use super::{Failure, ScenarioArguments, load, print, print_json};
 use crate::observe::covariance::{AnalysisError, Drift, predict, state_name};
+use crate::observe::ensemble::state_unit;
 use crate::observe::static_rank;
 use crate::report::number::significant;
 use crate::run::method::{configurations, label};
@@ -9,20 +12,23 @@ use crate::scenario::{Distribution, Method, Motion, Scenario};
 use crate::score::verdict::Verdict;
 use clap::Args;
 use octant_calibration::config::{Config, Estimator, StaticIntervals};
-use octant_calibration::covariance::{DR, DV, PARAMETERS, STATE_COUNT};
+use octant_calibration::covariance::{PARAMETERS, STATE_COUNT};
 use octant_calibration::filter::prior_sigmas;
 use octant_earth::frames::c_nc;
-use octant_earth::units::ARCSEC;
 use octant_sample::parameters::Group;
 use serde::Serialize;
+use std::path::PathBuf;
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
     #[command(flatten)]
     scenario: ScenarioArguments,
-    /// The ensemble that the scenario's distributions make. Not part of this version.
+    /// The ensemble that the scenario's draws make: σ of every error, and envelopes of the drift.
     #[arg(long)]
     ensemble: bool,
+    /// Hold the ensemble against the cases of this scenario in the folder of a campaign.
+    #[arg(long, value_name = "DIR", requires = "ensemble")]
+    against: Option<PathBuf>,
     /// Print one JSON object.
     #[arg(long)]
     json: bool,
@@ -63,9 +69,11 @@ struct DriftRow {
 
 pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     if arguments.ensemble {
-        return Err(Failure::input(
-            "--ensemble is not part of this version: octant compare runs the ensemble",
-        ));
+        return ensemble::command(
+            &arguments.scenario,
+            arguments.against.as_deref(),
+            arguments.json,
+        );
     }
     let scenario = load(&arguments.scenario, &[])?;
     let methods = std::iter::once(Method::Primary)
@@ -118,7 +126,7 @@ fn observe(scenario: &Scenario, method: Method) -> Result<Observation, Failure> 
             };
             let states = (0..STATE_COUNT)
                 .map(|state| {
-                    let (unit, si) = unit_of(state);
+                    let (unit, si) = state_unit(state);
                     State {
                         name: state_name(state),
                         unit,
@@ -151,19 +159,6 @@ fn row(drift: &Drift) -> DriftRow {
         hours: drift.hours,
         latitude_sigma_arcmin: drift.latitude_arcmin,
         longitude_sigma_arcmin: drift.longitude_arcmin,
-    }
-}
-
-/// Unit in which a state is shown, and its SI value.
-fn unit_of(state: usize) -> (&'static str, f64) {
-    match state {
-        s if s < DV => ("arcsec", ARCSEC),
-        s if s < DR => ("m/s", 1.0),
-        s if s < PARAMETERS => ("m", 1.0),
-        s => {
-            let group = Group::of(s - PARAMETERS);
-            (group.unit(), group.si_per_unit())
-        }
     }
 }
 

@@ -407,7 +407,7 @@ fn cpu_model() -> Option<String> {
 }
 
 /// The name that a run is made under.
-fn operator() -> Option<String> {
+pub(crate) fn operator() -> Option<String> {
     let variable = |name: &str| std::env::var(name).ok().filter(|name| !name.trim().is_empty());
     ["OCTANT_OPERATOR", "USER", "LOGNAME", "USERNAME"].into_iter().find_map(variable)
 }

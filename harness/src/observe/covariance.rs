@@ -1,28 +1,28 @@
 //! Covariance analysis of a procedure: what its filter will reach, before anything is run.
 //!
-//! The filter's own covariance gives its gains. Beside it runs the true covariance of all 39
-//! states, updated by those gains in Joseph form, so that a filter with too few states (six
+//! The filter's own covariance gives its gains. Beside it run the true errors of all 39 states
+//! ([`Truth`]), updated by those gains in Joseph form, so that a filter with too few states (six
 //! positions without G) is judged by what it really does and not by what it believes. After the
-//! calibration the true covariance is carried through free navigation with the vertical channel
+//! calibration the true errors are carried through free navigation with the vertical channel
 //! held, which gives the predicted drift.
 
+use super::platform::{Platform, SAMPLE_S};
+use super::truth::{TrueErrors, Truth, Unseen};
 use nalgebra::{Matrix3, Vector3};
 use octant_calibration::config::{AidingMode, Config, ErrorModel, Estimator, Kalman};
 use octant_calibration::covariance::{
     Covariance, DR, DV, PARAMETERS, PHI, STATE_COUNT, Transition,
 };
-use octant_calibration::error_model::Interval;
 use octant_calibration::filter::{add_process_noise, prior_sigmas};
-use octant_calibration::schedule::{Cursor, dwell_s, turned_rad};
+use octant_calibration::schedule::{Cursor, dwell_s};
 use octant_earth::ellipsoid::Ellipsoid;
-use octant_earth::frames::c_cb;
 use octant_earth::units::ARCMIN;
 use octant_sample::GimbalAngles;
 
-/// Sub-step of the transition while a gimbal turns, s.
-const SUB_STEP_S: f64 = 0.05;
 /// Longest step of navigation, s.
 const NAVIGATION_STEP_S: f64 = 10.0;
+/// Time between two points of the drift, s.
+const DRIFT_EVERY_S: f64 = 600.0;
 
 /// Predicted one-sigma drift at one time.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -46,6 +46,32 @@ pub struct Prediction {
     pub drift: Vec<Drift>,
 }
 
+/// Position error of an ensemble at one time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PositionError {
+    /// Since the start of navigation, h.
+    pub hours: f64,
+    /// Its mean, north and east, m.
+    pub mean_m: [f64; 2],
+    /// Its variances, north and east, m².
+    pub variances_m2: [f64; 2],
+    /// Their covariance, m².
+    pub covariance_m2: f64,
+}
+
+/// What an ensemble will reach.
+#[derive(Clone, Debug)]
+pub struct Reached {
+    /// Covariance that the filter believes at the end of the calibration.
+    pub believed: Covariance,
+    /// Mean of the true errors: parameters true − estimated, all others computed − true.
+    pub mean: [f64; STATE_COUNT],
+    /// Their covariance.
+    pub achieved: Covariance,
+    /// Position error in navigation, a point every ten minutes.
+    pub drift: Vec<PositionError>,
+}
+
 /// Why a procedure can't be analysed.
 #[derive(Debug, thiserror::Error)]
 pub enum AnalysisError {
@@ -57,95 +83,10 @@ pub enum AnalysisError {
     DoesNotFit(#[from] octant_calibration::schedule::DoesNotFit),
 }
 
-/// A platform standing at a site and turning by the plan.
-struct Platform<'a> {
-    config: &'a Config,
-    c_nc: Matrix3<f64>,
-    earth: Ellipsoid,
-    cursor: Cursor,
-    from: [f64; 2],
-    to: [f64; 2],
-    departed_s: f64,
-}
-
-impl<'a> Platform<'a> {
-    fn new(config: &'a Config, c_nc: Matrix3<f64>, cursor: Cursor) -> Self {
-        let command = cursor.command().target;
-        let at = [command.azimuth_rad(), command.roll_rad()];
-        let earth = Ellipsoid::at(config.site.latitude_rad, config.site.height_m);
-        Self { config, c_nc, earth, cursor, from: at, to: at, departed_s: 0.0 }
-    }
-
-    /// Gimbal angles at `t_s`.
-    fn gimbals(&self, t_s: f64) -> [f64; 2] {
-        core::array::from_fn(|i| {
-            let angle = self.to[i] - self.from[i];
-            self.from[i] + turned_rad(angle, t_s - self.departed_s, &self.config.turntable)
-        })
-    }
-
-    /// Tells the platform that `t_s` has come, so that it may depart. Sample time is one microsecond
-    /// here, finer than any plan.
-    fn reach(&mut self, t_s: f64) {
-        let departs = self.cursor.departure_s();
-        if t_s >= departs - 1e-6 {
-            self.from = self.to;
-            self.departed_s = departs;
-            self.cursor.advance((t_s / SAMPLE_S) as u64);
-            let target = self.cursor.command().target;
-            self.to = [target.azimuth_rad(), target.roll_rad()];
-        }
-    }
-
-    /// Next time at which the platform starts or stops turning, or `limit_s`.
-    fn next_event_s(&self, t_s: f64, limit_s: f64) -> f64 {
-        [self.cursor.arrival_s(), self.cursor.departure_s()]
-            .into_iter()
-            .filter(|event| *event > t_s + 1e-6)
-            .fold(limit_s, f64::min)
-    }
-
-    fn interval(&self, t_s: f64, h: f64) -> Interval {
-        let [azimuth, roll] = self.gimbals(t_s + 0.5 * h);
-        let (before, after) = (self.gimbals(t_s), self.gimbals(t_s + h));
-        let c_nb = self.c_nc * c_cb(azimuth, roll);
-        let force_n = Vector3::new(0.0, 0.0, -self.earth.gravity_mps2 * h);
-        let turned_case = Vector3::x() * (after[1] - before[1]);
-        let turned_body = Vector3::z() * (after[0] - before[0]);
-        let c_bc = c_cb(azimuth, roll).transpose();
-        Interval {
-            interval_s: h,
-            c_nb,
-            delta_theta: c_nb.transpose() * self.earth.earth_rate() * h
-                + c_bc * turned_case
-                + turned_body,
-            delta_velocity: c_nb.transpose() * force_n,
-            delta_velocity_n: force_n,
-            velocity_mps: Vector3::zeros(),
-        }
-    }
-
-    /// Transition over `[t_s, t_s + length_s]`, in which the platform stands or turns throughout.
-    fn transition(&self, t_s: f64, length_s: f64, model: ErrorModel) -> Transition {
-        let standing = self.cursor.arrival_s() <= t_s + 1e-6;
-        let step_s = if standing { 1.0 } else { SUB_STEP_S };
-        let steps = (length_s / step_s - 1e-9).ceil().max(1.0);
-        let h = length_s / steps;
-        let mut transition = Transition::identity();
-        for k in 0..steps as u32 {
-            transition.advance(model, &self.interval(t_s + f64::from(k) * h, h), &self.earth);
-        }
-        transition
-    }
-}
-
-/// Sample time that the cursors are given: far below anything in a plan.
-const SAMPLE_S: f64 = 1e-6;
-
 /// Predicts what the calibration of `config` reaches and how navigation drifts after it.
 ///
 /// `c_nc` is the attitude of the case; `true_sigmas` the standard deviations of all 39 states in
-/// truth (SI), which the filter's prior may know or not.
+/// truth (SI), which the filter's prior may know or not. All else is as the filter takes it.
 ///
 /// # Errors
 /// If the calibration isn't by Kalman filter, or its sequence doesn't fit its duration.
@@ -154,54 +95,109 @@ pub fn predict(
     c_nc: &Matrix3<f64>,
     true_sigmas: &[f64; STATE_COUNT],
 ) -> Result<Prediction, AnalysisError> {
+    let truth = Truth {
+        covariance: Covariance::from_sigmas(true_sigmas),
+        mean: [0.0; STATE_COUNT],
+        noise: noise_of(config),
+        reference_sigma: None,
+        wanders: Vec::new(),
+        temperature: None,
+        mooring: Vec::new(),
+        sway: Vec::new(),
+        unseen: Unseen::Nothing,
+        start_s: 0.0,
+        non_orthogonality_rad: 0.0,
+    };
+    let Reached { believed, achieved, drift, .. } = reach(config, c_nc, &truth)?;
+    let earth = Ellipsoid::at(config.site.latitude_rad, config.site.height_m);
+    let drift = drift.iter().map(|at| at.sigmas(&earth)).collect();
+    Ok(Prediction { believed, achieved, drift })
+}
+
+impl PositionError {
+    /// Its σ, arcmin.
+    fn sigmas(&self, earth: &Ellipsoid) -> Drift {
+        let [north, east] = arcmin_m(earth);
+        let [n, e] = self.variances_m2;
+        Drift {
+            hours: self.hours,
+            latitude_arcmin: libm::sqrt(n.max(0.0)) / north,
+            longitude_arcmin: libm::sqrt(e.max(0.0)) / east,
+        }
+    }
+}
+
+/// Metres of an arc minute of latitude and of longitude.
+pub(super) fn arcmin_m(earth: &Ellipsoid) -> [f64; 2] {
+    [earth.meridian_radius_m * ARCMIN, earth.transverse_radius_m * earth.cos_latitude * ARCMIN]
+}
+
+/// White noise as the filter takes it: of gyros, rad²/s, and accelerometers, (m/s)²/s.
+fn noise_of(config: &Config) -> (f64, f64) {
+    let square = |density: f64| density * density;
+    (square(config.noise.angle_random_walk), square(config.noise.velocity_random_walk))
+}
+
+/// What an ensemble with this truth reaches with the filter of `config`.
+///
+/// # Errors
+/// If the calibration isn't by Kalman filter, or its sequence doesn't fit its duration.
+pub fn reach(
+    config: &Config,
+    c_nc: &Matrix3<f64>,
+    truth: &Truth,
+) -> Result<Reached, AnalysisError> {
     let Some(calibration) = &config.calibration else { return Err(AnalysisError::NotKalman) };
     let Estimator::Kalman(kalman) = &calibration.estimator else {
         return Err(AnalysisError::NotKalman);
     };
-    let noise = (
-        config.noise.angle_random_walk * config.noise.angle_random_walk,
-        config.noise.velocity_random_walk * config.noise.velocity_random_walk,
-    );
     let rates = config.turntable;
     let dwell = dwell_s(&calibration.sequence, calibration.duration_s, &rates)?;
     let home = GimbalAngles::default();
     let cursor = Cursor::new(calibration.sequence.clone(), home, rates, dwell, SAMPLE_S, false);
-    let platform = Platform::new(config, *c_nc, cursor);
-    let (believed, mut achieved) =
-        calibrate(platform, kalman, noise, calibration.duration_s, true_sigmas);
-    let after_calibration = achieved.clone();
+    let mut platform = Platform::new(config, *c_nc, truth.non_orthogonality_rad, cursor);
+    let mut errors = TrueErrors::new(truth);
+    let (start_s, end_s) = (truth.start_s, calibration.duration_s);
+    let believed =
+        calibrate(&mut platform, kalman, noise_of(config), (start_s, end_s), &mut errors);
+    let (mean, achieved) = errors.moments();
 
     let mut drift = Vec::new();
     if let Some(plan) = &config.navigation
         && let Some(duration_s) = plan.duration_s
     {
-        let cursor = Cursor::new(plan.rotation.clone(), home, rates, plan.dwell_s, SAMPLE_S, true);
-        let platform = Platform::new(config, *c_nc, cursor);
-        drift = navigate(platform, &mut achieved, noise, duration_s);
+        let at = platform.target();
+        let cursor = Cursor::new(plan.rotation.clone(), at, rates, plan.dwell_s, SAMPLE_S, true);
+        let platform = Platform::new(config, *c_nc, truth.non_orthogonality_rad, cursor);
+        // A wander that is shorter than a step would be taken for constant in it.
+        let step_s = (truth.wanders.iter())
+            .map(|wander| 0.1 * wander.correlation_time_s)
+            .fold(NAVIGATION_STEP_S, f64::min)
+            .max(1.0);
+        drift = navigate(platform, &mut errors, end_s, duration_s, step_s);
     }
-    Ok(Prediction { believed, achieved: after_calibration, drift })
+    Ok(Reached { believed, mean, achieved, drift })
 }
 
 fn calibrate(
-    mut platform: Platform<'_>,
+    platform: &mut Platform<'_>,
     kalman: &Kalman,
     noise: (f64, f64),
-    duration_s: f64,
-    true_sigmas: &[f64; STATE_COUNT],
-) -> (Covariance, Covariance) {
+    (start_s, end_s): (f64, f64),
+    errors: &mut TrueErrors,
+) -> Covariance {
     let mut believed = Covariance::from_sigmas(&prior_sigmas(kalman));
-    let mut achieved = Covariance::from_sigmas(true_sigmas);
     let (first, r) = match kalman.aiding {
         AidingMode::Velocity { sigma_mps } => (DV, sigma_mps * sigma_mps),
         AidingMode::Position { sigma_m } => (DR, sigma_m * sigma_m),
     };
     let period_s = kalman.aiding_period_ns as f64 * 1e-9;
-    let (mut t, mut dwelling) = (0.0, None);
-    while t < duration_s - 1e-6 {
+    let (mut t, mut dwelling) = (start_s, None);
+    while t < end_s - 1e-6 {
         let measured_at = ((t / period_s + 1e-6).floor() + 1.0) * period_s;
-        let end = platform.next_event_s(t, measured_at.min(duration_s));
+        let end = platform.next_event_s(t, measured_at.min(end_s));
         let whole = (end - t - period_s).abs() < 1e-6;
-        let standing = platform.cursor.arrival_s() <= t + 1e-6;
+        let standing = platform.stands(t);
         // A whole period of standing has the same transition each time.
         let transition = match &dwelling {
             Some((stop, transition)) if whole && standing && *stop == platform.cursor.stop() => {
@@ -213,44 +209,38 @@ fn calibrate(
             dwelling = Some((platform.cursor.stop(), transition.clone()));
         }
         let force = Vector3::new(0.0, 0.0, -platform.earth.gravity_mps2 * (end - t));
-        for covariance in [&mut believed, &mut achieved] {
-            covariance.propagate(&transition);
-            add_process_noise(covariance, noise, end - t, &force);
-        }
+        believed.propagate(&transition);
+        add_process_noise(&mut believed, noise, end - t, &force);
+        errors.propagate(&transition, t, end - t, &force);
         t = end;
         if (t - measured_at).abs() < 1e-6 {
             for axis in 0..3 {
                 let gain = believed.gain(first + axis, r);
                 believed.update(first + axis, r, 0.0, &mut [0.0; STATE_COUNT]);
-                achieved.update_with_gain(first + axis, r, &gain);
+                errors.update(first, axis, r, &gain, t);
             }
         }
         platform.reach(t);
     }
-    (believed, achieved)
+    believed
 }
 
+/// `start_s` is the end of the calibration; the platform's time starts there.
 fn navigate(
     mut platform: Platform<'_>,
-    covariance: &mut Covariance,
-    noise: (f64, f64),
+    errors: &mut TrueErrors,
+    start_s: f64,
     duration_s: f64,
-) -> Vec<Drift> {
-    // Navigation starts at the known site, with height and vertical velocity held.
-    for state in [DR, DR + 1, DR + 2, DV + 2] {
-        covariance.reopen(state, 0.0);
-    }
+    step_s: f64,
+) -> Vec<PositionError> {
+    errors.start_free(start_s);
     let mut drift = Vec::new();
     let (mut t, mut dwelling) = (0.0, None);
-    let every_s = 600.0;
-    let mut mark_s: f64 = every_s;
+    let mut mark_s: f64 = DRIFT_EVERY_S;
     while t < duration_s - 1e-6 {
-        let end = platform
-            .next_event_s(t, duration_s)
-            .min(t + NAVIGATION_STEP_S)
-            .min(mark_s.max(t + 1e-3));
-        let standing = platform.cursor.arrival_s() <= t + 1e-6;
-        let whole = (end - t - NAVIGATION_STEP_S).abs() < 1e-6;
+        let end = platform.next_event_s(t, duration_s).min(t + step_s).min(mark_s.max(t + 1e-3));
+        let standing = platform.stands(t);
+        let whole = (end - t - step_s).abs() < 1e-6;
         let transition = match &dwelling {
             Some((stop, transition)) if whole && standing && *stop == platform.cursor.stop() => {
                 Transition::clone(transition)
@@ -265,22 +255,19 @@ fn navigate(
         if whole && standing {
             dwelling = Some((platform.cursor.stop(), transition.clone()));
         }
-        covariance.propagate(&transition);
         let force = Vector3::new(0.0, 0.0, -platform.earth.gravity_mps2 * (end - t));
-        add_process_noise(covariance, noise, end - t, &force);
-        covariance.reopen(DV + 2, 0.0);
-        covariance.reopen(DR + 2, 0.0);
+        errors.propagate(&transition, start_s + t, end - t, &force);
+        errors.hold_vertical();
         t = end;
         if (t - mark_s).abs() < 1e-3 || t >= duration_s - 1e-6 {
-            let earth = &platform.earth;
-            drift.push(Drift {
+            let (mean, covariance) = errors.moments();
+            drift.push(PositionError {
                 hours: t / 3600.0,
-                latitude_arcmin: covariance.sigma(DR) / earth.meridian_radius_m / ARCMIN,
-                longitude_arcmin: covariance.sigma(DR + 1)
-                    / (earth.transverse_radius_m * earth.cos_latitude)
-                    / ARCMIN,
+                mean_m: [mean[DR], mean[DR + 1]],
+                variances_m2: [covariance.at(DR, DR), covariance.at(DR + 1, DR + 1)],
+                covariance_m2: covariance.at(DR, DR + 1),
             });
-            mark_s += every_s;
+            mark_s += DRIFT_EVERY_S;
         }
         platform.reach(t);
     }

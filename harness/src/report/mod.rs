@@ -16,7 +16,7 @@ mod drift;
 pub mod fault_picture;
 pub mod number;
 mod pacing;
-mod page;
+pub(crate) mod page;
 mod parameters;
 pub mod run;
 pub mod sweep;

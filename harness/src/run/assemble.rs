@@ -103,14 +103,21 @@ fn findings(scenario: &Scenario, run: &MethodRun, baseline: Option<&MethodRun>) 
         let late = run.kept.as_ref().map(|kept| too_late(&scenario.realtime, &kept.pacing));
         findings.extend(late.unwrap_or_default());
     }
-    let mut inconclusive =
-        |reason: String| findings.push(Finding { verdict: Verdict::Inconclusive, reason });
-    if run.ended == Ended::Cancelled {
-        inconclusive(format!("interrupted after {:.1} s of the run", run.watcher.elapsed_s()));
-    }
-    if run.watcher.health.unlisted() > 0 {
-        let unlisted = run.watcher.health.unlisted();
-        inconclusive(format!("{unlisted} reports of the core found no place in the list"));
+    for (run, place) in std::iter::once((run, String::new()))
+        .chain(baseline.map(|run| (run, format!(" in {}", run.label))))
+    {
+        let mut inconclusive =
+            |reason: String| findings.push(Finding { verdict: Verdict::Inconclusive, reason });
+        if run.ended == Ended::Cancelled {
+            let after_s = run.watcher.elapsed_s();
+            inconclusive(format!("interrupted after {after_s:.1} s of the run{place}"));
+        }
+        if run.watcher.health.unlisted() > 0 {
+            let unlisted = run.watcher.health.unlisted();
+            inconclusive(format!(
+                "{unlisted} reports of the core found no place in the list{place}"
+            ));
+        }
     }
     findings
 }

@@ -239,6 +239,40 @@ pub fn judge(
     Ok(())
 }
 
+/// The worst of a judged summary but for its requirements: a calibration that was refused, a fault that
+/// never fired, a finding, and that it checks nothing.
+///
+/// A summary doesn't keep its findings, but [`judge`] gives a reason for each: where there are more
+/// reasons than the rest explains, there was one. A requirement that fails hides none of them.
+#[must_use]
+pub fn besides(summary: &Summary) -> Verdict {
+    let baseline = summary.baseline.as_ref();
+    let refused = |calibration: Option<&super::summary::Calibration>| {
+        calibration.is_some_and(|calibration| calibration.refused.is_some())
+    };
+    let primary_refused = refused(summary.calibration.as_ref());
+    let refusals = [primary_refused, refused(baseline.and_then(|b| b.calibration.as_ref()))];
+    let faults = summary.faults.iter().chain(baseline.iter().flat_map(|b| &b.faults));
+    let silent = faults.filter(|fault| !fault.fired).count();
+    let unkept = summary.requirements.iter().filter(|r| r.verdict != Verdict::Pass).count();
+    let nothing = summary.requirements.is_empty();
+    let explained = refusals.into_iter().filter(|refused| *refused).count()
+        + silent
+        + unkept
+        + usize::from(nothing);
+    let found = summary.reasons.len() > explained;
+    let mut worst = Verdict::Pass;
+    if nothing || silent > 0 || found {
+        worst = Verdict::Inconclusive;
+    }
+    if primary_refused {
+        worst = worst.worst(Verdict::Fail);
+    }
+    // How bad a finding was shows where nothing else is as bad.
+    let checks = summary.requirements.iter().map(|r| r.verdict).fold(worst, Verdict::worst);
+    if summary.verdict > checks { summary.verdict } else { worst }
+}
+
 /// Holds one requirement against a summary as JSON.
 #[must_use]
 pub fn evaluate(requirement: &Requirement, summary: &Value) -> RequirementResult {

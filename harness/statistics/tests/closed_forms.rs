@@ -3,9 +3,12 @@
 
 use octant_statistics::envelope::{EnvelopeError, envelope, resampled};
 use octant_statistics::outlier::{LIMIT, Scale, outliers};
+use octant_statistics::radius::Plane;
 use octant_statistics::rate::{RadialSample, radial_rate_nmi_per_h, time_rms_nmi};
 use octant_statistics::sobol::{Design, Role, SobolError};
-use octant_statistics::{convergence, paired, position, quantile, rank, rate, sample};
+use octant_statistics::{
+    convergence, deviation, normal, paired, position, quantile, rank, rate, sample,
+};
 use std::f64::consts::PI;
 
 /// Standard normals of a stream, for samples.
@@ -248,4 +251,58 @@ fn figures_of_a_sample() {
     assert_eq!(sample::deviation(&[1.0, 3.0]), Some(2f64.sqrt()));
     assert_eq!((sample::mean(&[]), sample::deviation(&[1.0])), (None, None));
     assert_eq!(sample::ranks(&[2.0, 1.0, 2.0, 5.0]), [2.5, 1.0, 2.5, 4.0]);
+}
+
+#[test]
+fn the_radius_of_a_normal_error_is_that_of_rayleigh_and_of_a_line() {
+    let near = |found: f64, expected: f64| {
+        assert!((found / expected - 1.0).abs() < 1e-7, "{found} {expected}");
+    };
+    for p in [0.05f64, 0.5, 0.95, 0.999] {
+        let round = Plane { mean: [0.0; 2], variances: [9.0; 2], covariance: 0.0 };
+        near(round.quantile(p), 3.0 * (-2.0 * (1.0 - p).ln()).sqrt());
+        // All of it on a line, whichever way that lies: a half normal distribution.
+        let half_normal = 3.0 * normal::quantile(0.5 + 0.5 * p);
+        for (variances, covariance) in [([9.0, 0.0], 0.0), ([0.0, 9.0], 0.0), ([4.5, 4.5], 4.5)] {
+            let line = Plane { mean: [0.0; 2], variances, covariance };
+            assert!((line.quantile(p) / half_normal - 1.0).abs() < 2e-3, "{p} {variances:?}");
+        }
+    }
+    let nothing = Plane { mean: [3.0, 4.0], variances: [0.0; 2], covariance: 0.0 };
+    assert_eq!(nothing.quantile(0.5), 5.0);
+    assert!(Plane { variances: [f64::NAN; 2], ..nothing }.quantile(0.5).is_nan());
+}
+
+#[test]
+fn the_radius_of_any_normal_error_is_that_of_a_sample() {
+    let plane = Plane { mean: [1.0, -2.0], variances: [4.0, 1.0], covariance: 1.2 };
+    // Rows of the Cholesky factor: [2 0; 0.6 0.8].
+    let (a, b) = (normals(7, "a", 200_000), normals(7, "b", 200_000));
+    let sample: Vec<[f64; 2]> =
+        a.iter().zip(&b).map(|(a, b)| [1.0 + 2.0 * a, -2.0 + 0.6 * a + 0.8 * b]).collect();
+    let radial = position::radial(&sample);
+    for p in [0.1, 0.5, 0.95] {
+        let expected = sample::percentile(&radial, p).unwrap();
+        let found = plane.quantile(p);
+        // Standard errors of these quantiles are below 0.3 %.
+        assert!((found / expected - 1.0).abs() < 0.01, "{p}: {found} {expected}");
+        assert!((plane.within(found) - p).abs() < 1e-9);
+    }
+}
+
+#[test]
+fn a_deviation_has_the_interval_of_chi_squared() {
+    // Tables: χ² of 9 degrees of freedom is 2.700 at 2.5 % and 19.023 at 97.5 %.
+    let (low, high) = deviation::factors(9, 0.95).unwrap();
+    assert!((low - (9.0f64 / 19.023).sqrt()).abs() < 1e-4, "{low}");
+    assert!((high - (9.0f64 / 2.700).sqrt()).abs() < 1e-3, "{high}");
+    let mut held = 0;
+    for sample in 0..2000 {
+        let interval = deviation::interval(&normals(9, &format!("{sample}"), 12), 0.9).unwrap();
+        held += u32::from(interval.low <= 1.0 && 1.0 <= interval.high);
+    }
+    // Three standard errors of 90 % of 2000.
+    assert!((held as f64 - 1800.0).abs() < 3.0 * 13.5, "{held} of 2000");
+    assert_eq!(deviation::interval(&[1.0], 0.9), None);
+    assert_eq!(deviation::factors(9, 1.0), None);
 }

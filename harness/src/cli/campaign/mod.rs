@@ -1,7 +1,7 @@
 //! `octant campaign`: many cases of scenarios, planned, run anywhere, merged.
 
 mod report;
-mod run;
+pub(super) mod run;
 
 use super::{Failure, print, print_json, write};
 use crate::campaign::case::{self, Job};

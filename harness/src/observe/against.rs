@@ -1,0 +1,402 @@
+//! A predicted ensemble held against the cases of a campaign.
+//!
+//! Cases whose scenario is the same but for the seed are a sample of one ensemble. Of every error the
+//! sample's σ has an interval (χ²) and its mean another (normal), both so wide that all of them
+//! together hold the truth with [`CONFIDENCE`] (Bonferroni). The prediction agrees where it is inside.
+
+use super::ensemble::{Ensemble, EnsembleError, ensemble};
+use crate::campaign::case::{self, CaseResult};
+use crate::campaign::plan::{Case, Plan};
+use crate::scenario::Method;
+use crate::score::summary::{Calibration, Navigation, Summary};
+use octant_sample::parameters::NAMES;
+use octant_statistics::sample::{Interval, mean};
+use octant_statistics::{deviation, normal};
+use serde::{Deserialize, Serialize};
+use std::path::Path;
+
+/// Version of the form of a comparison.
+pub const SCHEMA: u32 = 1;
+/// That all intervals of a comparison hold the truth.
+pub const CONFIDENCE: f64 = 0.95;
+/// Runs from which on it is said whether a prediction can stand: σ is then known to a third.
+pub const RUNS_MIN: usize = 50;
+/// Times at which a drift is compared, at most.
+const DRIFT_TIMES: usize = 12;
+
+/// The ensembles of a campaign.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Against {
+    /// Version of this form: [`SCHEMA`].
+    pub schema: u32,
+    /// Every ensemble that could be compared.
+    pub compared: Vec<Comparison>,
+    /// What could not, and why.
+    pub left_out: Vec<String>,
+}
+
+/// One ensemble, predicted and simulated.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Comparison {
+    /// Name of the scenario in the campaign.
+    pub scenario: String,
+    /// What is set in it.
+    pub set: Vec<String>,
+    /// Name of the method.
+    pub method: String,
+    /// Runs that the sample has.
+    pub runs: usize,
+    /// Cases without a result.
+    pub open: usize,
+    /// Cases that came to no summary, or whose calibration was refused: they are not in the sample.
+    pub without: usize,
+    /// That all intervals hold the truth.
+    pub confidence: f64,
+    /// How well the sample knows a σ: half of its interval, as a part of it.
+    pub known_to: f64,
+    /// Parameters at the end of the calibration.
+    pub states: Vec<Row>,
+    /// Position errors in navigation.
+    pub drift: Vec<Row>,
+    /// Mean over the parameters of predicted over simulated σ; null where there is none.
+    pub mean_ratio: Option<f64>,
+    /// Whether the prediction can stand for these runs; null: there are too few to say.
+    pub stands: Option<bool>,
+    /// The same in plain words.
+    pub words: Vec<String>,
+    /// What doesn't enter the prediction.
+    pub not_modelled: Vec<String>,
+}
+
+/// One error, predicted and simulated.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Row {
+    /// Its name.
+    pub name: String,
+    /// Its unit.
+    pub unit: String,
+    /// Since the start of navigation, h; null for a parameter.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub hours: Option<f64>,
+    /// Predicted mean.
+    pub predicted_mean: f64,
+    /// Predicted σ about it.
+    pub predicted_sigma: f64,
+    /// Mean of the sample with its interval.
+    pub simulated_mean: Interval,
+    /// σ of the sample about its mean, with its interval.
+    pub simulated_sigma: Interval,
+    /// Predicted over simulated σ; null if that is zero.
+    pub ratio: Option<f64>,
+    /// Both predictions are within the intervals.
+    pub agrees: bool,
+}
+
+/// Which ensembles of a campaign are compared; `None`: any.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Selection<'a> {
+    /// BLAKE3 of the scenario's file, hexadecimal.
+    pub blake3: Option<&'a str>,
+    /// What is set in it.
+    pub set: Option<&'a [String]>,
+}
+
+/// Holds predicted ensembles against the results in the folder of a campaign.
+///
+/// # Errors
+/// In words: if a scenario isn't the planned one, a result can't be read, or nothing was selected.
+pub fn against(plan: &Plan, folder: &Path, selection: &Selection<'_>) -> Result<Against, String> {
+    let mut groups: Vec<Vec<&Case>> = Vec::new();
+    for case in &plan.cases {
+        let planned = plan.planned(case).map_err(|error| error.to_string())?;
+        let chosen = selection.blake3.is_none_or(|blake3| blake3 == planned.blake3)
+            && selection.set.is_none_or(|set| set == case.set);
+        if !chosen {
+            continue;
+        }
+        let same = |group: &&mut Vec<&Case>| {
+            group.first().is_some_and(|first| {
+                first.scenario == case.scenario
+                    && first.set == case.set
+                    && first.faults == case.faults
+            })
+        };
+        match groups.iter_mut().find(same) {
+            Some(group) => group.push(case),
+            None => groups.push(vec![case]),
+        }
+    }
+    if groups.is_empty() {
+        return Err("compare: the campaign has no such case".to_owned());
+    }
+    let mut found = Against { schema: SCHEMA, compared: Vec::new(), left_out: Vec::new() };
+    let mut single = 0;
+    for group in groups {
+        let [first, _, ..] = group.as_slice() else {
+            single += 1;
+            continue;
+        };
+        let planned = plan.planned(first).map_err(|error| error.to_string())?;
+        let scenario = planned.scenario(first).map_err(|error| error.to_string())?;
+        let name = named(first);
+        if !scenario.faults.is_empty() {
+            let faults: Vec<&str> =
+                scenario.faults.iter().map(|fault| fault.spec.id.as_str()).collect();
+            found.left_out.push(format!(
+                "{name}: {} cases have faults, which no ensemble predicts: {}",
+                group.len(),
+                faults.join(", ")
+            ));
+            continue;
+        }
+        let sample = Sample::read(folder, &group)?;
+        let methods = std::iter::once(Method::Primary)
+            .chain(scenario.baseline.as_ref().map(|_| Method::Baseline));
+        for method in methods {
+            let ensemble = match ensemble(&scenario, method) {
+                Ok(ensemble) => ensemble,
+                Err(error @ EnsembleError::Setup(_)) => return Err(error.to_string()),
+                Err(error) => {
+                    found.left_out.push(format!("{name}: {error}"));
+                    continue;
+                }
+            };
+            match compare(first, &ensemble, &sample, method) {
+                Ok(comparison) => found.compared.push(comparison),
+                Err(reason) => found.left_out.push(format!("{name}: {reason}")),
+            }
+        }
+    }
+    if single > 0 {
+        found.left_out.push(format!(
+            "{single} cases are alone with what is set in them: an ensemble differs by seeds only"
+        ));
+    }
+    Ok(found)
+}
+
+fn named(case: &Case) -> String {
+    if case.set.is_empty() {
+        case.scenario.clone()
+    } else {
+        format!("{} with {}", case.scenario, case.set.join(", "))
+    }
+}
+
+/// Results of the cases of an ensemble.
+struct Sample {
+    summaries: Vec<Summary>,
+    open: usize,
+    broken: usize,
+}
+
+impl Sample {
+    fn read(folder: &Path, cases: &[&Case]) -> Result<Self, String> {
+        let mut sample = Self { summaries: Vec::new(), open: 0, broken: 0 };
+        for case in cases {
+            let path = case::file(folder, &case.id);
+            if !path.exists() {
+                sample.open += 1;
+                continue;
+            }
+            match CaseResult::read(&path)?.summary {
+                Some(summary) => sample.summaries.push(summary),
+                None => sample.broken += 1,
+            }
+        }
+        Ok(sample)
+    }
+
+    /// Calibrations that were published, with the navigation after them.
+    fn of(&self, method: Method) -> Vec<(&Calibration, Option<&Navigation>)> {
+        fn one(summary: &Summary, method: Method) -> Option<(&Calibration, Option<&Navigation>)> {
+            let (calibration, navigation) = match method {
+                Method::Primary => (&summary.calibration, &summary.navigation),
+                Method::Baseline => {
+                    let baseline = summary.baseline.as_ref()?;
+                    (&baseline.calibration, &baseline.navigation)
+                }
+            };
+            let calibration = calibration.as_ref().filter(|c| c.refused.is_none())?;
+            Some((calibration, navigation.as_ref()))
+        }
+        self.summaries.iter().filter_map(|summary| one(summary, method)).collect()
+    }
+}
+
+/// Latitude and longitude error at a time, between two points of a series.
+fn at(navigation: &Navigation, hours: f64) -> Option<[f64; 2]> {
+    let series = &navigation.series_hours;
+    let after = series.partition_point(|point| point[0] < hours);
+    let [to_h, to @ ..] = *series.get(after).or(series.last().filter(|p| p[0] >= hours - 1e-3))?;
+    let [from_h, from @ ..] = *series.get(after.checked_sub(1)?)?;
+    let part = if to_h > from_h { ((hours - from_h) / (to_h - from_h)).min(1.0) } else { 1.0 };
+    Some([0, 1].map(|axis| from[axis] + part * (to[axis] - from[axis])))
+}
+
+fn compare(
+    first: &Case,
+    ensemble: &Ensemble,
+    sample: &Sample,
+    method: Method,
+) -> Result<Comparison, String> {
+    let runs = sample.of(method);
+    let count = runs.len();
+    if count < 2 {
+        return Err(format!("{count} of its cases have a calibration to compare"));
+    }
+    let every = ensemble.drift.len().div_ceil(DRIFT_TIMES).max(1);
+    let times: Vec<_> = ensemble.drift.iter().skip(every - 1).step_by(every).collect();
+    let rows = NAMES.len() + 2 * times.len();
+    // Each row has two intervals.
+    let each = 1.0 - (1.0 - CONFIDENCE) / (2 * rows) as f64;
+    let (low, high) = deviation::factors(count as u64 - 1, each)
+        .ok_or_else(|| format!("{count} runs know no σ"))?;
+    let z = normal::quantile(0.5 + 0.5 * each);
+
+    let mut states = Vec::with_capacity(NAMES.len());
+    for name in NAMES {
+        let Some(state) = ensemble.states.iter().find(|state| state.name == name) else { continue };
+        let values: Option<Vec<f64>> = runs
+            .iter()
+            .map(|(calibration, _)| calibration.parameters.get(name).and_then(|p| p.error))
+            .collect();
+        let values = values.ok_or_else(|| format!("{name} has no error in one of its cases"))?;
+        let predicted = (state.mean, state.sigma);
+        states.push(row(name.to_owned(), &state.unit, None, predicted, &values, (low, high), z));
+    }
+    let mut drift = Vec::with_capacity(2 * times.len());
+    for (axis, what) in ["latitude", "longitude"].into_iter().enumerate() {
+        for time in &times {
+            let values: Option<Vec<f64>> = runs
+                .iter()
+                .map(|(_, navigation)| Some(at((*navigation)?, time.hours)?[axis]))
+                .collect();
+            let values = values
+                .ok_or_else(|| format!("one of its cases has no drift at {:.1} h", time.hours))?;
+            let band = if axis == 0 { time.latitude_arcmin } else { time.longitude_arcmin };
+            let name = format!("{what} at {:.1} h", time.hours);
+            let predicted = (band.mean, band.sigma);
+            drift.push(row(name, "arcmin", Some(time.hours), predicted, &values, (low, high), z));
+        }
+    }
+    let ratios: Vec<f64> = states.iter().filter_map(|row| row.ratio).collect();
+    let mut comparison = Comparison {
+        scenario: first.scenario.clone(),
+        set: first.set.clone(),
+        method: ensemble.method.clone(),
+        runs: count,
+        open: sample.open,
+        without: sample.broken + sample.summaries.len() - count,
+        confidence: CONFIDENCE,
+        known_to: 0.5 * (high - low),
+        states,
+        drift,
+        mean_ratio: mean(&ratios),
+        stands: None,
+        words: Vec::new(),
+        not_modelled: ensemble.not_modelled.clone(),
+    };
+    conclude(&mut comparison);
+    Ok(comparison)
+}
+
+fn row(
+    name: String,
+    unit: &str,
+    hours: Option<f64>,
+    (predicted_mean, predicted_sigma): (f64, f64),
+    values: &[f64],
+    (low, high): (f64, f64),
+    z: f64,
+) -> Row {
+    let value = octant_statistics::sample::deviation(values).unwrap_or(f64::NAN);
+    let simulated_sigma = Interval { value, low: value * low, high: value * high };
+    let middle = mean(values).unwrap_or(f64::NAN);
+    let error = z * value / libm::sqrt(values.len() as f64);
+    let simulated_mean = Interval { value: middle, low: middle - error, high: middle + error };
+    // Where nothing is random both are as exact as they can be computed.
+    let rounding = 1e-9 * (predicted_mean.abs() + predicted_sigma);
+    let within = |predicted: f64, interval: &Interval| {
+        interval.low - rounding <= predicted && predicted <= interval.high + rounding
+    };
+    Row {
+        agrees: within(predicted_sigma, &simulated_sigma)
+            && within(predicted_mean, &simulated_mean),
+        ratio: (value > 0.0).then(|| predicted_sigma / value),
+        unit: unit.to_owned(),
+        name,
+        hours,
+        predicted_mean,
+        predicted_sigma,
+        simulated_mean,
+        simulated_sigma,
+    }
+}
+
+/// Whether the prediction can stand, in words.
+fn conclude(comparison: &mut Comparison) {
+    let rows = || comparison.states.iter().chain(&comparison.drift);
+    let differing: Vec<&Row> = rows().filter(|row| !row.agrees).collect();
+    let error = format!("{:.0} %", 100.0 * comparison.known_to);
+    let mut words = Vec::new();
+    let stands = if !differing.is_empty() {
+        words.push(format!(
+            "the prediction can't stand for these runs: {} of {} figures differ by more than the \
+             sample's own error of {error}",
+            differing.len(),
+            rows().count()
+        ));
+        words.extend(differing.iter().map(|row| in_words(row)));
+        Some(false)
+    } else if comparison.runs < RUNS_MIN {
+        words.push(format!(
+            "{} runs know σ to {error} only: from {RUNS_MIN} on it is said whether the prediction can \
+             stand for them",
+            comparison.runs
+        ));
+        None
+    } else {
+        words.push(format!(
+            "the prediction can stand for these runs: all {} figures agree within the sample's own \
+             error of {error}",
+            rows().count()
+        ));
+        Some(true)
+    };
+    if let Some(ratio) = comparison.mean_ratio {
+        words.push(format!(
+            "predicted over simulated σ is {ratio:.3} in the mean over the parameters"
+        ));
+    }
+    if comparison.open > 0 {
+        words.push(format!("{} more cases have not been run", comparison.open));
+    }
+    if comparison.without > 0 {
+        words.push(format!(
+            "{} cases are not in the sample: they ended as errors, or refused their calibration",
+            comparison.without
+        ));
+    }
+    comparison.stands = stands;
+    comparison.words = words;
+}
+
+fn in_words(row: &Row) -> String {
+    let Row {
+        name, unit, predicted_sigma, predicted_mean, simulated_sigma, simulated_mean, ..
+    } = row;
+    let outside =
+        |value: f64, interval: &Interval| !(interval.low..=interval.high).contains(&value);
+    if outside(*predicted_sigma, simulated_sigma) {
+        format!(
+            "{name}: σ is {predicted_sigma:.4} {unit} predicted and {:.4} simulated",
+            simulated_sigma.value
+        )
+    } else {
+        format!(
+            "{name}: the mean is {predicted_mean:.4} {unit} predicted and {:.4} simulated",
+            simulated_mean.value
+        )
+    }
+}

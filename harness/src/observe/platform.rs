@@ -1,0 +1,124 @@
+//! The platform of an analysis: it stands at a site and turns by the plan.
+
+use nalgebra::{Matrix3, Vector3};
+use octant_calibration::config::{Config, ErrorModel};
+use octant_calibration::covariance::Transition;
+use octant_calibration::error_model::Interval;
+use octant_calibration::schedule::{Cursor, turned_rad};
+use octant_earth::ellipsoid::Ellipsoid;
+use octant_earth::frames::c_cb;
+use octant_sample::GimbalAngles;
+
+/// Sub-step of the transition while a gimbal turns, s.
+const SUB_STEP_S: f64 = 0.05;
+/// Sample time that the cursors are given: far below anything in a plan.
+pub(super) const SAMPLE_S: f64 = 1e-6;
+
+/// A platform standing at a site and turning by the plan.
+pub(super) struct Platform<'a> {
+    config: &'a Config,
+    c_nc: Matrix3<f64>,
+    /// Angle by which the two gimbal axes miss a right angle, rad.
+    non_orthogonality_rad: f64,
+    pub(super) earth: Ellipsoid,
+    pub(super) cursor: Cursor,
+    from: [f64; 2],
+    to: [f64; 2],
+    departed_s: f64,
+}
+
+impl<'a> Platform<'a> {
+    pub(super) fn new(
+        config: &'a Config,
+        c_nc: Matrix3<f64>,
+        non_orthogonality_rad: f64,
+        cursor: Cursor,
+    ) -> Self {
+        let command = cursor.command().target;
+        let at = [command.azimuth_rad(), command.roll_rad()];
+        let earth = Ellipsoid::at(config.site.latitude_rad, config.site.height_m);
+        let (from, to) = (at, at);
+        Self { config, c_nc, non_orthogonality_rad, earth, cursor, from, to, departed_s: 0.0 }
+    }
+
+    /// Where the gimbals are told to be.
+    pub(super) fn target(&self) -> GimbalAngles {
+        self.cursor.command().target
+    }
+
+    /// Gimbal angles at `t_s`.
+    fn gimbals(&self, t_s: f64) -> [f64; 2] {
+        core::array::from_fn(|i| {
+            let angle = self.to[i] - self.from[i];
+            self.from[i] + turned_rad(angle, t_s - self.departed_s, &self.config.turntable)
+        })
+    }
+
+    /// `c_cb` with the axes as they are.
+    fn c_cb(&self, azimuth: f64, roll: f64) -> Matrix3<f64> {
+        if self.non_orthogonality_rad == 0.0 {
+            return c_cb(azimuth, roll);
+        }
+        let (s, c) = libm::sincos(self.non_orthogonality_rad);
+        let leant = Matrix3::new(c, 0.0, s, 0.0, 1.0, 0.0, -s, 0.0, c);
+        c_cb(0.0, roll) * leant * c_cb(azimuth, 0.0)
+    }
+
+    /// Tells the platform that `t_s` has come, so that it may depart. Sample time is one microsecond
+    /// here, finer than any plan.
+    pub(super) fn reach(&mut self, t_s: f64) {
+        let departs = self.cursor.departure_s();
+        if t_s >= departs - 1e-6 {
+            self.from = self.to;
+            self.departed_s = departs;
+            self.cursor.advance((t_s / SAMPLE_S) as u64);
+            let target = self.cursor.command().target;
+            self.to = [target.azimuth_rad(), target.roll_rad()];
+        }
+    }
+
+    /// It stands at `t_s`, and for a while after it.
+    pub(super) fn stands(&self, t_s: f64) -> bool {
+        self.cursor.arrival_s() <= t_s + 1e-6
+    }
+
+    /// Next time at which the platform starts or stops turning, or `limit_s`.
+    pub(super) fn next_event_s(&self, t_s: f64, limit_s: f64) -> f64 {
+        [self.cursor.arrival_s(), self.cursor.departure_s()]
+            .into_iter()
+            .filter(|event| *event > t_s + 1e-6)
+            .fold(limit_s, f64::min)
+    }
+
+    fn interval(&self, t_s: f64, h: f64) -> Interval {
+        let [azimuth, roll] = self.gimbals(t_s + 0.5 * h);
+        let (before, after) = (self.gimbals(t_s), self.gimbals(t_s + h));
+        let c_cb = self.c_cb(azimuth, roll);
+        let c_nb = self.c_nc * c_cb;
+        let force_n = Vector3::new(0.0, 0.0, -self.earth.gravity_mps2 * h);
+        let turned_case = Vector3::x() * (after[1] - before[1]);
+        let turned_body = Vector3::z() * (after[0] - before[0]);
+        Interval {
+            interval_s: h,
+            c_nb,
+            delta_theta: c_nb.transpose() * self.earth.earth_rate() * h
+                + c_cb.transpose() * turned_case
+                + turned_body,
+            delta_velocity: c_nb.transpose() * force_n,
+            delta_velocity_n: force_n,
+            velocity_mps: Vector3::zeros(),
+        }
+    }
+
+    /// Transition over `[t_s, t_s + length_s]`, in which the platform stands or turns throughout.
+    pub(super) fn transition(&self, t_s: f64, length_s: f64, model: ErrorModel) -> Transition {
+        let step_s = if self.stands(t_s) { 1.0 } else { SUB_STEP_S };
+        let steps = (length_s / step_s - 1e-9).ceil().max(1.0);
+        let h = length_s / steps;
+        let mut transition = Transition::identity();
+        for k in 0..steps as u32 {
+            transition.advance(model, &self.interval(t_s + f64::from(k) * h, h), &self.earth);
+        }
+        transition
+    }
+}

@@ -1,0 +1,26 @@
+//! How well a sample knows its standard deviation.
+
+use crate::sample::{Interval, deviation};
+use statrs::distribution::{ChiSquared, ContinuousCDF};
+
+/// The standard deviation about the mean with its two-sided interval, of normal values:
+/// s √((n − 1) / χ²). `None` of fewer than two values, or of a confidence that is none.
+#[must_use]
+pub fn interval(values: &[f64], confidence: f64) -> Option<Interval> {
+    let value = deviation(values)?;
+    let (low, high) = factors(values.len() as u64 - 1, confidence)?;
+    Some(Interval { value, low: value * low, high: value * high })
+}
+
+/// What the standard deviation of a sample is multiplied by for the ends of its interval.
+#[must_use]
+pub fn factors(degrees_of_freedom: u64, confidence: f64) -> Option<(f64, f64)> {
+    if degrees_of_freedom == 0 || !(confidence > 0.0 && confidence < 1.0) {
+        return None;
+    }
+    let n = degrees_of_freedom as f64;
+    let squares = ChiSquared::new(n).ok()?;
+    let left = 0.5 * (1.0 - confidence);
+    let factor = |p: f64| libm::sqrt(n / squares.inverse_cdf(p));
+    Some((factor(1.0 - left), factor(left)))
+}
