@@ -7,7 +7,7 @@ use super::plan::{Plan, PlanError};
 use super::requirements;
 use super::status;
 use crate::score::verdict;
-use octant_requirements::requirement::Requirements;
+use octant_requirements::requirement::{Requirement, Requirements};
 use octant_requirements::trace::{Case, CaseResult as Traced, Trace, Verdict};
 use std::path::Path;
 
@@ -54,7 +54,18 @@ pub fn trace(plan: &Plan, requirements: &Requirements, folder: &Path) -> Result<
                 verdict::Verdict::Fail => verdict::Verdict::Inconclusive,
                 other => other,
             };
-            let check = |id: &String| (id.clone(), traced(result.check(id).worst(most)));
+            // Nor is one that fails there among the failures that an ensemble may have.
+            let allowed = |id: &str| {
+                let check = requirements.get(id).and_then(Requirement::check);
+                check.is_some_and(|check| check.ensemble.is_some())
+            };
+            let check = |id: &String| {
+                let check = match result.check(id) {
+                    verdict::Verdict::Fail if most != verdict::Verdict::Pass && allowed(id) => most,
+                    check => check.worst(most),
+                };
+                (id.clone(), traced(check))
+            };
             let checks = verifies.iter().map(check).collect();
             Some(Traced {
                 verdict: traced(result.verdict),

@@ -176,7 +176,7 @@ pub struct OutlierFigures {
     pub score: f64,
 }
 
-/// A number of a drift.
+/// A measure of a drift.
 type Measure = fn(&Drift) -> f64;
 
 /// Measures of which outliers are looked for.
