@@ -383,6 +383,57 @@ fn the_numbers_are_those_of_another_path_and_stand_on_the_page() {
     assert_eq!(cases, 9);
 }
 
+/// Cases that differ by their seed alone are an ensemble: the page holds its prediction against them, and
+/// says that there are too few. Without the file of the scenario there is a report all the same.
+#[test]
+fn predictions_stand_beside_the_cases() {
+    let draws = CAMPAIGN.find("[[factors]]\nname = \"amp").unwrap();
+    let campaign = CAMPAIGN[..draws]
+        .replace("replicates = 40", "replicates = 3")
+        .replace("faults = [[], [\"spike-1\"]]\ndraw = true", "faults = [[], [\"spike-1\"]]");
+    let bench = Bench::new(&campaign);
+    bench.plan().write(&bench.at("out"), false).unwrap();
+    assert_eq!(bench.octant(&["campaign", "run", "out"]).status.code(), Some(0));
+    assert_eq!(bench.report().0, 3, "three of three can't show 80 %");
+    let prediction: Value = serde_json::from_str(&bench.read("prediction.json")).unwrap();
+    let compared = prediction["compared"].as_array().unwrap();
+    assert_eq!((prediction["schema"].as_u64(), compared.len()), (Some(1), 2), "two latitudes");
+    for comparison in compared {
+        assert_eq!(comparison["runs"], 3);
+        assert_eq!(comparison["states"].as_array().unwrap().len(), 33);
+        // All 33 parameters by another path: σ about the mean, from the results of the cases.
+        let set = comparison["set"].as_array().unwrap();
+        let mut errors = Vec::new();
+        for case in bench.plan().cases.iter().filter(|case| case.faults == Some(Vec::new())) {
+            if set.iter().all(|one| case.set.iter().any(|other| one == other.as_str())) {
+                let text = std::fs::read_to_string(case::file(&bench.at("out"), &case.id)).unwrap();
+                let result: Value = serde_json::from_str(&text).unwrap();
+                let parameters = &result["summary"]["calibration"]["parameters"];
+                errors.push(parameters["gyro_bias_z"]["error"].as_f64().unwrap());
+            }
+        }
+        assert_eq!(errors.len(), 3);
+        let mean = errors.iter().sum::<f64>() / 3.0;
+        let sigma = (errors.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / 2.0).sqrt();
+        let states = comparison["states"].as_array().unwrap();
+        let row = states.iter().find(|row| row["name"] == "gyro_bias_z").unwrap();
+        near(&row["simulated_sigma"]["value"], sigma);
+        assert!(row["predicted_sigma"].as_f64().unwrap() > 0.0);
+    }
+    let left_out = prediction["left_out"].to_string();
+    assert!(left_out.contains("cases have faults"), "{left_out}");
+    let page = bench.read("report.html");
+    for words in ["Predicted and simulated", "3 runs know σ to", "gyro_bias_z", "cases have faults"]
+    {
+        assert!(page.contains(words), "{words}");
+    }
+    std::fs::remove_file(bench.at("short.toml")).unwrap();
+    assert_eq!(bench.report().0, 3);
+    let prediction: Value = serde_json::from_str(&bench.read("prediction.json")).unwrap();
+    assert_eq!(prediction["compared"], json!([]));
+    assert!(prediction["left_out"].to_string().contains("short.toml"), "{prediction}");
+}
+
 #[test]
 fn names_are_escaped() {
     let (bench, ..) = Bench::filled(CAMPAIGN, |_, _, _| {});

@@ -15,6 +15,8 @@ use std::time::SystemTime;
 pub const PAGE: &str = "report.html";
 /// Name of the statistics.
 pub const STATISTICS: &str = "statistics.json";
+/// Name of the predicted ensembles against the cases.
+pub const PREDICTION: &str = "prediction.json";
 /// Name of the JUnit.
 pub const JUNIT: &str = "junit.xml";
 /// Folder with copies of the files that the campaign was planned from.
@@ -39,12 +41,13 @@ pub fn write(
     }
     let xml = junit(report)
         .map_err(|error| ReportError::Format { what: JUNIT, reason: error.to_string() })?;
-    let statistics = report.statistics_json()?;
+    let (statistics, prediction) = (report.statistics_json()?, report.prediction_json()?);
     let html = crate::report::campaign::render(report, true);
     if !report.dispositions.text.is_empty() {
         keep(&path, report.dispositions.text.as_bytes())?;
     }
     keep(&folder.join(STATISTICS), statistics.as_bytes())?;
+    keep(&folder.join(PREDICTION), prediction.as_bytes())?;
     keep(&folder.join(JUNIT), xml.as_bytes())?;
     keep(&folder.join(PAGE), html.as_bytes())?;
     inputs(report, folder)?;

@@ -118,18 +118,18 @@ pub struct Statistics {
     pub combinations: Vec<CombinationFigures>,
     /// Cases that stand out from their combination.
     pub outliers: Vec<OutlierFigures>,
-    /// The ensembles that linear theory predicts, held against the cases.
-    pub prediction: Against,
     /// Discrepancies, and what became of them.
     pub discrepancies: Vec<Discrepancy>,
 }
 
-/// Predictions against the results; an empty campaign has none.
-fn predicted(plan: &Plan, folder: &Path) -> Result<Against, ReportError> {
+/// The ensembles that linear theory predicts, held against the cases. It takes the files of the scenarios,
+/// which a folder that was brought from elsewhere hasn't.
+fn predicted(plan: &Plan, folder: &Path) -> Against {
     if plan.cases.is_empty() {
-        return Ok(Against::default());
+        return Against::default();
     }
-    against(plan, folder, &Selection::default()).map_err(ReportError::Result)
+    against(plan, folder, &Selection::default())
+        .unwrap_or_else(|reason| Against { left_out: vec![reason], ..Against::default() })
 }
 
 /// Everything that a report shows.
@@ -143,6 +143,8 @@ pub struct Report<'a> {
     pub status: Status,
     /// What the cases show.
     pub statistics: Statistics,
+    /// The ensembles that linear theory predicts, held against the cases.
+    pub prediction: Against,
     /// The cases.
     pub rows: Vec<Row<'a>>,
     /// Their combinations, as in the statistics.
@@ -213,7 +215,6 @@ impl<'a> Report<'a> {
                 .collect(),
             combinations: of_combinations,
             outliers: figures::standing_out(&combinations, &rows),
-            prediction: predicted(plan, folder)?,
             discrepancies: discrepancy::find(plan, &status, &combinations, &rows, &wrong),
         };
         let absolute = std::path::absolute(folder).unwrap_or_else(|_| folder.to_owned());
@@ -224,6 +225,7 @@ impl<'a> Report<'a> {
             name,
             status,
             statistics,
+            prediction: predicted(plan, folder),
             rows,
             combinations,
             dispositions,
@@ -297,9 +299,20 @@ impl<'a> Report<'a> {
     /// # Errors
     /// If it can't be written as JSON.
     pub fn statistics_json(&self) -> Result<String, ReportError> {
-        let text = serde_json::to_string_pretty(&self.statistics).map_err(|error| {
-            ReportError::Format { what: "statistics.json", reason: error.to_string() }
-        })?;
-        Ok(crate::score::summary::rows_on_one_line(&text) + "\n")
+        json("statistics.json", &self.statistics)
     }
+
+    /// The bytes of `prediction.json`.
+    ///
+    /// # Errors
+    /// If it can't be written as JSON.
+    pub fn prediction_json(&self) -> Result<String, ReportError> {
+        json("prediction.json", &self.prediction)
+    }
+}
+
+fn json(what: &'static str, value: &impl Serialize) -> Result<String, ReportError> {
+    let text = serde_json::to_string_pretty(value)
+        .map_err(|error| ReportError::Format { what, reason: error.to_string() })?;
+    Ok(crate::score::summary::rows_on_one_line(&text) + "\n")
 }

@@ -7,7 +7,7 @@ use crate::report::number;
 use maud::{Markup, html};
 
 pub(super) fn section(report: &Report<'_>) -> Markup {
-    let prediction = &report.statistics.prediction;
+    let prediction = &report.prediction;
     html! {
         (heading("prediction"))
         p.hint { "Mean and covariance of all errors, carried through calibration and navigation in one pass, against the \
