@@ -2,6 +2,8 @@
 //!
 //! What changes continuously is interpolated linearly, everything else is held from its row on; two
 //! rows of the same time are a step. Before the first row and after the last the nearest one holds.
+//! An array has a column for each element, or one with all of them between blanks, as in the inputs
+//! that FMUs of FMI 3.0 carry with them.
 
 use crate::fmu::description::units::{Conversion, known};
 use crate::fmu::description::{Causality, Description, Kind, Variability, Variable};
@@ -60,8 +62,8 @@ struct Column {
 
 /// What a header says.
 struct Header<'a> {
-    variable: &'a Variable,
-    element: usize,
+    /// What stands in its fields, between blanks.
+    elements: Vec<(&'a Variable, usize)>,
     units: Conversion,
 }
 
@@ -108,20 +110,22 @@ impl Inputs {
             of_header(description, &header[index]).map_err(|e| content(line, index + 1, e))
         });
         let headers: Vec<Header<'_>> = headers.collect::<Result<_, _>>()?;
+        let mut seen: Vec<(&Variable, usize)> = Vec::new();
         for (index, one) in headers.iter().enumerate() {
-            let same = |other: &Header<'_>| {
-                std::ptr::eq(other.variable, one.variable) && other.element == one.element
+            let is_seen = |(variable, element): &(&Variable, usize)| {
+                seen.iter().any(|(v, e)| std::ptr::eq(*v, *variable) && e == element)
             };
-            if headers[..index].iter().any(same) {
+            if one.elements.iter().any(is_seen) {
                 let reason = format!("{} a second time", &header[index + 1]);
                 return Err(content(line, index + 2, reason));
             }
+            seen.extend(&one.elements);
         }
 
         let mut variables: Vec<&Variable> = Vec::new();
-        for header in &headers {
-            if !variables.iter().any(|known| std::ptr::eq(*known, header.variable)) {
-                variables.push(header.variable);
+        for (variable, _) in &seen {
+            if !variables.iter().any(|known| std::ptr::eq(*known, *variable)) {
+                variables.push(variable);
             }
         }
         let plan = Plan::new(description, &variables)?;
@@ -129,16 +133,16 @@ impl Inputs {
         for (variable, place) in variables.iter().zip(&plan.places) {
             crate::fmu::mapping::bind::start(variable, &mut numbers[place.clone()]);
         }
-        let column = |header: &Header<'_>| {
-            let known = variables.iter().position(|known| std::ptr::eq(*known, header.variable));
+        let column = |(variable, element): &(&Variable, usize)| {
+            let known = variables.iter().position(|known| std::ptr::eq(*known, *variable));
             Column {
-                place: known.map_or(0, |index| plan.places[index].start) + header.element,
-                continuous: header.variable.kind.is_float()
-                    && header.variable.variability == Variability::Continuous,
+                place: known.map_or(0, |index| plan.places[index].start) + element,
+                continuous: variable.kind.is_float()
+                    && variable.variability == Variability::Continuous,
                 values: Vec::new(),
             }
         };
-        let mut columns: Vec<Column> = headers.iter().map(column).collect();
+        let mut columns: Vec<Column> = seen.iter().map(column).collect();
         let mut time_s: Vec<f64> = Vec::new();
         let mut record = csv::StringRecord::new();
         loop {
@@ -161,10 +165,22 @@ impl Inputs {
                 return Err(content(line, 1, reason));
             }
             time_s.push(now);
-            for (index, (column, header)) in columns.iter_mut().zip(&headers).enumerate() {
-                let value = number(&record[index + 1], header.variable.kind)
-                    .map_err(|reason| content(line, index + 2, reason))?;
-                column.values.push(header.units.apply(value));
+            let mut columns = columns.iter_mut();
+            for (index, header) in headers.iter().enumerate() {
+                let wrong = |reason: String| content(line, index + 2, reason);
+                let field = &record[index + 1];
+                let expected = header.elements.len();
+                let texts = field.split_ascii_whitespace().count();
+                // One number is read as it is: of nothing and of two the message tells more so.
+                if expected > 1 && texts != expected {
+                    return Err(wrong(format!("found {texts} numbers, expected {expected}")));
+                }
+                let mut rest = field.split_ascii_whitespace();
+                for ((variable, _), column) in header.elements.iter().zip(&mut columns) {
+                    let text = if expected > 1 { rest.next().unwrap_or_default() } else { field };
+                    let value = number(text, variable.kind).map_err(wrong)?;
+                    column.values.push(header.units.apply(value));
+                }
             }
         }
         if time_s.is_empty() {
@@ -229,26 +245,24 @@ fn of_header<'a>(description: &'a Description, header: &str) -> Result<Header<'a
     let (name, unit) = split_unit(header);
     let found = find(description, name, 1).filter(|found| !found.negated);
     let Some(found) = found else { return Err(unknown(description, name, is_input)) };
-    let [(variable, element)] = found.elements[..] else {
-        let variable = found.elements.first().map_or(name, |(variable, _)| &variable.name);
-        return Err(format!(
-            "{variable} is an array of {}, expected a column for each element, as {variable}[1]",
-            found.elements.len()
-        ));
-    };
-    allowed(variable, Way::In)?;
-    if matches!(variable.kind, Kind::String | Kind::Binary | Kind::Clock) {
-        return Err(format!(
-            "{name} is a {:?}, and a column of numbers can't be one",
-            variable.kind
-        ));
+    for (variable, element) in &found.elements {
+        allowed(variable, Way::In)?;
+        if matches!(variable.kind, Kind::String | Kind::Binary | Kind::Clock) {
+            return Err(format!(
+                "{name} is a {:?}, and a column of numbers can't be one",
+                variable.kind
+            ));
+        }
+        debug_assert!(*element < count(description, variable).max(1));
     }
-    debug_assert!(element < count(description, variable).max(1));
+    let Some((variable, _)) = found.elements.first() else {
+        return Err(format!("{name} is an array without elements, expected a number"));
+    };
     let units = match unit {
         None => Conversion::IDENTITY,
         Some(unit) => units(description, variable, unit)?,
     };
-    Ok(Header { variable, element, units })
+    Ok(Header { elements: found.elements, units })
 }
 
 /// From a column's unit to the variable's.

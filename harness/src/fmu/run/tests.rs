@@ -137,6 +137,18 @@ fn rows_of_mcap_are_json_with_a_schema() {
 }
 
 #[test]
+fn an_array_has_a_column_or_one_for_each_element() {
+    let at_half = |text: &str| {
+        let mut inputs = inputs(text).unwrap();
+        inputs.at(0.5);
+        inputs.numbers
+    };
+    let apart = at_half("time,w[1],w[2],u\n0,1,2,3\n1,2,4,6\n");
+    assert_eq!(apart, at_half("time,w,u\n0,1 2,3\n1, 2  4 ,6\n"));
+    assert_eq!(apart, at_half("time,w[2],w[1],u\n0,2,1,3\n1,4,2,6\n"));
+}
+
+#[test]
 fn mistakes_in_inputs_have_file_line_and_column() {
     for (text, expected) in [
         ("", "in.csv:1:1: found \"\", expected time as the first column"),
@@ -145,7 +157,9 @@ fn mistakes_in_inputs_have_file_line_and_column() {
         ("time,u\n", "in.csv:2:1: the file ends, expected a row of numbers"),
         ("time,uu\n0,1\n", "in.csv:1:2: the FMU has no variable \"uu\"; nearest are \"u\""),
         ("time,y\n0,1\n", "in.csv:1:2: y is an output of the FMU, expected an input"),
-        ("time,w\n0,1\n", "in.csv:1:2: w is an array of 2, expected a column for each element"),
+        ("time,w\n0,1\n", "in.csv:2:2: found 1 numbers, expected 2"),
+        ("time,w\n0,1 x\n", "in.csv:2:2: found \"x\", expected a number"),
+        ("time,w,w[2]\n0,1 2,2\n", "in.csv:1:3: w[2] a second time"),
         ("time,w[3]\n0,1\n", "in.csv:1:2: the FMU has no variable \"w[3]\""),
         ("time,u,u\n0,1,1\n", "in.csv:1:3: u a second time"),
         ("time,u [s]\n0,1\n", "in.csv:1:2: u: unit \"s\" (s) can't become \"m\" (m)"),
