@@ -74,7 +74,7 @@ fn fill(fmu: &dyn Instance, plan: &Plan, values: &mut [f64]) {
 fn calibration(group: &mut BenchmarkGroup<WallTime>, name: &str, endpoint: &str) {
     let text = format!(
         "schema = 1\n{endpoint}\n[procedure.calibration]\nduration = \"0.5 h\"\n\
-         [procedure.navigation]\nduration = \"0 h\"\n"
+         [procedure.navigation]\nduration = \"1 s\"\n"
     );
     let scenario = Scenario::parse(&text, "bench.toml", Path::new(""), &[]).unwrap();
     group.throughput(Throughput::Elements(scenario.samples().unwrap()));

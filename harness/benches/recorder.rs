@@ -47,7 +47,7 @@ fn recorder(c: &mut Criterion) {
     });
     group.bench_function("hash only", |b| {
         b.iter(|| {
-            let mut recorder = Recorder::hash_only(&options(Samples::Decimated)).unwrap();
+            let mut recorder = Recorder::hash_only(&options(Samples::Decimated));
             run(&mut recorder, &steps);
             recorder.finish().unwrap()
         });
@@ -83,7 +83,7 @@ fn loop_thread(steps: &[Step]) {
     for _ in 0..50 {
         let options =
             RecorderOptions { blocks, epochs_per_block: block, ..options(Samples::Decimated) };
-        let mut recorder = Recorder::hash_only(&options).unwrap();
+        let mut recorder = Recorder::hash_only(&options);
         // Every buffer is touched once before: steady state.
         for round in 0..2 {
             std::thread::sleep(std::time::Duration::from_millis(20));

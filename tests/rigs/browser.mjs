@@ -1,5 +1,5 @@
-// Opens a report and a comparison in Chromium and checks what a reader sees.
-// Usage: node tests/rigs/browser.mjs REPORT SUMMARY COMPARISON PICTURES
+// Opens the reports of a run and of a campaign and a comparison in Chromium and checks what a reader sees.
+// Usage: node tests/rigs/browser.mjs REPORT SUMMARY COMPARISON CAMPAIGN PICTURES
 import { readFile } from "node:fs/promises";
 import { createRequire } from "node:module";
 import { pathToFileURL } from "node:url";
@@ -7,7 +7,7 @@ import { pathToFileURL } from "node:url";
 const require = createRequire(new URL("../../.rigs/npm/package.json", import.meta.url));
 const { chromium } = require("playwright-core");
 
-const [report, summaryPath, comparison, pictures] = process.argv.slice(2);
+const [report, summaryPath, comparison, campaign, pictures] = process.argv.slice(2);
 let failed = 0;
 function check(name, holds, found = "") {
   console.log(`${holds ? "ok  " : "FAIL"} ${name}${holds ? "" : `\n     found: ${found}`}`);
@@ -122,6 +122,68 @@ await visit("compare", comparison, async (page) => {
   }
   const marks = await page.locator("svg circle, svg path").count();
   check("compare: pairs and intervals are drawn", marks > 4, marks);
+});
+
+// What the keyboard is at.
+const focused = (page) => page.evaluate(() => {
+  const at = document.activeElement;
+  const style = getComputedStyle(at);
+  return {
+    tag: at.tagName.toLowerCase(),
+    href: at.getAttribute("href"),
+    index: Array.from(document.querySelectorAll("*")).indexOf(at),
+    marked: style.outlineStyle !== "none" && parseFloat(style.outlineWidth) > 0,
+    seen: at.getBoundingClientRect().width > 0,
+  };
+});
+
+await visit("campaign", `${campaign}/report.html`, async (page) => {
+  const statistics = JSON.parse(await readFile(`${campaign}/statistics.json`, "utf8"));
+  check("campaign: title is the campaign's", (await page.title()).includes(statistics.title),
+    await page.title());
+  check("campaign: the verdict is seen",
+    await page.locator(`header .badge.${statistics.verdict}`).isVisible());
+  const pictured = await charts(page);
+  const wanted = 2 * statistics.combinations.length;
+  check("campaign: latitude and longitude of every combination are drawn", pictured >= wanted && wanted === 24,
+    `${pictured} of ${wanted}`);
+  const bands = await page.$$eval("svg path.band[d]", (all) =>
+    all.filter((band) => band.getBBox().width > 50 && band.getBBox().height > 1).length);
+  check("campaign: envelopes have an area", bands >= 2 * wanted, bands);
+  const text = await visible(page);
+  for (const { id } of statistics.requirements) check(`campaign: has ${id}`, text.includes(id));
+  for (const { id } of statistics.discrepancies) check(`campaign: has ${id}`, text.includes(id));
+  check("campaign: the plan is told", text.includes(statistics.plan));
+
+  // Everything that does something is reached with the Tab key, in the order of the page, and is marked.
+  const count = await page.$$eval("a[href], summary, [tabindex]", (all) =>
+    // What is folded isn't there for the keyboard.
+    all.filter((one) => one.checkVisibility()).length);
+  await page.evaluate(() => window.scrollTo(0, 0));
+  let last = -1, backwards = 0, unmarked = 0, reached = 0;
+  for (let step = 0; step < count + 5; step += 1) {
+    await page.keyboard.press("Tab");
+    const at = await focused(page);
+    if (at.tag === "body" || at.index === last) break;
+    if (at.index < last) backwards += 1;
+    if (!at.marked || !at.seen) unmarked += 1;
+    last = at.index;
+    reached += 1;
+  }
+  check("campaign: the Tab key gets everywhere", reached >= count, `${reached} of ${count}`);
+  check("campaign: from the top to the bottom", backwards === 0, backwards);
+  check("campaign: and it is seen where it is", unmarked === 0, unmarked);
+  // A section by its link, and what is folded by the space bar.
+  await page.locator('nav.contents a[href="#trace"]').focus();
+  await page.keyboard.press("Enter");
+  const place = await page.evaluate(() => document.querySelector("#trace").getBoundingClientRect().top);
+  check("campaign: Enter goes to a section", page.url().endsWith("#trace") && place < 900, place);
+  const folded = page.locator("#trace ~ details").first();
+  await folded.locator("summary").focus();
+  await page.keyboard.press("Space");
+  check("campaign: the space bar unfolds", await folded.evaluate((one) => one.open));
+  await page.keyboard.press("Space");
+  await page.evaluate(() => window.scrollTo(0, 0));
 });
 
 await browser.close();

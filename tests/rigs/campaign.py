@@ -7,6 +7,7 @@ import os
 import pathlib
 import random
 import re
+import resource
 import shutil
 import signal
 import subprocess
@@ -23,7 +24,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 OCTANT, REPLICATES = sys.argv[1], int(sys.argv[2])
 CASES = 12 * REPLICATES
 TABLES = ["cases", "checks", "drift"]
-KILLS = 10
+KILLS, PARTS = 10, 7
 
 failures = []
 
@@ -63,34 +64,33 @@ def plan(work, name):
     return folder
 
 
-def run_and_kill(folder, seed):
-    """Kills the campaign, and sometimes a case of it, at random moments; then lets it end."""
-    dice = random.Random(seed)
-    killed = 0
-    while killed < KILLS:
-        campaign = subprocess.Popen(
-            [OCTANT, "campaign", "run", str(folder)], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
-        )
+def run_and_kill(folder, part, cpu, dice, kills):
+    """Kills a part of the campaign so many times at random moments, then lets it end."""
+    arguments = ["campaign", "run", folder, "--shard", f"{part}/{PARTS}", "--jobs", 1]
+    for _ in range(kills):
+        command = ["taskset", "-c", str(cpu), OCTANT, *map(str, arguments)]
+        campaign = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         try:
             campaign.wait(dice.uniform(0.2, 5.0))
-            break
+            check(f"part {part} is there to be killed", False, "it had ended")
         except subprocess.TimeoutExpired:
             campaign.send_signal(signal.SIGINT if dice.random() < 0.3 else signal.SIGKILL)
             campaign.wait()
-            killed += 1
-    return killed, octant("campaign", "run", folder)
+    result = octant(*arguments, cpu=cpu)
+    good(f"part {part} of {PARTS}, gone on with after {kills} kills", result)
 
 
 def in_every_way(work):
-    """On one processor and in seven parts at the same time, then on two, then with kills."""
-    one, parts, two, torn = (plan(work, name) for name in ["one", "parts", "two", "torn"])
+    """On one processor and in seven parts that are killed, at the same time; then on two."""
+    one, parts, two = (plan(work, name) for name in ["one", "parts", "two"])
     cpus = sorted(os.sched_getaffinity(0))
 
     def in_parts():
-        order = list(range(1, 8))
-        random.Random(1).shuffle(order)
-        for number in order:
-            good(f"part {number} of 7", octant("campaign", "run", parts, "--shard", f"{number}/7", "--jobs", 1, cpu=cpus[-1]))
+        dice = random.Random(7)
+        order = list(range(1, PARTS + 1))
+        dice.shuffle(order)
+        for place, part in enumerate(order):
+            run_and_kill(parts, part, cpus[-1], dice, (KILLS + place) // PARTS)
 
     started = time.monotonic()
     beside = threading.Thread(target=in_parts)
@@ -100,18 +100,20 @@ def in_every_way(work):
     beside.join()
     print(f"     {CASES} cases on one processor: {took:.0f} s, {CASES / took:.2f} a second")
     expected = merged(one)
-    check("in seven parts: the same bytes", merged(parts) == expected, merged(parts))
+    check(f"in {PARTS} parts, with {KILLS} kills: the same bytes", merged(parts) == expected, merged(parts))
+    check("after kills: no case came to two results", not list(parts.glob("cases/*/*.differs-*")))
 
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
     started = time.monotonic()
-    good("on all processors", octant("campaign", "run", two))
+    good("on two processors", octant("campaign", "run", two, "--jobs", 2))
     took = time.monotonic() - started
-    print(f"     {CASES} cases on {len(cpus)} processors: {took:.0f} s, {CASES / took:.2f} a second")
-    check("on all processors: the same bytes", merged(two) == expected, merged(two))
-
-    killed, result = run_and_kill(torn, 7)
-    good(f"gone on with after {killed} kills", result)
-    check("after kills: the same bytes", merged(torn) == expected, merged(torn))
-    check("after kills: no case came to two results", not list(torn.glob("cases/*/*.differs-*")))
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    cpu_s = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+    print(f"     {CASES} cases on two processors: {took:.0f} s, {CASES / took:.2f} a second, "
+          f"{cpu_s / CASES:.2f} s of processor each; the largest process had {after.ru_maxrss / 1024:.0f} MB")
+    check("on two processors: the same bytes", merged(two) == expected, merged(two))
+    # Two cases, and the program that runs them.
+    check("together less than 500 MB", 3 * after.ru_maxrss < 500 * 1024, f"{after.ru_maxrss} KiB")
     return one
 
 

@@ -41,6 +41,16 @@ impl<V> Arrays<V> {
     }
 }
 
+impl<V: Copy> Arrays<*mut V> {
+    /// Writes an element below the length of the importer's array.
+    #[inline]
+    fn put(&self, i: usize, value: V) {
+        // SAFETY: `check` has seen that the array is there; the importer vouches for its length,
+        // and the caller for the place.
+        unsafe { self.values.add(i).write_unaligned(value) };
+    }
+}
+
 impl Instance {
     /// Reads variables into the importer's array. With `ARRAYS` a value reference is that of a
     /// variable, as in FMI 3.0; without it is that of an element, as in FMI 2.0.
@@ -56,22 +66,44 @@ impl Instance {
         if self.outputs_are_stale() {
             self.compute_outputs(&arrays)?;
         }
-        let (slots, cells) = (self.slots(), self.cells());
+        let slots = self.slots();
+        // As many as slots: what is within the one is within the other.
+        let cells = &self.cells()[..slots.len()];
+        if !ARRAYS {
+            for i in 0..arrays.count {
+                let reference = arrays.reference(i);
+                let Some(slot) = found::<T, ARRAYS>(slots, reference) else {
+                    return Err(self.unknown::<T>(reference));
+                };
+                arrays.put(i, T::get(cells[reference], slot.cell));
+            }
+            return Ok(());
+        }
         let mut next = 0;
         for i in 0..arrays.count {
             let reference = arrays.reference(i);
             let Some(slot) = found::<T, ARRAYS>(slots, reference) else {
                 return Err(self.unknown::<T>(reference));
             };
-            let length = if ARRAYS { usize::from(slot.elements) } else { 1 };
-            if ARRAYS && length > arrays.value_count - next {
+            let length = usize::from(slot.elements);
+            if length > arrays.value_count - next {
                 return Err(self.wrong_length(&arrays));
             }
-            for bits in &cells[reference..reference + length] {
-                // SAFETY: `next` is below the length of the importer's array.
-                unsafe { arrays.values.add(next).write_unaligned(T::get(*bits, slot.cell)) };
-                next += 1;
+            // Most are one number or three: without the preparations of a loop over many.
+            match &cells[reference..reference + length] {
+                [bits] => arrays.put(next, T::get(*bits, slot.cell)),
+                [x, y, z] => {
+                    arrays.put(next, T::get(*x, slot.cell));
+                    arrays.put(next + 1, T::get(*y, slot.cell));
+                    arrays.put(next + 2, T::get(*z, slot.cell));
+                }
+                bits => {
+                    for (k, bits) in bits.iter().enumerate() {
+                        arrays.put(next + k, T::get(*bits, slot.cell));
+                    }
+                }
             }
+            next += length;
         }
         if next == arrays.value_count { Ok(()) } else { Err(self.wrong_length(&arrays)) }
     }
@@ -115,12 +147,17 @@ impl Instance {
             return Err(self.wrong_length(&arrays));
         }
         let (slots, cells) = self.slots_and_cells();
+        let cells = &mut cells[..slots.len()];
         let mut next = 0;
         for i in 0..arrays.count {
             let reference = arrays.reference(i);
             let slot = &slots[reference];
-            let length = if ARRAYS { usize::from(slot.elements) } else { 1 };
-            for bits in &mut cells[reference..reference + length] {
+            if !ARRAYS || slot.elements == 1 {
+                cells[reference] = T::set(value(next), slot.cell);
+                next += 1;
+                continue;
+            }
+            for bits in &mut cells[reference..reference + usize::from(slot.elements)] {
                 *bits = T::set(value(next), slot.cell);
                 next += 1;
             }

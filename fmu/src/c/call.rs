@@ -25,23 +25,24 @@ pub(super) fn call(
     function: &'static str,
     work: impl FnOnce(&mut Instance) -> Result<Status, Refusal>,
 ) -> Status {
+    // Messages go out when the instance is free again: their callback may call into it.
+    let mut said = None;
     let entered = REGISTRY.with(handle, |instance| {
         if instance.standard() != standard {
             // A handle of the other standard is a foreign one.
-            return (ERROR, None);
+            return ERROR;
         }
         let status = guarded(instance, function, work);
-        if instance.log.is_silent() {
-            return (status, None);
+        if !instance.log.is_silent() {
+            said = Some(Box::new((instance.log.take(), instance.outlet.clone())));
         }
-        (status, Some((instance.log.take(), instance.outlet.clone())))
+        status
     });
+    if let Some(said) = said {
+        deliver(&said.0, &said.1);
+    }
     match entered {
-        Ok((status, None)) => status,
-        Ok((status, Some((messages, outlet)))) => {
-            deliver(&messages, &outlet);
-            status
-        }
+        Ok(status) => status,
         Err(NoInstance::Unknown | NoInstance::InUse) => ERROR,
     }
 }

@@ -363,7 +363,8 @@ fn failure(status: ExitStatus, words: &str, memory_mib: u64) -> String {
 }
 
 /// Results of other plans would be counted with ours.
-fn refuse_foreign(plan: &Plan, folder: &Path) -> Result<(), ExecuteError> {
+/// That a folder has no results but those of a plan.
+pub(crate) fn refuse_foreign(plan: &Plan, folder: &Path) -> Result<(), ExecuteError> {
     let known: std::collections::HashSet<&str> =
         plan.cases.iter().map(|case| case.id.as_str()).collect();
     let mut foreign: Vec<String> =

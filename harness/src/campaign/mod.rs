@@ -11,6 +11,7 @@ pub mod execute;
 pub mod file;
 pub mod merge;
 pub mod plan;
+pub mod report;
 pub mod requirements;
 pub mod results;
 pub mod status;
@@ -19,7 +20,7 @@ pub mod table;
 pub mod trace;
 
 /// A file that gets its name when it is whole; what others may read of it is as of any new file.
-fn new_file(folder: &std::path::Path) -> std::io::Result<tempfile::NamedTempFile> {
+pub(crate) fn new_file(folder: &std::path::Path) -> std::io::Result<tempfile::NamedTempFile> {
     let mut builder = tempfile::Builder::new();
     builder.prefix(".").suffix(".new");
     #[cfg(unix)]

@@ -11,6 +11,7 @@ mod faults;
 mod fmu;
 mod live;
 mod minimise;
+mod nightly;
 mod observe;
 mod progress;
 mod replay;
@@ -19,6 +20,7 @@ mod requirements;
 mod run;
 mod run_system;
 mod score;
+mod selftest;
 mod serve;
 mod sweep;
 mod turntable;
@@ -50,6 +52,10 @@ enum Command {
     Replay(replay::Arguments),
     /// Run many cases: plan them, run them anywhere, merge what came of them.
     Campaign(campaign::Arguments),
+    /// Run the fault suite and campaigns, and tell what got worse since the accepted baseline.
+    Nightly(nightly::Arguments),
+    /// Run cases whose ends are known through this program, and tell whether it can be believed.
+    Selftest(selftest::Arguments),
     /// Check a file of requirements, or turn it into one of another tool.
     Requirements(requirements::Arguments),
     /// Serve the core as a device, that a harness drives over a port.
@@ -78,15 +84,9 @@ enum Command {
     Other(Vec<OsString>),
 }
 
-/// Commands that belong to the plan of the program and are not in this version.
-const LATER: [&str; 2] = ["nightly", "selftest"];
-
 /// A command that isn't there.
 fn other(words: &[OsString]) -> Failure {
     let name = words.first().map_or("".into(), |word| word.to_string_lossy());
-    if LATER.contains(&name.as_ref()) {
-        return Failure::input(format!("octant {name} is not part of this version"));
-    }
     let command = <Cli as clap::CommandFactory>::command();
     let known: Vec<&str> = command.get_subcommands().map(clap::Command::get_name).collect();
     let known = crate::scenario::suggestion(&name, known.into_iter(), "commands");
@@ -182,6 +182,18 @@ impl From<crate::run::paired::PairedError> for Failure {
     }
 }
 
+/// Whether the program takes a command line, program first; nothing is run.
+///
+/// # Errors
+/// In the words in which it would be refused.
+pub fn parses<'a>(words: impl IntoIterator<Item = &'a str>) -> Result<(), String> {
+    match Cli::try_parse_from(words) {
+        Ok(Cli { command: Command::Other(words) }) => Err(other(&words).message),
+        Ok(_) => Ok(()),
+        Err(error) => Err(error.to_string()),
+    }
+}
+
 /// Runs the program and returns its exit status.
 #[must_use]
 pub fn main() -> ExitCode {
@@ -189,6 +201,8 @@ pub fn main() -> ExitCode {
     let outcome = match cli.command {
         Command::Run(arguments) => run::command(&arguments),
         Command::Campaign(arguments) => campaign::command(&arguments),
+        Command::Nightly(arguments) => nightly::command(&arguments),
+        Command::Selftest(arguments) => selftest::command(&arguments),
         Command::Requirements(arguments) => requirements::command(&arguments),
         Command::Compare(arguments) => compare::command(&arguments),
         Command::Replay(arguments) => replay::command(&arguments),

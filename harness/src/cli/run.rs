@@ -88,7 +88,9 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     }
     let mut scenario = load_fired(&arguments.scenario, &more, &arguments.fire)?;
     if let Some(faults) = &arguments.only_faults {
-        scenario = scenario.with_only(faults).map_err(|reason| {
+        // `--only-faults=` comes as one empty name.
+        let faults: Vec<String> = faults.iter().filter(|id| !id.is_empty()).cloned().collect();
+        scenario = scenario.with_only(&faults).map_err(|reason| {
             let file = arguments.scenario.scenario.display();
             Failure::input(format!("{file}: --only-faults: {reason}"))
         })?;
@@ -168,6 +170,7 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         link,
         bench,
         realtime,
+        campaign: None,
         key,
     };
     let raw = estimate.map_or(String::new(), |e| raw_counts::text(&scenario.source, &e));

@@ -169,6 +169,7 @@ pub(super) fn command(
         link: None,
         bench: None,
         realtime: None,
+        campaign: None,
         key,
     };
     Manifest::write(folder.path(), &facts)

@@ -2,6 +2,7 @@
 
 use super::folder::LOCK;
 use super::signature::{self, Key, SignatureError};
+use crate::score::verdict::Verdict;
 use octant_realtime::schedule::Granted;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
@@ -53,6 +54,9 @@ pub struct Manifest {
     /// What the host granted a run by the clock; left out of others.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub realtime: Option<Granted>,
+    /// What a campaign came to; left out of runs.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub campaign: Option<CampaignFacts>,
     /// Every other file of the folder, by path.
     pub files: Vec<FileHash>,
     /// Who ran it: what `OCTANT_OPERATOR` says, or the name of the account; `null` without either.
@@ -88,6 +92,38 @@ pub struct Host {
     pub cpu: Option<String>,
     /// Processors that the run could use.
     pub cpus: usize,
+}
+
+/// What a campaign came to.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct CampaignFacts {
+    /// Its name.
+    pub title: String,
+    /// Its plan.
+    pub plan: String,
+    /// What it comes to.
+    pub verdict: Verdict,
+    /// Cases that count.
+    pub cases: usize,
+    /// Those without a result.
+    pub open_cases: usize,
+    /// Discrepancies.
+    pub discrepancies: usize,
+    /// Those of which nobody has said anything.
+    pub open_discrepancies: usize,
+    /// BLAKE3 over all results.
+    pub results_blake3: String,
+    /// SHA-256 of the program that wrote the report; `null` where it can't be read.
+    pub program_sha256: Option<String>,
+    /// What the self-test in the folder came to; `null` without one.
+    pub selftest: Option<Verdict>,
+    /// Time of the file of the first result, UTC; `null` without one.
+    pub first_result: Option<String>,
+    /// Time of the file of the last result.
+    pub last_result: Option<String>,
+    /// A line for a POSIX shell that makes the campaign again.
+    #[serde(skip)]
+    pub rerun: String,
 }
 
 /// A file with its hashes.
@@ -146,6 +182,8 @@ pub struct RunFacts {
     pub bench: Option<serde_json::Value>,
     /// What the host granted a run by the clock.
     pub realtime: Option<Granted>,
+    /// What a campaign came to.
+    pub campaign: Option<CampaignFacts>,
     /// The key that signs the manifest.
     pub key: Option<Arc<Key>>,
 }
@@ -202,12 +240,16 @@ impl Manifest {
             seed: facts.seed,
             started: humantime::format_rfc3339_millis(facts.started).to_string(),
             ended: humantime::format_rfc3339_millis(facts.ended).to_string(),
-            rerun: shell_line(&facts.command_line),
+            rerun: match &facts.campaign {
+                Some(campaign) => campaign.rerun.clone(),
+                None => shell_line(&facts.command_line),
+            },
             command_line: facts.command_line.clone(),
             fmus: facts.fmus.clone(),
             link: facts.link.clone(),
             bench: facts.bench.clone(),
             realtime: facts.realtime.clone(),
+            campaign: facts.campaign.clone(),
             files: Vec::new(),
             operator: operator(),
             lock_file: some(env!("OCTANT_LOCK_FILE")),
@@ -365,7 +407,7 @@ fn cpu_model() -> Option<String> {
 }
 
 /// The name that a run is made under.
-fn operator() -> Option<String> {
+pub(crate) fn operator() -> Option<String> {
     let variable = |name: &str| std::env::var(name).ok().filter(|name| !name.trim().is_empty());
     ["OCTANT_OPERATOR", "USER", "LOGNAME", "USERNAME"].into_iter().find_map(variable)
 }
@@ -417,7 +459,7 @@ fn hash_file(folder: &Path, path: &str) -> Result<FileHash, ManifestError> {
 }
 
 /// Quotes what a POSIX shell would not take as it is.
-fn shell_line(words: &[String]) -> String {
+pub(crate) fn shell_line(words: &[String]) -> String {
     let plain = |c: char| c.is_ascii_alphanumeric() || "-_./:=+,@%".contains(c);
     let quoted: Vec<String> = words
         .iter()
@@ -452,6 +494,7 @@ mod tests {
             link: None,
             bench: None,
             realtime: None,
+            campaign: None,
             key: None,
         }
     }

@@ -35,6 +35,13 @@ pub struct Against {
     pub left_out: Vec<String>,
 }
 
+impl Default for Against {
+    /// Of no ensembles.
+    fn default() -> Self {
+        Self { schema: SCHEMA, compared: Vec::new(), left_out: Vec::new() }
+    }
+}
+
 /// One ensemble, predicted and simulated.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Comparison {
@@ -129,7 +136,7 @@ pub fn against(plan: &Plan, folder: &Path, selection: &Selection<'_>) -> Result<
     if groups.is_empty() {
         return Err("compare: the campaign has no such case".to_owned());
     }
-    let mut found = Against { schema: SCHEMA, compared: Vec::new(), left_out: Vec::new() };
+    let mut found = Against::default();
     let mut single = 0;
     for group in groups {
         let [first, _, ..] = group.as_slice() else {

@@ -1,7 +1,7 @@
 //! The recorder as the run loop sees it: a place to put epochs, at a few nanoseconds each.
 //!
 //! Epochs are collected in a block; a full block goes to the recorder's thread over a bounded
-//! queue, and an empty one comes back. Nothing is allocated in steady state. When all blocks are
+//! queue, and an empty one comes back. Where hashes alone are wanted the loop makes them itself. Nothing is allocated in steady state. When all blocks are
 //! on their way the loop waits: in simulated time nothing is dropped. The thread asks for an
 //! unfinished block from time to time ([`FLUSH_INTERVAL`]), so that a slow run, too, gets into the
 //! file; the asking is one relaxed load of the loop.
@@ -61,8 +61,27 @@ pub struct Recorder {
     worker: Option<Worker>,
 }
 
+/// Who works off a full block.
 #[derive(Debug)]
-struct Worker {
+enum Worker {
+    /// The loop's own thread: hashes alone are quicker made than handed over.
+    Here(Box<Digest>),
+    /// A thread, which writes too.
+    Thread(Thread),
+}
+
+impl Worker {
+    #[inline]
+    fn wants_block(&self) -> bool {
+        match self {
+            Self::Here(_) => false,
+            Self::Thread(thread) => thread.wanted.load(Ordering::Relaxed),
+        }
+    }
+}
+
+#[derive(Debug)]
+struct Thread {
     full: SyncSender<Block>,
     empty: Receiver<Block>,
     /// Set by the thread: it wants the unfinished block.
@@ -83,7 +102,7 @@ impl Recorder {
             .map_err(|source| RecorderError::Create { path: path.display().to_string(), source })?;
         let disk = Disk::new(file, options.trouble.clone());
         let writer = RecordingWriter::new(disk, options)?;
-        Self::start(options, Some(writer), Some(kept))
+        Self::start(options, writer, Some(kept))
     }
 
     /// Records into anything that takes bytes.
@@ -94,15 +113,15 @@ impl Recorder {
         inner: W,
         options: &RecorderOptions,
     ) -> Result<Self, RecorderError> {
-        Self::start(options, Some(RecordingWriter::new(inner, options)?), None)
+        Self::start(options, RecordingWriter::new(inner, options)?, None)
     }
 
     /// Takes the stream hash and writes no file.
-    ///
-    /// # Errors
-    /// If the system gives no thread.
-    pub fn hash_only(options: &RecorderOptions) -> Result<Self, RecorderError> {
-        Self::start::<std::io::Sink>(options, None, None)
+    #[must_use]
+    pub fn hash_only(options: &RecorderOptions) -> Self {
+        let mut recorder = Self::with_blocks(options);
+        recorder.worker = Some(Worker::Here(Box::new(Digest::new())));
+        recorder
     }
 
     /// Does nothing: what a run costs without a recorder.
@@ -122,14 +141,24 @@ impl Recorder {
         }
     }
 
+    /// With an empty block, and nobody who works off full ones.
+    fn with_blocks(options: &RecorderOptions) -> Self {
+        let mut recorder = Self::none();
+        recorder.epochs_per_block = options.epochs_per_block.clamp(1, 1 << 20);
+        recorder.block = Block::new(recorder.epochs_per_block);
+        recorder.next_due_ns = 0;
+        recorder.period_ns = options.policy.period_ns.max(1);
+        recorder
+    }
+
     fn start<W: Write + Send + 'static>(
         options: &RecorderOptions,
-        writer: Option<RecordingWriter<W>>,
+        writer: RecordingWriter<W>,
         sync: Option<File>,
     ) -> Result<Self, RecorderError> {
-        let epochs_per_block = options.epochs_per_block.clamp(1, 1 << 20);
+        let mut recorder = Self::with_blocks(options);
+        let epochs_per_block = recorder.epochs_per_block;
         let blocks = options.blocks.clamp(2, 1024);
-        let records_truth = writer.is_some();
         let (full, full_receiver) = sync_channel(blocks);
         let (empty_sender, empty) = sync_channel(blocks);
         for _ in 1..blocks {
@@ -146,18 +175,9 @@ impl Recorder {
             .map_err(|error| RecorderError::Format {
                 reason: format!("no thread for the recorder: {error}"),
             })?;
-        Ok(Self {
-            block: Block::new(epochs_per_block),
-            epochs_per_block,
-            next_due_ns: 0,
-            period_ns: options.policy.period_ns.max(1),
-            truth_due: false,
-            mode: None,
-            records_truth,
-            revision: 0,
-            parameters_due: false,
-            worker: Some(Worker { full, empty, wanted, thread }),
-        })
+        recorder.worker = Some(Worker::Thread(Thread { full, empty, wanted, thread }));
+        recorder.records_truth = true;
+        Ok(recorder)
     }
 
     /// Takes one epoch.
@@ -176,7 +196,7 @@ impl Recorder {
         }
         // Before the frame and not after it, so that truth and parameters, which come after their
         // frame, are in the same block.
-        if self.block.len() >= self.epochs_per_block || worker.wanted.load(Ordering::Relaxed) {
+        if self.block.len() >= self.epochs_per_block || worker.wants_block() {
             self.hand_over()?;
         }
         let time_ns = frame.clean.sample.device_time.ns;
@@ -247,7 +267,7 @@ impl Recorder {
             let revision = self.revision;
             return Err(RecorderError::ParametersMissing { sequence, revision });
         }
-        if self.block.len() >= self.epochs_per_block || worker.wanted.load(Ordering::Relaxed) {
+        if self.block.len() >= self.epochs_per_block || worker.wants_block() {
             self.hand_over()?;
         }
         Ok(())
@@ -289,20 +309,28 @@ impl Recorder {
         }
     }
 
-    /// Hands the unfinished block to the recorder's thread. Of use before a long wait.
+    /// Has the unfinished block worked off. Of use before a long wait.
     ///
     /// # Errors
     /// If the recorder failed.
     #[cold]
     pub fn hand_over(&mut self) -> Result<(), RecorderError> {
-        let Some(worker) = &self.worker else { return Ok(()) };
-        worker.wanted.store(false, Ordering::Relaxed);
-        if self.block.is_empty() {
-            return Ok(());
-        }
-        let handed = worker.empty.recv().ok().is_some_and(|empty| {
-            worker.full.send(std::mem::replace(&mut self.block, empty)).is_ok()
-        });
+        let block = &mut self.block;
+        let handed = match &mut self.worker {
+            None => true,
+            Some(Worker::Here(digest)) => {
+                digest.take(block);
+                block.clear();
+                true
+            }
+            Some(Worker::Thread(thread)) => {
+                thread.wanted.store(false, Ordering::Relaxed);
+                block.is_empty()
+                    || thread.empty.recv().ok().is_some_and(|empty| {
+                        thread.full.send(std::mem::replace(block, empty)).is_ok()
+                    })
+            }
+        };
         if handed { Ok(()) } else { Err(self.failure()) }
     }
 
@@ -332,7 +360,8 @@ impl Recorder {
     fn join(&mut self) -> Result<RecorderSummary, RecorderError> {
         match self.worker.take() {
             None => Ok(RecorderSummary::default()),
-            Some(Worker { full, empty, thread, .. }) => {
+            Some(Worker::Here(digest)) => Ok(digest.finish()),
+            Some(Worker::Thread(Thread { full, empty, thread, .. })) => {
                 drop((full, empty));
                 thread.join().unwrap_or(Err(RecorderError::Gone))
             }
@@ -348,32 +377,55 @@ impl Drop for Recorder {
     }
 }
 
+/// What is told of the epochs that passed.
+#[derive(Debug)]
+struct Digest {
+    hash: StreamHash,
+    streams: Option<altered::Streams>,
+    summary: RecorderSummary,
+}
+
+impl Digest {
+    fn new() -> Self {
+        Self { hash: StreamHash::new(), streams: None, summary: RecorderSummary::default() }
+    }
+
+    fn take(&mut self, block: &Block) {
+        hash_block(&mut self.hash, block);
+        altered::take(&mut self.streams, block);
+        let summary = &mut self.summary;
+        summary.epochs += (block.len() - block.lost.len()) as u64;
+        summary.aiding += block.aiding.len() as u64;
+        summary.altered += (block.altered.len() + block.added.len()) as u64;
+    }
+
+    fn finish(mut self) -> RecorderSummary {
+        RecorderSummary {
+            stream_hash: self.hash.hex(),
+            altered_streams: self.streams.map(altered::Streams::finish),
+            ..self.summary
+        }
+    }
+}
+
 /// The recorder's thread.
 fn work<W: Write>(
-    mut writer: Option<RecordingWriter<W>>,
+    mut writer: RecordingWriter<W>,
     sync: Option<File>,
     full: &Receiver<Block>,
     empty: &SyncSender<Block>,
     wanted: &AtomicBool,
     trouble: &Trouble,
 ) -> Result<RecorderSummary, RecorderError> {
-    let mut hash = StreamHash::new();
-    let mut streams = None;
-    let mut summary = RecorderSummary::default();
+    let mut digest = Digest::new();
     let mut asked = std::time::Instant::now();
     loop {
         let received = full.recv_timeout(FLUSH_INTERVAL);
         trouble.stand_still();
         match received {
             Ok(mut block) => {
-                hash_block(&mut hash, &block);
-                altered::take(&mut streams, &block);
-                summary.epochs += (block.len() - block.lost.len()) as u64;
-                summary.aiding += block.aiding.len() as u64;
-                summary.altered += (block.altered.len() + block.added.len()) as u64;
-                if let Some(writer) = &mut writer {
-                    writer.block(&block)?;
-                }
+                digest.take(&block);
+                writer.block(&block)?;
                 block.clear();
                 // The loop may be gone already; then nobody needs the block.
                 let _ = empty.try_send(block);
@@ -381,19 +433,14 @@ fn work<W: Write>(
             Err(RecvTimeoutError::Timeout) => {}
             Err(RecvTimeoutError::Disconnected) => break,
         }
-        if let Some(writer) = &mut writer {
-            writer.flush_if_due()?;
-            if asked.elapsed() >= FLUSH_INTERVAL {
-                wanted.store(true, Ordering::Relaxed);
-                asked = std::time::Instant::now();
-            }
+        writer.flush_if_due()?;
+        if asked.elapsed() >= FLUSH_INTERVAL {
+            wanted.store(true, Ordering::Relaxed);
+            asked = std::time::Instant::now();
         }
     }
-    summary.stream_hash = hash.hex();
-    summary.altered_streams = streams.map(altered::Streams::finish);
-    if let Some(writer) = writer {
-        (summary.messages, summary.bytes) = writer.finish()?;
-    }
+    let mut summary = digest.finish();
+    (summary.messages, summary.bytes) = writer.finish()?;
     if let Some(file) = sync {
         file.sync_all()
             .map_err(|source| RecorderError::Write { written_bytes: summary.bytes, source })?;

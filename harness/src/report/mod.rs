@@ -2,11 +2,13 @@
 //!
 //! - [`run`] makes `report.html` of one run
 //! - [`compare`] makes `compare.html` and the plain text of `octant compare`
+//! - [`campaign`] makes `report.html` of a campaign
 //! - [`fault_picture`] draws what a fault does
 //! - [`chart`] draws lines as inline SVG that follows the colours of the page
 //! - [`number`] writes numbers as people read them
 
 mod calibration;
+pub mod campaign;
 pub mod chart;
 pub mod compare;
 pub mod counterfactual;
@@ -14,7 +16,7 @@ mod drift;
 pub mod fault_picture;
 pub mod number;
 mod pacing;
-mod page;
+pub(crate) mod page;
 mod parameters;
 pub mod run;
 pub mod sweep;

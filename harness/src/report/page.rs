@@ -4,7 +4,7 @@ use crate::score::verdict::Verdict;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 /// A whole page. The script reads out charts under the pointer; without it nothing is missing.
-pub(super) fn page(title: &str, body: &Markup) -> String {
+pub(crate) fn page(title: &str, body: &Markup) -> String {
     html! {
         (DOCTYPE)
         html lang="en" {

@@ -258,7 +258,7 @@ pub fn run_as_far_as_it_goes(
     };
     let mut recorder = match recording {
         Recording::File(path) => Recorder::to_file(path, &options).map_err(SetupError::Recorder)?,
-        Recording::Hash => Recorder::hash_only(&options).map_err(SetupError::Recorder)?,
+        Recording::Hash => Recorder::hash_only(&options),
         Recording::None => Recorder::none(),
     };
     let calibration_s = core.calibration.as_ref().map_or(0.0, |c| c.duration_s);

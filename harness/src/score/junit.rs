@@ -76,7 +76,8 @@ pub fn junit_of(
     report.to_string()
 }
 
-fn status(verdict: Verdict, message: &str) -> TestCaseStatus {
+/// JUnit has no "inconclusive": it becomes an error of that type.
+pub(crate) fn status(verdict: Verdict, message: &str) -> TestCaseStatus {
     let kind = match verdict {
         Verdict::Pass => return TestCaseStatus::success(),
         Verdict::Fail => NonSuccessKind::Failure,

@@ -38,6 +38,28 @@ pub struct Envelope {
     pub curves: Vec<Vec<f64>>,
 }
 
+/// A series of points in order of x on a grid, straight between points; `None` where the grid, in
+/// ascending order, reaches beyond the points, or the series has none.
+#[must_use]
+pub fn resampled(points: &[[f64; 2]], grid: &[f64]) -> Option<Vec<f64>> {
+    let (first, last) = (points.first()?, points.last()?);
+    let mut at = 0;
+    grid.iter()
+        .map(|x| {
+            if !(first[0] <= *x && *x <= last[0]) {
+                return None;
+            }
+            while at + 1 < points.len() && points[at + 1][0] < *x {
+                at += 1;
+            }
+            let [x0, y0] = points[at];
+            let [x1, y1] = points.get(at + 1).copied().unwrap_or(points[at]);
+            let part = if x1 > x0 { (x - x0) / (x1 - x0) } else { 0.0 };
+            Some(y0 + part * (y1 - y0))
+        })
+        .collect()
+}
+
 /// The percentiles of series by run on a common grid of `points`, exact: every run is looked at, and
 /// between order statistics it is interpolated as [`crate::sample::percentile`] does.
 ///

@@ -6,6 +6,7 @@
 //! - [`rate`] is the radial error rate and the time-RMS, [`mod@envelope`] percentiles over time
 //! - [`rank`] and [`sobol`] say what an output is sensitive to, [`outlier`] which runs stand out
 //! - [`paired`] compares two sets of runs seed by seed
+//! - [`multiple`] corrects many comparisons at once
 //! - [`draw`] makes the factors of runs: distributions, Latin hypercubes, correlations
 //! - [`mod@convergence`] says how an estimate settles with the number of runs
 //!
@@ -15,6 +16,7 @@ pub mod convergence;
 pub mod deviation;
 pub mod draw;
 pub mod envelope;
+pub mod multiple;
 pub mod normal;
 pub mod outlier;
 pub mod paired;

@@ -44,6 +44,15 @@ pub fn spearman(x: &[f64], y: &[f64]) -> Option<Correlation> {
     Some(Correlation { rho, p })
 }
 
+impl Correlation {
+    /// Whether it is more than chance at this level, if it is one of so many that were looked at: each
+    /// has its part of the level (Bonferroni).
+    #[must_use]
+    pub fn stands_out(self, level: f64, looked_at: usize) -> bool {
+        self.p <= level / looked_at.max(1) as f64
+    }
+}
+
 /// How an output goes with one factor.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Sensitivity {

@@ -1,7 +1,7 @@
 //! Against closed forms.
 #![allow(clippy::unwrap_used)]
 
-use octant_statistics::envelope::{EnvelopeError, envelope};
+use octant_statistics::envelope::{EnvelopeError, envelope, resampled};
 use octant_statistics::outlier::{LIMIT, Scale, outliers};
 use octant_statistics::radius::Plane;
 use octant_statistics::rate::{RadialSample, radial_rate_nmi_per_h, time_rms_nmi};
@@ -90,6 +90,30 @@ fn an_envelope_has_the_percentiles_of_every_point() {
     assert_eq!(short.to_string(), "make an envelope: run 1 has 4 points, the grid has 5");
     let nan = envelope(&[vec![0.0, f64::NAN]], 2, &[0.5]);
     assert_eq!(nan, Err(EnvelopeError::NotANumber { run: 0, point: 1 }));
+}
+
+#[test]
+fn a_series_on_a_grid_is_straight_between_its_points() {
+    // A line whatever points are kept of it, and a corner that is one of them.
+    let points = [[0.0, 0.0], [0.1, 0.2], [1.0, 2.0], [4.0, -1.0]];
+    let grid = [0.0, 0.05, 0.1, 0.5, 1.0, 2.0, 3.5, 4.0];
+    let found = resampled(&points, &grid).unwrap();
+    for (value, expected) in found.iter().zip([0.0, 0.1, 0.2, 1.0, 2.0, 1.0, -0.5, -1.0]) {
+        assert!((value - expected).abs() < 1e-15, "{found:?}");
+    }
+    assert_eq!(resampled(&points[2..3], &[1.0]), Some(vec![2.0]));
+    // A jump at one time, and what is beyond the points.
+    assert_eq!(resampled(&[[0.0, 1.0], [0.0, 3.0], [1.0, 3.0]], &[0.5]), Some(vec![3.0]));
+    assert_eq!(resampled(&points, &[4.1]), None);
+    assert_eq!(resampled(&points, &[-0.1, 1.0]), None);
+    assert_eq!(resampled(&[], &[0.0]), None);
+}
+
+#[test]
+fn what_is_more_than_chance_is_less_the_more_is_looked_at() {
+    let found = rank::Correlation { rho: 0.5, p: 0.02 };
+    assert!(found.stands_out(0.05, 1) && found.stands_out(0.05, 2));
+    assert!(!found.stands_out(0.05, 3));
 }
 
 #[test]

@@ -6,12 +6,15 @@ Usage: judge.py WORK STATUS-OF-THE-RUN-OVER-THE-UART
 
 import base64
 import gzip
+import io
 import json
 import re
 import sys
 from pathlib import Path
 
 import cantools
+from mcap.reader import make_reader
+from mcap_ros2.decoder import DecoderFactory
 
 work, uart_status = Path(sys.argv[1]), int(sys.argv[2])
 failed = []
@@ -80,5 +83,32 @@ for line in lines:
     decoded += bool(fields)
 check("cantools reads what candump saw", decoded > 10_000, f"{decoded} frames")
 check("frames of others were among them", foreign >= 4, f"{foreign} frames")
+
+# The instrument on the bus: what was recorded of it, and what the frames say that candump saw.
+told = next((line for line in said if line.startswith("instrument ")), "no word")
+samples = {}
+sample = {}
+for line in lines:
+    match = re.fullmatch(r"\(\S+\) vcan1 ([0-9A-F]+)#([0-9A-F]*)", line)
+    frame = int(match[1], 16) if match else 0
+    name = known[frame].name if frame in known else ""
+    if not name.startswith("HarnessSample_") or len(match[2]) != 2 * known[frame].length:
+        continue
+    if name == "HarnessSample_0":
+        sample = {}
+    sample |= known[frame].decode(bytes.fromhex(match[2]), scaling=False)
+    if name == "HarnessSample_6":
+        samples[sample["sequence"]] = [
+            sample[f"{what}_{axis}"] for what in ("delta_theta", "delta_velocity") for axis in "xyz"
+        ] + [sample["azimuth"], sample["roll"]]
+recording = base64.b64decode("".join(line[10:] for line in said if line.startswith("recording ")))
+reader = make_reader(io.BytesIO(recording), decoder_factories=[DecoderFactory()])
+recorded = [decoded for *_, decoded in reader.iter_decoded_messages(topics=["/imu"])]
+equal = sum(
+    samples.get(one.sequence) == [*one.delta_theta, *one.delta_velocity, one.gimbal_azimuth, one.gimbal_roll]
+    for one in recorded
+)
+check("an instrument on the kernel's CAN", told.startswith("instrument 0 "), told)
+check("it has the samples of the frames", equal == len(recorded) == 200, f"{equal} of {len(recorded)} equal")
 
 sys.exit(1 if failed else 0)

@@ -1,6 +1,7 @@
 //! `octant campaign`: many cases of scenarios, planned, run anywhere, merged.
 
-mod run;
+mod report;
+pub(super) mod run;
 
 use super::{Failure, print, print_json, write};
 use crate::campaign::case::{self, Job};
@@ -66,6 +67,8 @@ enum Command {
         #[arg(long)]
         json: bool,
     },
+    /// Write what the cases show: report, statistics, discrepancies, JUnit, and the manifest of the folder.
+    Report(report::Arguments),
     /// Run one case again, with all the evidence of a run.
     Case {
         /// Folder of the campaign.
@@ -128,6 +131,7 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         }
         Command::Merge { folder, others } => merge_parts(folder, others),
         Command::Trace { folder, strictdoc, json } => trace(folder, strictdoc.as_deref(), *json),
+        Command::Report(arguments) => report::command(arguments),
         Command::Case { folder, case, out } => again(folder, case, out.as_deref()),
         Command::Emit { scheduler, folder, shards, jobs, image, claim } => {
             let plan = read(folder)?;

@@ -92,7 +92,7 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
 
 /// Runs the cases up to where the plan's rule says that enough is known. A shard doesn't know what the
 /// others have: it runs all of its cases, and merging leaves out what wasn't needed.
-fn in_rounds(
+pub(in crate::cli) fn in_rounds(
     plan: &Plan,
     options: &mut Options<'_>,
     tell: &(dyn Fn(&Event) + Sync),

@@ -149,11 +149,17 @@ impl Base {
     }
 
     /// What a status means where only success will do. A discarded call leaves the FMU sound.
+    #[inline]
     pub(in crate::fmu) fn check(
         &mut self,
         function: &str,
         status: i32,
     ) -> Result<(), InstanceError> {
+        if status == fmi2::OK { Ok(()) } else { self.look_closer(function, status) }
+    }
+
+    #[cold]
+    fn look_closer(&mut self, function: &str, status: i32) -> Result<(), InstanceError> {
         match self.answer(function, status)? {
             Answer::Fine => Ok(()),
             Answer::Discard | Answer::Pending => Err(self.failed(function, status_name(status))),

@@ -3,10 +3,12 @@
 use super::super::description::Description;
 use super::call::Condition;
 use super::clocks::Clocks;
+use super::held::Held;
 use super::states::States;
 use super::unit::Steps;
 use super::{
     Access, Group, Instance, InstanceError, Message, Outcome, REPEATS_MAX, Stepped, Update,
+    expect_numbers,
 };
 use serde::{Deserialize, Serialize};
 
@@ -43,6 +45,7 @@ pub(super) struct CoSimulation<U: Steps> {
     unit: U,
     own: Own,
     states: States<Own>,
+    held: Held,
 }
 
 /// What belongs to a kept state beside the FMU's.
@@ -61,7 +64,7 @@ impl<U: Steps> CoSimulation<U> {
             Clocks::default()
         };
         let own = Own { phase: Phase::New, time_s: 0.0, clocks };
-        Self { unit, own, states: States::new() }
+        Self { unit, own, states: States::new(), held: Held::default() }
     }
 
     fn expect(&self, what: &str, phases: &[Phase]) -> Result<(), InstanceError> {
@@ -198,7 +201,46 @@ impl<U: Steps> Instance for CoSimulation<U> {
     }
 
     fn set(&mut self, group: &Group, values: &[f64]) -> Result<(), InstanceError> {
+        self.held.forget();
         self.with_access(group, |unit| unit.set(group, values))
+    }
+
+    fn exchange(
+        &mut self,
+        set: &[Group],
+        inputs: &[f64],
+        time_s: f64,
+        step_s: f64,
+        get: &[Group],
+        outputs: &mut [f64],
+    ) -> Result<Stepped, InstanceError> {
+        expect_numbers(self.name(), set, inputs.len())?;
+        expect_numbers(self.name(), get, outputs.len())?;
+        let mut rest = inputs;
+        for (place, group) in set.iter().enumerate() {
+            let (these, others) = rest.split_at(group.elements);
+            rest = others;
+            let is_held = Held::can_be(group, self.unit.has_event_mode());
+            if is_held && self.held.is(place, group, these) {
+                continue;
+            }
+            let done = self.with_access(group, |unit| unit.set(group, these));
+            if done.is_err() {
+                self.held.forget();
+            }
+            done?;
+            if is_held {
+                self.held.keep(place, group, these);
+            }
+        }
+        let stepped = self.advance(time_s, step_s)?;
+        let mut rest = outputs;
+        for group in get {
+            let (these, others) = rest.split_at_mut(group.elements);
+            self.unit.get(group, these)?;
+            rest = others;
+        }
+        Ok(stepped)
     }
 
     fn get(&mut self, group: &Group, values: &mut [f64]) -> Result<(), InstanceError> {
@@ -286,6 +328,7 @@ impl<U: Steps> Instance for CoSimulation<U> {
     }
 
     fn restore_state(&mut self, state: u64) -> Result<(), InstanceError> {
+        self.held.forget();
         self.own = self.states.restore(&mut self.unit, state)?;
         Ok(())
     }
@@ -303,6 +346,7 @@ impl<U: Steps> Instance for CoSimulation<U> {
     }
 
     fn reset(&mut self) -> Result<(), InstanceError> {
+        self.held.forget();
         self.unit.reset()?;
         self.own.phase = Phase::New;
         Ok(())

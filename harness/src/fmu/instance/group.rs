@@ -207,9 +207,9 @@ pub(super) fn numbers_from_f64<T: Number>(
     values: &[f64],
     numbers: &mut Vec<T>,
 ) -> Result<(), InstanceError> {
-    numbers.clear();
-    for (i, value) in values.iter().enumerate() {
-        numbers.push(T::from_f64(*value).ok_or_else(|| misfit(base, group, i, value.to_string()))?);
+    numbers.resize_with(values.len(), T::default);
+    for (i, (number, value)) in numbers.iter_mut().zip(values).enumerate() {
+        *number = T::from_f64(*value).ok_or_else(|| misfit(base, group, i, value.to_string()))?;
     }
     Ok(())
 }

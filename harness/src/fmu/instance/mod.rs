@@ -23,6 +23,7 @@ pub mod error;
 pub(super) mod fmi2;
 pub(super) mod fmi3;
 pub mod group;
+mod held;
 mod message;
 mod number;
 pub mod open;
@@ -82,6 +83,15 @@ pub struct Update {
 /// Early returns within one exchange, and updates of the discrete states at one event, before it
 /// is said that there is no end to them.
 pub const REPEATS_MAX: usize = 1000;
+
+/// There are as many numbers as groups have elements.
+fn expect_numbers(fmu: &str, groups: &[Group], count: usize) -> Result<(), InstanceError> {
+    if groups.iter().map(|group| group.elements).sum::<usize>() == count {
+        Ok(())
+    } else {
+        Err(InstanceError::numbers(fmu, groups, count))
+    }
+}
 
 /// What is done with one FMU, in this process or in another.
 pub trait Instance: Send {
@@ -170,11 +180,8 @@ pub trait Instance: Send {
         get: &[Group],
         outputs: &mut [f64],
     ) -> Result<Stepped, InstanceError> {
-        for (groups, count) in [(set, inputs.len()), (get, outputs.len())] {
-            if groups.iter().map(|group| group.elements).sum::<usize>() != count {
-                return Err(InstanceError::numbers(self.name(), groups, count));
-            }
-        }
+        expect_numbers(self.name(), set, inputs.len())?;
+        expect_numbers(self.name(), get, outputs.len())?;
         let mut rest = inputs;
         for group in set {
             let (these, others) = rest.split_at(group.elements);

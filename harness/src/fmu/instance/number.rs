@@ -10,16 +10,30 @@ pub(super) trait Number: Copy + Default {
     fn words(self) -> String;
 }
 
+/// f64 has every whole number up to here.
+const EXACT_BELOW: f64 = 9_007_199_254_740_992.0;
+
 macro_rules! whole {
     ($($kind:ty),*) => {$(
         impl Number for $kind {
+            #[inline]
             fn from_f64(value: f64) -> Option<Self> {
+                // What is less than 2⁶³ needs no arithmetic of 128 bits, which is slow.
+                let whole = value as i64;
+                if whole as f64 == value && whole != i64::MAX {
+                    return <$kind>::try_from(whole).ok();
+                }
                 // Both bounds are powers of two or exact, and what is beyond i128 saturates.
                 let whole = value as i128;
                 (whole as f64 == value).then(|| <$kind>::try_from(whole).ok()).flatten()
             }
+            #[inline]
             fn to_f64(self) -> Option<f64> {
                 let value = self as f64;
+                // All of these are exact, and no other becomes one of them.
+                if value.abs() < EXACT_BELOW {
+                    return Some(value);
+                }
                 (value as i128 == self as i128).then_some(value)
             }
             fn words(self) -> String {

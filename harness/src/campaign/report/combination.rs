@@ -1,0 +1,107 @@
+//! Combinations: cases that differ in their instrument and in what is drawn, and in nothing else.
+//!
+//! All combinations of a replicate have the same instrument, noise and faults. So the cases of one
+//! combination are independent of each other, those of several aren't, and bounds are given of one
+//! combination alone.
+
+use crate::campaign::plan::{Case, FactorValue, Plan};
+use crate::report::number;
+use crate::scenario::quantity_of;
+use std::collections::HashMap;
+
+/// A scenario with a value of each factor of the grid.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Combination {
+    /// Name of the scenario.
+    pub scenario: String,
+    /// Factors of the grid with their values.
+    pub factors: Vec<(String, String)>,
+    /// Its cases, as places in the plan.
+    pub cases: Vec<usize>,
+}
+
+impl Combination {
+    /// What it is called.
+    #[must_use]
+    pub fn name(&self) -> String {
+        let mut name = self.scenario.clone();
+        for (factor, value) in &self.factors {
+            name += &format!("; {factor} {value}");
+        }
+        name
+    }
+
+    /// What it is called within its scenario.
+    #[must_use]
+    pub fn short(&self) -> String {
+        let all: Vec<String> =
+            self.factors.iter().map(|(factor, value)| format!("{factor} {value}")).collect();
+        all.join("; ")
+    }
+}
+
+/// The value of a factor for people.
+#[must_use]
+pub fn shown(value: &FactorValue) -> String {
+    match value {
+        FactorValue::Number(number) => number::plain(*number, 6),
+        FactorValue::Text(text) => text.clone(),
+    }
+}
+
+/// The value of a factor as a number: of a quantity in SI.
+#[must_use]
+pub fn number_of(value: &FactorValue) -> Option<f64> {
+    match value {
+        FactorValue::Number(number) => Some(*number),
+        FactorValue::Text(text) => quantity_of(text).ok().map(|quantity| quantity.si),
+    }
+}
+
+/// Factors of which a replicate has several values: those that are run as a grid. Of the others each
+/// replicate has one.
+#[must_use]
+pub fn of_grid(plan: &Plan) -> Vec<String> {
+    let is = |factor: &&String| {
+        let mut first: HashMap<u32, &FactorValue> = HashMap::new();
+        plan.cases.iter().any(|case| {
+            let Some(value) = case.factors.get(*factor) else { return false };
+            *first.entry(case.replicate).or_insert(value) != value
+        })
+    };
+    plan.factors.iter().filter(is).cloned().collect()
+}
+
+/// The combinations of the cases of a plan up to `end`, in the order in which they come.
+#[must_use]
+pub fn of(plan: &Plan, end: usize) -> Vec<Combination> {
+    let grid = of_grid(plan);
+    let mut all: Vec<Combination> = Vec::new();
+    let mut place: HashMap<(String, Vec<(String, String)>), usize> = HashMap::new();
+    for (index, case) in plan.cases.iter().enumerate().take(end) {
+        let factors: Vec<(String, String)> = (grid.iter())
+            .filter_map(|name| Some((name.clone(), shown(case.factors.get(name)?))))
+            .collect();
+        let at = *place.entry((case.scenario.clone(), factors.clone())).or_insert_with(|| {
+            all.push(Combination { scenario: case.scenario.clone(), factors, cases: Vec::new() });
+            all.len() - 1
+        });
+        all[at].cases.push(index);
+    }
+    all
+}
+
+/// Whether a factor that is drawn has a part in a case: one of a fault that isn't injected has none.
+#[must_use]
+pub fn takes_part(case: &Case, factor: &str) -> bool {
+    let Some(FactorValue::Number(number)) = case.factors.get(factor) else { return true };
+    let Some(faults) = &case.faults else { return true };
+    // What was set for it is where its number stands.
+    let is_its = |entry: &&String| {
+        let value = entry.split_once('=').map_or("", |(_, value)| value).trim_matches('"');
+        value.split_whitespace().next().and_then(|n| n.parse().ok()) == Some(*number)
+    };
+    let key = case.set.iter().find(is_its).and_then(|entry| entry.strip_prefix("faults."));
+    let Some(key) = key else { return true };
+    faults.iter().any(|fault| key.strip_prefix(fault.as_str()).is_some_and(|k| k.starts_with('.')))
+}

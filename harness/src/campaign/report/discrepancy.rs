@@ -1,0 +1,209 @@
+//! Discrepancies: everything in a campaign that isn't a pass, each with an id that a person can refer to.
+//!
+//! An id is made of what the discrepancy is, and of its cases: the same one has the same id in every
+//! report, and one more case that fails makes another one, which nobody has disposed of yet.
+
+use super::combination::Combination;
+use super::requirement;
+use super::rows::{Outcome, Row};
+use crate::campaign::plan::Plan;
+use crate::campaign::status::Status;
+use crate::score::verdict::Verdict;
+use serde::Serialize;
+use std::collections::BTreeMap;
+
+/// Something that isn't a pass.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Discrepancy {
+    /// Its id.
+    pub id: String,
+    /// What kind of thing it is.
+    pub kind: &'static str,
+    /// What it comes to.
+    pub verdict: Verdict,
+    /// The requirement that it is about, where it is about one.
+    pub requirement: Option<String>,
+    /// What it is, in plain words.
+    pub what: String,
+    /// Its cases, in the order of the plan.
+    pub cases: Vec<String>,
+}
+
+/// What makes an id, besides the kind and the cases.
+struct Subject<'a> {
+    kind: &'static str,
+    verdict: Verdict,
+    requirement: Option<&'a str>,
+    /// Where it is, or which one.
+    of: &'a str,
+}
+
+impl Discrepancy {
+    /// One whose cases belong to it.
+    fn of_cases(subject: &Subject<'_>, what: String, cases: Vec<String>) -> Self {
+        let content = serde_json::json!([
+            subject.kind,
+            subject.verdict.name(),
+            subject.requirement,
+            subject.of,
+            cases
+        ]);
+        let hash = blake3::hash(content.to_string().as_bytes()).to_hex();
+        Self {
+            id: format!("D-{}", &hash.as_str()[..10]),
+            kind: subject.kind,
+            verdict: subject.verdict,
+            requirement: subject.requirement.map(str::to_owned),
+            what,
+            cases,
+        }
+    }
+
+    /// One that is of no cases, or stays the same while they change.
+    fn whole(subject: &Subject<'_>, what: String) -> Self {
+        Self::of_cases(subject, what, Vec::new())
+    }
+}
+
+/// Everything that isn't a pass. `notes` is what else was found wrong, in words.
+pub(super) fn find(
+    plan: &Plan,
+    status: &Status,
+    combinations: &[Combination],
+    rows: &[Row<'_>],
+    notes: &[String],
+) -> Vec<Discrepancy> {
+    let mut all = Vec::new();
+    if status.cases == 0 || status.requirements.is_empty() {
+        let what = if status.cases == 0 { "there is no case" } else { "no requirement is checked" };
+        let subject = Subject {
+            kind: "nothing shown",
+            verdict: Verdict::Inconclusive,
+            requirement: None,
+            of: what,
+        };
+        all.push(Discrepancy::whole(&subject, format!("{what}: nothing is shown")));
+    }
+    for (id, found) in &status.requirements {
+        if found.verdict != Verdict::Pass {
+            let subject = Subject {
+                kind: "requirement",
+                verdict: found.verdict,
+                requirement: Some(id),
+                of: "",
+            };
+            let what = format!("{id} is not shown: {}", found.reason);
+            all.push(Discrepancy::whole(&subject, what));
+        }
+    }
+    let ids = |wanted: &dyn Fn(&Outcome) -> bool| -> Vec<String> {
+        let is = |row: &&Row<'_>| row.outcome.as_ref().is_some_and(wanted);
+        rows.iter().filter(is).map(|row| row.case.id.clone()).collect()
+    };
+    let differing = ids(&|outcome| outcome.differs);
+    if !differing.is_empty() {
+        let subject =
+            Subject { kind: "two results", verdict: Verdict::Error, requirement: None, of: "" };
+        let what = format!(
+            "{} came to two results: the program or the computer is not deterministic",
+            counted(differing.len())
+        );
+        all.push(Discrepancy::of_cases(&subject, what, differing));
+    }
+    for combination in combinations {
+        all.extend(of_combination(plan, combination, rows));
+    }
+    let open = rows.iter().filter(|row| row.outcome.is_none()).count();
+    if open > 0 {
+        let subject =
+            Subject { kind: "not run", verdict: Verdict::Inconclusive, requirement: None, of: "" };
+        let have = if open == 1 { "has" } else { "have" };
+        // Which ones changes from hour to hour: the trace names them.
+        all.push(Discrepancy::whole(&subject, format!("{} {have} no result", counted(open))));
+    }
+    for note in notes {
+        let subject = Subject {
+            kind: "evidence",
+            verdict: Verdict::Inconclusive,
+            requirement: None,
+            of: note,
+        };
+        all.push(Discrepancy::whole(&subject, note.clone()));
+    }
+    all
+}
+
+fn counted(cases: usize) -> String {
+    format!("{cases} case{}", if cases == 1 { "" } else { "s" })
+}
+
+/// What the cases of one combination have in common that isn't a pass.
+fn of_combination(plan: &Plan, combination: &Combination, rows: &[Row<'_>]) -> Vec<Discrepancy> {
+    let name = combination.name();
+    // By what it is, in the order of the names.
+    let mut found: BTreeMap<(&'static str, Verdict, Option<String>, String), Vec<String>> =
+        BTreeMap::new();
+    for row in combination.cases.iter().filter_map(|case| rows.get(*case)) {
+        let Some(outcome) = &row.outcome else { continue };
+        for (kind, verdict, requirement, why) in of_case(plan, row, outcome) {
+            let cases = found.entry((kind, verdict, requirement, why)).or_default();
+            cases.push(row.case.id.clone());
+        }
+    }
+    found
+        .into_iter()
+        .map(|((kind, verdict, requirement, why), cases)| {
+            let count = counted(cases.len());
+            let what = format!("{why} in {count} of {name}");
+            let of = format!("{why}\n{name}");
+            let requirement = requirement.as_deref();
+            let subject = Subject { kind, verdict, requirement, of: &of };
+            Discrepancy::of_cases(&subject, what, cases)
+        })
+        .collect()
+}
+
+type Found = (&'static str, Verdict, Option<String>, String);
+
+/// Everything in one case that isn't a pass.
+fn of_case(plan: &Plan, row: &Row<'_>, outcome: &Outcome) -> Vec<Found> {
+    if let Some(error) = &outcome.error {
+        return vec![("error", Verdict::Error, None, format!("no summary ({error})"))];
+    }
+    let mut all: Vec<Found> = Vec::new();
+    let planned = plan.scenarios.iter().find(|planned| planned.id == row.case.scenario);
+    for id in planned.iter().flat_map(|planned| &planned.requirements) {
+        let verdict = outcome.check(id);
+        if verdict != Verdict::Pass {
+            let word = match verdict {
+                Verdict::Fail => "failed",
+                _ => "came to nothing",
+            };
+            all.push(("check", verdict, Some(id.clone()), format!("{id} {word}")));
+        }
+    }
+    if outcome.refused.is_some() {
+        let what = "the calibration was refused".to_owned();
+        all.push(("refused", Verdict::Fail, None, what));
+    }
+    for fault in &outcome.unfired {
+        let what = format!("fault {fault} never fired");
+        all.push(("fault", Verdict::Inconclusive, None, what));
+    }
+    if outcome.checks.is_empty() {
+        let what = "no requirement was checked".to_owned();
+        all.push(("nothing shown", Verdict::Inconclusive, None, what));
+    }
+    // What none of these says.
+    if all.iter().all(|found| found.1 < outcome.verdict) && outcome.verdict != Verdict::Pass {
+        let reason = outcome.reasons.first().map_or("no reason given", String::as_str);
+        all.push(("case", outcome.verdict, None, reason.to_owned()));
+    }
+    all
+}
+
+/// Requirements of which a case says something, with what it says.
+pub(crate) fn checks_of(plan: &Plan, row: &Row<'_>, id: &str) -> Option<Option<Verdict>> {
+    requirement::checks(plan, &row.case.scenario, id)
+        .then(|| row.outcome.as_ref().map(|outcome| outcome.check(id)))
+}

@@ -1,0 +1,164 @@
+//! `dispositions.toml`: what a person says of each discrepancy.
+//!
+//! Octant adds entries at the end of the file, and changes nothing that stands in it. One whose
+//! discrepancy is gone stays.
+
+use super::ReportError;
+use super::discrepancy::Discrepancy;
+use serde::Deserialize;
+use std::collections::BTreeSet;
+use std::path::Path;
+
+/// Name of the file in the folder of a campaign.
+pub const FILE_NAME: &str = "dispositions.toml";
+/// Version of its form.
+pub const SCHEMA: u32 = 1;
+
+/// The head of a new file.
+const HEAD: &str = "\
+# Discrepancies of this campaign, and what is said of them. Fill in disposition (why it is acceptable, or
+# what is done about it) and by, and make the report again: `octant campaign report DIR`. Octant adds
+# what is new at the end and changes nothing else. A disposition changes no verdict.
+schema = 1
+";
+
+/// What the file says.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Dispositions {
+    /// The file, to the letter; empty: there is none.
+    pub text: String,
+    /// Its entries, in their order.
+    pub entries: Vec<Entry>,
+}
+
+/// One entry.
+#[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Entry {
+    /// Id of the discrepancy.
+    pub id: String,
+    /// What it was when the entry was made.
+    #[serde(default)]
+    pub what: String,
+    /// Its requirement.
+    #[serde(default)]
+    pub requirement: Option<String>,
+    /// Its cases.
+    #[serde(default)]
+    pub cases: Vec<String>,
+    /// What is said of it; empty: nothing yet.
+    #[serde(default)]
+    pub disposition: String,
+    /// Who says it.
+    #[serde(default)]
+    pub by: String,
+}
+
+impl Entry {
+    /// Whether nothing is said yet.
+    #[must_use]
+    pub fn is_open(&self) -> bool {
+        self.disposition.trim().is_empty()
+    }
+}
+
+#[derive(Deserialize)]
+struct Version {
+    schema: u32,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct File {
+    #[allow(dead_code, reason = "it is looked at before the rest")]
+    schema: u32,
+    #[serde(default)]
+    discrepancies: Vec<Entry>,
+}
+
+impl Dispositions {
+    /// Reads the file of a campaign; none is an empty one.
+    ///
+    /// # Errors
+    /// If it can't be read, is of another version, or isn't right.
+    pub fn read(folder: &Path) -> Result<Self, ReportError> {
+        let path = folder.join(FILE_NAME);
+        let text = match std::fs::read_to_string(&path) {
+            Ok(text) => text,
+            Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
+                return Ok(Self::default());
+            }
+            Err(source) => return Err(ReportError::System { action: "read", path, source }),
+        };
+        let entries = parse(&text).map_err(|reason| ReportError::Form { path, reason })?;
+        Ok(Self { text, entries })
+    }
+
+    /// The entry of a discrepancy.
+    #[must_use]
+    pub fn of(&self, id: &str) -> Option<&Entry> {
+        self.entries.iter().find(|entry| entry.id == id)
+    }
+
+    /// The file with an entry for each discrepancy that has none: what was there stays to the letter.
+    ///
+    /// # Errors
+    /// If the file is written in a way that nothing can be added to.
+    pub fn with(&self, discrepancies: &[Discrepancy], path: &Path) -> Result<Self, ReportError> {
+        let new: Vec<&Discrepancy> =
+            discrepancies.iter().filter(|found| self.of(&found.id).is_none()).collect();
+        if new.is_empty() && !self.text.is_empty() {
+            return Ok(self.clone());
+        }
+        let mut text = if self.text.is_empty() { HEAD.to_owned() } else { self.text.clone() };
+        if !text.ends_with('\n') {
+            text.push('\n');
+        }
+        for found in new {
+            text += &entry(found);
+        }
+        let entries = parse(&text).map_err(|reason| ReportError::Form {
+            path: path.to_owned(),
+            reason: format!("nothing can be added to it: {reason}; expected [[discrepancies]]"),
+        })?;
+        Ok(Self { text, entries })
+    }
+}
+
+fn entry(found: &Discrepancy) -> String {
+    let quoted = |text: &str| toml::Value::String(text.to_owned()).to_string();
+    // On one line: what a person is to read is what stands beside it.
+    let what = found.what.split_whitespace().collect::<Vec<_>>().join(" ");
+    let mut text =
+        format!("\n[[discrepancies]]\nid = {}\nwhat = {}\n", quoted(&found.id), quoted(&what));
+    if let Some(requirement) = &found.requirement {
+        text += &format!("requirement = {}\n", quoted(requirement));
+    }
+    if !found.cases.is_empty() {
+        let cases: Vec<String> = found.cases.iter().map(|case| quoted(case)).collect();
+        text += &format!("cases = [{}]\n", cases.join(", "));
+    }
+    text + "disposition = \"\"\nby = \"\"\n"
+}
+
+fn parse(text: &str) -> Result<Vec<Entry>, String> {
+    let wrong = |error: toml::de::Error| {
+        let line = error.span().map(|span| text[..span.start].matches('\n').count() + 1);
+        let place = line.map_or_else(String::new, |line| format!("line {line}: "));
+        format!("{place}{}", error.message().lines().collect::<Vec<_>>().join(", "))
+    };
+    let version: Version = toml::from_str(text).map_err(wrong)?;
+    if version.schema != SCHEMA {
+        return Err(format!(
+            "found version {}, this program reads version {SCHEMA}{}",
+            version.schema,
+            if version.schema > SCHEMA { ": a newer Octant wrote it" } else { "" }
+        ));
+    }
+    let file: File = toml::from_str(text).map_err(wrong)?;
+    let mut ids = BTreeSet::new();
+    if let Some(twice) = file.discrepancies.iter().find(|entry| !ids.insert(&entry.id)) {
+        return Err(format!("{:?} is there a second time, expected it once", twice.id));
+    }
+    Ok(file.discrepancies)
+}

@@ -1,0 +1,166 @@
+//! The folder of a campaign as evidence: what it was made of, what came of it, and a manifest with the
+//! hash of every file, signed as that of a run.
+
+use super::{Report, ReportError, disposition, junit::junit};
+use crate::campaign::new_file;
+use crate::evidence::manifest::{CampaignFacts, shell_line};
+use crate::evidence::signature::{self, Key};
+use crate::evidence::{Manifest, RunFacts, sha256};
+use std::io::ErrorKind;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::SystemTime;
+
+/// Name of the page in the folder of a campaign.
+pub const PAGE: &str = "report.html";
+/// Name of the statistics.
+pub const STATISTICS: &str = "statistics.json";
+/// Name of the predicted ensembles against the cases.
+pub const PREDICTION: &str = "prediction.json";
+/// Name of the JUnit.
+pub const JUNIT: &str = "junit.xml";
+/// Folder with copies of the files that the campaign was planned from.
+pub const INPUTS: &str = "inputs";
+
+/// Writes everything into the folder of a campaign: dispositions, statistics, JUnit, page, copies of the
+/// inputs, and in the end the manifest. What is there already and the same isn't touched.
+///
+/// # Errors
+/// If a file can't be written, or the dispositions can't be added to: nothing is written then.
+pub fn write(
+    report: &mut Report<'_>,
+    folder: &Path,
+    key: Option<Arc<Key>>,
+    started: SystemTime,
+) -> Result<Manifest, ReportError> {
+    let path = folder.join(disposition::FILE_NAME);
+    let discrepancies = &report.statistics.discrepancies;
+    // Where there never was one, there is nothing to write.
+    if !(discrepancies.is_empty() && report.dispositions.text.is_empty()) {
+        report.dispositions = report.dispositions.with(discrepancies, &path)?;
+    }
+    let xml = junit(report)
+        .map_err(|error| ReportError::Format { what: JUNIT, reason: error.to_string() })?;
+    let (statistics, prediction) = (report.statistics_json()?, report.prediction_json()?);
+    let html = crate::report::campaign::render(report, true);
+    if !report.dispositions.text.is_empty() {
+        keep(&path, report.dispositions.text.as_bytes())?;
+    }
+    keep(&folder.join(STATISTICS), statistics.as_bytes())?;
+    keep(&folder.join(PREDICTION), prediction.as_bytes())?;
+    keep(&folder.join(JUNIT), xml.as_bytes())?;
+    keep(&folder.join(PAGE), html.as_bytes())?;
+    inputs(report, folder)?;
+    // One of before says nothing of the manifest that comes now.
+    let old = folder.join(signature::FILE_NAME);
+    match std::fs::remove_file(&old) {
+        Err(source) if source.kind() != ErrorKind::NotFound => {
+            return Err(ReportError::System { action: "remove", path: old, source });
+        }
+        _ => {}
+    }
+    let program = std::env::current_exe().and_then(|program| sha256(&program)).ok();
+    let (first, last) = times(report, folder);
+    let facts = RunFacts {
+        seed: None,
+        started,
+        ended: SystemTime::now(),
+        command_line: report.again().pop().unwrap_or_default(),
+        fmus: Vec::new(),
+        link: None,
+        bench: None,
+        realtime: None,
+        campaign: Some(CampaignFacts {
+            title: report.plan.title.clone(),
+            plan: report.plan.id.clone(),
+            verdict: report.statistics.verdict,
+            cases: report.statistics.cases,
+            open_cases: report.statistics.open,
+            discrepancies: report.statistics.discrepancies.len(),
+            open_discrepancies: report.open(),
+            results_blake3: report.statistics.results_blake3.clone(),
+            program_sha256: program,
+            selftest: report.selftest.as_ref().map(|test| test.verdict),
+            first_result: first,
+            last_result: last,
+            rerun: again(report),
+        }),
+        key,
+    };
+    Ok(Manifest::write(folder, &facts)?)
+}
+
+/// The line that makes the campaign again.
+#[must_use]
+pub fn again(report: &Report<'_>) -> String {
+    let lines: Vec<String> = report.again().iter().map(|words| shell_line(words)).collect();
+    lines.join(" && ")
+}
+
+/// Times of the first and the last result, as the file system has them.
+fn times(report: &Report<'_>, folder: &Path) -> (Option<String>, Option<String>) {
+    let of = |case: &str| {
+        let path = crate::campaign::case::file(folder, case);
+        std::fs::metadata(path).ok()?.modified().ok()
+    };
+    let run = report.rows.iter().filter(|row| row.outcome.is_some());
+    let all: Vec<SystemTime> = run.filter_map(|row| of(&row.case.id)).collect();
+    let text = |time: &SystemTime| humantime::format_rfc3339_seconds(*time).to_string();
+    (all.iter().min().map(text), all.iter().max().map(text))
+}
+
+/// Copies of the campaign's file, its requirements and its scenarios, as far as they are those that were
+/// planned. A copy that is there stays.
+fn inputs(report: &mut Report<'_>, folder: &Path) -> Result<(), ReportError> {
+    let plan = report.plan;
+    let mut files: Vec<(PathBuf, PathBuf)> = Vec::new();
+    let folder = folder.join(INPUTS);
+    for scenario in &plan.scenarios {
+        let name = scenario.file.file_name().unwrap_or_default().to_string_lossy();
+        let hash = scenario.blake3.get(..12).unwrap_or(&scenario.blake3);
+        let copy = folder.join(format!("{hash}-{name}"));
+        let bytes = std::fs::read(&scenario.file).ok();
+        let planned = bytes.is_some_and(|b| blake3::hash(&b).to_hex().as_str() == scenario.blake3);
+        if planned && !files.iter().any(|(_, other)| *other == copy) {
+            files.push((scenario.file.clone(), copy));
+        }
+    }
+    // A campaign whose plan is still the same.
+    if crate::campaign::plan::Plan::of(&plan.campaign).is_ok_and(|now| now.id == plan.id) {
+        files.push((plan.campaign.clone(), folder.join("campaign.toml")));
+        let campaign = crate::campaign::file::Campaign::load(&plan.campaign).ok();
+        if let Some(path) = campaign.and_then(|campaign| campaign.requirements) {
+            files.push((path, folder.join("requirements.toml")));
+        }
+    }
+    if files.is_empty() {
+        return Ok(());
+    }
+    std::fs::create_dir_all(&folder).map_err(|source| ReportError::System {
+        action: "create",
+        path: folder.clone(),
+        source,
+    })?;
+    for (from, to) in files {
+        let bytes = std::fs::read(&from).map_err(|source| ReportError::System {
+            action: "read",
+            path: from,
+            source,
+        })?;
+        keep(&to, &bytes)?;
+    }
+    Ok(())
+}
+
+/// Writes a file whole or not at all, and only where it changes.
+fn keep(path: &Path, bytes: &[u8]) -> Result<(), ReportError> {
+    if std::fs::read(path).is_ok_and(|there| there == bytes) {
+        return Ok(());
+    }
+    let wrong = |source| ReportError::System { action: "write", path: path.to_owned(), source };
+    let folder = path.parent().unwrap_or(Path::new("."));
+    let new = new_file(folder).map_err(wrong)?;
+    std::fs::write(new.path(), bytes).map_err(wrong)?;
+    new.persist(path).map_err(|error| wrong(error.error))?;
+    Ok(())
+}

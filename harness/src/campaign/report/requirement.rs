@@ -1,0 +1,190 @@
+//! What the cases show of each requirement: together, by combination, and as they came.
+
+use super::combination::Combination;
+use super::figures::CONFIDENCE;
+use super::rows::Row;
+use crate::campaign::plan::Plan;
+use crate::campaign::status::{RequirementStatus, Status};
+use crate::score::verdict::{RequirementResult, Verdict};
+use octant_requirements::requirement::{Ensemble, Requirements};
+use octant_requirements::trace::Counts;
+use octant_statistics::convergence::{Step, convergence, pass};
+use octant_statistics::proportion::{Demand, Needed, further_at_rate, success_lower_bound};
+use serde::Serialize;
+
+/// What the cases show of a requirement.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct RequirementFigures {
+    /// Its id.
+    pub id: String,
+    /// What it says; null where its file isn't there, or was changed.
+    pub text: Option<String>,
+    /// Document and clause where it comes from.
+    pub clause: Option<String>,
+    /// What is measured; null where no case checks it.
+    pub measure: Option<String>,
+    /// How it is held against the limit.
+    pub comparison: Option<&'static str>,
+    /// The limit, in the unit of the measure.
+    pub limit: Option<f64>,
+    /// What it comes to.
+    pub verdict: Verdict,
+    /// Why.
+    pub reason: String,
+    /// Its checks.
+    pub counts: Counts,
+    /// What has to hold of all cases together; null: every case has to pass.
+    pub asked: Option<Ensemble>,
+    /// Confidence of the lower bound, one-sided: what is asked, or 95 %.
+    pub confidence: f64,
+    /// Lower bound of the pass probability (Clopper and Pearson); null where nothing passed or failed.
+    pub lower_bound: Option<f64>,
+    /// Further cases that show it if all of them pass; null where nothing is asked of them together.
+    pub needed_if_all_pass: Option<Needed>,
+    /// Further cases that show it if they go on to fail as often as so far.
+    pub needed_at_rate: Option<Needed>,
+    /// The case that came nearest to the limit, or farthest beyond it.
+    pub nearest: Option<Nearest>,
+    /// How the pass probability settles, with two-sided bounds of 95 %.
+    pub convergence: Vec<Step>,
+    /// By combination, in their order.
+    pub combinations: Vec<Part>,
+}
+
+/// The case with the least margin.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Nearest {
+    /// The case.
+    pub case: String,
+    /// The measure.
+    pub value: f64,
+    /// Room to the limit, negative where it is broken.
+    pub margin: f64,
+}
+
+/// The checks of one combination.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Part {
+    /// Its checks.
+    pub counts: Counts,
+    /// Lower bound of the pass probability; null where nothing passed or failed.
+    pub lower_bound: Option<f64>,
+}
+
+fn bound(counts: Counts, confidence: f64) -> Option<f64> {
+    let runs = counts.pass + counts.fail;
+    (runs > 0).then(|| success_lower_bound(counts.fail, runs, confidence))
+}
+
+/// Counts what the cases came to that check a requirement.
+fn count<'a>(
+    plan: &Plan,
+    id: &str,
+    rows: impl Iterator<Item = &'a Row<'a>>,
+) -> (Counts, Vec<bool>) {
+    let (mut counts, mut passed) = (Counts::default(), Vec::new());
+    for row in rows {
+        if !checks(plan, &row.case.scenario, id) {
+            continue;
+        }
+        let verdict = row.outcome.as_ref().map(|outcome| outcome.check(id));
+        *match verdict {
+            None => &mut counts.missing,
+            Some(Verdict::Pass) => &mut counts.pass,
+            Some(Verdict::Inconclusive) => &mut counts.inconclusive,
+            Some(Verdict::Fail) => &mut counts.fail,
+            Some(Verdict::Error) => &mut counts.error,
+        } += 1;
+        match verdict {
+            Some(Verdict::Pass) => passed.push(true),
+            Some(Verdict::Fail) => passed.push(false),
+            _ => {}
+        }
+    }
+    (counts, passed)
+}
+
+/// Whether the cases of a scenario check a requirement.
+pub(super) fn checks(plan: &Plan, scenario: &str, id: &str) -> bool {
+    let planned = plan.scenarios.iter().find(|planned| planned.id == scenario);
+    planned.is_some_and(|planned| planned.requirements.iter().any(|own| own == id))
+}
+
+/// What the cases show of each requirement, in the order of the ids.
+pub(super) fn of(
+    plan: &Plan,
+    status: &Status,
+    about: &Requirements,
+    combinations: &[Combination],
+    rows: &[Row<'_>],
+) -> Vec<RequirementFigures> {
+    status
+        .requirements
+        .iter()
+        .map(|(id, status)| one(plan, id, status, about, combinations, rows))
+        .collect()
+}
+
+fn one(
+    plan: &Plan,
+    id: &str,
+    status: &RequirementStatus,
+    about: &Requirements,
+    combinations: &[Combination],
+    rows: &[Row<'_>],
+) -> RequirementFigures {
+    let results = || {
+        rows.iter().filter_map(|row| {
+            let checks = &row.outcome.as_ref()?.checks;
+            Some((row.case.id.as_str(), checks.iter().find(|check| check.id == id)?))
+        })
+    };
+    let planned = plan.requirements.iter().find(|planned| planned.check.id == id);
+    let first: Option<&RequirementResult> = results().next().map(|(_, result)| result);
+    let (measure, comparison, limit) = match (planned, first) {
+        (Some(planned), _) => {
+            let check = &planned.check;
+            (Some(check.measure.clone()), Some(check.comparison.sign()), Some(check.limit))
+        }
+        (None, Some(result)) => {
+            (Some(result.measure.clone()), Some(result.comparison.sign()), Some(result.limit))
+        }
+        (None, None) => (None, None, None),
+    };
+    let (counts, passed) = count(plan, id, rows.iter());
+    let confidence = status.ensemble.map_or(CONFIDENCE, |asked| asked.confidence);
+    let nearest = results()
+        .filter_map(|(case, result)| {
+            let (value, margin) = (result.value?, result.margin?);
+            Some(Nearest { case: case.to_owned(), value, margin })
+        })
+        .min_by(|a, b| a.margin.total_cmp(&b.margin));
+    let own = about.get(id);
+    RequirementFigures {
+        id: id.to_owned(),
+        text: own.map(|own| own.text.clone()).filter(|text| !text.is_empty()),
+        clause: own.and_then(|own| own.clause.clone()),
+        measure,
+        comparison,
+        limit,
+        verdict: status.verdict,
+        reason: status.reason.clone(),
+        counts,
+        asked: status.ensemble,
+        confidence,
+        lower_bound: bound(counts, confidence),
+        needed_if_all_pass: status.needed,
+        needed_at_rate: status.ensemble.map(|Ensemble { pass, confidence }| {
+            further_at_rate(Demand { pass, confidence }, counts.fail, counts.pass + counts.fail)
+        }),
+        nearest,
+        convergence: convergence(&passed, |passed| pass(passed, CONFIDENCE)),
+        combinations: (combinations.iter())
+            .map(|combination| {
+                let mine = combination.cases.iter().filter_map(|case| rows.get(*case));
+                let (counts, _) = count(plan, id, mine);
+                Part { counts, lower_bound: bound(counts, confidence) }
+            })
+            .collect(),
+    }
+}

@@ -1,0 +1,63 @@
+//! `octant campaign report`: the page, the numbers and the evidence of a campaign.
+
+use super::read;
+use crate::campaign::report::{Report, ReportError, evidence};
+use crate::cli::verify::signing_key;
+use crate::cli::{Failure, print, write};
+use crate::score::verdict::Verdict;
+use clap::Args;
+use std::path::PathBuf;
+use std::time::SystemTime;
+
+#[derive(Debug, Args)]
+pub(super) struct Arguments {
+    /// Folder of the campaign.
+    #[arg(value_name = "DIR")]
+    folder: PathBuf,
+    /// Write the page alone, to this file, and leave the folder as it is.
+    #[arg(long, value_name = "FILE")]
+    out: Option<PathBuf>,
+}
+
+pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
+    let started = SystemTime::now();
+    let folder = &arguments.folder;
+    let plan = read(folder)?;
+    // A key that can't be used is told before anything is written.
+    let key = if arguments.out.is_none() { signing_key()? } else { None };
+    let mut report = Report::of(&plan, folder)?;
+    let path = match &arguments.out {
+        Some(path) => {
+            write(path, crate::report::campaign::render(&report, false))?;
+            path.clone()
+        }
+        None => {
+            evidence::write(&mut report, folder, key, started)?;
+            folder.join(evidence::PAGE)
+        }
+    };
+    let found = report.statistics.discrepancies.len();
+    let verdict = report.statistics.verdict;
+    print(&format!(
+        "{}: {}\n  {found} discrepancies, {} without a disposition\n{}\n",
+        plan.title,
+        verdict.name(),
+        report.open(),
+        path.display()
+    ))?;
+    Ok(verdict)
+}
+
+impl From<ReportError> for Failure {
+    fn from(error: ReportError) -> Self {
+        match error {
+            ReportError::Plan(error) => error.into(),
+            ReportError::Foreign(error) => error.into(),
+            ReportError::Form { .. } => Self::input(error).failed(),
+            ReportError::Result(_)
+            | ReportError::System { .. }
+            | ReportError::Format { .. }
+            | ReportError::Manifest(_) => Self::bench(error).failed(),
+        }
+    }
+}

@@ -1,0 +1,373 @@
+//! `octant nightly`: the fault suite and campaigns, held against the accepted baseline.
+
+use super::campaign::run::in_rounds;
+use super::progress::interrupts;
+use super::{Failure, print, write};
+use crate::campaign::case;
+use crate::campaign::execute::{Done, Event, Options, Shard, execute};
+use crate::campaign::plan::Plan;
+use crate::campaign::{merge, results, status};
+use crate::evidence::manifest::{Host, operator};
+use crate::nightly::accept::{self, Baseline, accept as accept_night};
+use crate::nightly::compare::{Limits, Side, compare};
+use crate::nightly::history::History;
+use crate::nightly::night::{self, CampaignNight, Night, Program, SCHEMA, free_name};
+use crate::nightly::render::Report;
+use crate::nightly::suite::{self, SuiteResult};
+use crate::nightly::trend;
+use crate::scenario::suite::Suite;
+use crate::score::verdict::Verdict;
+use clap::{Args, Subcommand};
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, SystemTime};
+
+#[derive(Debug, Args)]
+#[command(args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
+pub(super) struct Arguments {
+    #[command(subcommand)]
+    command: Option<Command>,
+    /// Campaigns, TOML files.
+    #[arg(value_name = "CAMPAIGN")]
+    campaigns: Vec<PathBuf>,
+    /// A suite of scenarios with the ends that they have to come to, a TOML file.
+    #[arg(long, value_name = "SUITE")]
+    suite: Option<PathBuf>,
+    /// Folder in which nights, their history and the baseline are kept.
+    #[arg(long, value_name = "DIR", required = true)]
+    history: Option<PathBuf>,
+    /// Make this night the baseline, whatever it comes to.
+    #[arg(long)]
+    accept: bool,
+    /// Put nightly.md, nightly.json and trend.html there too.
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Cases at a time; by default as many as there are processors.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    jobs: Option<u16>,
+    /// Probability of finding any change where there is none, over all measures together.
+    #[arg(long, value_name = "P", default_value = "0.05", value_parser = fraction)]
+    alpha: f64,
+    /// Part of the baseline's root mean square by which a mean has to move.
+    #[arg(long, value_name = "PART", default_value = "0.01", value_parser = fraction)]
+    least: f64,
+    /// Print nightly.json on stdout, and nothing else.
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Make a night that has run to its end the baseline.
+    Accept {
+        /// The night; by default the last one that has ended.
+        #[arg(value_name = "NIGHT")]
+        night: Option<String>,
+        /// Folder of the history.
+        #[arg(long, value_name = "DIR")]
+        history: PathBuf,
+    },
+}
+
+fn fraction(text: &str) -> Result<f64, String> {
+    let number = text.parse::<f64>().ok().filter(|number| (0.0..1.0).contains(number));
+    number.ok_or_else(|| format!("found {text:?}, expected a number of 0 or more and below 1"))
+}
+
+/// What a night is made of.
+struct Inputs {
+    suite: Option<Suite>,
+    suite_blake3: Option<String>,
+    plans: Vec<(String, Plan)>,
+    program: PathBuf,
+    jobs: usize,
+}
+
+pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
+    if let Some(Command::Accept { night, history }) = &arguments.command {
+        return accepted(history, night.as_deref());
+    }
+    let Some(history) = &arguments.history else {
+        return Err(Failure::input("--history is missing"));
+    };
+    if arguments.campaigns.is_empty() && arguments.suite.is_none() {
+        return Err(Failure::input("expected a campaign, or --suite, or both"));
+    }
+    // What can't be compared or kept is told before anything runs.
+    let mut all = History::read(history).map_err(|error| Failure::input(error).failed())?;
+    let baseline = accept::read(history).map_err(Failure::input)?;
+    let inputs = inputs(arguments)?;
+    let mut night = begin(history, &inputs, &all)?;
+    let folder = night::nights(history).join(&night.id);
+    let cancel = AtomicBool::new(false);
+    if !run_all(&inputs, &mut night, &folder, &cancel)? {
+        print(&format!("night {} was broken off: the same command goes on\n", night.id))?;
+        return Ok(Verdict::Inconclusive);
+    }
+    night.ended = Some(humantime::format_rfc3339_seconds(SystemTime::now()).to_string());
+    let rows = accept::rows(&folder, &night).map_err(Failure::bench)?;
+    let limits = Limits { alpha: arguments.alpha, least: arguments.least };
+    let rerun = |campaign: &str, case: &str| {
+        format!("octant campaign case {} {case}", folder.join(campaign).display())
+    };
+    let against = |baseline: &Baseline| {
+        let before = Side { night: &baseline.night, rows: &baseline.rows };
+        compare(before, Side { night: &night, rows: &rows }, limits, &rerun)
+    };
+    let comparison = baseline.as_ref().map(against);
+    let report = Report::new(&night, baseline.as_ref().map(|b| &b.night), comparison);
+    all.put(&night, report.verdict.name(), &rows, report.comparison.as_ref());
+    all.write(history).map_err(|error| Failure::bench(error).failed())?;
+    let json = report.to_json().map_err(|error| Failure::bench(error).failed())?;
+    write(&folder.join("nightly.json"), &json)?;
+    write(&folder.join("nightly.md"), report.markdown())?;
+    // From here on the night has ended: what is broken off before is gone on with.
+    night.write(&folder).map_err(Failure::bench)?;
+    let mut name = baseline.map(|baseline| baseline.accepted.night);
+    if arguments.accept {
+        accept_night(history, &night.id, operator()).map_err(Failure::bench)?;
+        name = Some(night.id.clone());
+    }
+    let page = trend::render(&all, name.as_deref());
+    write(&history.join("trend.html"), &page)?;
+    if let Some(out) = &arguments.out {
+        std::fs::create_dir_all(out).map_err(|error| {
+            Failure::bench(format!("failed to create {}: {error}", out.display()))
+        })?;
+        write(&out.join("nightly.json"), &json)?;
+        write(&out.join("nightly.md"), report.markdown())?;
+        write(&out.join("trend.html"), &page)?;
+    }
+    let mut text = format!("night {}: {}\n", night.id, report.verdict.name());
+    report.reasons.iter().for_each(|reason| text += &format!("  {reason}\n"));
+    if arguments.accept {
+        text += "it is the baseline now\n";
+    } else if name.is_none() {
+        text += &format!(
+            "octant nightly accept --history {} makes it the baseline\n",
+            history.display()
+        );
+    }
+    text += &format!(
+        "{}\n{}\n",
+        folder.join("nightly.md").display(),
+        history.join("trend.html").display()
+    );
+    print(if arguments.json { &json } else { &text })?;
+    Ok(report.verdict)
+}
+
+fn accepted(history: &Path, night: Option<&str>) -> Result<Verdict, Failure> {
+    let nights = night::all(history).map_err(Failure::input)?;
+    let ended = nights.iter().rev().find(|night| night.ended.is_some());
+    let id = match (night, ended) {
+        (Some(id), _) if nights.iter().any(|night| night.id == id) => id.to_owned(),
+        (Some(id), _) => {
+            let known = nights.iter().map(|night| night.id.as_str());
+            let near = crate::scenario::suggestion(id, known, "nights");
+            return Err(Failure::input(format!("unknown night {id:?}, {near}")));
+        }
+        (None, Some(night)) => night.id.clone(),
+        (None, None) => {
+            let message = format!("found no night in {} that has ended", history.display());
+            return Err(Failure::input(message));
+        }
+    };
+    let accepted = accept_night(history, &id, operator()).map_err(Failure::input)?;
+    if let Ok(all) = History::read(history) {
+        write(&history.join("trend.html"), trend::render(&all, Some(&accepted.night)))?;
+    }
+    print(&format!("night {} is the baseline\n", accepted.night))?;
+    Ok(Verdict::Pass)
+}
+
+fn inputs(arguments: &Arguments) -> Result<Inputs, Failure> {
+    let mut plans: Vec<(String, Plan)> = Vec::new();
+    for path in &arguments.campaigns {
+        let plan = Plan::of(path)?;
+        let stem = path.file_stem().map_or("campaign".into(), |stem| stem.to_string_lossy());
+        if plans.iter().any(|(name, _)| *name == stem) || stem == "suite" {
+            let message = format!(
+                "{}: a night has one campaign of the name {stem:?}: expected another file name",
+                path.display()
+            );
+            return Err(Failure::input(message));
+        }
+        plans.push((stem.into_owned(), plan));
+    }
+    let suite = arguments.suite.as_deref().map(Suite::load).transpose().map_err(Failure::input)?;
+    let suite_blake3 = suite.as_ref().map(suite::hash).transpose().map_err(Failure::input)?;
+    let program = std::env::current_exe()
+        .map_err(|error| Failure::bench(format!("failed to find this program: {error}")))?;
+    let processors = || std::thread::available_parallelism().map_or(1, usize::from);
+    let jobs = arguments.jobs.map_or_else(processors, usize::from);
+    Ok(Inputs { suite, suite_blake3, plans, program, jobs })
+}
+
+/// The night that was broken off, if it was begun by this program with these inputs; else a new one.
+fn begin(history: &Path, inputs: &Inputs, all: &History) -> Result<Night, Failure> {
+    let program = Program::of(&inputs.program).map_err(Failure::bench)?;
+    let ids: Vec<(&str, &str)> =
+        inputs.plans.iter().map(|(name, plan)| (name.as_str(), plan.id.as_str())).collect();
+    let nights = night::all(history).map_err(Failure::input)?;
+    let open = nights.into_iter().rev().find(|night| {
+        night.ended.is_none()
+            && night.program.sha256 == program.sha256
+            && night.suite_blake3 == inputs.suite_blake3
+            && night.campaigns.len() == ids.len()
+            && night
+                .campaigns
+                .iter()
+                .zip(&ids)
+                .all(|(c, (name, plan))| c.name == *name && c.plan == *plan)
+    });
+    if let Some(night) = open {
+        eprintln!("octant: night {} goes on", night.id);
+        return Ok(night);
+    }
+    let now = SystemTime::now();
+    let known: Vec<String> =
+        all.nights().iter().filter_map(|night| night.get("night").cloned()).collect();
+    let campaigns = inputs.plans.iter().map(|(name, plan)| CampaignNight {
+        name: name.clone(),
+        title: plan.title.clone(),
+        plan: plan.id.clone(),
+        verdict: None,
+        requirements: Default::default(),
+        differing: Vec::new(),
+    });
+    let night = Night {
+        schema: SCHEMA,
+        id: free_name(history, now, &known),
+        started: humantime::format_rfc3339_seconds(now).to_string(),
+        ended: None,
+        program,
+        host: Host::this(),
+        suite_blake3: inputs.suite_blake3.clone(),
+        suite: Vec::new(),
+        campaigns: campaigns.collect(),
+    };
+    let folder = night::nights(history).join(&night.id);
+    for (name, plan) in &inputs.plans {
+        plan.write(&folder.join(name), false)?;
+    }
+    std::fs::create_dir_all(&folder).map_err(|error| {
+        Failure::bench(format!("failed to create {}: {error}", folder.display()))
+    })?;
+    night.write(&folder).map_err(Failure::bench)?;
+    Ok(night)
+}
+
+/// Runs what has no result yet; whether everything has one now.
+fn run_all(
+    inputs: &Inputs,
+    night: &mut Night,
+    folder: &Path,
+    cancel: &AtomicBool,
+) -> Result<bool, Failure> {
+    interrupts::watch();
+    let over = AtomicBool::new(false);
+    std::thread::scope(|scope| {
+        scope.spawn(|| {
+            while !over.load(Ordering::Relaxed) {
+                std::thread::sleep(Duration::from_millis(20));
+                if interrupts::seen() {
+                    cancel.store(true, Ordering::Relaxed);
+                }
+            }
+        });
+        let whole = run_parts(inputs, night, folder, cancel);
+        over.store(true, Ordering::Relaxed);
+        whole
+    })
+}
+
+fn run_parts(
+    inputs: &Inputs,
+    night: &mut Night,
+    folder: &Path,
+    cancel: &AtomicBool,
+) -> Result<bool, Failure> {
+    if let Some(suite) = &inputs.suite {
+        let tell = |result: &SuiteResult| {
+            if let Some(problem) = &result.problem {
+                eprintln!("suite: {}: {problem}", result.name);
+            }
+        };
+        let into = folder.join("suite");
+        let found = suite::run(suite, &into, &inputs.program, inputs.jobs, cancel, &tell);
+        let Some(found) = found.map_err(Failure::bench)? else { return Ok(false) };
+        night.suite = found;
+    }
+    for (name, plan) in &inputs.plans {
+        let into = folder.join(name);
+        let tell = |event: &Event| {
+            if let Event::Done(Done { index, verdict, reason, .. }) = event
+                && *verdict > Verdict::Inconclusive
+            {
+                let case = plan.cases.get(*index).map_or("", |case| case.id.as_str());
+                let reason = reason.as_deref().unwrap_or("");
+                eprintln!("{name}: case {case}: {}: {reason}", verdict.name());
+            }
+        };
+        let mut options = Options {
+            folder: &into,
+            program: &inputs.program,
+            jobs: inputs.jobs,
+            shard: Shard::WHOLE,
+            end: plan.cases.len(),
+            again: false,
+            cancel,
+        };
+        if in_rounds(plan, &mut options, &tell)?.left > 0 || cancel.load(Ordering::Relaxed) {
+            return Ok(false);
+        }
+        let found = conclude(plan, &into, &inputs.program, cancel)?;
+        if let Some(campaign) = night.campaigns.iter_mut().find(|c| c.name == *name) {
+            campaign.verdict = Some(found.verdict());
+            campaign.requirements =
+                found.requirements.iter().map(|(id, r)| (id.clone(), r.verdict)).collect();
+            campaign.differing = found.differing;
+        }
+    }
+    Ok(!cancel.load(Ordering::Relaxed))
+}
+
+/// Writes the tables of a campaign, and runs its first case a second time: a program that isn't
+/// deterministic is told in the night in which it begins.
+fn conclude(
+    plan: &Plan,
+    folder: &Path,
+    program: &Path,
+    cancel: &AtomicBool,
+) -> Result<status::Status, Failure> {
+    let failed = |error: crate::campaign::table::TableError| Failure::bench(error).failed();
+    let end = match &plan.stop {
+        Some(rule) => status::decide(plan, folder, rule).end(plan.cases.len()),
+        None => plan.cases.len(),
+    };
+    results::tables(plan, folder, 0..end, |table| merge::part(folder, Shard::WHOLE, table))
+        .map_err(failed)?;
+    merge::merge(plan, &[folder.to_owned()], folder, end)?;
+    let mut found = status::of(plan, folder, Shard::WHOLE).map_err(Failure::bench)?;
+    let again = tempfile::tempdir()
+        .map_err(|error| Failure::bench(format!("failed to make a folder: {error}")))?;
+    let options = Options {
+        folder: again.path(),
+        program,
+        jobs: 1,
+        shard: Shard::WHOLE,
+        end: 1,
+        again: false,
+        cancel,
+    };
+    execute(plan, &options, &|_| {})?;
+    if let Some(first) = plan.cases.first() {
+        let read = |folder: &Path| std::fs::read(case::file(folder, &first.id)).ok();
+        let (once, twice) = (read(folder), read(again.path()));
+        if twice.is_some() && once != twice && !found.differing.contains(&first.id) {
+            found.differing.push(first.id.clone());
+        }
+    }
+    Ok(found)
+}

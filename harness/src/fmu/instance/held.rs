@@ -1,0 +1,88 @@
+//! Inputs that an FMU has already: it holds what was set until something else is.
+
+use super::super::description::Kind;
+use super::group::{Access, Group};
+
+/// What the groups of an exchange were set to last.
+#[derive(Debug, Default)]
+pub(super) struct Held {
+    groups: Vec<Option<(Vec<u32>, Vec<f64>)>>,
+}
+
+impl Held {
+    /// Whether setting a group to what it has changes nothing. Numbers with a fraction hardly ever
+    /// stay; a clock ticks when it is set; and what is set at events makes one.
+    #[inline]
+    pub(super) fn can_be(group: &Group, event_mode: bool) -> bool {
+        let rarely_changes = !group.kind.is_float() && group.kind != Kind::Clock;
+        let makes_event = match group.access {
+            Access::Step => false,
+            Access::Event => event_mode,
+            Access::Configuration => true,
+        };
+        rarely_changes && !makes_event
+    }
+
+    /// Whether the FMU has these numbers.
+    #[inline]
+    pub(super) fn is(&self, place: usize, group: &Group, values: &[f64]) -> bool {
+        let Some(Some((references, held))) = self.groups.get(place) else { return false };
+        *references == group.references && held == values
+    }
+
+    /// The FMU took these numbers.
+    pub(super) fn keep(&mut self, place: usize, group: &Group, values: &[f64]) {
+        if self.groups.len() <= place {
+            self.groups.resize_with(place + 1, || None);
+        }
+        let (references, held) = self.groups[place].get_or_insert_default();
+        references.clone_from(&group.references);
+        held.clear();
+        held.extend_from_slice(values);
+    }
+
+    /// What it has may be something else.
+    pub(super) fn forget(&mut self) {
+        self.groups.iter_mut().for_each(|group| *group = None);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn group(kind: Kind, access: Access) -> Group {
+        Group { kind, access, references: vec![3, 4], elements: 2 }
+    }
+
+    #[test]
+    fn what_an_fmu_has_is_known_until_it_is_forgotten() {
+        let of = group(Kind::Int32, Access::Step);
+        let mut held = Held::default();
+        assert!(!held.is(1, &of, &[1.0, 2.0]));
+        held.keep(1, &of, &[1.0, 2.0]);
+        assert!(held.is(1, &of, &[1.0, 2.0]));
+        assert!(!held.is(0, &of, &[1.0, 2.0]));
+        assert!(!held.is(1, &of, &[1.0, 2.5]));
+        let other = Group { references: vec![3, 5], ..of.clone() };
+        assert!(!held.is(1, &other, &[1.0, 2.0]));
+        held.keep(1, &of, &[1.0, f64::NAN]);
+        assert!(!held.is(1, &of, &[1.0, f64::NAN]), "a number that is none is set again");
+        held.forget();
+        assert!(!held.is(1, &of, &[1.0, 2.0]));
+    }
+
+    #[test]
+    fn what_acts_when_it_is_set_is_set_every_time() {
+        for (kind, access, event_mode, expected) in [
+            (Kind::Boolean, Access::Step, true, true),
+            (Kind::Enumeration, Access::Event, false, true),
+            (Kind::Enumeration, Access::Event, true, false),
+            (Kind::Clock, Access::Event, false, false),
+            (Kind::Int32, Access::Configuration, false, false),
+            (Kind::Float64, Access::Step, false, false),
+        ] {
+            assert_eq!(Held::can_be(&group(kind, access), event_mode), expected, "{kind:?}");
+        }
+    }
+}

@@ -1,0 +1,268 @@
+//! `selftest.json`: what a self-test found, of which program, where and when.
+
+use super::Case;
+use super::judge::{Judged, Outcome, judge};
+use crate::evidence::manifest::{Git, Host, Manifest};
+use crate::evidence::{RunFacts, sha256};
+use serde::Serialize;
+use std::collections::BTreeMap;
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+use std::time::SystemTime;
+
+/// Version of the form of `selftest.json`.
+pub const SCHEMA: u32 = 1;
+/// Its name in the folder of a campaign.
+pub const FILE_NAME: &str = "selftest.json";
+/// Exit status of an alarm.
+pub const ALARM: u8 = 5;
+
+/// One case.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct CaseRecord {
+    /// Its name.
+    pub id: &'static str,
+    /// `golden`, `must pass`, `must not pass` or `same bytes`.
+    pub kind: &'static str,
+    /// What it shows.
+    pub about: &'static str,
+    /// What has to come of it.
+    pub expected: String,
+    /// Where that comes from; null where it is a matter of what a verdict means.
+    pub source: Option<&'static str>,
+    /// What came of it.
+    pub found: String,
+    /// What it comes to.
+    pub verdict: Judged,
+}
+
+/// The whole.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Record {
+    /// Version of this form: [`SCHEMA`].
+    pub schema: u32,
+    /// The worst of all cases: `pass`, `fail`, `error`, `alarm`; `inconclusive` if it was broken off.
+    pub verdict: &'static str,
+    /// When it ended, UTC, RFC 3339.
+    pub at: String,
+    /// When it began.
+    pub started: String,
+    /// Version of octant.
+    pub octant: String,
+    /// State of the repository that octant was built from; null outside of one.
+    pub git: Option<Git>,
+    /// Compiler that octant was built with.
+    pub rustc: Option<String>,
+    /// SHA-256 of the lock file that it was built by.
+    pub lock_file: Option<String>,
+    /// The program.
+    pub program: PathBuf,
+    /// SHA-256 of its file, hexadecimal.
+    pub program_sha256: String,
+    /// The machine.
+    pub host: Host,
+    /// Who ran it.
+    pub operator: Option<String>,
+    /// Cases that there are.
+    pub cases_planned: usize,
+    /// Cases by what they came to.
+    pub counts: BTreeMap<&'static str, usize>,
+    /// Every case that was tried.
+    pub cases: Vec<CaseRecord>,
+}
+
+impl CaseRecord {
+    /// Of a case and what came of it.
+    #[must_use]
+    pub fn of(case: &Case, outcome: &Result<Outcome, String>) -> Self {
+        let (verdict, found) = match outcome {
+            Ok(outcome) => judge(&case.expectation, outcome),
+            Err(reason) => (Judged::Error, format!("failed to {reason}")),
+        };
+        Self {
+            id: case.id,
+            kind: case.expectation.kind(),
+            about: case.about,
+            expected: case.expectation.in_words(),
+            source: case.expectation.source(),
+            found,
+            verdict,
+        }
+    }
+}
+
+impl Record {
+    /// Of cases that were tried, of so many.
+    ///
+    /// # Errors
+    /// In words, if the program can't be read.
+    pub fn new(
+        program: &Path,
+        started: SystemTime,
+        planned: usize,
+        cases: Vec<CaseRecord>,
+    ) -> Result<Self, String> {
+        let ended = SystemTime::now();
+        let facts = RunFacts {
+            campaign: None,
+            seed: None,
+            started,
+            ended,
+            command_line: Vec::new(),
+            fmus: Vec::new(),
+            link: None,
+            bench: None,
+            realtime: None,
+            key: None,
+        };
+        let manifest = Manifest::of(&facts);
+        let program_sha256 =
+            sha256(program).map_err(|error| format!("read {}: {error}", program.display()))?;
+        let mut counts = BTreeMap::new();
+        for case in &cases {
+            *counts.entry(case.verdict.name()).or_default() += 1;
+        }
+        Ok(Self {
+            schema: SCHEMA,
+            verdict: verdict(planned, &cases),
+            at: manifest.ended,
+            started: manifest.started,
+            octant: manifest.octant,
+            git: manifest.git,
+            rustc: manifest.rustc,
+            lock_file: manifest.lock_file,
+            program: program.to_owned(),
+            program_sha256,
+            host: manifest.host,
+            operator: manifest.operator,
+            cases_planned: planned,
+            counts,
+            cases,
+        })
+    }
+
+    /// Exit status of the program.
+    #[must_use]
+    pub fn exit_code(&self) -> u8 {
+        match self.verdict {
+            "pass" => 0,
+            "fail" => 1,
+            "inconclusive" => 3,
+            "alarm" => ALARM,
+            _ => 4,
+        }
+    }
+
+    /// The bytes of its file.
+    ///
+    /// # Errors
+    /// If it can't be written as JSON.
+    pub fn to_json(&self) -> Result<String, serde_json::Error> {
+        Ok(serde_json::to_string_pretty(self)? + "\n")
+    }
+
+    /// For people.
+    #[must_use]
+    pub fn text(&self) -> String {
+        let mut text = String::new();
+        let width = self.cases.iter().map(|case| case.id.len()).max().unwrap_or(0);
+        let mut kind = "";
+        for case in &self.cases {
+            if case.kind != kind {
+                kind = case.kind;
+                _ = writeln!(text, "{kind}");
+            }
+            let sign = if case.verdict == Judged::Alarm { "ALARM" } else { case.verdict.name() };
+            _ = writeln!(text, "  {sign:5}  {:width$}  {}", case.id, clipped(&case.found));
+            if case.verdict != Judged::Pass {
+                _ = writeln!(text, "         {:width$}  expected: {}", "", case.expected);
+                _ = writeln!(text, "         {:width$}  {}", "", case.about);
+            }
+        }
+        let passed = self.counts.get("pass").copied().unwrap_or(0);
+        _ = writeln!(text, "{}: {passed} of {} cases", self.verdict, self.cases_planned);
+        let git = self.git.as_ref().map_or("no repository known".to_owned(), |git| {
+            format!("{}{}", git.commit, if git.dirty { ", with local changes" } else { "" })
+        });
+        _ = writeln!(text, "octant {}, {git}", self.octant);
+        _ = writeln!(text, "program {} SHA-256 {}", self.program.display(), self.program_sha256);
+        if self.verdict == "alarm" {
+            text += "ALARM: what must not pass has passed. Don't believe a pass of this program.\n";
+        }
+        text
+    }
+}
+
+/// The worst of all; nothing is shown where a case is missing, or where there is none.
+fn verdict(planned: usize, cases: &[CaseRecord]) -> &'static str {
+    let worst = cases.iter().map(|case| case.verdict).max();
+    match worst {
+        Some(worst) if worst > Judged::Pass => worst.name(),
+        Some(_) if cases.len() == planned => "pass",
+        _ => "inconclusive",
+    }
+}
+
+/// A line that fits on a screen.
+fn clipped(text: &str) -> String {
+    const MOST: usize = 110;
+    let line = text.lines().next().unwrap_or("");
+    if line.chars().count() <= MOST {
+        return line.to_owned();
+    }
+    line.chars().take(MOST - 1).chain(['…']).collect()
+}
+
+/// Writes a file: whole or not at all.
+///
+/// # Errors
+/// In words, if the system refuses.
+pub fn write(path: &Path, text: &str) -> Result<(), String> {
+    let failed = |error: std::io::Error| format!("write {}: {error}", path.display());
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+    let new = crate::campaign::new_file(folder.unwrap_or(Path::new("."))).map_err(failed)?;
+    std::fs::write(new.path(), text).map_err(failed)?;
+    new.as_file().sync_data().map_err(failed)?;
+    new.persist(path).map_err(|error| failed(error.error))?;
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn case(verdict: Judged) -> CaseRecord {
+        CaseRecord {
+            id: "one",
+            kind: "must not pass",
+            about: "",
+            expected: String::new(),
+            source: None,
+            found: String::new(),
+            verdict,
+        }
+    }
+
+    #[test]
+    fn an_alarm_is_the_worst_and_nothing_tried_is_no_pass() {
+        use Judged::{Alarm, Error, Fail, Pass};
+        for (planned, cases, expected) in [
+            (0, &[][..], "inconclusive"),
+            (1, &[], "inconclusive"),
+            (2, &[Pass], "inconclusive"),
+            (2, &[Pass, Pass], "pass"),
+            (3, &[Pass, Fail], "fail"),
+            (3, &[Fail, Error, Pass], "error"),
+            (3, &[Alarm, Error, Fail], "alarm"),
+        ] {
+            let cases: Vec<CaseRecord> = cases.iter().copied().map(case).collect();
+            assert_eq!(verdict(planned, &cases), expected);
+        }
+        let program = std::env::current_exe().unwrap();
+        let now = SystemTime::now();
+        let record = Record::new(&program, now, 1, vec![case(Alarm)]).unwrap();
+        assert_eq!((record.verdict, record.exit_code()), ("alarm", 5));
+        assert!(record.text().contains("ALARM: what must not pass has passed"));
+        assert_eq!(Record::new(&program, now, 2, vec![case(Pass)]).unwrap().exit_code(), 3);
+    }
+}

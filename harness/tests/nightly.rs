@@ -1,0 +1,370 @@
+//! Nights: what got worse is found, what didn't isn't; and everything that goes wrong with a history.
+#![allow(clippy::unwrap_used)]
+
+use octant::campaign::table::{Table, Value as Cell};
+use serde_json::Value;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use tempfile::TempDir;
+
+const SCENARIO: &str = "schema = 1
+title = \"short\"
+seed = 1
+[imu]
+rate = \"50 Hz\"
+[procedure.calibration]
+positions = \"eight\"
+duration = \"40 min\"
+[procedure.navigation]
+duration = \"30 min\"
+[[requirements]]
+id = \"NAV-1\"
+text = \"It stays near.\"
+measure = \"navigation.radial_error_nmi.max\"
+limit = \"10 nmi\"
+";
+
+const CAMPAIGN: &str = "schema = 1
+title = \"night\"
+replicates = 16
+[[scenarios]]
+id = \"short\"
+file = \"short.toml\"
+";
+
+const SUITE: &str = "schema = 1
+[[cases]]
+scenario = \"spike.toml\"
+expect = \"pass\"
+[[cases]]
+scenario = \"broken.toml\"
+expect = \"fail\"
+because = \"NEVER\"
+";
+
+struct Bench {
+    folder: TempDir,
+}
+
+impl Bench {
+    fn new() -> Self {
+        let bench = Self { folder: tempfile::tempdir().unwrap() };
+        bench.write("short.toml", SCENARIO);
+        bench.write("night.toml", CAMPAIGN);
+        bench.write("suite.toml", SUITE);
+        let requirement = "[[requirements]]\nid = \"NEVER\"\ntext = \"Nothing moves.\"\n\
+            measure = \"counterfactual.worst_shift_sigma\"\nlimit = 3\n";
+        let spike = "[[faults]]\nid = \"spike-1\"\nkind = \"spike\"\ntrigger = { at = \"500 s\" }\n\
+            duration = \"2 samples\"\nchannels = \"gyro x\"\namplitude = \"10 deg/h\"\n";
+        let calibration =
+            "schema = 1\n[procedure.calibration]\npositions = \"eight\"\nduration = \"20 min\"\n";
+        bench.write("spike.toml", &format!("{calibration}{spike}{requirement}"));
+        let broken = requirement.replace("limit = 3", "limit = 0");
+        bench.write("broken.toml", &format!("{calibration}{spike}{broken}"));
+        bench
+    }
+
+    fn at(&self, name: &str) -> PathBuf {
+        self.folder.path().join(name)
+    }
+
+    fn write(&self, name: &str, text: &str) {
+        std::fs::write(self.at(name), text).unwrap();
+    }
+
+    /// Changes a file.
+    fn edit(&self, name: &str, from: &str, to: &str) {
+        let text = std::fs::read_to_string(self.at(name)).unwrap();
+        assert!(text.contains(from), "{from}");
+        self.write(name, &text.replace(from, to));
+    }
+
+    fn octant(&self, words: &[&str]) -> (Option<i32>, String, String) {
+        let output = Command::new(env!("CARGO_BIN_EXE_octant"))
+            .args(words)
+            .current_dir(self.folder.path())
+            .output()
+            .unwrap();
+        let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
+        (output.status.code(), text(&output.stdout), text(&output.stderr))
+    }
+
+    /// A night of the campaign alone.
+    fn night(&self, more: &[&str]) -> (Option<i32>, Value) {
+        let mut words = vec!["nightly", "night.toml", "--history", "h", "--json"];
+        words.extend_from_slice(more);
+        let (status, out, err) = self.octant(&words);
+        let value = serde_json::from_str(&out);
+        (status, value.unwrap_or_else(|error| panic!("{error}: {out}{err}")))
+    }
+}
+
+fn measures(night: &Value, change: &str) -> Vec<String> {
+    let tests = night["comparison"]["tests"].as_array().unwrap();
+    let found = tests.iter().filter(|test| test["change"] == change);
+    found.map(|test| test["measure"].as_str().unwrap().to_owned()).collect()
+}
+
+#[test]
+fn what_got_worse_is_found_and_what_is_the_same_is_the_same() {
+    let bench = Bench::new();
+    // Without a baseline: no failure, and it says so.
+    let (status, first) = bench.night(&["--suite", "suite.toml", "--out", "shown"]);
+    assert_eq!((status, &first["verdict"]), (Some(0), &Value::from("pass")), "{first}");
+    assert!(first["reasons"][0].as_str().unwrap().starts_with("no baseline was accepted yet"));
+    assert_eq!(
+        (&first["suite_cases"], first["suite_broken"].as_array().unwrap().len()),
+        (&2.into(), 0)
+    );
+    let id = first["night"].as_str().unwrap().to_owned();
+    let (status, out, err) = bench.octant(&["nightly", "accept", "--history", "h"]);
+    assert_eq!((status, out), (Some(0), format!("night {id} is the baseline\n")), "{err}");
+
+    // The same program with the same seeds: everything the same, exactly.
+    let (status, same) = bench.night(&["--suite", "suite.toml"]);
+    assert_eq!(status, Some(0), "{same}");
+    let comparison = &same["comparison"];
+    assert_eq!(comparison["same_program"], true);
+    let tests = comparison["tests"].as_array().unwrap();
+    assert!(tests.len() > 10);
+    assert_eq!(measures(&same, "same").len(), tests.len());
+    let pairing = &comparison["pairings"][0];
+    assert_eq!((&pairing["pairs"], &pairing["changed_results"]), (&16.into(), &0.into()));
+    assert_eq!(same["reasons"], serde_json::json!(["nothing got worse"]));
+
+    // A worse gyro: ten times the random walk.
+    bench.edit(
+        "short.toml",
+        "rate = \"50 Hz\"",
+        "rate = \"50 Hz\"\nangle_random_walk = \"0.007 deg/sqrt(h)\"",
+    );
+    let (status, worse) = bench.night(&["--suite", "suite.toml"]);
+    assert_eq!((status, &worse["verdict"]), (Some(1), &Value::from("fail")), "{worse}");
+    let pairing = &worse["comparison"]["pairings"][0];
+    assert_eq!((&pairing["pairs"], &pairing["changed_inputs"]), (&16.into(), &16.into()));
+    let found = measures(&worse, "worse");
+    assert!(found.contains(&"calibration.parameters.gyro_bias.error_rms".to_owned()), "{found:?}");
+    assert!(found.iter().any(|name| name.starts_with("navigation.")), "{found:?}");
+    assert!(measures(&worse, "better").is_empty());
+    // Nothing is called unsteady: the case is another one.
+    assert!(worse["comparison"]["flaky"].as_array().unwrap().is_empty());
+    let markdown = std::fs::read_to_string(
+        bench.at("h").join(worse["folder"].as_str().unwrap()).join("nightly.md"),
+    )
+    .unwrap();
+    assert!(markdown.contains("## Worse\n"), "{markdown}");
+
+    // Back again is better than that; and no worse than the baseline.
+    bench.edit("short.toml", "\nangle_random_walk = \"0.007 deg/sqrt(h)\"", "");
+    bench.octant(&["nightly", "accept", worse["night"].as_str().unwrap(), "--history", "h"]);
+    let (status, better) = bench.night(&["--suite", "suite.toml"]);
+    assert_eq!(status, Some(0), "{better}");
+    assert!(measures(&better, "worse").is_empty());
+    assert!(!measures(&better, "better").is_empty());
+
+    history(&bench, 4);
+    assert!(bench.at("shown/nightly.md").exists() && bench.at("shown/trend.html").exists());
+}
+
+/// Names of the nights in the history.
+fn nights(bench: &Bench) -> Vec<String> {
+    let table = Table::open(&bench.at("h/history.parquet")).unwrap();
+    let names = table.column("night").unwrap().unwrap();
+    let mut names: Vec<String> = (0..table.rows)
+        .map(|row| match names.at(row) {
+            Some(Cell::Text(text)) => text,
+            other => panic!("{other:?}"),
+        })
+        .collect();
+    names.dedup();
+    names
+}
+
+/// The history has each night, and its page draws.
+fn history(bench: &Bench, count: usize) {
+    let table = Table::open(&bench.at("h/history.parquet")).unwrap();
+    let column = |name: &str| table.column(name).unwrap().unwrap();
+    assert_eq!(nights(bench).len(), count);
+    let measure = Cell::Text("navigation.radial_error_nmi.max".to_owned());
+    let rows: Vec<usize> =
+        (0..table.rows).filter(|row| column("measure").at(*row) == Some(measure.clone())).collect();
+    assert_eq!(rows.len(), count);
+    let changes: Vec<_> = rows.iter().map(|row| column("change").at(*row)).collect();
+    let text = |text: &str| Some(Cell::Text(text.to_owned()));
+    assert_eq!(changes[..2], [None, text("same")]);
+    assert_eq!(column("count").at(rows[0]), Some(Cell::Integer(16)));
+    let page = std::fs::read_to_string(bench.at("h/trend.html")).unwrap();
+    assert!(page.contains("<svg") && page.contains("median of the baseline"));
+    assert!(!page.contains("http://") && !page.contains("https://"), "no network");
+}
+
+#[test]
+fn other_seeds_are_no_regression_and_growing_is_none() {
+    let bench = Bench::new();
+    bench.edit("night.toml", "replicates = 16", "replicates = 4");
+    assert_eq!(bench.night(&["--accept"]).0, Some(0));
+    // Half of the seeds are in both: those are compared, and are the same.
+    bench.edit("night.toml", "replicates = 4", "replicates = 6");
+    let (status, grown) = bench.night(&[]);
+    assert_eq!(status, Some(0), "{grown}");
+    let pairing = &grown["comparison"]["pairings"][0];
+    assert_eq!((&pairing["pairs"], &pairing["cases"]), (&4.into(), &6.into()));
+    assert_eq!(
+        measures(&grown, "same").len(),
+        grown["comparison"]["tests"].as_array().unwrap().len()
+    );
+    // Other seeds: nothing can be told, and nothing is.
+    bench.edit("night.toml", "title = \"night\"", "title = \"night\"\nseed = 1000");
+    let (status, other) = bench.night(&[]);
+    assert_eq!((status, &other["verdict"]), (Some(3), &Value::from("inconclusive")));
+    assert_eq!(other["comparison"]["tests"], serde_json::json!([]));
+    assert_eq!(
+        other["reasons"][0],
+        "night: no case is in both nights, so that nothing can be told"
+    );
+    // A campaign that is left out hides what it would have shown.
+    let (status, out, err) =
+        bench.octant(&["nightly", "--suite", "suite.toml", "--history", "h", "--json"]);
+    assert_eq!(status, Some(3), "{err}");
+    let left: Value = serde_json::from_str(&out).unwrap();
+    assert_eq!(left["reasons"][0], "not in this night: night");
+}
+
+#[test]
+fn newly_failing_cases_are_named_with_the_line_that_runs_them_again() {
+    let bench = Bench::new();
+    bench.edit("night.toml", "replicates = 16", "replicates = 3");
+    assert_eq!(bench.night(&["--suite", "suite.toml", "--accept"]).0, Some(0));
+    bench.edit("short.toml", "limit = \"10 nmi\"", "limit = \"1e-9 nmi\"");
+    bench.edit("spike.toml", "limit = 3", "limit = 0");
+    let (status, night) = bench.night(&["--suite", "suite.toml"]);
+    assert_eq!(status, Some(1), "{night}");
+    let failing = night["comparison"]["newly_failing"].as_array().unwrap();
+    assert_eq!(failing.len(), 4, "{night}");
+    assert_eq!(failing[0]["requirements"], serde_json::json!(["NAV-1"]));
+    assert_eq!((&failing[0]["before"], &failing[0]["now"]), (&"pass".into(), &"fail".into()));
+    assert_eq!(failing[3]["case"], "spike");
+    assert!(
+        night["comparison"]["requirements_worse"][0]
+            .as_str()
+            .unwrap()
+            .starts_with("night: NAV-1: pass before, fail now")
+    );
+    // The line is one that runs.
+    let line = failing[0]["rerun"].as_str().unwrap();
+    let words: Vec<&str> = line.split(' ').skip(1).chain(["--out", "again"]).collect();
+    assert_eq!(bench.octant(&words).0, Some(1), "{line}");
+    // The evidence of the suite's case is there, of the good one it isn't.
+    let suite = bench.at("h").join(night["folder"].as_str().unwrap()).join("suite");
+    assert!(suite.join("spike/report.html").exists() && !suite.join("broken").exists());
+    // Accepted as it is, it is no news any more; mended, it is good news.
+    bench.octant(&["nightly", "accept", "--history", "h"]);
+    assert_eq!(bench.night(&["--suite", "suite.toml"]).0, Some(0));
+    bench.edit("spike.toml", "limit = 0", "limit = 3");
+    let (status, mended) = bench.night(&["--suite", "suite.toml"]);
+    assert_eq!(status, Some(0), "{mended}");
+    assert_eq!(mended["comparison"]["newly_passing"][0]["case"], "spike");
+}
+
+#[test]
+fn the_same_program_and_another_result_is_an_error() {
+    let bench = Bench::new();
+    bench.edit("night.toml", "replicates = 16", "replicates = 2");
+    assert_eq!(bench.night(&["--suite", "suite.toml", "--accept"]).0, Some(0));
+    // As if the baseline's program had come to another stream.
+    let path = bench.at("h/baselines");
+    let night =
+        std::fs::read_dir(&path).unwrap().next().unwrap().unwrap().path().join("night.json");
+    let text = std::fs::read_to_string(&night).unwrap();
+    let value: Value = serde_json::from_str(&text).unwrap();
+    let hash = value["suite"][0]["stream_hash"].as_str().unwrap().to_owned();
+    std::fs::write(&night, text.replace(&hash, &"0".repeat(64))).unwrap();
+    let (status, found) = bench.night(&["--suite", "suite.toml"]);
+    assert_eq!((status, &found["verdict"]), (Some(4), &Value::from("error")), "{found}");
+    assert!(found["comparison"]["flaky"][0].as_str().unwrap().starts_with("suite: "));
+}
+
+#[test]
+fn a_night_that_was_broken_off_goes_on() {
+    let bench = Bench::new();
+    bench.edit("night.toml", "replicates = 16", "replicates = 3");
+    let (_, night) = bench.night(&["--suite", "suite.toml"]);
+    let folder = bench.at("h").join(night["folder"].as_str().unwrap());
+    // As a kill leaves it: some results, no end.
+    let path = folder.join("night.json");
+    let text = std::fs::read_to_string(&path).unwrap();
+    let ended = format!("\"ended\": {}", night["ended"]);
+    assert!(text.contains(&ended));
+    std::fs::write(&path, text.replace(&ended, "\"ended\": null")).unwrap();
+    let (_, out, err) = bench.octant(&["nightly", "accept", "--history", "h"]);
+    assert!(err.contains("found no night in h that has ended"), "{out}{err}");
+    std::fs::remove_file(folder.join("suite/spike.json")).unwrap();
+    std::fs::remove_dir_all(folder.join("night/parts")).unwrap();
+    let cases = folder.join("night/cases");
+    let one = std::fs::read_dir(&cases).unwrap().next().unwrap().unwrap().path();
+    std::fs::remove_dir_all(one).unwrap();
+    let (status, again) = bench.night(&["--suite", "suite.toml"]);
+    assert_eq!((status, &again["night"]), (Some(0), &night["night"]));
+    assert_eq!(again["campaigns"], night["campaigns"]);
+    assert_eq!(nights(&bench), [night["night"].as_str().unwrap()]);
+}
+
+#[test]
+fn what_is_wrong_with_a_history_is_told_before_anything_runs() {
+    let bench = Bench::new();
+    let refused = |words: &[&str], expected: &str| {
+        let (status, out, err) = bench.octant(words);
+        assert_eq!((status, out.as_str()), (Some(2), ""), "{err}");
+        assert!(err.contains(expected), "{err}");
+    };
+    let night = ["nightly", "night.toml", "--history", "h"];
+    refused(&["nightly", "--history", "h"], "expected a campaign, or --suite, or both");
+    refused(&["nightly", "night.toml"], "--history");
+    refused(
+        &["nightly", "night.toml", "night.toml", "--history", "h"],
+        "one campaign of the name \"night\"",
+    );
+    refused(&["nightly", "accept", "--history", "h"], "found no night in h");
+    refused(
+        &[&night[..], &["--alpha", "2"]].concat(),
+        "expected a number of 0 or more and below 1",
+    );
+    refused(&["nightly", "gone.toml", "--history", "h"], "gone.toml");
+    std::fs::create_dir(bench.at("h")).unwrap();
+    bench.write("h/history.parquet", "PAR1 and no more");
+    refused(&night, "failed to read h/history.parquet");
+    std::fs::remove_file(bench.at("h/history.parquet")).unwrap();
+    bench.write("h/baseline.json", "{\"schema\": 2}");
+    refused(&night, "found version 2, this program reads version 1");
+    bench.write(
+        "h/baseline.json",
+        "{\"schema\": 1, \"night\": \"n\", \"accepted\": \"\", \"operator\": null}",
+    );
+    refused(&night, "octant nightly accept --history h accepts another");
+    std::fs::remove_file(bench.at("h/baseline.json")).unwrap();
+    assert!(!bench.at("h/nights").exists(), "nothing has run");
+}
+
+/// Every command line of the examples for CI is one that the program takes, and the files are YAML that
+/// keeps its indentation.
+#[test]
+fn the_examples_for_ci_call_the_program_as_it_is() {
+    let folder = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/nightly"));
+    for name in ["github.yml", "gitlab.yml"] {
+        let text = std::fs::read_to_string(folder.join(name)).unwrap();
+        let joined = text.replace("\\\n", " ");
+        let lines: Vec<&str> = joined
+            .lines()
+            .map(|line| line.trim().trim_start_matches("- ").trim_start_matches("run: "))
+            .filter(|line| line.starts_with("octant "))
+            .collect();
+        assert!(lines.len() >= 2, "{name}: {lines:?}");
+        for line in lines {
+            // What stands behind an operator of the shell isn't the program's.
+            let line = line.split(" || ").next().unwrap().split(" > ").next().unwrap();
+            let words = line.split_whitespace().map(|word| word.trim_matches('"'));
+            octant::cli::parses(words).unwrap_or_else(|error| panic!("{name}: {line}\n{error}"));
+        }
+        assert!(!text.contains('\t'), "{name}");
+    }
+}

@@ -1,0 +1,135 @@
+//! The qualification kit: every operational requirement names tests that there are, every case of the
+//! self-test verifies one, and the trace is up to date.
+#![allow(clippy::unwrap_used)]
+
+use octant::campaign::requirements::load;
+use octant_requirements::requirement::{Requirement, Requirements};
+use std::collections::BTreeMap;
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+
+fn root() -> PathBuf {
+    PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/.."))
+}
+
+fn kit() -> Requirements {
+    load(&root().join("docs/qualification/requirements.toml")).unwrap()
+}
+
+fn tests(requirement: &Requirement) -> Vec<(String, String)> {
+    let named = requirement.attributes.iter().find(|attribute| attribute.name == "Tests");
+    let named = named.unwrap_or_else(|| panic!("{} names no tests", requirement.id));
+    let all = named.values.iter().flat_map(|value| value.split("; "));
+    all.map(|test| {
+        let (file, name) = test.split_once("::").unwrap_or_else(|| panic!("{test}: no ::"));
+        (file.to_owned(), name.to_owned())
+    })
+    .collect()
+}
+
+/// Whether a test is there: a case of the self-test, a function that is a test, or a check of a rig.
+fn is_there(file: &str, name: &str) -> bool {
+    if file == "selftest" {
+        return octant::selftest::cases().iter().any(|case| case.id == name);
+    }
+    let Ok(text) = std::fs::read_to_string(root().join(file)) else { return false };
+    if Path::new(file).extension().is_some_and(|ending| ending == "rs") {
+        // A test, or a property inside of `proptest!`, and not what is left out.
+        let Some(at) = text.find(&format!("fn {name}(")) else { return false };
+        let before = &text[..at];
+        let attributes = &before[before.rfind(['}', ';']).map_or(0, |end| end + 1)..];
+        return attributes.contains("#[test]");
+    }
+    text.contains(&format!("\"{name}\""))
+}
+
+#[test]
+fn every_requirement_names_tests_that_there_are() {
+    let kit = kit();
+    assert!(kit.requirements.len() >= 30);
+    let mut missing = Vec::new();
+    for requirement in &kit.requirements {
+        let tests = tests(requirement);
+        assert!(!tests.is_empty(), "{} has no test", requirement.id);
+        for (file, name) in tests {
+            if !is_there(&file, &name) {
+                missing.push(format!("{}: {file}::{name}", requirement.id));
+            }
+        }
+    }
+    assert!(missing.is_empty(), "not there:\n{}", missing.join("\n"));
+    // What isn't there is found.
+    assert!(!is_there("selftest", "nothing"));
+    assert!(!is_there("harness/tests/campaign.rs", "nothing"));
+    assert!(!is_there("harness/tests/campaign.rs", "begin"), "a function that is no test");
+    assert!(!is_there("harness/tests/gone.rs", "nothing"));
+}
+
+#[test]
+fn every_case_of_the_self_test_verifies_a_requirement() {
+    let named: Vec<String> = kit()
+        .requirements
+        .iter()
+        .flat_map(tests)
+        .filter(|(file, _)| file == "selftest")
+        .map(|(_, name)| name)
+        .collect();
+    for case in octant::selftest::cases() {
+        assert!(named.contains(&case.id.to_owned()), "{} verifies nothing", case.id);
+    }
+}
+
+fn link(file: &str, name: &str) -> String {
+    if file == "selftest" {
+        return format!("[self-test](../selftest.md) `{name}`");
+    }
+    format!("[{file}](../../{file}) `{name}`")
+}
+
+/// `trace.md`.
+fn trace(kit: &Requirements) -> String {
+    let mut text = "# Trace\n\nMade from `requirements.toml` by `OCTANT_WRITE_FIXTURES=1 cargo test --test \
+        qualification`; the same test fails where it isn't up to date, or where a test that it names isn't \
+        there.\n\n## From requirements to tests\n"
+        .to_owned();
+    let mut section = "";
+    let mut back: BTreeMap<(String, String), Vec<&str>> = BTreeMap::new();
+    for requirement in &kit.requirements {
+        let title = requirement.section.first().map_or("", String::as_str);
+        if title != section {
+            section = title;
+            _ = write!(
+                text,
+                "\n### {section}\n\n| id | requirement | verified by |\n|---|---|---|\n"
+            );
+        }
+        let tests = tests(requirement);
+        let links: Vec<String> = tests.iter().map(|(file, name)| link(file, name)).collect();
+        _ = writeln!(
+            text,
+            "| {} | {} | {} |",
+            requirement.id,
+            requirement.text,
+            links.join("<br>")
+        );
+        for test in tests {
+            back.entry(test).or_default().push(&requirement.id);
+        }
+    }
+    text += "\n## From tests to requirements\n\n| test | verifies |\n|---|---|\n";
+    for ((file, name), ids) in back {
+        _ = writeln!(text, "| {} | {} |", link(&file, &name), ids.join(", "));
+    }
+    text
+}
+
+#[test]
+fn the_trace_is_up_to_date() {
+    let path = root().join("docs/qualification/trace.md");
+    let made = trace(&kit());
+    if std::env::var_os("OCTANT_WRITE_FIXTURES").is_some() {
+        std::fs::write(&path, &made).unwrap();
+    }
+    let there = std::fs::read_to_string(&path).unwrap();
+    assert_eq!(there, made, "run this test with OCTANT_WRITE_FIXTURES=1 to write the trace");
+}

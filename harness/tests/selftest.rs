@@ -1,0 +1,99 @@
+//! The self-test, whole, through the program as users have it; and what it leaves.
+#![allow(clippy::unwrap_used)]
+
+use serde_json::Value;
+use std::path::Path;
+use std::process::{Command, Output};
+
+fn octant(words: &[&str], here: &Path) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_octant")).args(words).current_dir(here).output().unwrap()
+}
+
+#[test]
+fn every_case_comes_as_it_has_to() {
+    let folder = tempfile::tempdir().unwrap();
+    let here = folder.path();
+    // A campaign that it is for; nothing else of a repository is here.
+    std::fs::create_dir(here.join("cert")).unwrap();
+    std::fs::write(here.join("cert/plan.json"), "{}").unwrap();
+    let output = octant(&["selftest", "--out", "found.json", "--for", "cert", "--json"], here);
+    let printed = String::from_utf8(output.stdout).unwrap();
+    let said = String::from_utf8_lossy(&output.stderr);
+    let found: Value = serde_json::from_str(&printed).unwrap();
+    let cases = found["cases"].as_array().unwrap();
+    let bad: Vec<String> = cases
+        .iter()
+        .filter(|case| case["verdict"] != "pass")
+        .map(|case| format!("{}: {} (expected {})", case["id"], case["found"], case["expected"]))
+        .collect();
+    assert!(bad.is_empty(), "{}\n{said}", bad.join("\n"));
+    assert_eq!(
+        (output.status.code(), &found["verdict"]),
+        (Some(0), &Value::from("pass")),
+        "{said}"
+    );
+    let count = |kind: &str| cases.iter().filter(|case| case["kind"] == kind).count();
+    assert_eq!(cases.len(), octant::selftest::cases().len());
+    assert!(count("golden") >= 8 && count("must pass") >= 5 && count("must not pass") >= 20);
+    assert_eq!(count("same bytes"), 3);
+    for case in cases {
+        let of_number = case["kind"] == "golden";
+        assert_eq!(case["source"].is_string(), of_number, "{case}");
+    }
+    // Bound to this file of the program.
+    let program = std::fs::read(env!("CARGO_BIN_EXE_octant")).unwrap();
+    assert_eq!(found["program_sha256"], Value::from(sha256(&program)));
+    assert_eq!(found["schema"], 1);
+    for name in ["at", "started", "octant"] {
+        assert!(found[name].is_string(), "{name}");
+    }
+    for path in ["found.json", "cert/selftest.json"] {
+        assert_eq!(std::fs::read_to_string(here.join(path)).unwrap(), printed, "{path}");
+    }
+}
+
+fn sha256(bytes: &[u8]) -> String {
+    use sha2::{Digest, Sha256};
+    Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+#[test]
+fn a_folder_that_is_no_campaign_is_refused_before_anything_runs() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = octant(&["selftest", "--for", "."], folder.path());
+    assert_eq!(output.status.code(), Some(2));
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(
+        said.contains("--for: found no plan.json in ., expected the folder of a campaign"),
+        "{said}"
+    );
+}
+
+/// A program whose verdicts can't be believed is found: everything that it is asked passes.
+#[cfg(unix)]
+#[test]
+fn a_program_that_passes_everything_is_an_alarm() {
+    use octant::selftest::judge::{Expectation, Judged};
+    use octant::selftest::record::Record;
+    use octant::selftest::{cases, run};
+    use std::os::unix::fs::PermissionsExt;
+    use std::sync::atomic::AtomicBool;
+    let folder = tempfile::tempdir().unwrap();
+    // It does what it is told, says nothing about it, and its exit status is 0.
+    let liar = folder.path().join("liar");
+    let script = format!("#!/bin/sh\n'{}' \"$@\"\nexit 0\n", env!("CARGO_BIN_EXE_octant"));
+    std::fs::write(&liar, script).unwrap();
+    std::fs::set_permissions(&liar, std::fs::Permissions::from_mode(0o755)).unwrap();
+    let mut some = cases();
+    some.retain(|case| {
+        matches!(case.expectation, Expectation::NotPass { .. }) && case.id != "records-dropped"
+    });
+    let started = std::time::SystemTime::now();
+    let found = run(&liar, &some, 2, &AtomicBool::new(false), &|_| {}).unwrap();
+    assert_eq!(found.len(), some.len());
+    for case in &found {
+        assert_eq!(case.verdict, Judged::Alarm, "{}: {}", case.id, case.found);
+    }
+    let record = Record::new(&liar, started, some.len(), found).unwrap();
+    assert_eq!((record.verdict, record.exit_code()), ("alarm", 5));
+}
