@@ -357,7 +357,7 @@ fn ensemble() -> impl Strategy<Value = Option<Ensemble>> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 300, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 128, ..ProptestConfig::default() })]
 
     #[test]
     fn a_campaign_passes_on_whole_evidence_alone(
