@@ -10,11 +10,13 @@ pub(super) struct Held {
 }
 
 impl Held {
-    /// Whether setting a group to what it has changes nothing. Numbers with a fraction hardly ever
-    /// stay; a clock ticks when it is set; and what is set at events makes one.
+    /// Whether setting a group to what it has changes nothing. Numbers with a fraction and those of 64
+    /// bits, which count, hardly ever stay; a clock ticks when it is set; and what is set at events
+    /// makes one.
     #[inline]
     pub(super) fn can_be(group: &Group, event_mode: bool) -> bool {
-        let rarely_changes = !group.kind.is_float() && group.kind != Kind::Clock;
+        let changes = matches!(group.kind, Kind::Int64 | Kind::UInt64 | Kind::Clock);
+        let rarely_changes = !group.kind.is_float() && !changes;
         let makes_event = match group.access {
             Access::Step => false,
             Access::Event => event_mode,
@@ -79,6 +81,7 @@ mod tests {
             (Kind::Enumeration, Access::Event, false, true),
             (Kind::Enumeration, Access::Event, true, false),
             (Kind::Clock, Access::Event, false, false),
+            (Kind::UInt64, Access::Step, true, false),
             (Kind::Int32, Access::Configuration, false, false),
             (Kind::Float64, Access::Step, false, false),
         ] {
