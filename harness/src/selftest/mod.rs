@@ -1,6 +1,6 @@
 //! Known-answer self-test: cases whose ends are known, through the program as users have it.
 //!
-//! [`judge`](mod@judge) holds what came of a case against what has to come, [`bench`] starts the program
+//! [`judge`](mod@judge) holds what came of a case against what has to come, [`bench`](mod@bench) starts the program
 //! for it, [`golden`] has the numbers that are known from elsewhere, [`verdicts`] the cases that have to
 //! pass and those that must not, [`same`] those that have to give the same bytes, [`record`] what is
 //! left of it.
