@@ -163,15 +163,13 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     }
     let facts = RunFacts {
         seed: Some(seed),
-        started,
-        ended: SystemTime::now(),
         command_line: rerun(arguments, seed),
         fmus,
         link,
         bench,
         realtime,
-        campaign: None,
         key,
+        ..RunFacts::between(started, SystemTime::now())
     };
     let raw = estimate.map_or(String::new(), |e| raw_counts::text(&scenario.source, &e));
     let (verdict, json) = write_results(folder.path(), run, &facts).map_err(failed)?;

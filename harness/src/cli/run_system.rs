@@ -162,15 +162,10 @@ pub(super) fn command(
     }
     let facts = RunFacts {
         seed: Some(seed),
-        started,
-        ended: SystemTime::now(),
         command_line: rerun(shared, arguments, seed),
         fmus: summary.fmus.iter().map(|fmu| facts(fmu, arguments)).collect(),
-        link: None,
-        bench: None,
-        realtime: None,
-        campaign: None,
         key,
+        ..RunFacts::between(started, SystemTime::now())
     };
     Manifest::write(folder.path(), &facts)
         .map_err(|error| Failure::bench(format!("failed to {error}")))?;

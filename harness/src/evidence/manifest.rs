@@ -188,6 +188,25 @@ pub struct RunFacts {
     pub key: Option<Arc<Key>>,
 }
 
+impl RunFacts {
+    /// Of something between two times of the host, of which nothing else is known.
+    #[must_use]
+    pub fn between(started: SystemTime, ended: SystemTime) -> Self {
+        Self {
+            seed: None,
+            started,
+            ended,
+            command_line: Vec::new(),
+            fmus: Vec::new(),
+            link: None,
+            bench: None,
+            realtime: None,
+            campaign: None,
+            key: None,
+        }
+    }
+}
+
 /// Why a manifest could not be written or read.
 #[derive(Debug, thiserror::Error)]
 pub enum ManifestError {

@@ -79,19 +79,8 @@ impl Program {
     /// In words, if it can't be read.
     pub fn of(path: &Path) -> Result<Self, String> {
         let now = SystemTime::now();
-        let facts = RunFacts {
-            campaign: None,
-            seed: None,
-            started: now,
-            ended: now,
-            command_line: Vec::new(),
-            fmus: Vec::new(),
-            link: None,
-            bench: None,
-            realtime: None,
-            key: None,
-        };
-        let Manifest { octant, git, rustc, lock_file, host, .. } = Manifest::of(&facts);
+        let Manifest { octant, git, rustc, lock_file, host, .. } =
+            Manifest::of(&RunFacts::between(now, now));
         let sha256 =
             sha256(path).map_err(|error| format!("failed to read {}: {error}", path.display()))?;
         let target = format!("{} {}", host.os, host.arch);

@@ -102,20 +102,7 @@ impl Record {
         planned: usize,
         cases: Vec<CaseRecord>,
     ) -> Result<Self, String> {
-        let ended = SystemTime::now();
-        let facts = RunFacts {
-            campaign: None,
-            seed: None,
-            started,
-            ended,
-            command_line: Vec::new(),
-            fmus: Vec::new(),
-            link: None,
-            bench: None,
-            realtime: None,
-            key: None,
-        };
-        let manifest = Manifest::of(&facts);
+        let manifest = Manifest::of(&RunFacts::between(started, SystemTime::now()));
         let program_sha256 =
             sha256(program).map_err(|error| format!("read {}: {error}", program.display()))?;
         let mut counts = BTreeMap::new();

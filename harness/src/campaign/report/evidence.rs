@@ -62,14 +62,7 @@ pub fn write(
     let program = std::env::current_exe().and_then(|program| sha256(&program)).ok();
     let (first, last) = times(report, folder);
     let facts = RunFacts {
-        seed: None,
-        started,
-        ended: SystemTime::now(),
         command_line: report.again().pop().unwrap_or_default(),
-        fmus: Vec::new(),
-        link: None,
-        bench: None,
-        realtime: None,
         campaign: Some(CampaignFacts {
             title: report.plan.title.clone(),
             plan: report.plan.id.clone(),
@@ -86,6 +79,7 @@ pub fn write(
             rerun: again(report),
         }),
         key,
+        ..RunFacts::between(started, SystemTime::now())
     };
     Ok(Manifest::write(folder, &facts)?)
 }

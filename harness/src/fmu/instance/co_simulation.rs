@@ -8,7 +8,6 @@ use super::states::States;
 use super::unit::Steps;
 use super::{
     Access, Group, Instance, InstanceError, Message, Outcome, REPEATS_MAX, Stepped, Update,
-    expect_numbers,
 };
 use serde::{Deserialize, Serialize};
 
@@ -205,42 +204,24 @@ impl<U: Steps> Instance for CoSimulation<U> {
         self.with_access(group, |unit| unit.set(group, values))
     }
 
-    fn exchange(
+    fn set_in_exchange(
         &mut self,
-        set: &[Group],
-        inputs: &[f64],
-        time_s: f64,
-        step_s: f64,
-        get: &[Group],
-        outputs: &mut [f64],
-    ) -> Result<Stepped, InstanceError> {
-        expect_numbers(self.name(), set, inputs.len())?;
-        expect_numbers(self.name(), get, outputs.len())?;
-        let mut rest = inputs;
-        for (place, group) in set.iter().enumerate() {
-            let (these, others) = rest.split_at(group.elements);
-            rest = others;
-            let is_held = Held::can_be(group, self.unit.has_event_mode());
-            if is_held && self.held.is(place, group, these) {
-                continue;
-            }
-            let done = self.with_access(group, |unit| unit.set(group, these));
-            if done.is_err() {
-                self.held.forget();
-            }
-            done?;
-            if is_held {
-                self.held.keep(place, group, these);
-            }
+        place: usize,
+        group: &Group,
+        values: &[f64],
+    ) -> Result<(), InstanceError> {
+        let can_be_held = Held::can_be(group, self.unit.has_event_mode());
+        if can_be_held && self.held.is(place, group, values) {
+            return Ok(());
         }
-        let stepped = self.advance(time_s, step_s)?;
-        let mut rest = outputs;
-        for group in get {
-            let (these, others) = rest.split_at_mut(group.elements);
-            self.unit.get(group, these)?;
-            rest = others;
+        let done = self.with_access(group, |unit| unit.set(group, values));
+        if done.is_err() {
+            // It may have taken a part.
+            self.held.forget();
+        } else if can_be_held {
+            self.held.keep(place, group, values);
         }
-        Ok(stepped)
+        done
     }
 
     fn get(&mut self, group: &Group, values: &mut [f64]) -> Result<(), InstanceError> {

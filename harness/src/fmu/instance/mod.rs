@@ -84,15 +84,6 @@ pub struct Update {
 /// is said that there is no end to them.
 pub const REPEATS_MAX: usize = 1000;
 
-/// There are as many numbers as groups have elements.
-fn expect_numbers(fmu: &str, groups: &[Group], count: usize) -> Result<(), InstanceError> {
-    if groups.iter().map(|group| group.elements).sum::<usize>() == count {
-        Ok(())
-    } else {
-        Err(InstanceError::numbers(fmu, groups, count))
-    }
-}
-
 /// What is done with one FMU, in this process or in another.
 pub trait Instance: Send {
     /// Its name in errors: the file's, or the model's.
@@ -125,6 +116,20 @@ pub trait Instance: Send {
     /// # Errors
     /// If the FMU fails or refuses a value, or a number doesn't fit the type.
     fn set(&mut self, group: &Group, values: &[f64]) -> Result<(), InstanceError>;
+
+    /// [`Self::set`] of the group that stands at `place` in an [`Self::exchange`]: who knows what the FMU
+    /// has already can leave out what changes nothing.
+    ///
+    /// # Errors
+    /// As [`Self::set`].
+    fn set_in_exchange(
+        &mut self,
+        _place: usize,
+        group: &Group,
+        values: &[f64],
+    ) -> Result<(), InstanceError> {
+        self.set(group, values)
+    }
 
     /// Gets numbers.
     ///
@@ -180,12 +185,15 @@ pub trait Instance: Send {
         get: &[Group],
         outputs: &mut [f64],
     ) -> Result<Stepped, InstanceError> {
-        expect_numbers(self.name(), set, inputs.len())?;
-        expect_numbers(self.name(), get, outputs.len())?;
+        for (groups, count) in [(set, inputs.len()), (get, outputs.len())] {
+            if groups.iter().map(|group| group.elements).sum::<usize>() != count {
+                return Err(InstanceError::numbers(self.name(), groups, count));
+            }
+        }
         let mut rest = inputs;
-        for group in set {
+        for (place, group) in set.iter().enumerate() {
             let (these, others) = rest.split_at(group.elements);
-            self.set(group, these)?;
+            self.set_in_exchange(place, group, these)?;
             rest = others;
         }
         let stepped = self.advance(time_s, step_s)?;
