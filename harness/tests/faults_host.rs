@@ -205,23 +205,15 @@ fn where_nothing_would_happen_it_is_refused() {
         assert!(!here.join("f.partial").exists());
     }
     // A run without a file, or without a recorder.
-    for (kind, recordings, expected) in [
-        (
-            "host-disk-full",
-            &[Recording::Hash, Recording::None][..],
-            "it happens to the file of a recording, and this run writes none",
-        ),
-        (
-            "host-recorder-stalled",
-            &[Recording::None],
-            "it happens to the thread of a recorder, and this run has none",
-        ),
+    for (kind, expected) in [
+        ("host-disk-full", "it happens to the file of a recording, and this run writes none"),
+        ("host-recorder-stalled", "it happens to the thread of a recorder, and this run has none"),
     ] {
         let text = text("1 s", "200 Hz", &fault(kind, "0.5 s", ""));
         let scenario = Scenario::parse(&text, "s.toml", here, &[]).unwrap();
-        for recording in recordings {
+        for recording in [Recording::Hash, Recording::HashAlone, Recording::None] {
             let control = Control::default();
-            match run_method(&scenario, Method::Primary, 1, *recording, &control) {
+            match run_method(&scenario, Method::Primary, 1, recording, &control) {
                 Err(MethodError::Setup(SetupError::Fault { id, reason })) => {
                     assert_eq!((id.as_str(), reason.as_str()), ("f", expected));
                 }

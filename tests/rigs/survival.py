@@ -9,6 +9,7 @@ import pty
 import random
 import select
 import signal
+import struct
 import subprocess
 import sys
 import tempfile
@@ -136,7 +137,8 @@ def recorded(path):
                     last = max(last, message.log_time)
                 elif "event" in channel.topic:
                     events.append(json.loads(message.data))
-    except (McapError, EOFError, ValueError) as error:
+    # The reader says in any of these ways that the file ends within a record.
+    except (McapError, EOFError, ValueError, struct.error) as error:
         if not last:
             return 0.0, [f"{type(error).__name__}: {error}"]
     return last * 1e-9, events

@@ -66,7 +66,7 @@ pub fn run(
     control: &Control,
 ) -> Result<CaseResult, CaseError> {
     let scenario = planned.scenario(case)?;
-    let one = |method| run_method(&scenario, method, case.seed, Recording::Hash, control);
+    let one = |method| run_method(&scenario, method, case.seed, Recording::HashAlone, control);
     let primary = one(Method::Primary)?;
     let baseline = match &scenario.baseline {
         Some(_) => Some(one(Method::Baseline)?),

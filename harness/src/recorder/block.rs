@@ -81,8 +81,9 @@ impl Block {
         if due {
             self.due.push(position);
         }
-        self.samples.push(frame.faulted.sample);
-        self.outputs.push(*frame.output);
+        // Not `push`: that copies by way of the stack.
+        self.samples.extend_from_slice(std::slice::from_ref(&frame.faulted.sample));
+        self.outputs.extend_from_slice(std::slice::from_ref(frame.output));
     }
 
     /// Takes an epoch that didn't reach the core in its step.

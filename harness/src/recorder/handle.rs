@@ -1,10 +1,11 @@
 //! The recorder as the run loop sees it: a place to put epochs, at a few nanoseconds each.
 //!
 //! Epochs are collected in a block; a full block goes to the recorder's thread over a bounded
-//! queue, and an empty one comes back. Where hashes alone are wanted the loop makes them itself. Nothing is allocated in steady state. When all blocks are
-//! on their way the loop waits: in simulated time nothing is dropped. The thread asks for an
-//! unfinished block from time to time ([`FLUSH_INTERVAL`]), so that a slow run, too, gets into the
-//! file; the asking is one relaxed load of the loop.
+//! queue, and an empty one comes back. Where hashes alone are wanted the loop makes them itself.
+//! Nothing is allocated in steady state. When all blocks are on their way the loop waits: in
+//! simulated time nothing is dropped. The thread asks for an unfinished block from time to time
+//! ([`FLUSH_INTERVAL`]), so that a slow run, too, gets into the file; the asking is one relaxed load
+//! of the loop.
 
 use super::altered::{self, AlteredStreams};
 use super::block::Block;

@@ -75,13 +75,16 @@ impl Host {
 /// Why nothing would come of a kind in such a run.
 fn without(kind: &Kind, recording: &Recording<'_>) -> Option<&'static str> {
     match recording {
-        Recording::Hash | Recording::None if kind.name == FULL.name => {
-            Some("it happens to the file of a recording, and this run writes none")
-        }
-        Recording::None if kind.name == STALLED.name => {
-            Some("it happens to the thread of a recorder, and this run has none")
-        }
-        _ => None,
+        Recording::File(_) => None,
+        Recording::Hash | Recording::HashAlone | Recording::None => match kind.name {
+            name if name == FULL.name => {
+                Some("it happens to the file of a recording, and this run writes none")
+            }
+            name if name == STALLED.name => {
+                Some("it happens to the thread of a recorder, and this run has none")
+            }
+            _ => None,
+        },
     }
 }
 

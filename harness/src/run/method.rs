@@ -33,8 +33,10 @@ use std::sync::atomic::Ordering;
 pub enum Recording<'a> {
     /// A file, by the scenario's policy.
     File(&'a Path),
-    /// The hash of the stream alone, and the trace by which a twin is compared.
+    /// The hash of the stream, and the trace by which a twin is compared.
     Hash,
+    /// The hash of the stream alone, of a run that is compared with no other.
+    HashAlone,
     /// Nothing: for ensembles.
     None,
 }
@@ -258,14 +260,17 @@ pub fn run_as_far_as_it_goes(
     };
     let mut recorder = match recording {
         Recording::File(path) => Recorder::to_file(path, &options).map_err(SetupError::Recorder)?,
-        Recording::Hash => Recorder::hash_only(&options),
+        Recording::Hash | Recording::HashAlone => Recorder::hash_only(&options),
         Recording::None => Recorder::none(),
     };
     let calibration_s = core.calibration.as_ref().map_or(0.0, |c| c.duration_s);
     let mut watcher = Watcher::new(calibration_s);
-    if !scenario.faults.is_empty() || matches!(recording, Recording::Hash) {
-        watcher.trace = Some(Trace::new());
-    }
+    let compared = match recording {
+        Recording::HashAlone => false,
+        Recording::Hash => true,
+        Recording::File(_) | Recording::None => !scenario.faults.is_empty(),
+    };
+    watcher.trace = compared.then(Trace::new);
     let samples = scenario.samples().unwrap_or(u64::MAX);
     let realtime =
         scenario.realtime.by_clock.then_some((&scenario.realtime, scenario.sample_period_ns));

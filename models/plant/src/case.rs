@@ -1,18 +1,13 @@
 //! Motion of the case: angular rate and specific force in the case frame c.
-//!
-//! On the ship the position is *defined* by the sums of sinusoids, as latitude, longitude and
-//! height; velocity over ground and its derivative follow from it on the ellipsoid without
-//! approximation, and so do transport rate, Coriolis and curvature terms:
-//! `f = C_cn (v̇ + (2 ω_ie + ω_en) × v − g)` (Titterton and Weston, 2004, sec. 3.5).
 
-use crate::config::{self, CaseAttitude, Dockside, Site};
+use crate::config::{self, CaseAttitude, Site};
 use crate::course::Course;
 use crate::disturbed::Motion;
-use crate::sway::{SixDof, Sway};
-use crate::trig::{Near, rx_t, ry_t, rz_t};
+use crate::ship::{Ship, into_case, with};
+use crate::sway::SixDof;
+use crate::window::Window;
 use nalgebra::Vector3;
-use octant_earth::ellipsoid::{ECCENTRICITY_SQUARED, Ellipsoid, SEMI_MAJOR_AXIS_M};
-use octant_earth::ellipsoid::{meridian_radius_m, normal_gravity_mps2, transverse_radius_m};
+use octant_earth::ellipsoid::Ellipsoid;
 
 /// What the case feels.
 #[derive(Clone, Copy, Debug)]
@@ -79,32 +74,6 @@ pub(crate) enum Node {
 }
 
 #[derive(Clone, Debug)]
-struct Ship {
-    site: Site,
-    mean: CaseAttitude,
-    heading_sincos: (f64, f64),
-    mooring_offset_m: [f64; 3],
-    /// Inverse of R_M + h and of (R_N + h) cos L of the dock: metres to latitude and longitude.
-    per_north_m: f64,
-    per_east_m: f64,
-    /// Whether anything asks for the angular acceleration.
-    accelerations: bool,
-    latitude: Near,
-    heading: Near,
-    pitch: Near,
-    roll: Near,
-    sway: Sway,
-}
-
-octant_state::state! {
-    Ship {
-        values: accelerations, latitude, heading, pitch, roll;
-        parts: sway;
-        kept: site, mean, heading_sincos, mooring_offset_m, per_north_m, per_east_m
-    }
-}
-
-#[derive(Clone, Debug)]
 enum Kind {
     Static {
         motion: CaseMotion,
@@ -123,25 +92,18 @@ pub(crate) struct Case {
     accelerations: bool,
 }
 
-fn into_case(
-    v: &Vector3<f64>,
-    heading: (f64, f64),
-    pitch: (f64, f64),
-    roll: (f64, f64),
-) -> Vector3<f64> {
-    rx_t(&ry_t(&rz_t(v, heading), pitch), roll)
-}
-
 impl Case {
-    /// `nodes_s`: the regular nodes, s from the start of an interval. `accelerations`: whether
-    /// the angular acceleration of [`CaseMotion`] is wanted, otherwise it is zero.
+    /// `nodes`: the regular nodes, s from the start of an interval, with their weights.
+    /// `accelerations`: whether the angular acceleration of [`CaseMotion`] is wanted, otherwise it
+    /// is zero.
     pub(crate) fn new(
         motion: &config::Motion,
         site: Site,
         period_s: f64,
-        nodes_s: &[f64],
+        nodes: &[(f64, f64)],
         accelerations: bool,
     ) -> Self {
+        let nodes_s: Vec<f64> = nodes.iter().map(|node| node.0).collect();
         let earth = Ellipsoid::at(site.latitude_rad, site.height_m);
         let kind = match motion {
             config::Motion::Static(attitude) => {
@@ -157,11 +119,20 @@ impl Case {
                 Kind::Static { motion, site, attitude: *attitude, adrift: None }
             }
             config::Motion::Dockside(dockside) => {
-                let ship = Ship::new(dockside, site, &earth, period_s, nodes_s, accelerations);
+                let ship = Ship::new(dockside, site, &earth, period_s, &nodes_s, accelerations);
                 Kind::Ship(Box::new(ship))
             }
         };
         Self { kind, accelerations }
+    }
+
+    /// From here on the motion of many samples is computed at once, where that saves work: nothing
+    /// but [`Self::enter`], [`Self::motion`] without its angular acceleration, and
+    /// [`Self::integral`] follows while the case isn't disturbed.
+    pub(crate) fn open_windows(&mut self, period_ns: u64, nodes: &[(f64, f64)]) {
+        if let Kind::Ship(ship) = &mut self.kind {
+            ship.open_windows(period_ns, nodes);
+        }
     }
 
     /// A disturbance is under way: angular acceleration is wanted, and where it `moves` the case,
@@ -228,9 +199,18 @@ impl Case {
 
     /// Goes to the interval that starts at `start_s`.
     #[inline]
-    pub(crate) fn enter(&mut self, start_s: f64) {
+    pub(crate) fn enter(&mut self, start_s: f64, start_ns: u64) {
         if let Kind::Ship(ship) = &mut self.kind {
-            ship.sway.enter(start_s);
+            ship.enter(start_s, start_ns);
+        }
+    }
+
+    /// Integrals of rate and specific force over the interval, where they are at hand.
+    #[inline]
+    pub(crate) fn integral(&self) -> Option<(Vector3<f64>, Vector3<f64>)> {
+        match &self.kind {
+            Kind::Ship(ship) => ship.window().map(Window::integral),
+            Kind::Static { .. } => None,
         }
     }
 
@@ -240,9 +220,14 @@ impl Case {
             Kind::Static { motion, .. } => *motion,
             Kind::Ship(ship) if ship.sway.course.is_some() => ship.motion_on_course(node),
             Kind::Ship(ship) => {
-                let six = match node {
-                    Node::Regular(index) => ship.sway.at_node(index),
-                    Node::Offset(offset_s) => ship.sway.at_offset(offset_s),
+                let six = match (node, ship.window()) {
+                    (Node::Regular(index), Some(window)) => {
+                        let (rate, force) = window.at_node(index);
+                        return CaseMotion { rate, acceleration: Vector3::zeros(), force };
+                    }
+                    (Node::Offset(offset_s), Some(_)) => ship.sway.at_offset_passed(offset_s),
+                    (Node::Regular(index), None) => ship.sway.at_node(index),
+                    (Node::Offset(offset_s), None) => ship.sway.at_offset(offset_s),
                 };
                 ship.motion::<false>(&six)
             }
@@ -265,192 +250,12 @@ impl Case {
     }
 }
 
-/// A motion in six degrees of freedom with a displacement added.
-fn with(mut six: SixDof, motion: &Motion) -> SixDof {
-    for axis in 0..3 {
-        for (dof, jet) in [(axis, &motion.turn), (3 + axis, &motion.displacement)] {
-            six[dof].value += jet[0][axis];
-            six[dof].rate += jet[1][axis];
-            six[dof].acceleration += jet[2][axis];
-        }
-    }
-    six
-}
-
-impl Ship {
-    /// A case at rest that can be moved.
-    fn at_rest(site: Site, mean: CaseAttitude) -> Self {
-        let earth = Ellipsoid::at(site.latitude_rad, site.height_m);
-        let calm = Dockside {
-            mean,
-            roll: Vec::new(),
-            pitch: Vec::new(),
-            yaw: Vec::new(),
-            surge: Vec::new(),
-            sway: Vec::new(),
-            heave: Vec::new(),
-            mooring_offset_m: [0.0; 3],
-        };
-        Self::new(&calm, site, &earth, 1.0, &[], true)
-    }
-
-    fn new(
-        dockside: &Dockside,
-        site: Site,
-        earth: &Ellipsoid,
-        period_s: f64,
-        nodes_s: &[f64],
-        accelerations: bool,
-    ) -> Self {
-        let mean = dockside.mean;
-        Self {
-            site,
-            mean,
-            heading_sincos: libm::sincos(mean.heading_rad),
-            mooring_offset_m: dockside.mooring_offset_m,
-            per_north_m: 1.0 / earth.meridian_radius_m,
-            per_east_m: 1.0 / (earth.transverse_radius_m * earth.cos_latitude),
-            accelerations,
-            latitude: Near::new(site.latitude_rad),
-            heading: Near::new(mean.heading_rad),
-            pitch: Near::new(mean.pitch_rad),
-            roll: Near::new(mean.roll_rad),
-            sway: Sway::new(dockside, period_s, nodes_s),
-        }
-    }
-
-    /// North and east of a pair along and to starboard of the mean heading.
-    #[inline]
-    fn north_east(&self, surge: f64, sway: f64) -> (f64, f64) {
-        let (s, c) = self.heading_sincos;
-        (c * surge - s * sway, s * surge + c * sway)
-    }
-
-    #[inline]
-    fn latitude_and_height(&self, six: &SixDof) -> (f64, f64) {
-        let (north, _) = self.north_east(six[3].value, six[4].value);
-        let [offset_north, _, offset_down] = self.mooring_offset_m;
-        (
-            self.site.latitude_rad + (offset_north + north) * self.per_north_m,
-            self.site.height_m - offset_down - six[5].value,
-        )
-    }
-
-    /// Motion at a node, with what comes from outside. Out of the way of a ship that has none of it.
-    #[inline(never)]
-    fn motion_on_course(&mut self, node: Node) -> CaseMotion {
-        let six = match node {
-            Node::Regular(index) => self.sway.at_node_on_course(index),
-            Node::Offset(offset_s) => self.sway.at_offset_on_course(offset_s),
-        };
-        self.motion::<true>(&six)
-    }
-
-    /// `DISTURBED` changes nothing: it makes a copy of its own for who is disturbed, so that the
-    /// other one is inlined where every sample passes.
-    #[inline]
-    fn motion<const DISTURBED: bool>(&mut self, six: &SixDof) -> CaseMotion {
-        let (latitude, height) = self.latitude_and_height(six);
-        let (sin_latitude, cos_latitude) = self.latitude.sincos(latitude);
-        let w = 1.0 / (1.0 - ECCENTRICITY_SQUARED * sin_latitude * sin_latitude);
-        let transverse = SEMI_MAJOR_AXIS_M * libm::sqrt(w);
-        let meridian = transverse * (1.0 - ECCENTRICITY_SQUARED) * w;
-        let earth = Ellipsoid {
-            sin_latitude,
-            cos_latitude,
-            meridian_radius_m: meridian + height,
-            transverse_radius_m: transverse + height,
-            gravity_mps2: normal_gravity_mps2(sin_latitude, height),
-        };
-
-        let (north_rate, east_rate) = self.north_east(six[3].rate, six[4].rate);
-        let (north_acc, east_acc) = self.north_east(six[3].acceleration, six[4].acceleration);
-        let (per_north, per_east) = (self.per_north_m, self.per_east_m);
-        let (latitude_rate, longitude_rate) = (north_rate * per_north, east_rate * per_east);
-        let (latitude_acc, longitude_acc) = (north_acc * per_north, east_acc * per_east);
-        let height_rate = -six[5].rate;
-        // d/dt of v = ((R_M + h) L̇, (R_N + h) cos L λ̇, −ḣ), with dR_M/dL and the identity
-        // d(R_N cos L)/dL = −R_M sin L.
-        let parallel = earth.transverse_radius_m * cos_latitude;
-        let velocity = Vector3::new(
-            earth.meridian_radius_m * latitude_rate,
-            parallel * longitude_rate,
-            six[5].rate,
-        );
-        let meridian_slope =
-            3.0 * meridian * ECCENTRICITY_SQUARED * sin_latitude * cos_latitude * w;
-        let meridian_rate = meridian_slope * latitude_rate + height_rate;
-        let parallel_rate =
-            height_rate * cos_latitude - earth.meridian_radius_m * sin_latitude * latitude_rate;
-        let acceleration = Vector3::new(
-            earth.meridian_radius_m * latitude_acc + meridian_rate * latitude_rate,
-            parallel * longitude_acc + parallel_rate * longitude_rate,
-            six[5].acceleration,
-        );
-
-        let earth_rate = earth.earth_rate();
-        let transport = earth.transport_rate(&velocity);
-        let gravity = Vector3::new(0.0, 0.0, earth.gravity_mps2);
-        let force = acceleration + (earth_rate * 2.0 + transport).cross(&velocity) - gravity;
-
-        let heading = self.heading.sincos(self.mean.heading_rad + six[2].value);
-        let pitch = self.pitch.sincos(self.mean.pitch_rad + six[1].value);
-        let roll = self.roll.sincos(self.mean.roll_rad + six[0].value);
-        let navigation_rate = into_case(&(earth_rate + transport), heading, pitch, roll);
-        // Euler rates (heading, pitch, roll) to body rates, one rotation after the other.
-        let x = Vector3::x();
-        let y = Vector3::y();
-        let yaw = Vector3::new(0.0, 0.0, six[2].rate);
-        let after_pitch = ry_t(&yaw, pitch);
-        let rate_1 = after_pitch + y * six[1].rate;
-        let after_roll = rx_t(&rate_1, roll);
-        let case_rate = after_roll + x * six[0].rate;
-        let mut angular = Vector3::zeros();
-        if self.accelerations {
-            let yaw = Vector3::new(0.0, 0.0, six[2].acceleration);
-            let turned =
-                ry_t(&yaw, pitch) - y.cross(&after_pitch) * six[1].rate + y * six[1].acceleration;
-            let of_case =
-                rx_t(&turned, roll) - x.cross(&after_roll) * six[0].rate + x * six[0].acceleration;
-            let transport = into_case(&earth.transport_rate(&acceleration), heading, pitch, roll);
-            angular = transport - case_rate.cross(&navigation_rate) + of_case;
-        }
-
-        CaseMotion {
-            rate: navigation_rate + case_rate,
-            acceleration: angular,
-            force: into_case(&force, heading, pitch, roll),
-        }
-    }
-
-    fn whereabouts(&self, six: &SixDof) -> Whereabouts {
-        let (latitude_rad, height_m) = self.latitude_and_height(six);
-        let (_, east) = self.north_east(six[3].value, six[4].value);
-        let (north_rate, east_rate) = self.north_east(six[3].rate, six[4].rate);
-        let (sin_latitude, cos_latitude) = libm::sincos(latitude_rad);
-        Whereabouts {
-            latitude_rad,
-            longitude_rad: self.site.longitude_rad
-                + (self.mooring_offset_m[1] + east) * self.per_east_m,
-            height_m,
-            velocity_mps: Vector3::new(
-                (meridian_radius_m(sin_latitude) + height_m) * north_rate * self.per_north_m,
-                (transverse_radius_m(sin_latitude) + height_m)
-                    * cos_latitude
-                    * east_rate
-                    * self.per_east_m,
-                six[5].rate,
-            ),
-            heading_rad: self.mean.heading_rad + six[2].value,
-            pitch_rad: self.mean.pitch_rad + six[1].value,
-            roll_rad: self.mean.roll_rad + six[0].value,
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::config::CaseAttitude;
+    use crate::motion::{dockside_default, dockside_iso_8728};
+    use octant_earth::ellipsoid::{meridian_radius_m, transverse_radius_m};
 
     /// The two derivatives that are written out by hand, against central differences: the angular
     /// acceleration, and the velocity that the position implies.
@@ -460,10 +265,11 @@ mod tests {
         ship.mean = CaseAttitude { heading_rad: 0.6, pitch_rad: 0.1, roll_rad: -0.2 };
         let site = Site { latitude_rad: 0.9, longitude_rad: 0.2, height_m: 10.0 };
         let (period_s, h) = (0.1, 1e-3);
-        let mut case = Case::new(&config::Motion::Dockside(ship), site, period_s, &[0.05], true);
+        let mut case =
+            Case::new(&config::Motion::Dockside(ship), site, period_s, &[(0.05, 0.1)], true);
         for k in 0..200 {
             let start_s = f64::from(k) * period_s;
-            case.enter(start_s);
+            case.enter(start_s, 0);
             let now = case.motion(Node::Regular(0));
             let (a, b) = (0.05 - h, 0.05 + h);
             let (before, after) = (case.motion(Node::Offset(a)), case.motion(Node::Offset(b)));
@@ -484,6 +290,61 @@ mod tests {
             let down = -(q.height_m - p.height_m) / (2.0 * h);
             // h²/6 · 0.2 m (2π/6 s)³: 4e-8, and the angles' last bit, 1e-16 rad over 2 ms: 7e-7.
             assert!((Vector3::new(north, east, down) - here.velocity_mps).norm() < 1.5e-6);
+        }
+    }
+
+    /// Interpolated in windows, against the motion computed anew at every node: to the rounding of
+    /// either, over many windows and across a jump in time.
+    #[test]
+    fn windows_are_the_motion_itself() {
+        let spectrum = crate::sea::Spectrum::jonswap(0.1, 8.0, 3.3);
+        let mut sea = dockside_default(5);
+        sea.roll = spectrum.components(1, "roll", 30);
+        sea.heave = spectrum.components(1, "heave", 30);
+        let mut steep = dockside_iso_8728(2);
+        steep.roll[0].amplitude = 0.5;
+        let site = Site { latitude_rad: 0.9, longitude_rad: 0.2, height_m: 10.0 };
+        for (ship, period_ns) in [
+            (dockside_default(3), 5_000_000),
+            (dockside_iso_8728(4), 1_000_000),
+            (steep, 5_000_000),
+            (sea, 5_000_000),
+            (dockside_default(1), 50_000_000),
+        ] {
+            let period_s = period_ns as f64 * 1e-9;
+            let nodes = [(0.2 * period_s, 0.3 * period_s), (0.7 * period_s, 0.7 * period_s)];
+            let nodes = if period_ns > 5_000_000 { [nodes; 4].concat() } else { nodes.to_vec() };
+            let motion = config::Motion::Dockside(ship);
+            let mut exact = Case::new(&motion, site, period_s, &nodes, false);
+            let mut case = exact.clone();
+            case.open_windows(period_ns, &nodes);
+            assert!(case.integral().is_some(), "windows are worth it");
+            let times = (0..5000).chain([70_000, 70_001, 70_003]).chain(90_000..90_100);
+            for sample in times {
+                let start_ns = sample * period_ns;
+                let start_s = start_ns as f64 * 1e-9;
+                case.enter(start_s, start_ns);
+                let mut sum = (Vector3::zeros(), Vector3::zeros());
+                for (index, (at_s, weight)) in nodes.iter().enumerate() {
+                    let found = case.motion(Node::Regular(index));
+                    let off = case.motion(Node::Offset(*at_s));
+                    let six = match &exact.kind {
+                        Kind::Ship(ship) => ship.sway.at_time(start_s + at_s),
+                        Kind::Static { .. } => unreachable!(),
+                    };
+                    let Kind::Ship(ship) = &mut exact.kind else { unreachable!() };
+                    let true_motion = ship.motion::<true>(&six);
+                    // Rates are up to 0.5 rad/s, forces 10 m/s²; a phase at 4500 s is good to 1e-12.
+                    assert!((found.rate - true_motion.rate).norm() < 2e-13, "{sample}");
+                    assert!((found.force - true_motion.force).norm() < 2e-12, "{sample}");
+                    assert!((off.rate - true_motion.rate).norm() < 1e-15);
+                    sum.0 += true_motion.rate * *weight;
+                    sum.1 += true_motion.force * *weight;
+                }
+                let (rate, force) = case.integral().unwrap();
+                assert!((rate - sum.0).norm() < 2e-13 * period_s, "{sample}");
+                assert!((force - sum.1).norm() < 2e-12 * period_s, "{sample}");
+            }
         }
     }
 }

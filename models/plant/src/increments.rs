@@ -201,12 +201,14 @@ impl Body {
             let scaled = |(x, w): &(f64, f64)| (middle + 0.5 * width * x, w * width);
             nodes.extend(rule.iter().map(scaled));
         }
-        let nodes_s: Vec<f64> = nodes.iter().map(|node| node.0).collect();
         let gimbal = Gimbal::new(table.rate_radps, table.acceleration_radps2, table.backlash_rad);
         let shaken = extensions.vibration.is_some();
-        let case = Case::new(&config.motion, config.site, period_s, &nodes_s, shaken);
+        let mut case = Case::new(&config.motion, config.site, period_s, &nodes, shaken);
         let lever_arm = (extensions.lever_arm_m != [[0.0; 3]; 3])
             .then(|| extensions.lever_arm_m.map(Vector3::from));
+        if !shaken && lever_arm.is_none() && extensions.time_skew_s == 0.0 {
+            case.open_windows(config.sample_period_ns, &nodes);
+        }
         let constant =
             case.is_static() && extensions.vibration.is_none() && extensions.time_skew_s == 0.0;
         let mut body = Self {
@@ -248,7 +250,7 @@ impl Body {
         self.begin(-(before as f64) * self.period_s);
         for k in -before..0 {
             let start_s = k as f64 * self.period_s;
-            self.case.enter(start_s);
+            self.case.enter(start_s, 0);
             let early = self.integrate(start_s, 0, 0.0, cut_s);
             if k > -before {
                 let mut held = late;
@@ -264,7 +266,7 @@ impl Body {
     pub(crate) fn begin(&mut self, start_s: f64) {
         if self.lever_arm.is_some() {
             let mut before = self.clone();
-            before.case.enter(start_s);
+            before.case.enter(start_s, 0);
             let turn = before.turn(0, 0.0);
             self.rate_at_end = before.feel(start_s, 0.0, Node::Offset(0.0), &turn).0;
         }
@@ -297,7 +299,7 @@ impl Body {
             self.settle(start_ns);
         }
         let start_s = start_ns as f64 * 1e-9;
-        self.case.enter(start_s);
+        self.case.enter(start_s, start_ns);
         let Some(cut_s) = self.lag.as_ref().map(|lag| lag.cut_s) else {
             return self.integrate(start_s, start_ns, 0.0, self.period_s);
         };
@@ -374,13 +376,16 @@ impl Body {
 
     /// Integrals over a whole interval in which both gimbals rest: those of the case, turned once.
     fn integrate_resting(&mut self, turn: &Turn) -> Increments {
-        let (mut rate, mut force) = (Vector3::zeros(), Vector3::zeros());
-        for index in 0..self.nodes.len() {
-            let case = self.case.motion(Node::Regular(index));
-            let weight = self.nodes[index].1;
-            rate += case.rate * weight;
-            force += case.force * weight;
-        }
+        let (rate, force) = self.case.integral().unwrap_or_else(|| {
+            let (mut rate, mut force) = (Vector3::zeros(), Vector3::zeros());
+            for index in 0..self.nodes.len() {
+                let case = self.case.motion(Node::Regular(index));
+                let weight = self.nodes[index].1;
+                rate += case.rate * weight;
+                force += case.force * weight;
+            }
+            (rate, force)
+        });
         let into_block = |v: &Vector3<f64>| {
             rz_t(&ry_t(&rx_t(v, turn.roll_sincos), self.tilt_sincos), turn.azimuth_sincos)
         };

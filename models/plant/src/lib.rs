@@ -27,11 +27,13 @@ mod plant;
 mod processes;
 mod reference;
 pub mod sea;
+mod ship;
 mod sway;
 pub mod table;
 mod trig;
 mod validate;
 mod vibration;
+mod window;
 
 pub use octant_sample::Truth;
 pub use plant::{Plant, STATE_FORMAT, Step};

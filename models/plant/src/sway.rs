@@ -124,22 +124,51 @@ impl Sway {
             }
             ends[dof] = components.len();
         }
-        let mut to_node = Vec::with_capacity(nodes_s.len() * components.len());
-        for node in nodes_s {
-            for component in &components {
-                to_node.push(libm::sincos(component.omega * (node - 0.5 * period_s)));
-            }
-        }
         Self {
+            to_node: to_node(&components, period_s, nodes_s),
             components,
             ends,
-            to_node,
             period_s,
             until_reset: 0,
             start_s: 0.0,
             nodes_s: nodes_s.to_vec(),
             course: None,
         }
+    }
+
+    /// The same sway without a motion from outside, in intervals of another length with other nodes.
+    pub(crate) fn with_nodes(&self, period_s: f64, nodes_s: &[f64]) -> Self {
+        let step = |component: &Component| libm::sincos(component.omega * period_s);
+        let components: Vec<_> =
+            self.components.iter().map(|one| Component { step: step(one), ..*one }).collect();
+        Self {
+            to_node: to_node(&components, period_s, nodes_s),
+            components,
+            ends: self.ends,
+            period_s,
+            until_reset: 0,
+            start_s: 0.0,
+            nodes_s: nodes_s.to_vec(),
+            course: None,
+        }
+    }
+
+    /// Angular frequency of the fastest sinusoid, rad/s.
+    pub(crate) fn fastest_radps(&self) -> f64 {
+        self.components.iter().map(|component| component.omega).fold(0.0, f64::max)
+    }
+
+    /// Goes to the interval that starts at `start_s`, wherever it was.
+    pub(crate) fn enter_anew(&mut self, start_s: f64) {
+        self.until_reset = 0;
+        self.enter(start_s);
+    }
+
+    /// Passes over the interval that starts at `start_s`: nobody asks for its regular nodes.
+    #[inline]
+    pub(crate) fn pass(&mut self, start_s: f64) {
+        self.until_reset = 0;
+        self.start_s = start_s;
     }
 
     /// Goes to the interval that starts at `start_s`; intervals follow each other.
@@ -206,10 +235,21 @@ impl Sway {
         six
     }
 
+    /// At `offset_s` after the start of an interval that was passed over.
+    pub(crate) fn at_offset_passed(&self, offset_s: f64) -> SixDof {
+        self.at_time(self.start_s + offset_s)
+    }
+
     /// At any time, s since the start, with the motion from outside.
     pub(crate) fn at_time(&self, time_s: f64) -> SixDof {
         self.on_course(self.sum(|_, component| component.phase_at(time_s)), time_s)
     }
+}
+
+/// Sine and cosine of the phase that each component gains from the middle of an interval to each node.
+fn to_node(components: &[Component], period_s: f64, nodes_s: &[f64]) -> Vec<(f64, f64)> {
+    let gained = |node: &f64, one: &Component| libm::sincos(one.omega * (node - 0.5 * period_s));
+    nodes_s.iter().flat_map(|node| components.iter().map(move |one| gained(node, one))).collect()
 }
 
 /// Shortest period of all sinusoids, s.

@@ -1,0 +1,155 @@
+//! Many samples of a ship's motion at once.
+//!
+//! A ship moves slowly against the samples of its instrument. Rate and specific force of the case
+//! are computed at a few nodes of a window and interpolated between them (Lagrange on Chebyshev's
+//! nodes): in a window in which no sinusoid's phase gets further than ±0.17 rad, ten nodes leave
+//! 0.17¹⁰/(10!·2⁹) = 1e-17 of a sinusoid, 1e-14 of its second harmonic and 5e-13 of its third
+//! (Trefethen, 2013, Approximation Theory and Approximation Practice, ch. 8): less than rounding
+//! does to a sample.
+//!
+//! What is in a window depends on its number alone. Who comes to it from elsewhere, with a restored
+//! state, finds the same bits.
+
+use crate::sway::{SixDof, Sway};
+use nalgebra::Vector3;
+
+/// Nodes of a window.
+const NODES: usize = 10;
+/// Phase, rad, that the fastest sinusoid gains in half a window, at most.
+const REACH_RAD: f64 = 0.17;
+/// Most samples of a window: their weights have to stay in the cache.
+const SAMPLES_MAX: f64 = 64.0;
+
+/// Angular rate and specific force, side by side.
+type Six = [f64; 6];
+
+/// Weights of the nodes in a sum of them.
+type Weights = [f64; NODES];
+
+#[derive(Clone, Debug)]
+pub(crate) struct Window {
+    period_ns: u64,
+    length_ns: u64,
+    samples: u64,
+    /// The sway that is asked once for each window.
+    sway: Sway,
+    /// Weights by sample and regular node of it.
+    at_node: Vec<Weights>,
+    /// Weights of the integral, by sample.
+    integral: Vec<Weights>,
+    /// The window that is held.
+    number: u64,
+    values: [Six; NODES],
+    /// The interval that is at hand, and the start of the next one.
+    sample: usize,
+    next_ns: u64,
+}
+
+impl Window {
+    /// A window for samples with some regular nodes (s from the start of their interval, and
+    /// weight); `None` where it would take more work than it saves.
+    pub(crate) fn new(sway: &Sway, period_ns: u64, nodes: &[(f64, f64)]) -> Option<Self> {
+        let period_s = period_ns as f64 * 1e-9;
+        let fastest_radps = sway.fastest_radps();
+        let samples = (2.0 * REACH_RAD / (fastest_radps * period_s)).min(SAMPLES_MAX) as u64;
+        if samples as usize * nodes.len() < 2 * NODES {
+            return None;
+        }
+        let length_s = samples as f64 * period_s;
+        // Of the first kind, on (−1, 1).
+        let chebyshev: Weights = core::array::from_fn(|i| {
+            libm::cos(core::f64::consts::PI * (i as f64 + 0.5) / NODES as f64)
+        });
+        let weights_at = |time_s: f64| -> Weights {
+            let x = 2.0 * time_s / length_s - 1.0;
+            core::array::from_fn(|i| {
+                (0..NODES)
+                    .filter(|k| *k != i)
+                    .map(|k| (x - chebyshev[k]) / (chebyshev[i] - chebyshev[k]))
+                    .product()
+            })
+        };
+        let mut at_node = Vec::new();
+        let mut integral = Vec::new();
+        for sample in 0..samples {
+            let start_s = sample as f64 * period_s;
+            let mut sum = [0.0; NODES];
+            for (at, weight) in nodes {
+                let weights = weights_at(start_s + at);
+                for (sum, w) in sum.iter_mut().zip(&weights) {
+                    *sum += weight * w;
+                }
+                at_node.push(weights);
+            }
+            integral.push(sum);
+        }
+        let nodes_s = chebyshev.map(|x| 0.5 * (x + 1.0) * length_s);
+        Some(Self {
+            period_ns,
+            length_ns: samples * period_ns,
+            samples,
+            sway: sway.with_nodes(length_s, &nodes_s),
+            at_node,
+            integral,
+            number: u64::MAX,
+            values: [[0.0; 6]; NODES],
+            sample: 0,
+            next_ns: u64::MAX,
+        })
+    }
+
+    /// Goes to the interval that starts at `start_ns`. `feel` gives rate and specific force of a
+    /// point of the sway.
+    #[inline]
+    pub(crate) fn enter(
+        &mut self,
+        start_ns: u64,
+        feel: impl Fn(&SixDof) -> (Vector3<f64>, Vector3<f64>),
+    ) {
+        self.sample += 1;
+        if start_ns != self.next_ns || self.sample as u64 == self.samples {
+            self.go_to(start_ns, feel);
+        }
+        self.next_ns = start_ns.wrapping_add(self.period_ns);
+    }
+
+    #[inline(never)]
+    fn go_to(&mut self, start_ns: u64, feel: impl Fn(&SixDof) -> (Vector3<f64>, Vector3<f64>)) {
+        let number = start_ns / self.length_ns;
+        self.sample = (start_ns % self.length_ns / self.period_ns) as usize;
+        if number == self.number {
+            return;
+        }
+        self.number = number;
+        self.sway.enter_anew((number * self.length_ns) as f64 * 1e-9);
+        for (node, values) in self.values.iter_mut().enumerate() {
+            let (rate, force) = feel(&self.sway.at_node(node));
+            *values = [rate.x, rate.y, rate.z, force.x, force.y, force.z];
+        }
+    }
+
+    /// Rate and specific force at a regular node of the interval.
+    #[inline]
+    pub(crate) fn at_node(&self, node: usize) -> (Vector3<f64>, Vector3<f64>) {
+        let nodes = self.at_node.len() / self.integral.len();
+        self.sum(&self.at_node[self.sample * nodes + node])
+    }
+
+    /// Their integrals over the interval.
+    #[inline]
+    pub(crate) fn integral(&self) -> (Vector3<f64>, Vector3<f64>) {
+        self.sum(&self.integral[self.sample])
+    }
+
+    #[inline(always)]
+    fn sum(&self, weights: &Weights) -> (Vector3<f64>, Vector3<f64>) {
+        let mut sum = [0.0; 6];
+        for (values, weight) in self.values.iter().zip(weights) {
+            for (sum, value) in sum.iter_mut().zip(values) {
+                *sum += weight * value;
+            }
+        }
+        let [a, b, c, d, e, f] = sum;
+        (Vector3::new(a, b, c), Vector3::new(d, e, f))
+    }
+}
