@@ -4,7 +4,8 @@
 
 use octant::campaign::case;
 use octant::campaign::plan::{Case, FactorValue, Plan};
-use octant::campaign::report::{Report, discrepancy::Discrepancy};
+use octant::campaign::report::Report;
+use octant::evidence::discrepancy::Discrepancy;
 use octant::report::number::significant;
 use octant::run::Control;
 use octant::score::verdict::Verdict;
@@ -645,10 +646,10 @@ by = \"\"
 
 #[test]
 fn dispositions_of_the_first_version_are_read() {
-    use octant::campaign::report::disposition::Dispositions;
+    use octant::evidence::disposition::Dispositions;
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("dispositions.toml"), FIRST_VERSION).unwrap();
-    let read = Dispositions::read(folder.path()).unwrap();
+    let read = Dispositions::read(&folder.path().join("dispositions.toml")).unwrap();
     let entry = read.of("D-0123456789").unwrap();
     assert_eq!(
         (entry.disposition.as_str(), entry.by.as_str(), entry.cases.len(), entry.is_open()),

@@ -346,7 +346,7 @@ fn two_hundred_runs_of_table_1() {
 }
 
 #[test]
-#[ignore = "minutes: run by tests/run"]
+#[ignore = "minutes: tests/run has the one of Table 1"]
 fn two_hundred_runs_of_a_filter_that_knows_too_little() {
     // Six positions without G, biases that wander, and an attitude that the core finds by itself.
     // What a filter leaves out moves its parameters: the watch over them is off.
@@ -365,7 +365,7 @@ fn two_hundred_runs_of_a_filter_that_knows_too_little() {
 }
 
 #[test]
-#[ignore = "minutes: run by tests/run"]
+#[ignore = "minutes: tests/run has the one of Table 1"]
 fn two_hundred_runs_at_the_dockside() {
     let text = format!(
         "[motion]\nkind = \"dockside\"\n[procedure.calibration]\n{CALIBRATION}\

@@ -2,6 +2,7 @@
 //! test files, to be looked at.
 #![allow(clippy::unwrap_used)]
 
+use octant::evidence::disposition::Dispositions;
 use octant::report::{
     GimbalPoint, HealthEvent, NisPoint, ParameterPoint, Provenance, ReportData, compare as page,
     run,
@@ -195,6 +196,7 @@ fn data() -> ReportData {
             name: "innovation rejected".to_owned(),
             detail: "NIS 31.2 above the gate of 25".to_owned(),
         }],
+        dispositions: Dispositions::default(),
         provenance: Provenance {
             entries: vec![fact("rustc", "1.95.0"), fact("host", "x86_64-unknown-linux-gnu")],
             rerun: "octant run scenario.toml --seed 42".to_owned(),

@@ -1,6 +1,7 @@
 //! Verdicts, the form of the summary, JUnit.
 #![allow(clippy::unwrap_used)]
 
+use octant::evidence::discrepancy::of_run;
 use octant::run::{Control, Recording, assemble, run_method};
 use octant::scenario::{Method, Scenario};
 use octant::score::junit::junit;
@@ -13,7 +14,7 @@ use octant::score::verdict::{
     Comparison, Finding, NO_REQUIREMENT, Requirement, Verdict, evaluate, judge, measure,
 };
 use proptest::prelude::*;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 fn summary() -> Summary {
     let score = ErrorScore { max: 0.75, rms: 0.4, r#final: -0.6, slope_per_day: None };
@@ -181,7 +182,14 @@ fn a_refused_calibration_fails_and_a_silent_fault_is_inconclusive() {
     assert_eq!(refused.reasons[0], "calibration of eight refused: mean NIS 40 is above 9");
 
     let mut silent = summary();
-    silent.faults.push(FaultResult {
+    silent.faults.push(self::silent());
+    judge(&mut silent, &[], &[]).unwrap();
+    assert_eq!(silent.verdict, Verdict::Inconclusive);
+}
+
+/// A fault that never fired.
+fn silent() -> FaultResult {
+    FaultResult {
         id: "spike".to_owned(),
         kind: "spike".to_owned(),
         armed: true,
@@ -192,9 +200,49 @@ fn a_refused_calibration_fails_and_a_silent_fault_is_inconclusive() {
         firings: 0,
         clean_crc32: None,
         faulted_crc32: None,
-    });
-    judge(&mut silent, &[], &[]).unwrap();
-    assert_eq!(silent.verdict, Verdict::Inconclusive);
+    }
+}
+
+/// What isn't a pass is found, all of it and nothing twice; and the same run has the same ids.
+#[test]
+fn discrepancies_of_a_run_are_its_reasons() {
+    let mut told = summary();
+    told.calibration.as_mut().unwrap().refused = Some("mean NIS 40 is above 9".to_owned());
+    told.faults.push(FaultResult { id: "spike-1".to_owned(), ..silent() });
+    let asked = [
+        requirement("navigation.longitude_error_arcmin.max", Comparison::AtMost, 0.5),
+        requirement("navigation.nothing", Comparison::AtMost, 0.5),
+        requirement("navigation.radial_error_nmi.max", Comparison::AtMost, 5.0),
+    ];
+    let late = Finding { verdict: Verdict::Inconclusive, reason: "7 overruns".to_owned() };
+    judge(&mut told, &asked, &[late]).unwrap();
+    let found = of_run(&told);
+    let mut whats: Vec<&str> = found.iter().map(|found| found.what.as_str()).collect();
+    let mut reasons: Vec<&str> = told.reasons.iter().map(String::as_str).collect();
+    whats.sort_unstable();
+    reasons.sort_unstable();
+    assert_eq!((whats.len(), &whats), (5, &reasons));
+    let kinds: Vec<_> = found.iter().map(|found| (found.kind, found.verdict)).collect();
+    let (fail, open) = (Verdict::Fail, Verdict::Inconclusive);
+    let expected = [
+        ("requirement", fail),
+        ("requirement", open),
+        ("refused", fail),
+        ("fault", open),
+        ("run", open),
+    ];
+    assert_eq!(kinds, expected);
+    let ids: BTreeSet<&str> = found.iter().map(|found| found.id.as_str()).collect();
+    assert_eq!(ids.len(), 5);
+    assert_eq!(of_run(&told), found);
+    told.seed += 1;
+    assert!(of_run(&told).iter().all(|found| !ids.contains(found.id.as_str())));
+
+    // A bench that failed is all there is; a run that passes has none.
+    let gone = Finding { verdict: Verdict::Error, reason: "the device went away".to_owned() };
+    let found = of_run(&judged(&[], &[gone]));
+    assert_eq!((found.len(), found[0].verdict, found[0].kind), (1, Verdict::Error, "run"));
+    assert_eq!(of_run(&judged(&[], &[])), []);
 }
 
 #[test]

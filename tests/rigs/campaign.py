@@ -215,12 +215,62 @@ def evidence(work):
     good("all is well again", octant("verify", run, "--key", keys[0]))
 
 
+SHORT = """
+schema = 1
+title = "short"
+replicates = 12
+
+[[scenarios]]
+id = "static"
+file = "static.toml"
+set = { "procedure.calibration.duration" = "10 min", "procedure.navigation.duration" = "10 min", "faults" = [] }
+"""
+
+
+def full_disk(work):
+    """A disk that fills in the middle of a campaign: an error in words, no result lost, none made up."""
+    mount = work / "disk"
+    mount.mkdir()
+
+    def with_options(options):
+        return subprocess.run(["mount", "-t", "tmpfs", "-o", options, "tmpfs", mount], capture_output=True, text=True)
+
+    mounted = with_options("size=160k")
+    if mounted.returncode != 0:
+        print(f"SKIP disk full: no tmpfs can be mounted here: {mounted.stderr.strip()}")
+        return
+    try:
+        file = work / "campaigns" / "short.toml"
+        file.write_text(SHORT)
+        full, free = mount / "short", work / "short"
+        for folder in [full, free]:
+            good(f"planned into {folder.name}", octant("campaign", "plan", file, "--out", folder))
+        result = octant("campaign", "run", full)
+        check("disk full: status 4, named", result.returncode == 4 and "No space left" in result.stderr,
+              f"status {result.returncode}: {result.stderr}")
+        kept = {path: path.read_bytes() for path in full.glob("cases/*/*.json")}
+        check("disk full: some cases are kept, each of them whole",
+              0 < len(kept) < 12 and all(json.loads(text)["summary"] for text in kept.values()), len(kept))
+        result = octant("campaign", "merge", full)
+        check("disk full: tables that don't fit are told", result.returncode == 4 and "No space left" in result.stderr,
+              f"status {result.returncode}: {result.stderr}")
+        with_options("remount,size=8m")
+        for folder in [full, free]:
+            good("with room: the rest is run", octant("campaign", "run", folder))
+        check("with room: what was there is untouched", all(path.read_bytes() == text for path, text in kept.items()))
+        expected = merged(free)
+        check("with room: the same bytes", merged(full) == expected, merged(full))
+    finally:
+        subprocess.run(["umount", mount], check=True)
+
+
 with tempfile.TemporaryDirectory() as name:
     work = pathlib.Path(name)
     shutil.copytree(ROOT / "fixtures" / "campaigns", work / "campaigns")
     file = work / "campaigns" / "certification.toml"
     file.write_text(file.read_text().replace("replicates = 84", f"replicates = {REPLICATES}"))
     evidence(work)
+    full_disk(work)
     folder = on_two_processors(work) if COST else in_every_way(work)
     if COST:
         merged(folder)

@@ -13,6 +13,9 @@ use std::time::{Duration, Instant};
 
 /// Exit status of a process that kept its result.
 const KEPT: i32 = 0;
+/// Exit status of a process that has a result and can't keep it (EX_CANTCREAT of sysexits.h): that says
+/// nothing of its case, and the next one would do no better.
+pub const NOT_KEPT: u8 = 73;
 /// How often a process is looked after.
 const LOOK: Duration = Duration::from_millis(5);
 /// Of what a process says on its standard error, so much is kept.
@@ -149,6 +152,9 @@ pub enum ExecuteError {
         /// One of them.
         one: String,
     },
+    /// A process could not keep its result; in its words.
+    #[error("{0}")]
+    NotKept(String),
     /// A result could not be kept, or a process not started.
     #[error("{action} {path}: {source}")]
     System {
@@ -286,6 +292,9 @@ fn one(plan: &Plan, case: &Case, options: &Options<'_>) -> Result<Option<Done>, 
         Ended::Status(status) if status.code() == Some(KEPT) => {
             return Ok(Some(kept(case, options)?));
         }
+        Ended::Status(status) if status.code() == Some(i32::from(NOT_KEPT)) => {
+            return Err(ExecuteError::NotKept(said(&words).to_owned()));
+        }
         Ended::Status(status) => failure(status, &words, plan.limits.memory_mib),
         Ended::TooLong => format!("it took more than its {} s", plan.limits.time_s),
     };
@@ -348,22 +357,26 @@ fn wait(child: &mut Child, limit_s: f64, cancel: &AtomicBool) -> std::io::Result
     }
 }
 
+/// What a process said itself, without the name of the program.
+fn said(words: &str) -> &str {
+    let said = words.lines().map(str::trim).find(|line| !line.is_empty()).unwrap_or("");
+    said.trim_start_matches("octant: ")
+}
+
 /// Why a process kept nothing.
 fn failure(status: ExitStatus, words: &str, memory_mib: u64) -> String {
-    let said = words.lines().map(str::trim).find(|line| !line.is_empty()).unwrap_or("");
+    let said = said(words);
     if words.contains("memory allocation of") {
         return format!("it wanted more than its {memory_mib} MiB of memory");
     }
     match status.code() {
-        // What the program says itself, without its name.
-        Some(_) if !said.is_empty() => said.trim_start_matches("octant: ").to_owned(),
+        Some(_) if !said.is_empty() => said.to_owned(),
         Some(code) => format!("it ended with status {code} and no word"),
         None => format!("it crashed: {status}{}{said}", if said.is_empty() { "" } else { ", " }),
     }
 }
 
-/// Results of other plans would be counted with ours.
-/// That a folder has no results but those of a plan.
+/// That a folder has no results but those of a plan: others would be counted with ours.
 pub(crate) fn refuse_foreign(plan: &Plan, folder: &Path) -> Result<(), ExecuteError> {
     let known: std::collections::HashSet<&str> =
         plan.cases.iter().map(|case| case.id.as_str()).collect();

@@ -27,3 +27,15 @@ pub(crate) fn new_file(folder: &std::path::Path) -> std::io::Result<tempfile::Na
     builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
     builder.tempfile_in(folder)
 }
+
+/// Puts a file in its place in one piece. One that is there already and the same isn't touched.
+pub(crate) fn keep(path: &std::path::Path, bytes: &[u8]) -> std::io::Result<()> {
+    if std::fs::read(path).is_ok_and(|there| there == bytes) {
+        return Ok(());
+    }
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+    let new = new_file(folder.unwrap_or(std::path::Path::new(".")))?;
+    std::fs::write(new.path(), bytes)?;
+    new.persist(path)?;
+    Ok(())
+}

@@ -1,7 +1,11 @@
 //! `octant report`: the report of a finished run, again.
 
 use super::{Failure, print, write};
-use crate::evidence::Manifest;
+use crate::campaign::keep;
+use crate::evidence::discrepancy::counted;
+use crate::evidence::disposition::Dispositions;
+use crate::evidence::manifest::shell_line;
+use crate::evidence::{Manifest, discrepancy};
 use crate::recorder::Event;
 use crate::recorder::reader::{Epochs, Recording};
 use crate::report::{Provenance, ReportData};
@@ -23,6 +27,10 @@ pub(super) struct Arguments {
     /// files are named in its manifest.
     #[arg(long, value_name = "FILE", default_value = "report.html")]
     out: PathBuf,
+    /// What people say of what isn't a pass. New discrepancies are added at the end of the file; what
+    /// stands there stays. A run's own files don't change.
+    #[arg(long, value_name = "FILE")]
+    dispositions: Option<PathBuf>,
 }
 
 pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
@@ -37,6 +45,10 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     let scenario = Scenario::load(&scenario_path, &[]).map_err(Failure::input)?;
     let manifest = Manifest::read(&arguments.run)
         .map_err(|error| Failure::input(format!("failed to {error}")))?;
+    let dispositions = match &arguments.dispositions {
+        None => Dispositions::default(),
+        Some(path) => disposed(&summary, path, &arguments.run)?,
+    };
     let (watcher, _) = watch(&arguments.run.join("recording.mcap"), &scenario)?;
     let data = ReportData {
         truth: truth(&summary),
@@ -46,11 +58,37 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         nis: watcher.nis,
         gimbals: watcher.gimbals,
         provenance: provenance(&manifest),
+        dispositions,
         summary,
     };
-    write(&arguments.out, crate::report::run::render(&data))?;
+    let html = crate::report::run::render(&data);
+    if let Some(path) =
+        arguments.dispositions.as_ref().filter(|_| !data.dispositions.text.is_empty())
+    {
+        keep(path, data.dispositions.text.as_bytes()).map_err(|error| {
+            Failure::bench(format!("failed to write {}: {error}", path.display()))
+        })?;
+        let found = discrepancy::of_run(&data.summary);
+        let open = data.dispositions.open(&found).count();
+        print(&format!("{}, {open} without a disposition\n", counted(found.len())))?;
+    }
+    write(&arguments.out, html)?;
     print(&format!("{}\n", arguments.out.display()))?;
     Ok(Verdict::Pass)
+}
+
+/// What a file says of the discrepancies of a run, with an entry for each that had none.
+fn disposed(summary: &Summary, path: &Path, run: &Path) -> Result<Dispositions, Failure> {
+    let found = discrepancy::of_run(summary);
+    let said =
+        Dispositions::read(path).map_err(|error| Failure::input(format!("failed to {error}")))?;
+    if found.is_empty() && said.text.is_empty() {
+        return Ok(said);
+    }
+    let [run, file] = [run, path].map(|path| path.display().to_string());
+    let again = shell_line(&["octant".into(), "report".into(), run, "--dispositions".into(), file]);
+    said.with(&found, path, "this run", &again)
+        .map_err(|error| Failure::input(format!("failed to {error}")))
 }
 
 /// Feeds a recording to a watcher. With the watcher comes the recording's last event.

@@ -1,6 +1,8 @@
-//! What a run leaves behind as evidence: its folder, written in one piece, the manifest, and
-//! its signature.
+//! What a run leaves behind as evidence: its folder, written in one piece, the manifest, its
+//! signature, and what isn't a pass with what people say of it.
 
+pub mod discrepancy;
+pub mod disposition;
 mod fmus;
 pub mod folder;
 pub mod manifest;

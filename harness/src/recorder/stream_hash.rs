@@ -11,8 +11,10 @@ use octant_sample::{Aiding, Output, Sample};
 
 /// Bytes gathered before the hash function is called: BLAKE3 is several times faster on pieces of
 /// many kilobytes (it hashes up to sixteen blocks of 1 KiB side by side) than on the 50 bytes of a
-/// sample; and few enough to be in the cache still.
-const GATHER_BYTES: usize = 32 * 1024;
+/// sample. A power of two, and never more or less: a piece is then a whole subtree of its own.
+const PIECE_BYTES: usize = 64 * 1024;
+/// Room for what reaches into the next piece.
+const GATHER_BYTES: usize = PIECE_BYTES + 1024;
 
 /// Hash of a stream so far.
 #[derive(Debug)]
@@ -60,23 +62,26 @@ impl StreamHash {
     /// The hash of everything added, 64 hexadecimal digits.
     #[must_use]
     pub fn hex(&mut self) -> String {
-        self.drain();
+        self.hasher.update(&self.gathered);
+        self.gathered.clear();
         self.hasher.finalize().to_hex().to_string()
     }
 
     #[inline]
     fn put<const N: usize>(&mut self, write: impl FnOnce(&mut [u8; N])) {
-        if self.gathered.len() + N > GATHER_BYTES {
-            self.drain();
-        }
+        const { assert!(N <= GATHER_BYTES - PIECE_BYTES) }
         let mut bytes = [0; N];
         write(&mut bytes);
         self.gathered.extend_from_slice(&bytes);
+        if self.gathered.len() >= PIECE_BYTES {
+            self.hash_piece();
+        }
     }
 
-    fn drain(&mut self) {
-        self.hasher.update(&self.gathered);
-        self.gathered.clear();
+    #[inline(never)]
+    fn hash_piece(&mut self) {
+        self.hasher.update(&self.gathered[..PIECE_BYTES]);
+        self.gathered.drain(..PIECE_BYTES);
     }
 }
 

@@ -12,6 +12,7 @@ pub mod campaign;
 pub mod chart;
 pub mod compare;
 pub mod counterfactual;
+mod discrepancies;
 mod drift;
 pub mod fault_picture;
 pub mod number;

@@ -7,6 +7,8 @@ use super::drift::drift;
 use super::number;
 use super::pacing::pacing;
 use super::page::{badge, page};
+use crate::evidence::discrepancy;
+use crate::evidence::disposition::Dispositions;
 use crate::score::summary::{Calibration, HeightChannel, Summary};
 use crate::score::verdict::Verdict;
 use maud::{Markup, html};
@@ -31,6 +33,8 @@ pub struct ReportData {
     pub gimbals: Vec<GimbalPoint>,
     /// Health events, in order of time.
     pub events: Vec<HealthEvent>,
+    /// What people say of what isn't a pass.
+    pub dispositions: Dispositions,
     /// Where the numbers come from.
     pub provenance: Provenance,
 }
@@ -105,6 +109,7 @@ pub fn render(data: &ReportData) -> String {
         (gimbals(data))
         (events(data))
         (pacing(summary))
+        (discrepancies(data))
         (provenance(data))
     };
     page(&format!("{}: {}", summary.scenario, summary.verdict.name()), &body)
@@ -134,6 +139,18 @@ fn header(data: &ReportData) -> Markup {
                 @for (name, value) in &data.facts { div { dt { (name) } dd { (value) } } }
             }
         }
+    }
+}
+
+/// What isn't a pass; a run that passes has none, and shows none.
+fn discrepancies(data: &ReportData) -> Markup {
+    let all = discrepancy::of_run(&data.summary);
+    if all.is_empty() && data.dispositions.entries.is_empty() {
+        return html! {};
+    }
+    html! {
+        h2 { "Discrepancies" }
+        (super::discrepancies::table(&all, &data.dispositions, &|_| html! {}))
     }
 }
 

@@ -3,6 +3,7 @@
 use super::drive::Ended;
 use super::method::MethodRun;
 use super::twin::difference;
+use crate::evidence::disposition::Dispositions;
 use crate::report::counterfactual::in_words;
 use crate::report::{Provenance, ReportData, number};
 use crate::scenario::{Endpoint, Motion, Realtime, Scenario, Source};
@@ -88,6 +89,7 @@ pub fn assemble(
         convergence: primary.watcher.convergence,
         nis: primary.watcher.nis,
         gimbals: primary.watcher.gimbals,
+        dispositions: Dispositions::default(),
         provenance: Provenance::default(),
     };
     Ok(Run { summary, report })

@@ -1,6 +1,6 @@
 //! Verdicts: pass < inconclusive < fail < error, and the worst wins.
 
-use super::summary::Summary;
+use super::summary::{FaultResult, Summary};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
@@ -147,6 +147,19 @@ impl RequirementResult {
         )
     }
 
+    /// What is told of it where it isn't a pass.
+    #[must_use]
+    pub fn told(&self) -> Option<String> {
+        match self.verdict {
+            Verdict::Pass => None,
+            Verdict::Fail | Verdict::Error => Some(self.sentence()),
+            Verdict::Inconclusive => {
+                let reason = self.reason.as_deref().unwrap_or("nothing shown");
+                Some(format!("{}: {reason}", self.id))
+            }
+        }
+    }
+
     /// Value and limit as people read them: six digits, or all of them where six look alike.
     #[must_use]
     pub fn figures(&self) -> (String, String) {
@@ -171,6 +184,26 @@ pub struct Finding {
 
 /// Label of a run that passes because nothing was asked of it.
 pub const NO_REQUIREMENT: &str = "no requirement checked";
+
+/// What is told of a calibration that was refused.
+pub(crate) fn refusal(method: &str, reason: &str) -> String {
+    format!("calibration of {method} refused: {reason}")
+}
+
+/// Faults of both methods that never fired, with what is told of them.
+pub(crate) fn unfired(summary: &Summary) -> impl Iterator<Item = (&FaultResult, String)> {
+    let primary = summary.faults.iter().map(|fault| (fault, String::new()));
+    let baseline = summary.baseline.iter().flat_map(|baseline| {
+        baseline.faults.iter().map(|fault| (fault, format!(" in {}", baseline.label)))
+    });
+    primary.chain(baseline).filter(|(fault, _)| !fault.fired).map(|(fault, place)| {
+        let why = match fault.firings {
+            0 => "its trigger never came true",
+            _ => "it set in and altered nothing",
+        };
+        (fault, format!("fault {} never fired{place}: {why}", fault.id))
+    })
+}
 
 /// Holds a summary against its requirements, and sets `requirements`, `verdict` and `reasons`.
 ///
@@ -201,34 +234,18 @@ pub fn judge(
             if primary {
                 verdict = verdict.worst(Verdict::Fail);
             }
-            reasons.push(format!("calibration of {method} refused: {reason}"));
+            reasons.push(refusal(method, reason));
         }
     }
-    let primary = summary.faults.iter().map(|fault| (fault, String::new()));
-    let baseline = summary.baseline.iter().flat_map(|baseline| {
-        baseline.faults.iter().map(|fault| (fault, format!(" in {}", baseline.label)))
-    });
-    for (fault, place) in primary.chain(baseline).filter(|(fault, _)| !fault.fired) {
+    for (_, reason) in unfired(summary) {
         verdict = verdict.worst(Verdict::Inconclusive);
-        let why = match fault.firings {
-            0 => "its trigger never came true",
-            _ => "it set in and altered nothing",
-        };
-        reasons.push(format!("fault {} never fired{place}: {why}", fault.id));
+        reasons.push(reason);
     }
     let results: Vec<RequirementResult> =
         requirements.iter().map(|requirement| evaluate(requirement, &document)).collect();
     for result in &results {
         verdict = verdict.worst(result.verdict);
-        match result.verdict {
-            Verdict::Pass => {}
-            Verdict::Fail | Verdict::Error => reasons.push(result.sentence()),
-            Verdict::Inconclusive => reasons.push(format!(
-                "{}: {}",
-                result.id,
-                result.reason.as_deref().unwrap_or("nothing shown")
-            )),
-        }
+        reasons.extend(result.told());
     }
     if requirements.is_empty() {
         reasons.push(NO_REQUIREMENT.to_owned());

@@ -116,6 +116,8 @@ pub(crate) struct Body {
     pub(crate) rate_at_end: Vector3<f64>,
     lag: Option<Lag>,
     constant: bool,
+    /// Sine and cosine of roll and azimuth while both gimbals rest, once an interval has been.
+    resting_sincos: Option<[(f64, f64); 2]>,
     /// Faults that have not ended.
     pub(crate) registry: Registry,
     /// What faults move at present.
@@ -141,6 +143,7 @@ impl octant_state::State for Body {
             rate_at_end,
             lag,
             constant: _,
+            resting_sincos: _,
             registry,
             active,
         } = self;
@@ -168,6 +171,7 @@ impl octant_state::State for Body {
         from.part("lag", &mut self.lag)?;
         self.registry = from.value("registry")?;
         self.active = from.value("active")?;
+        self.look_again();
         if self.active.is_some() {
             // How finely to integrate follows from what is active.
             self.plan();
@@ -228,6 +232,7 @@ impl Body {
             rate_at_end: Vector3::zeros(),
             lag: None,
             constant,
+            resting_sincos: None,
             registry: Registry::default(),
             active: None,
         };
@@ -272,12 +277,20 @@ impl Body {
         }
     }
 
+    /// What was known of gimbals at rest is not any more.
+    pub(crate) fn look_again(&mut self) {
+        self.resting_sincos = None;
+    }
+
     /// New set points, from `now_ns` on. True if a gimbal got a new one.
     #[inline]
     pub(crate) fn command(&mut self, command: &GimbalCommand, now_ns: u64) -> bool {
         let azimuth = self.azimuth.command(command.target.azimuth, now_ns);
         let roll = self.roll.command(command.target.roll, now_ns);
         let any = azimuth || roll;
+        if any {
+            self.look_again();
+        }
         if any && (self.active.is_some() || !self.registry.is_empty()) {
             self.set_out([azimuth, roll], now_ns);
         }
@@ -296,6 +309,7 @@ impl Body {
     /// The increments of the sample whose interval starts at `start_ns`.
     pub(crate) fn increments(&mut self, start_ns: u64) -> Increments {
         if self.active.is_some() {
+            self.look_again();
             self.settle(start_ns);
         }
         let start_s = start_ns as f64 * 1e-9;
@@ -326,6 +340,10 @@ impl Body {
         if self.active.is_some() {
             return self.integrate_disturbed(start_ns, from_s, to_s);
         }
+        let is_whole = from_s == 0.0 && to_s == self.period_s;
+        if let (true, Some(sincos)) = (is_whole, self.resting_sincos) {
+            return self.integrate_resting(sincos);
+        }
         let mut cuts = [to_s; CUTS_MAX];
         cuts[0] = from_s;
         let mut count = 1;
@@ -347,10 +365,14 @@ impl Body {
             let turn = self.turn(start_ns, from_s);
             let weight = to_s - from_s;
             self.add_node(&mut sum, start_s, from_s, Node::Offset(from_s), weight, &turn);
-        } else if count == 1 && from_s == 0.0 && to_s == self.period_s {
+        } else if count == 1 && is_whole {
             let turn = self.turn(start_ns, 0.5 * self.period_s);
             if turn.rests() && self.vibration.is_none() && self.lever_arm.is_none() {
-                return self.integrate_resting(&turn);
+                let sincos = [turn.roll_sincos, turn.azimuth_sincos];
+                if self.azimuth.rests(start_ns) && self.roll.rests(start_ns) {
+                    self.resting_sincos = Some(sincos);
+                }
+                return self.integrate_resting(sincos);
             }
             for index in 0..self.nodes.len() {
                 let (at, weight) = self.nodes[index];
@@ -375,7 +397,7 @@ impl Body {
     }
 
     /// Integrals over a whole interval in which both gimbals rest: those of the case, turned once.
-    fn integrate_resting(&mut self, turn: &Turn) -> Increments {
+    fn integrate_resting(&mut self, [roll, azimuth]: [(f64, f64); 2]) -> Increments {
         let (rate, force) = self.case.integral().unwrap_or_else(|| {
             let (mut rate, mut force) = (Vector3::zeros(), Vector3::zeros());
             for index in 0..self.nodes.len() {
@@ -386,9 +408,7 @@ impl Body {
             }
             (rate, force)
         });
-        let into_block = |v: &Vector3<f64>| {
-            rz_t(&ry_t(&rx_t(v, turn.roll_sincos), self.tilt_sincos), turn.azimuth_sincos)
-        };
+        let into_block = |v: &Vector3<f64>| rz_t(&ry_t(&rx_t(v, roll), self.tilt_sincos), azimuth);
         Increments { delta_theta: into_block(&rate), delta_velocity: into_block(&force) }
     }
 

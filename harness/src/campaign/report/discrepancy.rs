@@ -1,69 +1,13 @@
-//! Discrepancies: everything in a campaign that isn't a pass, each with an id that a person can refer to.
-//!
-//! An id is made of what the discrepancy is, and of its cases: the same one has the same id in every
-//! report, and one more case that fails makes another one, which nobody has disposed of yet.
+//! Everything in a campaign that isn't a pass.
 
 use super::combination::Combination;
 use super::requirement;
 use super::rows::{Outcome, Row};
 use crate::campaign::plan::Plan;
 use crate::campaign::status::Status;
+use crate::evidence::discrepancy::{Discrepancy, Subject};
 use crate::score::verdict::Verdict;
-use serde::Serialize;
 use std::collections::BTreeMap;
-
-/// Something that isn't a pass.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-pub struct Discrepancy {
-    /// Its id.
-    pub id: String,
-    /// What kind of thing it is.
-    pub kind: &'static str,
-    /// What it comes to.
-    pub verdict: Verdict,
-    /// The requirement that it is about, where it is about one.
-    pub requirement: Option<String>,
-    /// What it is, in plain words.
-    pub what: String,
-    /// Its cases, in the order of the plan.
-    pub cases: Vec<String>,
-}
-
-/// What makes an id, besides the kind and the cases.
-struct Subject<'a> {
-    kind: &'static str,
-    verdict: Verdict,
-    requirement: Option<&'a str>,
-    /// Where it is, or which one.
-    of: &'a str,
-}
-
-impl Discrepancy {
-    /// One whose cases belong to it.
-    fn of_cases(subject: &Subject<'_>, what: String, cases: Vec<String>) -> Self {
-        let content = serde_json::json!([
-            subject.kind,
-            subject.verdict.name(),
-            subject.requirement,
-            subject.of,
-            cases
-        ]);
-        let hash = blake3::hash(content.to_string().as_bytes()).to_hex();
-        Self {
-            id: format!("D-{}", &hash.as_str()[..10]),
-            kind: subject.kind,
-            verdict: subject.verdict,
-            requirement: subject.requirement.map(str::to_owned),
-            what,
-            cases,
-        }
-    }
-
-    /// One that is of no cases, or stays the same while they change.
-    fn whole(subject: &Subject<'_>, what: String) -> Self {
-        Self::of_cases(subject, what, Vec::new())
-    }
-}
 
 /// Everything that isn't a pass. `notes` is what else was found wrong, in words.
 pub(super) fn find(

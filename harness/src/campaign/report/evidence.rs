@@ -1,11 +1,10 @@
 //! The folder of a campaign as evidence: what it was made of, what came of it, and a manifest with the
 //! hash of every file, signed as that of a run.
 
-use super::{Report, ReportError, disposition, junit::junit};
-use crate::campaign::new_file;
+use super::{Report, ReportError, junit::junit};
 use crate::evidence::manifest::{CampaignFacts, shell_line};
 use crate::evidence::signature::{self, Key};
-use crate::evidence::{Manifest, RunFacts, sha256};
+use crate::evidence::{Manifest, RunFacts, disposition, sha256};
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -37,7 +36,13 @@ pub fn write(
     let discrepancies = &report.statistics.discrepancies;
     // Where there never was one, there is nothing to write.
     if !(discrepancies.is_empty() && report.dispositions.text.is_empty()) {
-        report.dispositions = report.dispositions.with(discrepancies, &path)?;
+        let dispositions = &report.dispositions;
+        report.dispositions = dispositions.with(
+            discrepancies,
+            &path,
+            "this campaign",
+            "octant campaign report DIR",
+        )?;
     }
     let xml = junit(report)
         .map_err(|error| ReportError::Format { what: JUNIT, reason: error.to_string() })?;
@@ -148,13 +153,6 @@ fn inputs(report: &mut Report<'_>, folder: &Path) -> Result<(), ReportError> {
 
 /// Writes a file whole or not at all, and only where it changes.
 fn keep(path: &Path, bytes: &[u8]) -> Result<(), ReportError> {
-    if std::fs::read(path).is_ok_and(|there| there == bytes) {
-        return Ok(());
-    }
     let wrong = |source| ReportError::System { action: "write", path: path.to_owned(), source };
-    let folder = path.parent().unwrap_or(Path::new("."));
-    let new = new_file(folder).map_err(wrong)?;
-    std::fs::write(new.path(), bytes).map_err(wrong)?;
-    new.persist(path).map_err(|error| wrong(error.error))?;
-    Ok(())
+    crate::campaign::keep(path, bytes).map_err(wrong)
 }

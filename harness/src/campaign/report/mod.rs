@@ -7,7 +7,6 @@
 mod about;
 pub mod combination;
 pub mod discrepancy;
-pub mod disposition;
 pub mod evidence;
 pub mod figures;
 pub mod junit;
@@ -21,11 +20,11 @@ use super::plan::{Plan, PlanError};
 use super::status::{self, Status};
 use super::trace::trace;
 use crate::evidence::ManifestError;
+use crate::evidence::discrepancy::Discrepancy;
+use crate::evidence::disposition::{self, DispositionError, Dispositions};
 use crate::observe::against::{Against, Selection, against};
 use crate::score::verdict::Verdict;
 use combination::Combination;
-use discrepancy::Discrepancy;
-use disposition::Dispositions;
 use figures::{CombinationFigures, OutlierFigures, ScenarioFigures};
 use octant_requirements::requirement::Requirements;
 use octant_requirements::trace::Trace;
@@ -84,6 +83,9 @@ pub enum ReportError {
         /// Why it can't be.
         reason: String,
     },
+    /// What people say of the discrepancies can't be read.
+    #[error(transparent)]
+    Dispositions(#[from] DispositionError),
     /// The manifest can't be written.
     #[error(transparent)]
     Manifest(#[from] ManifestError),
@@ -170,7 +172,7 @@ impl<'a> Report<'a> {
     /// If something in the folder can't be read, or isn't of the plan.
     pub fn of(plan: &'a Plan, folder: &Path) -> Result<Self, ReportError> {
         refuse_foreign(plan, folder)?;
-        let dispositions = Dispositions::read(folder)?;
+        let dispositions = Dispositions::read(&folder.join(disposition::FILE_NAME))?;
         // Its message begins with "failed to".
         let words = |reason: String| {
             let reason = reason.strip_prefix("failed to ").unwrap_or(&reason);
@@ -240,17 +242,13 @@ impl<'a> Report<'a> {
     /// Discrepancies of which nothing is said yet.
     #[must_use]
     pub fn open(&self) -> usize {
-        let open = |found: &&Discrepancy| {
-            self.dispositions.of(&found.id).is_none_or(disposition::Entry::is_open)
-        };
-        self.statistics.discrepancies.iter().filter(open).count()
+        self.dispositions.open(&self.statistics.discrepancies).count()
     }
 
     /// Entries whose discrepancy doesn't occur any more.
     #[must_use]
     pub fn gone(&self) -> Vec<&disposition::Entry> {
-        let occurs = |id: &str| self.statistics.discrepancies.iter().any(|found| found.id == id);
-        self.dispositions.entries.iter().filter(|entry| !occurs(&entry.id)).collect()
+        self.dispositions.gone(&self.statistics.discrepancies)
     }
 
     /// Why the verdict is what it is.

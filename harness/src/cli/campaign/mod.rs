@@ -5,7 +5,7 @@ pub(super) mod run;
 
 use super::{Failure, print, print_json, write};
 use crate::campaign::case::{self, Job};
-use crate::campaign::execute::{ExecuteError, Shard};
+use crate::campaign::execute::{ExecuteError, NOT_KEPT, Shard};
 use crate::campaign::merge::{self, MergeError};
 use crate::campaign::plan::{FILE_NAME, Plan, PlanError, Written};
 use crate::campaign::trace::requirements_of;
@@ -161,6 +161,7 @@ impl From<ExecuteError> for Failure {
         match error {
             ExecuteError::Plan(error) => error.into(),
             ExecuteError::Foreign { .. } => Self::input(error).failed(),
+            ExecuteError::NotKept(_) => Self::bench(error),
             ExecuteError::System { .. } => Self::bench(error).failed(),
         }
     }
@@ -294,7 +295,8 @@ fn one() -> Result<Verdict, Failure> {
     let json = result.to_json().map_err(|error| Failure::bench(error).failed())?;
     case::keep(&job.folder, &job.case.id, json.as_bytes()).map_err(|error| {
         let path = case::file(&job.folder, &job.case.id);
-        Failure::bench(format!("failed to write {}: {error}", path.display()))
+        let message = format!("failed to write {}: {error}", path.display());
+        Failure { status: NOT_KEPT, message }
     })?;
     Ok(Verdict::Pass)
 }

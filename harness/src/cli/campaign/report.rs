@@ -4,6 +4,8 @@ use super::read;
 use crate::campaign::report::{Report, ReportError, evidence};
 use crate::cli::verify::signing_key;
 use crate::cli::{Failure, print, write};
+use crate::evidence::discrepancy::counted;
+use crate::evidence::disposition::DispositionError;
 use crate::score::verdict::Verdict;
 use clap::Args;
 use std::path::PathBuf;
@@ -39,9 +41,10 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     let found = report.statistics.discrepancies.len();
     let verdict = report.statistics.verdict;
     print(&format!(
-        "{}: {}\n  {found} discrepancies, {} without a disposition\n{}\n",
+        "{}: {}\n  {}, {} without a disposition\n{}\n",
         plan.title,
         verdict.name(),
+        counted(found),
         report.open(),
         path.display()
     ))?;
@@ -53,9 +56,12 @@ impl From<ReportError> for Failure {
         match error {
             ReportError::Plan(error) => error.into(),
             ReportError::Foreign(error) => error.into(),
-            ReportError::Form { .. } => Self::input(error).failed(),
+            ReportError::Form { .. } | ReportError::Dispositions(DispositionError::Form { .. }) => {
+                Self::input(error).failed()
+            }
             ReportError::Result(_)
             | ReportError::System { .. }
+            | ReportError::Dispositions(DispositionError::System { .. })
             | ReportError::Format { .. }
             | ReportError::Manifest(_) => Self::bench(error).failed(),
         }

@@ -3,8 +3,8 @@
 use super::{case_link, heading};
 use crate::campaign::report::Report;
 use crate::campaign::report::rows::{Outcome, Row};
+use crate::report::discrepancies::table;
 use crate::report::number;
-use crate::report::page::badge;
 use maud::{Markup, html};
 
 /// Cases of a kind that are shown.
@@ -94,52 +94,9 @@ fn cases(
 
 /// Everything that isn't a pass, and what is said of it.
 pub(super) fn discrepancies(report: &Report<'_>, beside: bool) -> Markup {
-    let all = &report.statistics.discrepancies;
-    let gone = report.gone();
     html! {
         (heading("discrepancies"))
-        @if all.is_empty() {
-            p { "There is none." }
-        } @else {
-            p { (all.len()) " in all, " strong { (report.open()) " without a disposition" } "." }
-            p.hint { "What is said of them stands in dispositions.toml, which people fill in. It changes no verdict. One \
-                more case makes another discrepancy, of which nothing is said yet." }
-            table.discrepancies {
-                thead { tr { th { "Discrepancy" } th { "What" } th.n { "Verdict" } th style="padding-left:14px" { "Disposition" } } }
-                tbody { @for found in all {
-                    @let entry = report.dispositions.of(&found.id);
-                    tr id=(found.id) {
-                        td { strong.mono { (found.id) }
-                            @if let Some(requirement) = &found.requirement { div.reason { (requirement) } } }
-                        td { (found.what)
-                            @if !found.cases.is_empty() { (list(&found.cases, beside)) } }
-                        td.n { (badge(found.verdict)) }
-                        td style="padding-left:14px" {
-                            @match entry.filter(|entry| !entry.is_open()) {
-                                Some(entry) => {
-                                    (entry.disposition.trim())
-                                    @if !entry.by.trim().is_empty() { div.reason { (entry.by.trim()) } }
-                                }
-                                None => strong.over { "open" },
-                            }
-                        }
-                    }
-                } }
-            }
-        }
-        @if !gone.is_empty() {
-            h3 { "No longer occurring" }
-            p.hint { "Entries of dispositions.toml of which these results show nothing." }
-            table {
-                thead { tr { th { "Discrepancy" } th { "What it was" } th { "Disposition" } } }
-                tbody { @for entry in gone { tr {
-                    td { span.mono { (entry.id) } div.reason { "not occurring" } }
-                    td { (entry.what) }
-                    td { @if entry.is_open() { span.soft { "none" } } @else { (entry.disposition.trim()) }
-                        @if !entry.by.trim().is_empty() { div.reason { (entry.by.trim()) } } }
-                } } }
-            }
-        }
+        (table(&report.statistics.discrepancies, &report.dispositions, &|cases| list(cases, beside)))
     }
 }
 

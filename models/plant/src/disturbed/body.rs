@@ -43,6 +43,7 @@ impl Body {
 
     /// A disturbance sets in; that of temperature is the sensors'.
     pub(crate) fn disturb(&mut self, handle: u32, disturbance: &Disturbance, now_ns: u64) {
+        self.look_again();
         let span = Span::from(handle, now_ns);
         match disturbance {
             Disturbance::Vibration { lines, edge_s } => {
@@ -82,6 +83,7 @@ impl Body {
 
     /// The disturbance of a handle ends.
     pub(crate) fn calm(&mut self, handle: u32, now_ns: u64) {
+        self.look_again();
         match self.registry.leave(handle) {
             Some(Lasting::LeverArm(_)) => self.set_lever_arms(now_ns),
             Some(Lasting::Gimbal(gimbal, action)) => self.calm_gimbal(gimbal, action, now_ns),

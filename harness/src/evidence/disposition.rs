@@ -3,24 +3,48 @@
 //! Octant adds entries at the end of the file, and changes nothing that stands in it. One whose
 //! discrepancy is gone stays.
 
-use super::ReportError;
 use super::discrepancy::Discrepancy;
 use serde::Deserialize;
 use std::collections::BTreeSet;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Name of the file in the folder of a campaign.
 pub const FILE_NAME: &str = "dispositions.toml";
 /// Version of its form.
 pub const SCHEMA: u32 = 1;
 
-/// The head of a new file.
-const HEAD: &str = "\
-# Discrepancies of this campaign, and what is said of them. Fill in disposition (why it is acceptable, or
-# what is done about it) and by, and make the report again: `octant campaign report DIR`. Octant adds
+/// Why there are no dispositions.
+#[derive(Debug, thiserror::Error)]
+pub enum DispositionError {
+    /// The file can't be read.
+    #[error("read {path}: {source}")]
+    System {
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        source: std::io::Error,
+    },
+    /// The file isn't what it should be.
+    #[error("read {path}: {reason}")]
+    Form {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it.
+        reason: String,
+    },
+}
+
+/// The head of a new file on something whose report a command makes again.
+fn head(of: &str, command: &str) -> String {
+    format!(
+        "\
+# Discrepancies of {of}, and what is said of them. Fill in disposition (why it is acceptable, or
+# what is done about it) and by, and make the report again: `{command}`. Octant adds
 # what is new at the end and changes nothing else. A disposition changes no verdict.
-schema = 1
-";
+schema = {SCHEMA}
+"
+    )
+}
 
 /// What the file says.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -77,20 +101,20 @@ struct File {
 }
 
 impl Dispositions {
-    /// Reads the file of a campaign; none is an empty one.
+    /// Reads a file; none is an empty one.
     ///
     /// # Errors
     /// If it can't be read, is of another version, or isn't right.
-    pub fn read(folder: &Path) -> Result<Self, ReportError> {
-        let path = folder.join(FILE_NAME);
+    pub fn read(path: &Path) -> Result<Self, DispositionError> {
+        let path = path.to_owned();
         let text = match std::fs::read_to_string(&path) {
             Ok(text) => text,
             Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
                 return Ok(Self::default());
             }
-            Err(source) => return Err(ReportError::System { action: "read", path, source }),
+            Err(source) => return Err(DispositionError::System { path, source }),
         };
-        let entries = parse(&text).map_err(|reason| ReportError::Form { path, reason })?;
+        let entries = parse(&text).map_err(|reason| DispositionError::Form { path, reason })?;
         Ok(Self { text, entries })
     }
 
@@ -100,24 +124,47 @@ impl Dispositions {
         self.entries.iter().find(|entry| entry.id == id)
     }
 
+    /// The discrepancies of which nothing is said yet.
+    pub fn open<'a>(
+        &'a self,
+        discrepancies: &'a [Discrepancy],
+    ) -> impl Iterator<Item = &'a Discrepancy> {
+        discrepancies.iter().filter(|found| self.of(&found.id).is_none_or(Entry::is_open))
+    }
+
+    /// Entries whose discrepancy doesn't occur any more.
+    #[must_use]
+    pub fn gone(&self, discrepancies: &[Discrepancy]) -> Vec<&Entry> {
+        let occurs = |entry: &&Entry| discrepancies.iter().any(|found| found.id == entry.id);
+        self.entries.iter().filter(|entry| !occurs(entry)).collect()
+    }
+
     /// The file with an entry for each discrepancy that has none: what was there stays to the letter.
+    /// `of` says in the head of a new file whose discrepancies they are, `command` makes the report
+    /// again.
     ///
     /// # Errors
     /// If the file is written in a way that nothing can be added to.
-    pub fn with(&self, discrepancies: &[Discrepancy], path: &Path) -> Result<Self, ReportError> {
+    pub fn with(
+        &self,
+        discrepancies: &[Discrepancy],
+        path: &Path,
+        of: &str,
+        command: &str,
+    ) -> Result<Self, DispositionError> {
         let new: Vec<&Discrepancy> =
             discrepancies.iter().filter(|found| self.of(&found.id).is_none()).collect();
         if new.is_empty() && !self.text.is_empty() {
             return Ok(self.clone());
         }
-        let mut text = if self.text.is_empty() { HEAD.to_owned() } else { self.text.clone() };
+        let mut text = if self.text.is_empty() { head(of, command) } else { self.text.clone() };
         if !text.ends_with('\n') {
             text.push('\n');
         }
         for found in new {
             text += &entry(found);
         }
-        let entries = parse(&text).map_err(|reason| ReportError::Form {
+        let entries = parse(&text).map_err(|reason| DispositionError::Form {
             path: path.to_owned(),
             reason: format!("nothing can be added to it: {reason}; expected [[discrepancies]]"),
         })?;

@@ -1,0 +1,59 @@
+//! What isn't a pass, and what people say of it: a section of the pages of runs and campaigns.
+
+use super::page::badge;
+use crate::evidence::discrepancy::Discrepancy;
+use crate::evidence::disposition::Dispositions;
+use maud::{Markup, html};
+
+/// All discrepancies with their dispositions. `list` shows cases.
+pub(super) fn table(
+    all: &[Discrepancy],
+    dispositions: &Dispositions,
+    list: &dyn Fn(&[String]) -> Markup,
+) -> Markup {
+    let gone = dispositions.gone(all);
+    html! {
+        @if all.is_empty() {
+            p { "There is none." }
+        } @else {
+            p { (all.len()) " in all, " strong { (dispositions.open(all).count()) " without a disposition" } "." }
+            p.hint { "What is said of them stands in dispositions.toml, which people fill in. It changes no verdict. One \
+                more case makes another discrepancy, of which nothing is said yet." }
+            table.discrepancies {
+                thead { tr { th { "Discrepancy" } th { "What" } th.n { "Verdict" } th style="padding-left:14px" { "Disposition" } } }
+                tbody { @for found in all {
+                    @let entry = dispositions.of(&found.id);
+                    tr id=(found.id) {
+                        td { strong.mono { (found.id) }
+                            @if let Some(requirement) = &found.requirement { div.reason { (requirement) } } }
+                        td { (found.what)
+                            @if !found.cases.is_empty() { (list(&found.cases)) } }
+                        td.n { (badge(found.verdict)) }
+                        td style="padding-left:14px" {
+                            @match entry.filter(|entry| !entry.is_open()) {
+                                Some(entry) => {
+                                    (entry.disposition.trim())
+                                    @if !entry.by.trim().is_empty() { div.reason { (entry.by.trim()) } }
+                                }
+                                None => strong.over { "open" },
+                            }
+                        }
+                    }
+                } }
+            }
+        }
+        @if !gone.is_empty() {
+            h3 { "No longer occurring" }
+            p.hint { "Entries of dispositions.toml of which these results show nothing." }
+            table {
+                thead { tr { th { "Discrepancy" } th { "What it was" } th { "Disposition" } } }
+                tbody { @for entry in gone { tr {
+                    td { span.mono { (entry.id) } div.reason { "not occurring" } }
+                    td { (entry.what) }
+                    td { @if entry.is_open() { span.soft { "none" } } @else { (entry.disposition.trim()) }
+                        @if !entry.by.trim().is_empty() { div.reason { (entry.by.trim()) } } }
+                } } }
+            }
+        }
+    }
+}
