@@ -7,6 +7,7 @@
 
 use super::StreamHash;
 use super::block::Block;
+use octant_sample::{Aiding, Sample};
 
 /// Checksums of the clean and of the faulted stream.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -28,6 +29,13 @@ pub(super) struct Streams {
 }
 
 impl Streams {
+    /// Takes an epoch that is the same in both.
+    #[inline]
+    pub(super) fn unaltered(&mut self, sample: &Sample, aiding: Option<&Aiding>) {
+        self.clean.input(sample, aiding);
+        self.faulted.input(sample, aiding);
+    }
+
     pub(super) fn finish(mut self) -> AlteredStreams {
         AlteredStreams {
             first_sample: self.first_sample,

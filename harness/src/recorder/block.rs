@@ -75,7 +75,7 @@ impl Block {
         if let Some(aiding) = frame.faulted.aiding {
             self.aiding.push((position, aiding));
         }
-        if !same(frame.clean, frame.faulted) {
+        if frame.is_altered() {
             self.altered.push((position, *frame.clean));
         }
         if due {
@@ -128,6 +128,14 @@ impl Block {
         self.truth.clear();
         self.parameters.clear();
         self.events.clear();
+    }
+}
+
+impl Frame<'_> {
+    /// The core got something else than the source had delivered.
+    #[inline]
+    pub(super) fn is_altered(&self) -> bool {
+        !same(self.clean, self.faulted)
     }
 }
 

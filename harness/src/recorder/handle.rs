@@ -213,7 +213,13 @@ impl Recorder {
             self.revision = frame.output.parameters_revision;
             self.parameters_due = true;
         }
-        self.block.push(&frame, due);
+        match &mut self.worker {
+            Some(Worker::Here(digest)) if !frame.is_altered() => {
+                digest.take_up(&mut self.block);
+                digest.epoch(&frame);
+            }
+            _ => self.block.push(&frame, due),
+        }
         Ok(())
     }
 
@@ -294,11 +300,14 @@ impl Recorder {
         if self.worker.is_none() {
             return;
         }
-        if let Extra::Parameters(_) = extra {
+        if let Extra::Parameters(estimate) = extra {
             if !self.parameters_due {
                 return;
             }
             self.parameters_due = false;
+            if let (Some(Worker::Here(digest)), true) = (&mut self.worker, self.block.is_empty()) {
+                return digest.hash.parameters(estimate);
+            }
         }
         self.block.extra(extra);
     }
@@ -320,8 +329,7 @@ impl Recorder {
         let handed = match &mut self.worker {
             None => true,
             Some(Worker::Here(digest)) => {
-                digest.take(block);
-                block.clear();
+                digest.take_up(block);
                 true
             }
             Some(Worker::Thread(thread)) => {
@@ -391,6 +399,28 @@ impl Digest {
         Self { hash: StreamHash::new(), streams: None, summary: RecorderSummary::default() }
     }
 
+    /// Takes a frame in which the core got what the source had delivered.
+    #[inline]
+    fn epoch(&mut self, frame: &Frame<'_>) {
+        let (sample, aiding) = (&frame.faulted.sample, frame.faulted.aiding.as_ref());
+        self.hash.epoch(sample, aiding, frame.output);
+        if let Some(streams) = &mut self.streams {
+            streams.unaltered(sample, aiding);
+        }
+        self.summary.epochs += 1;
+        self.summary.aiding += u64::from(aiding.is_some());
+    }
+
+    /// Takes what waits in a block, which is empty then.
+    #[inline]
+    fn take_up(&mut self, block: &mut Block) {
+        if !block.is_empty() {
+            self.take(block);
+            block.clear();
+        }
+    }
+
+    #[inline(never)]
     fn take(&mut self, block: &Block) {
         hash_block(&mut self.hash, block);
         altered::take(&mut self.streams, block);
