@@ -1,7 +1,7 @@
 //! What is drawn for the replicates of a campaign.
 
 use super::file::{Campaign, Design, Distribution, Levels};
-use super::plan::At;
+use super::make::At;
 use octant_statistics::draw::{
     Correlation, Distribution as Drawn, Factor, Value, latin_hypercube, monte_carlo,
 };

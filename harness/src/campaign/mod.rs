@@ -9,6 +9,7 @@ mod draw;
 pub mod emit;
 pub mod execute;
 pub mod file;
+mod make;
 pub mod merge;
 pub mod plan;
 pub mod report;

@@ -169,12 +169,29 @@ impl Chart {
     }
 }
 
+/// Room for the labels of y, beyond what longer ones need.
+const LEFT: f64 = 52.0;
+/// Width of a digit in them, with what some fonts take more.
+const GLYPH: f64 = 7.0;
+
+/// Ticks of y with their labels.
+fn labelled(ticks: Vec<f64>, logarithmic: bool) -> Vec<(f64, String)> {
+    let decimals = ticks.get(1).map_or(0, |second| {
+        let step = second - ticks[0];
+        number::decimals_for(step, if is_round(step) { 1 } else { 2 })
+    });
+    let label = |tick: f64| {
+        if logarithmic { number::significant(tick, 1) } else { number::fixed(tick, decimals) }
+    };
+    ticks.into_iter().map(|tick| (tick, label(tick))).collect()
+}
+
 /// The drawing area and its scales.
 struct Frame {
     x: [f64; 2],
     y: [f64; 2],
     x_ticks: Vec<f64>,
-    y_ticks: Vec<f64>,
+    y_ticks: Vec<(f64, String)>,
     left: f64,
     right: f64,
     top: f64,
@@ -211,12 +228,14 @@ impl Frame {
             let range = [needed[0] - room, needed[1] + above];
             (range, nice_ticks(range, 5, chart.y_step))
         };
+        let y_ticks = labelled(y_ticks, chart.logarithmic);
+        let longest = y_ticks.iter().map(|(_, label)| label.chars().count()).max().unwrap_or(0);
         Some(Self {
             x,
             y,
             x_ticks,
             y_ticks,
-            left: 52.0,
+            left: LEFT.max(GLYPH * longest as f64 + 12.0),
             right: chart.width - 8.0,
             top: 8.0,
             bottom: chart.height - 36.0,
@@ -238,19 +257,12 @@ impl Frame {
     }
 
     fn grid(&self, chart: &Chart) -> Markup {
-        let y_decimals = self.y_ticks.get(1).map_or(0, |second| {
-            let step = second - self.y_ticks[0];
-            number::decimals_for(step, if is_round(step) { 1 } else { 2 })
-        });
         html! {
-            @for tick in &self.y_ticks {
+            @for (tick, label) in &self.y_ticks {
                 @let y = round(self.py(*tick));
                 path class=(if *tick == 0.0 { "grid zero" } else { "grid" })
                     d={ "M" (self.left) " " (y) "H" (self.right) } {}
-                text class="tick y" x=(self.left - 7.0) y=(y + 3.8) {
-                    @if self.logarithmic { (number::significant(*tick, 1)) }
-                    @else { (number::fixed(*tick, y_decimals)) }
-                }
+                text class="tick y" x=(self.left - 7.0) y=(y + 3.8) { (label) }
             }
             @for tick in &self.x_ticks {
                 @let x = round(self.px(*tick));
@@ -444,6 +456,19 @@ mod tests {
         let thin = thinned(&points, 900);
         assert!(thin.len() <= 3600);
         assert!(thin.contains(&[54_321.0, 7.0]));
+    }
+
+    #[test]
+    fn long_labels_have_room() {
+        let mut chart = Chart::new("Small", "h", "y");
+        let line = |y: f64| vec![[0.0, 0.0], [1.0, y]];
+        for (y, moves) in [(1.0, false), (3.4e-7, true), (-2.2e6, true)] {
+            chart.lines = vec![Line { label: String::new(), role: Role::Primary, points: line(y) }];
+            let frame = Frame::of(&chart).unwrap();
+            let longest = frame.y_ticks.iter().map(|tick| tick.1.chars().count()).max().unwrap();
+            assert!(frame.left - 7.0 >= 6.5 * longest as f64, "{:?}", frame.y_ticks);
+            assert_eq!(frame.left > LEFT, moves, "{:?}", frame.y_ticks);
+        }
     }
 
     #[test]

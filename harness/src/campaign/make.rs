@@ -1,0 +1,219 @@
+//! The plan of a campaign file: every combination of scenarios, factors and replicates.
+
+use super::file::{Campaign, Factor, Levels, Member};
+use super::plan::{
+    CASES_MAX, Case, FactorValue, Plan, PlanError, PlannedScenario, SCHEMA, StopRule, system,
+};
+use super::requirements::{self, Planned};
+use crate::scenario::Scenario;
+use std::collections::{BTreeMap, HashMap};
+use std::path::{Path, PathBuf};
+
+/// What a factor is in a case: which of its levels, or a number.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum At {
+    /// Index of a level.
+    Level(usize),
+    /// A number that was drawn.
+    Number(f64),
+}
+
+/// Which level of a factor a cell of the grid has; the last factor runs fastest.
+fn level_of(factors: &[Factor], cell: u64, index: usize) -> usize {
+    let levels = |factor: &Factor| factor.levels.grid().map_or(1, |levels| levels as u64);
+    let faster: u64 = factors.iter().skip(index + 1).map(levels).product();
+    factors.get(index).map_or(0, |factor| (cell / faster % levels(factor)) as usize)
+}
+
+impl Plan {
+    /// The plan of a campaign file.
+    ///
+    /// # Errors
+    /// If the campaign or one of its scenarios isn't right, or any of its cases isn't.
+    pub fn of(path: &Path) -> Result<Self, PlanError> {
+        let campaign = Campaign::load(path)?;
+        let contradiction =
+            |reason: String| PlanError::Contradiction { campaign: path.to_owned(), reason };
+        let grid: u64 =
+            campaign.factors.iter().filter_map(|f| f.levels.grid()).map(|n| n as u64).product();
+        let count = grid
+            .saturating_mul(u64::from(campaign.replicates))
+            .saturating_mul(campaign.scenarios.len() as u64);
+        if count > CASES_MAX {
+            return Err(contradiction(format!(
+                "it has {count} cases, at most {CASES_MAX} are expected"
+            )));
+        }
+        let draws = super::draw::draws(&campaign).map_err(&contradiction)?;
+        let file = campaign.requirements.as_deref().map(requirements::load).transpose()?;
+        let of_file = file.as_ref().map(requirements::planned).unwrap_or_default();
+        let by_test = |id: &str| of_file.iter().any(|planned| planned.check.id == id);
+        let not_by_test: Vec<String> = (file.iter().flat_map(|file| &file.requirements))
+            .filter(|requirement| !by_test(&requirement.id))
+            .map(|requirement| requirement.id.clone())
+            .collect();
+        let scenarios = (campaign.scenarios.iter())
+            .map(|member| planned(member, &of_file, path))
+            .collect::<Result<Vec<_>, _>>()?;
+        let mut cases = Vec::new();
+        // More replicates are added at the end.
+        for replicate in 0..campaign.replicates {
+            for (member, planned) in campaign.scenarios.iter().zip(&scenarios) {
+                for cell in 0..grid {
+                    let mut case = Case {
+                        id: String::new(),
+                        scenario: member.id.clone(),
+                        seed: campaign.seed.wrapping_add(u64::from(replicate)),
+                        replicate,
+                        set: member.set.clone(),
+                        faults: None,
+                        factors: BTreeMap::new(),
+                    };
+                    for (index, factor) in campaign.factors.iter().enumerate() {
+                        let at = match factor.levels.grid() {
+                            Some(_) => At::Level(level_of(&campaign.factors, cell, index)),
+                            None => draws.at(index, replicate),
+                        };
+                        give(&mut case, factor, at);
+                    }
+                    case.id = id_of(planned, &case);
+                    cases.push(case);
+                }
+            }
+        }
+        let mut seen: HashMap<&str, &Case> = HashMap::new();
+        for case in &cases {
+            if let Some(other) = seen.insert(&case.id, case) {
+                return Err(contradiction(format!(
+                    "scenario {:?} and scenario {:?} give the same case {}: expected something that \
+                     differs between them",
+                    other.scenario, case.scenario, case.id
+                )));
+            }
+        }
+        if let Some(stop) = &campaign.stop
+            && !scenarios.iter().any(|s| s.requirements.contains(&stop.requirement))
+        {
+            return Err(contradiction(format!(
+                "stop.requirement is {:?}, and no scenario checks it",
+                stop.requirement
+            )));
+        }
+        let mut plan = Self {
+            schema: SCHEMA,
+            id: String::new(),
+            title: campaign.title,
+            campaign: absolute(path)?,
+            limits: campaign.limits.into(),
+            stop: campaign.stop.map(StopRule::from),
+            factors: campaign.factors.iter().map(|factor| factor.name.clone()).collect(),
+            requirements: of_file,
+            not_by_test,
+            scenarios,
+            cases,
+        };
+        plan.check_cases()?;
+        plan.id = plan.hash();
+        Ok(plan)
+    }
+}
+
+fn absolute(path: &Path) -> Result<PathBuf, PlanError> {
+    system("find", path, std::path::absolute(path))
+}
+
+fn planned(
+    member: &Member,
+    of_file: &[Planned],
+    campaign: &Path,
+) -> Result<PlannedScenario, PlanError> {
+    let contradiction =
+        |reason: String| PlanError::Contradiction { campaign: campaign.to_owned(), reason };
+    let bytes = system("read", &member.file, std::fs::read(&member.file))?;
+    let base = Scenario::load(&member.file, &member.set)?;
+    let named = member.verifies.iter().flatten();
+    if let Some(unknown) = named.clone().find(|id| !of_file.iter().any(|p| p.check.id == **id)) {
+        let known = of_file.iter().map(|planned| planned.check.id.as_str());
+        let known = crate::scenario::suggestion(unknown, known, "verified by test");
+        return Err(contradiction(format!(
+            "scenario {:?} verifies {unknown:?}, which the requirements don't have, {known}",
+            member.id
+        )));
+    }
+    let wanted = |id: &String| member.verifies.as_ref().is_none_or(|ids| ids.contains(id));
+    let mut requirements: Vec<String> =
+        base.requirements.iter().map(|own| own.check.id.clone()).collect();
+    let mut checks = Vec::new();
+    for Planned { check, .. } in of_file {
+        let own = base.requirements.iter().find(|own| own.check.id == check.id);
+        match own {
+            Some(own) if own.check != *check => {
+                return Err(contradiction(format!(
+                    "requirement {:?} is one thing in scenario {:?} and another in the file of \
+                     requirements: {} {} {} and {} {} {}",
+                    check.id,
+                    member.id,
+                    own.check.measure,
+                    own.check.comparison.sign(),
+                    own.check.limit,
+                    check.measure,
+                    check.comparison.sign(),
+                    check.limit
+                )));
+            }
+            Some(_) => {}
+            None if wanted(&check.id) => {
+                requirements.push(check.id.clone());
+                checks.push(check.clone());
+            }
+            None => {}
+        }
+    }
+    Ok(PlannedScenario {
+        id: member.id.clone(),
+        file: absolute(&member.file)?,
+        blake3: blake3::hash(&bytes).to_hex().to_string(),
+        requirements,
+        checks,
+    })
+}
+
+/// Gives a factor to a case.
+fn give(case: &mut Case, factor: &Factor, at: At) {
+    let value = match (&factor.levels, at) {
+        (Levels::Values { key, values, .. }, At::Level(level)) => {
+            case.set.push(format!("{key}={}", values[level]));
+            plain(&values[level])
+        }
+        (Levels::Faults { lists, .. }, At::Level(level)) => {
+            let list = &lists[level];
+            case.faults = Some(list.clone());
+            FactorValue::Text(if list.is_empty() { "none".to_owned() } else { list.join(" ") })
+        }
+        (Levels::Distributed { key, unit, .. }, At::Number(number)) => {
+            case.set.push(match unit {
+                Some(unit) => format!("{key}=\"{number} {unit}\""),
+                None => format!("{key}={number:?}"),
+            });
+            FactorValue::Number(number)
+        }
+        // Levels and draws are made of the same factor.
+        (_, At::Level(_) | At::Number(_)) => return,
+    };
+    case.factors.insert(factor.name.clone(), value);
+}
+
+/// A value of TOML for statistics: a number, or a text, which a quantity is too.
+fn plain(value: &str) -> FactorValue {
+    let text = value.trim().trim_matches('"');
+    let number = text.parse::<f64>().ok().filter(|number| number.is_finite());
+    number.map_or_else(|| FactorValue::Text(text.to_owned()), FactorValue::Number)
+}
+
+/// The id of a case.
+fn id_of(scenario: &PlannedScenario, case: &Case) -> String {
+    // One JSON text: no two different cases write the same.
+    let content =
+        serde_json::json!([scenario.blake3, scenario.checks, case.set, case.faults, case.seed]);
+    blake3::hash(content.to_string().as_bytes()).to_hex().as_str()[..16].to_owned()
+}
