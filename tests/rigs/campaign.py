@@ -251,15 +251,24 @@ def full_disk(work):
         kept = {path: path.read_bytes() for path in full.glob("cases/*/*.json")}
         check("disk full: some cases are kept, each of them whole",
               0 < len(kept) < 12 and all(json.loads(text)["summary"] for text in kept.values()), len(kept))
-        result = octant("campaign", "merge", full)
-        check("disk full: tables that don't fit are told", result.returncode == 4 and "No space left" in result.stderr,
-              f"status {result.returncode}: {result.stderr}")
         with_options("remount,size=8m")
         for folder in [full, free]:
             good("with room: the rest is run", octant("campaign", "run", folder))
         check("with room: what was there is untouched", all(path.read_bytes() == text for path, text in kept.items()))
         expected = merged(free)
         check("with room: the same bytes", merged(full) == expected, merged(full))
+        tables = {path: path.read_bytes() for path in full.glob("*.parquet")}
+        filler = mount / "filler"
+        try:
+            filler.write_bytes(bytes(16 << 20))
+        except OSError:
+            pass
+        result = octant("campaign", "merge", full)
+        check("disk full: tables that can't be written are told", result.returncode == 4 and "No space left" in result.stderr,
+              f"status {result.returncode}: {result.stderr}")
+        check("disk full: tables that were there stay", all(path.read_bytes() == text for path, text in tables.items()))
+        check("disk full: a plan that can't be written is told",
+              octant("campaign", "plan", file, "--out", mount / "other").returncode == 4)
     finally:
         subprocess.run(["umount", mount], check=True)
 

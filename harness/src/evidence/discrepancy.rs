@@ -93,13 +93,18 @@ pub fn of_run(summary: &Summary) -> Vec<Discrepancy> {
     for (fault, what) in verdict::unfired(summary) {
         all.push(found("fault", Verdict::Inconclusive, None, &fault.id, what));
     }
-    // What the bench said. The refusal of a baseline is told, and bears on nothing.
+    // What the bench said. The refusal of a baseline is told, and bears on nothing; neither does a run
+    // of which nothing is asked.
     let baseline = summary.baseline.as_ref().and_then(|baseline| {
         let reason = baseline.calibration.as_ref()?.refused.as_ref()?;
         Some(verdict::refusal(&baseline.label, reason))
     });
-    let told: Vec<&str> =
-        all.iter().map(|found| found.what.as_str()).chain(baseline.as_deref()).collect();
+    let told: Vec<&str> = all
+        .iter()
+        .map(|found| found.what.as_str())
+        .chain(baseline.as_deref())
+        .chain([verdict::NO_REQUIREMENT])
+        .collect();
     let rest: Vec<&String> =
         summary.reasons.iter().filter(|reason| !told.contains(&reason.as_str())).collect();
     let explained = all.iter().any(|found| found.verdict == summary.verdict);

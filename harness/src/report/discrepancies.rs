@@ -5,10 +5,11 @@ use crate::evidence::discrepancy::Discrepancy;
 use crate::evidence::disposition::Dispositions;
 use maud::{Markup, html};
 
-/// All discrepancies with their dispositions. `list` shows cases.
+/// All discrepancies with their dispositions. `hint` says where those are, `list` shows cases.
 pub(super) fn table(
     all: &[Discrepancy],
     dispositions: &Dispositions,
+    hint: &str,
     list: &dyn Fn(&[String]) -> Markup,
 ) -> Markup {
     let gone = dispositions.gone(all);
@@ -17,8 +18,7 @@ pub(super) fn table(
             p { "There is none." }
         } @else {
             p { (all.len()) " in all, " strong { (dispositions.open(all).count()) " without a disposition" } "." }
-            p.hint { "What is said of them stands in dispositions.toml, which people fill in. It changes no verdict. One \
-                more case makes another discrepancy, of which nothing is said yet." }
+            p.hint { (hint) }
             table.discrepancies {
                 thead { tr { th { "Discrepancy" } th { "What" } th.n { "Verdict" } th style="padding-left:14px" { "Disposition" } } }
                 tbody { @for found in all {
@@ -44,7 +44,7 @@ pub(super) fn table(
         }
         @if !gone.is_empty() {
             h3 { "No longer occurring" }
-            p.hint { "Entries of dispositions.toml of which these results show nothing." }
+            p.hint { "Entries of the file of which these results show nothing." }
             table {
                 thead { tr { th { "Discrepancy" } th { "What it was" } th { "Disposition" } } }
                 tbody { @for entry in gone { tr {

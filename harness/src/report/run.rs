@@ -148,9 +148,11 @@ fn discrepancies(data: &ReportData) -> Markup {
     if all.is_empty() && data.dispositions.entries.is_empty() {
         return html! {};
     }
+    let hint = "What is said of them stands in a file of its own, beside the run: octant report RUN \
+        --dispositions FILE makes it, people fill it in. It changes no verdict.";
     html! {
         h2 { "Discrepancies" }
-        (super::discrepancies::table(&all, &data.dispositions, &|_| html! {}))
+        (super::discrepancies::table(&all, &data.dispositions, hint, &|_| html! {}))
     }
 }
 

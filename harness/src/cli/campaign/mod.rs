@@ -8,6 +8,7 @@ use crate::campaign::case::{self, Job};
 use crate::campaign::execute::{ExecuteError, NOT_KEPT, Shard};
 use crate::campaign::merge::{self, MergeError};
 use crate::campaign::plan::{FILE_NAME, Plan, PlanError, Written};
+use crate::campaign::table::TableError;
 use crate::campaign::trace::requirements_of;
 use crate::campaign::{emit, status};
 use crate::run::Control;
@@ -151,6 +152,9 @@ impl From<PlanError> for Failure {
         match error {
             PlanError::File(error) => Self::input(error),
             PlanError::Requirements(error) => Self::input(error),
+            PlanError::System { action: "create" | "create a file in" | "write", .. } => {
+                Self::bench(error).failed()
+            }
             error => Self::input(error).failed(),
         }
     }
@@ -170,10 +174,13 @@ impl From<ExecuteError> for Failure {
 impl From<MergeError> for Failure {
     fn from(error: MergeError) -> Self {
         match error {
+            MergeError::Table(
+                TableError::System { action: "write", .. } | TableError::Write { .. },
+            )
+            | MergeError::Differs { .. } => Self::bench(error).failed(),
             MergeError::Table(_) | MergeError::Nothing { .. } | MergeError::Foreign { .. } => {
                 Self::input(error).failed()
             }
-            MergeError::Differs { .. } => Self::bench(error).failed(),
         }
     }
 }
