@@ -112,19 +112,28 @@ def in_every_way(work):
     return one
 
 
+def measured(*arguments):
+    """What a campaign says, its seconds of processor, and the memory of the largest of its processes, KiB."""
+    command = [sys.executable, "-S", "-c", MEASURED, OCTANT, "campaign", "run", *map(str, arguments)]
+    result = subprocess.run(command, capture_output=True, text=True, timeout=7200)
+    cpu_s, largest_kib = map(float, result.stdout.split("measured ")[-1].split())
+    return result, cpu_s, largest_kib
+
+
 def on_two_processors(work):
     """What the campaign costs."""
     folder = plan(work, "two")
+    # So few of them that what gathers them is no larger than a case.
+    _, _, case_kib = measured(plan(work, "few"), "--shard", f"1/{CASES // 2}")
     started = time.monotonic()
-    result = subprocess.run([sys.executable, "-S", "-c", MEASURED, OCTANT, "campaign", "run", folder, "--jobs", "2"],
-                            capture_output=True, text=True, timeout=7200)
+    result, cpu_s, largest_kib = measured(folder, "--jobs", 2)
     took = time.monotonic() - started
-    good("on two processors", result)
-    cpu_s, largest_kib = map(float, result.stdout.split("measured ")[-1].split())
+    # Some of the instruments break a requirement with the fault that they get: that is a result too.
+    check("on two processors", result.returncode in (0, 1) and f"{CASES} cases run" in result.stdout + result.stderr,
+          f"status {result.returncode}: {result.stdout}{result.stderr}")
     print(f"     {CASES} cases: {took:.0f} s, {CASES / took:.2f} a second, {cpu_s / CASES:.2f} s of processor each; "
-          f"the largest process had {largest_kib / 1024:.0f} MB")
-    # Two cases, and the program that runs them.
-    check("together less than 500 MB", 3 * largest_kib < 500 * 1024, f"{largest_kib} KiB")
+          f"a case had {case_kib / 1024:.0f} MB, what gathers them {largest_kib / 1024:.0f} MB")
+    check("together less than 500 MB", largest_kib + 2 * case_kib < 500 * 1024, f"{largest_kib} and {case_kib} KiB")
     return folder
 
 
