@@ -399,6 +399,39 @@ fn a_newer_version_and_a_foreign_file_are_refused_in_plain_words() {
     assert!(error.to_string().contains("not an MCAP file"), "{error}");
 }
 
+/// Hashes alone are made in the loop, those of a file by its thread: what was altered, lost or added on
+/// the way, also where parameters come with it, gives the same of both.
+#[test]
+fn hashes_alone_are_those_of_a_file() {
+    let mut steps = stream(3000);
+    for k in (700..710).chain([1199, 1200]) {
+        steps[k].faulted.sample.delta_theta[1] ^= 1;
+    }
+    steps[1399].faulted.aiding = None;
+    let told = |mut recorder: Recorder| {
+        for (k, step) in steps.iter().enumerate() {
+            if (1500..1503).contains(&k) {
+                recorder.lost(&step.clean).unwrap();
+                continue;
+            }
+            push(&mut recorder, step).unwrap();
+            if k == 2001 {
+                let step_ns = step.clean.sample.device_time.ns;
+                recorder.added(step_ns, &steps[1500].clean, &step.output).unwrap();
+            }
+        }
+        recorder.finish().unwrap()
+    };
+    let options = RecorderOptions::default();
+    let file = told(Recorder::to_writer(std::io::sink(), &options).unwrap());
+    let alone = told(Recorder::hash_only(&options));
+    assert_eq!((file.epochs, file.aiding, file.altered), (2998, 14, 17));
+    assert_eq!((alone.epochs, alone.aiding, alone.altered), (2998, 14, 17));
+    assert_eq!(alone.stream_hash, file.stream_hash);
+    assert_eq!(file.altered_streams.as_ref().unwrap().first_sample, 701);
+    assert_eq!(alone.altered_streams, file.altered_streams);
+}
+
 #[test]
 fn parameters_that_were_announced_have_to_come() {
     let mut steps = stream(401);

@@ -206,11 +206,11 @@ def evidence(work):
         changed[bit // 8] ^= 1 << bit % 8
         path.write_bytes(changed)
         result = octant("verify", run, "--key", keys[0])
-        check(f"bit {bit} of {path.name} is missed", result.returncode in (1, 2), result.stdout)
+        check(f"a change of bit {bit} of {path.name} is found", result.returncode in (1, 2), result.stdout)
         path.write_bytes(whole)
         path.rename(work / "aside")
         result = octant("verify", run, "--key", keys[0])
-        check(f"{path.name} is missed", result.returncode in (1, 2), result.stdout)
+        check(f"that {path.name} is missing is found", result.returncode in (1, 2), result.stdout)
         (work / "aside").rename(path)
     for name in ["more.txt", ".hidden", "sub"]:
         path = run / name

@@ -62,12 +62,13 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         summary,
     };
     let html = crate::report::run::render(&data);
-    if let Some(path) =
-        arguments.dispositions.as_ref().filter(|_| !data.dispositions.text.is_empty())
-    {
-        keep(path, data.dispositions.text.as_bytes()).map_err(|error| {
-            Failure::bench(format!("failed to write {}: {error}", path.display()))
-        })?;
+    if let Some(path) = &arguments.dispositions {
+        // Where there never was a discrepancy, there is nothing to write.
+        if !data.dispositions.text.is_empty() {
+            keep(path, data.dispositions.text.as_bytes()).map_err(|error| {
+                Failure::bench(format!("failed to write {}: {error}", path.display()))
+            })?;
+        }
         let found = discrepancy::of_run(&data.summary);
         let open = data.dispositions.open(&found).count();
         print(&format!("{}, {open} without a disposition\n", counted(found.len())))?;

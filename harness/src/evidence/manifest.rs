@@ -502,19 +502,14 @@ mod tests {
     use super::*;
 
     fn facts() -> RunFacts {
+        let (began, length) =
+            (SystemTime::UNIX_EPOCH, std::time::Duration::from_millis(86_400_250));
         RunFacts {
             seed: Some(7),
-            started: SystemTime::UNIX_EPOCH,
-            ended: SystemTime::UNIX_EPOCH + std::time::Duration::from_millis(86_400_250),
             command_line: ["octant", "run", "my run.toml", "--set", "imu.x='1 ug'"]
                 .map(String::from)
                 .to_vec(),
-            fmus: Vec::new(),
-            link: None,
-            bench: None,
-            realtime: None,
-            campaign: None,
-            key: None,
+            ..RunFacts::between(began, began + length)
         }
     }
 

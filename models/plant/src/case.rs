@@ -126,9 +126,8 @@ impl Case {
         Self { kind, accelerations }
     }
 
-    /// From here on the motion of many samples is computed at once, where that saves work: nothing
-    /// but [`Self::enter`], [`Self::motion`] without its angular acceleration, and
-    /// [`Self::integral`] follows while the case isn't disturbed.
+    /// From here on rate and specific force are computed for many samples at once, where that saves
+    /// work. Angular acceleration isn't there then, unless the case is disturbed.
     pub(crate) fn open_windows(&mut self, period_ns: u64, nodes: &[(f64, f64)]) {
         if let Kind::Ship(ship) = &mut self.kind {
             ship.open_windows(period_ns, nodes);

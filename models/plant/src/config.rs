@@ -77,6 +77,23 @@ pub struct Dockside {
     pub mooring_offset_m: [f64; 3],
 }
 
+impl Dockside {
+    /// A ship that lies still, at a mean attitude.
+    #[must_use]
+    pub fn calm(mean: CaseAttitude) -> Self {
+        Self {
+            mean,
+            roll: Vec::new(),
+            pitch: Vec::new(),
+            yaw: Vec::new(),
+            surge: Vec::new(),
+            sway: Vec::new(),
+            heave: Vec::new(),
+            mooring_offset_m: [0.0; 3],
+        }
+    }
+}
+
 /// One component `amplitude · sin(2π t / period + phase)`, amplitude in rad or m.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Sinusoid {

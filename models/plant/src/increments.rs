@@ -255,6 +255,7 @@ impl Body {
         self.begin(-(before as f64) * self.period_s);
         for k in -before..0 {
             let start_s = k as f64 * self.period_s;
+            // Before the start there is no time of the run, and with a lag there are no windows.
             self.case.enter(start_s, 0);
             let early = self.integrate(start_s, 0, 0.0, cut_s);
             if k > -before {
@@ -271,6 +272,7 @@ impl Body {
     pub(crate) fn begin(&mut self, start_s: f64) {
         if self.lever_arm.is_some() {
             let mut before = self.clone();
+            // With a lever arm there are no windows.
             before.case.enter(start_s, 0);
             let turn = before.turn(0, 0.0);
             self.rate_at_end = before.feel(start_s, 0.0, Node::Offset(0.0), &turn).0;

@@ -68,17 +68,7 @@ impl Ship {
     /// A case at rest that can be moved.
     pub(crate) fn at_rest(site: Site, mean: CaseAttitude) -> Self {
         let earth = Ellipsoid::at(site.latitude_rad, site.height_m);
-        let calm = Dockside {
-            mean,
-            roll: Vec::new(),
-            pitch: Vec::new(),
-            yaw: Vec::new(),
-            surge: Vec::new(),
-            sway: Vec::new(),
-            heave: Vec::new(),
-            mooring_offset_m: [0.0; 3],
-        };
-        Self::new(&calm, site, &earth, 1.0, &[], true)
+        Self::new(&Dockside::calm(mean), site, &earth, 1.0, &[], true)
     }
 
     pub(crate) fn new(
@@ -107,9 +97,8 @@ impl Ship {
         }
     }
 
-    /// From here on the motion of many samples is computed at once, where that saves work. Nothing
-    /// but rate and specific force at the regular nodes is to be asked for, unless the sway is given
-    /// a course.
+    /// From here on rate and specific force at the regular nodes are computed for many samples at
+    /// once, where that saves work. A course puts an end to it.
     pub(crate) fn open_windows(&mut self, period_ns: u64, nodes: &[(f64, f64)]) {
         self.window = Window::new(&self.sway, period_ns, nodes).map(Box::new);
     }

@@ -3,7 +3,7 @@
 //! A ship moves slowly against the samples of its instrument. Rate and specific force of the case
 //! are computed at a few nodes of a window and interpolated between them (Lagrange on Chebyshev's
 //! nodes): in a window in which no sinusoid's phase gets further than ±0.17 rad, ten nodes leave
-//! 0.17¹⁰/(10!·2⁹) = 1e-17 of a sinusoid, 1e-14 of its second harmonic and 5e-13 of its third
+//! 0.17¹⁰/(10!·2⁹) = 1e-17 of a sinusoid, 1e-14 of its second harmonic and 6e-13 of its third
 //! (Trefethen, 2013, Approximation Theory and Approximation Practice, ch. 8): less than rounding
 //! does to a sample.
 //!

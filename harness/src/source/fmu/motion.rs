@@ -237,17 +237,7 @@ impl Moving {
 /// The plant's configuration on a motion from outside: no sway of its own, and no mean attitude,
 /// which the motion has in it.
 pub(super) fn on_a_course(config: &Config) -> Config {
-    let calm = Dockside {
-        mean: CaseAttitude::default(),
-        roll: Vec::new(),
-        pitch: Vec::new(),
-        yaw: Vec::new(),
-        surge: Vec::new(),
-        sway: Vec::new(),
-        heave: Vec::new(),
-        mooring_offset_m: [0.0; 3],
-    };
-    Config { motion: Motion::Dockside(calm), ..config.clone() }
+    Config { motion: Motion::Dockside(Dockside::calm(CaseAttitude::default())), ..config.clone() }
 }
 
 /// The plant on a case that an FMU moves.
