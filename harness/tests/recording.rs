@@ -430,6 +430,10 @@ fn hashes_alone_are_those_of_a_file() {
     assert_eq!(alone.stream_hash, file.stream_hash);
     assert_eq!(file.altered_streams.as_ref().unwrap().first_sample, 701);
     assert_eq!(alone.altered_streams, file.altered_streams);
+
+    let one = told(Recorder::stream_hash_only(&options));
+    assert_eq!(one.stream_hash, file.stream_hash);
+    assert_eq!((one.altered, one.altered_streams), (17, None));
 }
 
 #[test]

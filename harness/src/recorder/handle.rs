@@ -117,11 +117,21 @@ impl Recorder {
         Self::start(options, RecordingWriter::new(inner, options)?, None)
     }
 
-    /// Takes the stream hash and writes no file.
+    /// Takes the stream hash, and those of altered streams, and writes no file.
     #[must_use]
     pub fn hash_only(options: &RecorderOptions) -> Self {
+        Self::digesting(options, Digest::new())
+    }
+
+    /// Takes the stream hash alone: those of altered streams cost as much again.
+    #[must_use]
+    pub fn stream_hash_only(options: &RecorderOptions) -> Self {
+        Self::digesting(options, Digest { compares: false, ..Digest::new() })
+    }
+
+    fn digesting(options: &RecorderOptions, digest: Digest) -> Self {
         let mut recorder = Self::with_blocks(options);
-        recorder.worker = Some(Worker::Here(Box::new(Digest::new())));
+        recorder.worker = Some(Worker::Here(Box::new(digest)));
         recorder
     }
 
@@ -390,13 +400,20 @@ impl Drop for Recorder {
 #[derive(Debug)]
 struct Digest {
     hash: StreamHash,
+    /// Whether what the source delivered is held against what reached the core.
+    compares: bool,
     streams: Option<altered::Streams>,
     summary: RecorderSummary,
 }
 
 impl Digest {
     fn new() -> Self {
-        Self { hash: StreamHash::new(), streams: None, summary: RecorderSummary::default() }
+        Self {
+            hash: StreamHash::new(),
+            compares: true,
+            streams: None,
+            summary: RecorderSummary::default(),
+        }
     }
 
     /// Takes a frame in which the core got what the source had delivered.
@@ -423,7 +440,9 @@ impl Digest {
     #[inline(never)]
     fn take(&mut self, block: &Block) {
         hash_block(&mut self.hash, block);
-        altered::take(&mut self.streams, block);
+        if self.compares {
+            altered::take(&mut self.streams, block);
+        }
         let summary = &mut self.summary;
         summary.epochs += (block.len() - block.lost.len()) as u64;
         summary.aiding += block.aiding.len() as u64;

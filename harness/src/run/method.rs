@@ -33,7 +33,7 @@ use std::sync::atomic::Ordering;
 pub enum Recording<'a> {
     /// A file, by the scenario's policy.
     File(&'a Path),
-    /// The hash of the stream, and the trace by which a twin is compared.
+    /// The hash of the stream and those of altered streams, and the trace by which a twin is compared.
     Hash,
     /// The hash of the stream alone, of a run that is compared with no other.
     HashAlone,
@@ -260,7 +260,8 @@ pub fn run_as_far_as_it_goes(
     };
     let mut recorder = match recording {
         Recording::File(path) => Recorder::to_file(path, &options).map_err(SetupError::Recorder)?,
-        Recording::Hash | Recording::HashAlone => Recorder::hash_only(&options),
+        Recording::Hash => Recorder::hash_only(&options),
+        Recording::HashAlone => Recorder::stream_hash_only(&options),
         Recording::None => Recorder::none(),
     };
     let calibration_s = core.calibration.as_ref().map_or(0.0, |c| c.duration_s);

@@ -8,15 +8,51 @@
 use nalgebra::{Matrix3, Vector3};
 use octant_sample::Parameters;
 
-/// The inverse error model for one sample period, ready to be applied to every sample.
+/// The inverse error model, ready to be applied to every sample.
+///
+/// Both triads are had from the measured increments at once, so that the rates don't wait for the
+/// forces: with `K = (I + M_g)⁻¹ G (I + M_a)⁻¹` the second equation is
+///
+/// `ω = (I + M_g)⁻¹ ω̃ − K f̃ − ((I + M_g)⁻¹ b_g − K b_a)`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "state", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "state", serde(from = "Inverse", into = "Inverse"))]
 pub struct Compensation {
+    inverse: Inverse,
+    /// K of above, (rad/s)/(m/s²).
+    cross: Matrix3<f64>,
+    /// What is taken off in every second, rad and m/s.
+    gyro_offset: Vector3<f64>,
+    accel_offset: Vector3<f64>,
+}
+
+/// What compensation is made of, and what is kept of it in a state.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "state", derive(serde::Serialize, serde::Deserialize))]
+struct Inverse {
     gyro_inverse: Matrix3<f64>,
     accel_inverse: Matrix3<f64>,
     g_dependent: Matrix3<f64>,
     gyro_bias: Vector3<f64>,
     accel_bias: Vector3<f64>,
+}
+
+impl From<Inverse> for Compensation {
+    fn from(inverse: Inverse) -> Self {
+        let cross = inverse.gyro_inverse * inverse.g_dependent * inverse.accel_inverse;
+        Self {
+            inverse,
+            cross,
+            gyro_offset: inverse.gyro_inverse * inverse.gyro_bias - cross * inverse.accel_bias,
+            accel_offset: inverse.accel_inverse * inverse.accel_bias,
+        }
+    }
+}
+
+impl From<Compensation> for Inverse {
+    fn from(compensation: Compensation) -> Self {
+        compensation.inverse
+    }
 }
 
 fn matrix(rows: [[f64; 3]; 3]) -> Matrix3<f64> {
@@ -31,13 +67,13 @@ impl Compensation {
         let inverse = |errors: [[f64; 3]; 3]| {
             (Matrix3::identity() + matrix(errors)).try_inverse().unwrap_or_else(Matrix3::identity)
         };
-        Self {
+        Self::from(Inverse {
             gyro_inverse: inverse(parameters.gyro_matrix()),
             accel_inverse: inverse(parameters.accel_matrix()),
             g_dependent: matrix(parameters.g_matrix()),
             gyro_bias: Vector3::from(parameters.gyro_bias),
             accel_bias: Vector3::from(parameters.accel_bias),
-        }
+        })
     }
 
     /// True increments (Δθ, Δv) in b from measured ones over `interval_s`.
@@ -49,9 +85,10 @@ impl Compensation {
         delta_velocity: &Vector3<f64>,
         interval_s: f64,
     ) -> (Vector3<f64>, Vector3<f64>) {
-        let dv = self.accel_inverse * (delta_velocity - self.accel_bias * interval_s);
-        let dtheta =
-            self.gyro_inverse * (delta_theta - self.gyro_bias * interval_s - self.g_dependent * dv);
+        let Inverse { gyro_inverse, accel_inverse, .. } = &self.inverse;
+        let dv = accel_inverse * delta_velocity - self.accel_offset * interval_s;
+        let dtheta = (gyro_inverse * delta_theta - self.gyro_offset * interval_s)
+            - self.cross * delta_velocity;
         (dtheta, dv)
     }
 }

@@ -104,6 +104,19 @@ impl Strapdown {
         let (dtheta0, dv0) = self.previous.unwrap_or((*dtheta, *dv));
         self.previous = Some((*dtheta, *dv));
 
+        // What the state alone decides comes first: nothing of it waits for the sample.
+        // The navigation frame turns under the body by zeta, which is below 1e-6 rad: its quaternion
+        // to second order, closed by the renormalization.
+        let v = &self.velocity_mps;
+        let east = v.y * self.per_transverse;
+        let transport_rate =
+            Vector3::new(east, -v.x * self.per_meridian, -east * self.tan_latitude);
+        let half_zeta = (self.earth_rate + transport_rate) * (0.5 * interval_s);
+        let coriolis_angle = (self.earth_rate * 2.0 + transport_rate) * interval_s;
+        let frame = Quaternion::new(1.0, -half_zeta.x, -half_zeta.y, -half_zeta.z);
+        let q_turned = renormalize(frame * self.q_nb);
+        let c_nb = self.c_nb();
+
         // Coning, rotation and sculling in the body frame at the start of the interval; what has
         // dtheta as its first factor is taken together.
         let rotation = dtheta + dtheta0.cross(dtheta) * (1.0 / 12.0);
@@ -111,29 +124,20 @@ impl Strapdown {
         let dv_body = dv
             + dtheta.cross(&(dv * 0.5 + turned * (1.0 / 6.0) - dv0 * (1.0 / 12.0)))
             + dtheta0.cross(dv) * (1.0 / 12.0);
+        let q_new = q_turned * quaternion_of(&rotation);
 
-        // The navigation frame turns under the body by zeta.
-        let v = &self.velocity_mps;
-        let east = v.y * self.per_transverse;
-        let transport_rate =
-            Vector3::new(east, -v.x * self.per_meridian, -east * self.tan_latitude);
-        let zeta = (self.earth_rate + transport_rate) * interval_s;
-        let mut dv_n = rotate(&self.q_nb, &dv_body);
-        dv_n -= zeta.cross(&dv_n) * 0.5;
+        let mut dv_n = c_nb * dv_body;
+        dv_n -= half_zeta.cross(&dv_n);
         self.delta_velocity_n = dv_n;
 
         // Coriolis with the velocity at the middle of the interval, as far as it is known.
         let gravity_dv = self.earth.gravity_mps2 * interval_s;
         let v_middle = v + Vector3::new(dv_n.x, dv_n.y, dv_n.z + gravity_dv) * 0.5;
-        let coriolis = (self.earth_rate * 2.0 + transport_rate).cross(&v_middle) * interval_s;
-        let mut v_new = v + dv_n - coriolis;
+        let mut v_new = v + dv_n - coriolis_angle.cross(&v_middle);
         v_new.z += gravity_dv;
         if self.vertical == Vertical::Held {
             v_new.z = 0.0;
         }
-        // zeta is below 1e-6 rad: its quaternion to second order, closed by the renormalization.
-        let frame = Quaternion::new(1.0, -0.5 * zeta.x, -0.5 * zeta.y, -0.5 * zeta.z);
-        let q_new = renormalize(frame * (self.q_nb * quaternion_of(&rotation)));
 
         if !finite(&q_new, &v_new) {
             self.sound = false;
@@ -228,12 +232,4 @@ impl Strapdown {
 #[inline]
 fn finite(q: &Quaternion<f64>, v: &Vector3<f64>) -> bool {
     ((q.w + q.i) + (q.j + q.k) + (v.x + v.y + v.z)).is_finite()
-}
-
-/// `q u q*` for a unit quaternion.
-#[inline]
-fn rotate(q: &Quaternion<f64>, u: &Vector3<f64>) -> Vector3<f64> {
-    let axis = Vector3::new(q.i, q.j, q.k);
-    let t = axis.cross(u) * 2.0;
-    u + t * q.w + axis.cross(&t)
 }

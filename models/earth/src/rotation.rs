@@ -38,13 +38,15 @@ pub fn rz(angle_rad: f64) -> Matrix3<f64> {
 #[inline]
 pub fn quaternion_of(phi: &Vector3<f64>) -> Quaternion<f64> {
     let angle2 = phi.norm_squared();
-    // cos(x/2) and sin(x/2)/x in y = x²/4.
+    // cos(x/2) and sin(x/2)/x in y = x²/4, in pairs of terms that don't wait for each other.
     let (c, s) = if angle2 < 0.01 {
         let y = 0.25 * angle2;
+        let y2 = y * y;
         (
-            1.0 - y * (1.0 / 2.0 - y * (1.0 / 24.0 - y * (1.0 / 720.0 - y * (1.0 / 40320.0)))),
-            0.5 * (1.0
-                - y * (1.0 / 6.0 - y * (1.0 / 120.0 - y * (1.0 / 5040.0 - y * (1.0 / 362_880.0))))),
+            (1.0 - y * (1.0 / 2.0))
+                + y2 * ((1.0 / 24.0 - y * (1.0 / 720.0)) + y2 * (1.0 / 40_320.0)),
+            (1.0 / 2.0 - y * (1.0 / 12.0))
+                + y2 * ((1.0 / 240.0 - y * (1.0 / 10_080.0)) + y2 * (1.0 / 725_760.0)),
         )
     } else {
         let angle = libm::sqrt(angle2);

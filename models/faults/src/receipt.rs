@@ -82,6 +82,14 @@ impl Ledger {
         self.last = Some(epoch);
     }
 
+    /// It went on from the last epoch that it touched up to this one.
+    pub(crate) fn touched_to(&mut self, epoch: u64) {
+        if let Some(last) = self.last.filter(|last| *last < epoch) {
+            self.altered += epoch - last;
+            self.last = Some(epoch);
+        }
+    }
+
     /// Epochs that it has altered.
     pub(crate) fn altered(&self) -> u64 {
         self.altered

@@ -99,18 +99,28 @@ impl Stage {
         matches!(self.clock.state, State::Active { .. } | State::Fading { .. })
     }
 
-    /// It acts, or something is left from when it did.
+    /// It acts, or something is left from when it did, and every epoch has to be looked at for that.
     fn engaged(&self) -> bool {
-        self.acting()
-            || match &self.rule {
-                Rule::Delivery(rule) => rule.holds() > 0,
-                Rule::Samples(rule) => rule.lingers() || self.is_owed(),
-                Rule::Plant(_)
-                | Rule::Command(_)
-                | Rule::Unit(_)
-                | Rule::Wire(_)
-                | Rule::Host(_) => false,
-            }
+        match &self.rule {
+            Rule::Delivery(rule) => self.acting() || rule.holds() > 0,
+            Rule::Samples(rule) => self.acting() || rule.lingers() || self.is_owed(),
+            Rule::Command(_) | Rule::Unit(_) | Rule::Wire(_) => self.acting(),
+            // Between onset and end the plant or the host does it all.
+            Rule::Plant(_) | Rule::Host(_) => false,
+        }
+    }
+
+    /// Its ledger with the epochs up to this one in which it acted and nobody looked.
+    fn ledger_at(&self, epoch: u64) -> Ledger {
+        let mut ledger = self.ledger.clone();
+        if self.acts_unseen() {
+            ledger.touched_to(epoch);
+        }
+        ledger
+    }
+
+    fn acts_unseen(&self) -> bool {
+        matches!(self.rule, Rule::Plant(_)) && self.acting()
     }
 
     /// Its instant passed while faults before it held every epoch back: the next one gets it.
@@ -387,6 +397,9 @@ impl Station {
         let events = self.events.len();
         for index in 0..self.stages.len() {
             let stage = &mut self.stages[index];
+            if stage.acts_unseen() {
+                stage.ledger.touched_to(self.epoch - 1);
+            }
             let ticked = stage.clock.tick(self.epoch);
             if ticked.ended {
                 end(stage, index as u32, world);
@@ -611,7 +624,7 @@ impl Station {
         self.stages.get(fault).map(|stage| Progress {
             active: stage.acting(),
             firings: stage.clock.firings,
-            samples_altered: stage.ledger.altered(),
+            samples_altered: stage.ledger_at(self.epoch).altered(),
         })
     }
 
@@ -644,7 +657,7 @@ impl Station {
             .iter()
             .map(|stage| {
                 let firings = stage.clock.firings;
-                stage.ledger.receipt(&stage.id, stage.kind.name, firings)
+                stage.ledger_at(self.epoch).receipt(&stage.id, stage.kind.name, firings)
             })
             .collect()
     }

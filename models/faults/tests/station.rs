@@ -175,3 +175,41 @@ fn a_fault_by_hand_lasts_as_long_as_the_hand_says() {
     assert_eq!((progress.firings, progress.samples_altered), (2, 13));
     assert_eq!(station.progress(1), None);
 }
+
+/// A fault inside the plant isn't looked at while it lasts: its receipt counts every epoch all the same,
+/// at any time, over a state that is saved and loaded, and again when it comes back.
+#[test]
+fn a_fault_inside_the_plant_counts_its_epochs_unseen() {
+    let mut slip = fault(
+        "encoder-slip",
+        &[("gimbal", Value::Choice("azimuth")), ("angle", Value::Quantity(0.01, Dimension::Angle))],
+        11,
+        100,
+    );
+    slip.schedule.repeat = Repeat::Times { times: 2, every: 200 };
+    let spike = Spec { id: "spike".into(), ..spike(100.0, 50, 3) };
+    let specs = [slip, spike];
+    let mut station = Station::new(&specs, &setup()).unwrap();
+    let (mut world, output) = (common::Log::default(), Output::default());
+    let (mut expected, mut looked) = (0, 0);
+    for k in 1..=400u64 {
+        station.begin(&output, &mut world);
+        let active = (11..111).contains(&k) || (211..311).contains(&k);
+        expected += u64::from(active);
+        let progress = station.progress(0).unwrap();
+        assert_eq!((progress.active, progress.samples_altered), (active, expected), "epoch {k}");
+        looked += u64::from(!station.is_idle());
+        let spiked = station.after(&clean(k), &output) != Delivered::Untouched;
+        assert_eq!(spiked, (50..53).contains(&k), "epoch {k}");
+        if k % 7 == 0 {
+            let mut bytes = Vec::new();
+            station.save(&mut bytes);
+            station = Station::load(&specs, &setup(), &bytes).unwrap();
+        }
+    }
+    let receipt = &station.receipts()[0];
+    assert_eq!((receipt.first_sample, receipt.last_sample), (Some(11), Some(310)));
+    assert_eq!((receipt.firings, receipt.samples_altered), (2, 200));
+    assert_eq!(world.ended, [0, 0]);
+    assert_eq!(looked, 3, "only what acts on samples makes work");
+}

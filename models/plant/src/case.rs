@@ -5,7 +5,7 @@ use crate::course::Course;
 use crate::disturbed::Motion;
 use crate::ship::{Ship, into_case, with};
 use crate::sway::SixDof;
-use crate::window::Window;
+use crate::window::Frame;
 use nalgebra::Vector3;
 use octant_earth::ellipsoid::Ellipsoid;
 
@@ -204,11 +204,16 @@ impl Case {
         }
     }
 
-    /// Integrals of rate and specific force over the interval, where they are at hand.
+    /// Integrals of rate and specific force over the interval, in a frame into which `turn` takes
+    /// them, where they are at hand.
     #[inline]
-    pub(crate) fn integral(&self) -> Option<(Vector3<f64>, Vector3<f64>)> {
-        match &self.kind {
-            Kind::Ship(ship) => ship.window().map(Window::integral),
+    pub(crate) fn integral_in(
+        &mut self,
+        frame: Frame,
+        turn: impl Fn(&Vector3<f64>) -> Vector3<f64>,
+    ) -> Option<(Vector3<f64>, Vector3<f64>)> {
+        match &mut self.kind {
+            Kind::Ship(ship) => Some(ship.window_mut()?.integral_in(frame, turn)),
             Kind::Static { .. } => None,
         }
     }
@@ -254,6 +259,7 @@ mod tests {
     use super::*;
     use crate::config::CaseAttitude;
     use crate::motion::{dockside_default, dockside_iso_8728};
+    use crate::trig::{rx_t, rz_t};
     use octant_earth::ellipsoid::{meridian_radius_m, transverse_radius_m};
 
     /// The two derivatives that are written out by hand, against central differences: the angular
@@ -317,7 +323,7 @@ mod tests {
             let mut exact = Case::new(&motion, site, period_s, &nodes, false);
             let mut case = exact.clone();
             case.open_windows(period_ns, &nodes);
-            assert!(case.integral().is_some(), "windows are worth it");
+            assert!(case.integral_in([(0.0, 1.0); 2], |v| *v).is_some(), "windows are worth it");
             let times = (0..5000).chain([70_000, 70_001, 70_003]).chain(90_000..90_100);
             for sample in times {
                 let start_ns = sample * period_ns;
@@ -340,7 +346,11 @@ mod tests {
                     sum.0 += true_motion.rate * *weight;
                     sum.1 += true_motion.force * *weight;
                 }
-                let (rate, force) = case.integral().unwrap();
+                // The frame changes within a window too.
+                let frame = [libm::sincos((sample / 9) as f64), libm::sincos(0.3)];
+                let turn = |v: &Vector3<f64>| rz_t(&rx_t(v, frame[0]), frame[1]);
+                let (rate, force) = case.integral_in(frame, turn).unwrap();
+                sum = (turn(&sum.0), turn(&sum.1));
                 assert!((rate - sum.0).norm() < 2e-13 * period_s, "{sample}");
                 assert!((force - sum.1).norm() < 2e-12 * period_s, "{sample}");
             }

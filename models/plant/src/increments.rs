@@ -9,6 +9,7 @@ use crate::disturbed::{Active, Registry};
 use crate::gimbal::{Arc, Gimbal};
 use crate::trig::{Near, rx_t, ry_t, rz_t};
 use crate::vibration::shaken;
+use crate::window::Frame;
 use nalgebra::Vector3;
 use octant_sample::GimbalCommand;
 use std::collections::VecDeque;
@@ -117,7 +118,7 @@ pub(crate) struct Body {
     lag: Option<Lag>,
     constant: bool,
     /// Sine and cosine of roll and azimuth while both gimbals rest, once an interval has been.
-    resting_sincos: Option<[(f64, f64); 2]>,
+    resting_sincos: Option<Frame>,
     /// Faults that have not ended.
     pub(crate) registry: Registry,
     /// What faults move at present.
@@ -399,18 +400,19 @@ impl Body {
     }
 
     /// Integrals over a whole interval in which both gimbals rest: those of the case, turned once.
-    fn integrate_resting(&mut self, [roll, azimuth]: [(f64, f64); 2]) -> Increments {
-        let (rate, force) = self.case.integral().unwrap_or_else(|| {
-            let (mut rate, mut force) = (Vector3::zeros(), Vector3::zeros());
-            for index in 0..self.nodes.len() {
-                let case = self.case.motion(Node::Regular(index));
-                let weight = self.nodes[index].1;
-                rate += case.rate * weight;
-                force += case.force * weight;
-            }
-            (rate, force)
-        });
-        let into_block = |v: &Vector3<f64>| rz_t(&ry_t(&rx_t(v, roll), self.tilt_sincos), azimuth);
+    fn integrate_resting(&mut self, frame: Frame) -> Increments {
+        let ([roll, azimuth], tilt) = (frame, self.tilt_sincos);
+        let into_block = |v: &Vector3<f64>| rz_t(&ry_t(&rx_t(v, roll), tilt), azimuth);
+        if let Some((delta_theta, delta_velocity)) = self.case.integral_in(frame, into_block) {
+            return Increments { delta_theta, delta_velocity };
+        }
+        let (mut rate, mut force) = (Vector3::zeros(), Vector3::zeros());
+        for index in 0..self.nodes.len() {
+            let case = self.case.motion(Node::Regular(index));
+            let weight = self.nodes[index].1;
+            rate += case.rate * weight;
+            force += case.force * weight;
+        }
         Increments { delta_theta: into_block(&rate), delta_velocity: into_block(&force) }
     }
 

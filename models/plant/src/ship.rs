@@ -109,6 +109,11 @@ impl Ship {
         if self.sway.course.is_none() { self.window.as_deref() } else { None }
     }
 
+    #[inline]
+    pub(crate) fn window_mut(&mut self) -> Option<&mut Window> {
+        if self.sway.course.is_none() { self.window.as_deref_mut() } else { None }
+    }
+
     /// Goes to the interval that starts at a time; intervals follow each other.
     #[inline]
     pub(crate) fn enter(&mut self, start_s: f64, start_ns: u64) {

@@ -26,6 +26,9 @@ type Six = [f64; 6];
 /// Weights of the nodes in a sum of them.
 type Weights = [f64; NODES];
 
+/// A frame that rests against the case: sine and cosine of the gimbals' angles.
+pub(crate) type Frame = [(f64, f64); 2];
+
 #[derive(Clone, Debug)]
 pub(crate) struct Window {
     period_ns: u64,
@@ -40,6 +43,9 @@ pub(crate) struct Window {
     /// The window that is held.
     number: u64,
     values: [Six; NODES],
+    /// The same in a frame, and which: turned once for all samples of the window.
+    turned: [Six; NODES],
+    turned_into: Option<Frame>,
     /// The interval that is at hand, and the start of the next one.
     sample: usize,
     next_ns: u64,
@@ -93,6 +99,8 @@ impl Window {
             integral,
             number: u64::MAX,
             values: [[0.0; 6]; NODES],
+            turned: [[0.0; 6]; NODES],
+            turned_into: None,
             sample: 0,
             next_ns: u64::MAX,
         })
@@ -121,6 +129,7 @@ impl Window {
             return;
         }
         self.number = number;
+        self.turned_into = None;
         self.sway.enter_anew((number * self.length_ns) as f64 * 1e-9);
         for (node, values) in self.values.iter_mut().enumerate() {
             let (rate, force) = feel(&self.sway.at_node(node));
@@ -132,24 +141,35 @@ impl Window {
     #[inline]
     pub(crate) fn at_node(&self, node: usize) -> (Vector3<f64>, Vector3<f64>) {
         let nodes = self.at_node.len() / self.integral.len();
-        self.sum(&self.at_node[self.sample * nodes + node])
+        sum(&self.values, &self.at_node[self.sample * nodes + node])
     }
 
-    /// Their integrals over the interval.
+    /// Their integrals over the interval, in a frame into which `turn` takes them.
     #[inline]
-    pub(crate) fn integral(&self) -> (Vector3<f64>, Vector3<f64>) {
-        self.sum(&self.integral[self.sample])
-    }
-
-    #[inline(always)]
-    fn sum(&self, weights: &Weights) -> (Vector3<f64>, Vector3<f64>) {
-        let mut sum = [0.0; 6];
-        for (values, weight) in self.values.iter().zip(weights) {
-            for (sum, value) in sum.iter_mut().zip(values) {
-                *sum += weight * value;
+    pub(crate) fn integral_in(
+        &mut self,
+        frame: Frame,
+        turn: impl Fn(&Vector3<f64>) -> Vector3<f64>,
+    ) -> (Vector3<f64>, Vector3<f64>) {
+        if self.turned_into != Some(frame) {
+            self.turned_into = Some(frame);
+            for (turned, [a, b, c, d, e, f]) in self.turned.iter_mut().zip(self.values) {
+                let (rate, force) = (turn(&Vector3::new(a, b, c)), turn(&Vector3::new(d, e, f)));
+                *turned = [rate.x, rate.y, rate.z, force.x, force.y, force.z];
             }
         }
-        let [a, b, c, d, e, f] = sum;
-        (Vector3::new(a, b, c), Vector3::new(d, e, f))
+        sum(&self.turned, &self.integral[self.sample])
     }
+}
+
+#[inline(always)]
+fn sum(values: &[Six; NODES], weights: &Weights) -> (Vector3<f64>, Vector3<f64>) {
+    let mut sum = [0.0; 6];
+    for (values, weight) in values.iter().zip(weights) {
+        for (sum, value) in sum.iter_mut().zip(values) {
+            *sum += weight * value;
+        }
+    }
+    let [a, b, c, d, e, f] = sum;
+    (Vector3::new(a, b, c), Vector3::new(d, e, f))
 }

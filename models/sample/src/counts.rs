@@ -41,9 +41,10 @@ impl Accumulator {
     pub fn count(&mut self, increment_counts: f64) -> Count {
         let total = self.remainder + increment_counts;
         if total.abs() < 2_147_483_647.0 {
-            let rounded = (total + ROUND) - ROUND;
-            self.remainder = total - rounded;
-            Count { value: rounded as i32, saturated: false }
+            let shifted = total + ROUND;
+            self.remainder = total - (shifted - ROUND);
+            // The integer stands in the lowest bits of the mantissa, in two's complement.
+            Count { value: shifted.to_bits() as i32, saturated: false }
         } else {
             Count { value: total as i32, saturated: true }
         }
@@ -61,6 +62,18 @@ mod tests {
         for k in 1..=1_000_000i64 {
             sum += i64::from(accumulator.count(step).value);
             assert!((sum as f64 - step * k as f64).abs() <= 0.5 + 1e-6);
+        }
+    }
+
+    #[test]
+    fn a_count_is_the_nearest_integer_ties_to_even() {
+        let near = [-2_147_483_646.5, -70_000.5, -1.5, -0.5, -0.25, 0.0, 0.5, 1.5, 2.75, 8e8];
+        let far = (0..1000).map(|k| f64::from(k - 500) * 4_294_957.3);
+        for increment in near.into_iter().chain(far) {
+            let mut accumulator = Accumulator::default();
+            let count = accumulator.count(increment);
+            assert_eq!(f64::from(count.value), increment.round_ties_even(), "{increment}");
+            assert_eq!(accumulator.remainder, increment - increment.round_ties_even());
         }
     }
 

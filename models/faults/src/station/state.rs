@@ -83,10 +83,10 @@ impl State for Station {
         to.value("without_power", without_power);
         for stage in stages {
             to.value("fault", &stage.name());
-            let Stage { id: _, kind: _, rule, clock, ledger, fresh } = stage;
+            let Stage { id: _, kind: _, rule, clock, ledger: _, fresh } = stage;
             to.value("fresh", fresh);
             to.part("clock", clock);
-            to.part("ledger", ledger);
+            to.part("ledger", &stage.ledger_at(*epoch));
             to.part("rule", rule);
         }
     }
