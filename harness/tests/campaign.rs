@@ -160,12 +160,12 @@ fn the_same_bytes_on_one_processor_in_parts_and_after_interruptions() {
     assert_eq!((table.rows, table.plan.as_str()), (6, plan.id.as_str()));
     let column = |name: &str| table.column(name).unwrap().unwrap();
     for (row, case) in plan.cases.iter().enumerate() {
-        assert_eq!(column("case").at(row), Some(Value::Text(case.id.clone())));
+        assert_eq!(column("case").at(row), Some(Value::Text(case.id.as_str().into())));
         let result = CaseResult::read(&case::file(&whole, &case.id)).unwrap();
         let summary = result.summary.unwrap();
         let radial = summary.navigation.as_ref().unwrap().radial_error_nmi.max;
         assert_eq!(column("navigation.radial_error_nmi.max").at(row), Some(Value::Number(radial)));
-        assert_eq!(column("stream_hash").at(row), Some(Value::Text(summary.stream_hash)));
+        assert_eq!(column("stream_hash").at(row), Some(Value::Text(summary.stream_hash.into())));
         let spiked = case.faults.as_ref().unwrap().contains(&"spike-1".to_owned());
         let fired = column("faults.spike-1.fired").at(row);
         assert_eq!(fired, spiked.then_some(Value::Boolean(true)));

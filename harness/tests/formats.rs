@@ -219,7 +219,7 @@ fn tables() {
     assert_eq!(kind("navigation.latitude_error_arcmin.max"), Some(Kind::Number));
     let ids = cases.column("case").unwrap().unwrap();
     for (row, case) in plan.cases.iter().enumerate() {
-        assert_eq!(ids.at(row), Some(Value::Text(case.id.clone())));
+        assert_eq!(ids.at(row), Some(Value::Text(case.id.as_str().into())));
     }
     let checks = Table::open(&path("checks")).unwrap();
     assert_eq!(checks.rows, 8, "two requirements of each case");

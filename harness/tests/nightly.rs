@@ -172,7 +172,7 @@ fn nights(bench: &Bench) -> Vec<String> {
     let names = table.column("night").unwrap().unwrap();
     let mut names: Vec<String> = (0..table.rows)
         .map(|row| match names.at(row) {
-            Some(Cell::Text(text)) => text,
+            Some(Cell::Text(text)) => text.to_string(),
             other => panic!("{other:?}"),
         })
         .collect();
@@ -185,12 +185,12 @@ fn history(bench: &Bench, count: usize) {
     let table = Table::open(&bench.at("h/history.parquet")).unwrap();
     let column = |name: &str| table.column(name).unwrap().unwrap();
     assert_eq!(nights(bench).len(), count);
-    let measure = Cell::Text("navigation.radial_error_nmi.max".to_owned());
+    let measure = Cell::Text("navigation.radial_error_nmi.max".into());
     let rows: Vec<usize> =
         (0..table.rows).filter(|row| column("measure").at(*row) == Some(measure.clone())).collect();
     assert_eq!(rows.len(), count);
     let changes: Vec<_> = rows.iter().map(|row| column("change").at(*row)).collect();
-    let text = |text: &str| Some(Cell::Text(text.to_owned()));
+    let text = |text: &str| Some(Cell::Text(text.into()));
     assert_eq!(changes[..2], [None, text("same")]);
     assert_eq!(column("count").at(rows[0]), Some(Cell::Integer(16)));
     let page = std::fs::read_to_string(bench.at("h/trend.html")).unwrap();

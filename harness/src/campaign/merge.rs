@@ -9,6 +9,7 @@ use crate::score::verdict::Verdict;
 use std::borrow::Cow;
 use std::collections::{BTreeMap, HashMap};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// File of a table of a shard in the folder of its campaign.
 #[must_use]
@@ -99,7 +100,7 @@ struct Row {
 /// If a part can't be read.
 pub fn end(plan: &Plan, folders: &[PathBuf]) -> Result<usize, MergeError> {
     let Some(rule) = &plan.stop else { return Ok(plan.cases.len()) };
-    let mut verdicts: HashMap<String, Verdict> = HashMap::new();
+    let mut verdicts: HashMap<Arc<str>, Verdict> = HashMap::new();
     // A case that came to no summary checked nothing: it counts as an error.
     for (table, of_cases) in [("cases", true), ("checks", false)] {
         for path in parts(folders, table) {
@@ -117,17 +118,17 @@ pub fn end(plan: &Plan, folders: &[PathBuf]) -> Result<usize, MergeError> {
                 texts("case")?.iter().zip(&which).zip(&texts("verdict")?)
             {
                 let counts = match which {
-                    Some(which) => of_cases || *which == rule.requirement,
+                    Some(which) => of_cases || **which == *rule.requirement,
                     None => false,
                 };
                 let named = Verdict::ALL.iter().find(|v| Some(v.name()) == verdict.as_deref());
                 if let (true, Some(case), Some(verdict)) = (counts, case, named) {
-                    verdicts.insert(case.clone(), *verdict);
+                    verdicts.insert(Arc::clone(case), *verdict);
                 }
             }
         }
     }
-    let decision = stop::decide(plan, rule, |case| verdicts.get(&case.id).copied());
+    let decision = stop::decide(plan, rule, |case| verdicts.get(case.id.as_str()).copied());
     Ok(decision.end(plan.cases.len()))
 }
 

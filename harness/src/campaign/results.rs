@@ -8,6 +8,7 @@ use crate::score::summary::Summary;
 use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
+use std::sync::Arc;
 
 /// Columns with their kinds.
 pub(crate) type Columns = &'static [(&'static str, Kind)];
@@ -129,7 +130,7 @@ pub fn tables(
     Ok(())
 }
 
-fn text(value: impl Into<String>) -> Value {
+fn text(value: impl Into<Arc<str>>) -> Value {
     Value::Text(value.into())
 }
 
@@ -141,23 +142,23 @@ fn row<'a>(pairs: impl IntoIterator<Item = (&'a str, Option<Value>)>) -> BTreeMa
 fn case_row(case: &Case, result: &CaseResult, texts: &BTreeSet<&str>) -> BTreeMap<String, Value> {
     let summary = result.summary.as_ref();
     let mut all = row([
-        ("case", Some(text(&case.id))),
-        ("scenario", Some(text(&case.scenario))),
+        ("case", Some(text(case.id.as_str()))),
+        ("scenario", Some(text(case.scenario.as_str()))),
         ("seed", i64::try_from(case.seed).ok().map(Value::Integer)),
         ("replicate", Some(Value::Integer(i64::from(case.replicate)))),
         ("verdict", Some(text(result.verdict.name()))),
         ("reasons", summary.map(|summary| text(summary.reasons.join("; ")))),
-        ("error", result.error.clone().map(Value::Text)),
-        ("stream_hash", summary.map(|summary| text(&summary.stream_hash))),
+        ("error", result.error.as_deref().map(text)),
+        ("stream_hash", summary.map(|summary| text(summary.stream_hash.as_str()))),
         ("set", Some(text(case.set.join("; ")))),
     ]);
     for (name, value) in &case.factors {
         let value = match value {
             FactorValue::Number(number) if texts.contains(name.as_str()) => {
-                Value::Text(number.to_string())
+                text(number.to_string())
             }
             FactorValue::Number(number) => Value::Number(*number),
-            FactorValue::Text(text) => Value::Text(text.clone()),
+            FactorValue::Text(text) => Value::Text(text.as_str().into()),
         };
         all.insert(format!("factor.{name}"), value);
     }
@@ -198,7 +199,7 @@ fn walk(path: &str, value: &serde_json::Value, all: &mut BTreeMap<String, Value>
         }
         serde_json::Value::Bool(value) => _ = all.insert(path.to_owned(), Value::Boolean(*value)),
         serde_json::Value::String(text) => {
-            _ = all.insert(path.to_owned(), Value::Text(text.clone()));
+            _ = all.insert(path.to_owned(), Value::Text(text.as_str().into()));
         }
         // Series have a table of their own.
         serde_json::Value::Array(_) | serde_json::Value::Null => {}
@@ -211,15 +212,15 @@ fn check_rows<'a>(
 ) -> impl Iterator<Item = BTreeMap<String, Value>> + 'a {
     summary.requirements.iter().map(|result| {
         row([
-            ("case", Some(text(&case.id))),
-            ("requirement", Some(text(&result.id))),
-            ("measure", Some(text(&result.measure))),
+            ("case", Some(text(case.id.as_str()))),
+            ("requirement", Some(text(result.id.as_str()))),
+            ("measure", Some(text(result.measure.as_str()))),
             ("comparison", Some(text(result.comparison.sign()))),
             ("limit", Some(Value::Number(result.limit))),
             ("value", result.value.map(Value::Number)),
             ("margin", result.margin.map(Value::Number)),
             ("verdict", Some(text(result.verdict.name()))),
-            ("reason", result.reason.clone().map(Value::Text)),
+            ("reason", result.reason.as_deref().map(text)),
         ])
     })
 }
@@ -231,7 +232,7 @@ fn drift_rows<'a>(
     let series = summary.navigation.iter().flat_map(|navigation| &navigation.series_hours);
     series.map(|[hours, latitude, longitude]| {
         row([
-            ("case", Some(text(&case.id))),
+            ("case", Some(text(case.id.as_str()))),
             ("hours", Some(Value::Number(*hours))),
             ("latitude_error_arcmin", Some(Value::Number(*latitude))),
             ("longitude_error_arcmin", Some(Value::Number(*longitude))),

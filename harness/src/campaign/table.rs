@@ -26,8 +26,8 @@ const PLAN_KEY: &str = "octant.plan";
 /// The values of a column, by row.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Values {
-    /// Texts.
-    Text(Vec<Option<String>>),
+    /// Texts; those that follow each other and are the same are held once.
+    Text(Vec<Option<Arc<str>>>),
     /// Numbers.
     Number(Vec<Option<f64>>),
     /// Whole numbers.
@@ -53,7 +53,7 @@ pub enum Kind {
 #[derive(Clone, Debug, PartialEq)]
 pub enum Value {
     /// A text.
-    Text(String),
+    Text(Arc<str>),
     /// A number.
     Number(f64),
     /// A whole number.
@@ -119,12 +119,15 @@ impl Values {
     /// in any other.
     pub fn push(&mut self, value: Option<Value>) {
         match (self, value) {
-            (Self::Text(all), value) => all.push(value.map(|value| match value {
-                Value::Text(text) => text,
-                Value::Number(number) => number.to_string(),
-                Value::Integer(number) => number.to_string(),
-                Value::Boolean(value) => value.to_string(),
-            })),
+            (Self::Text(all), value) => push_text(
+                all,
+                value.map(|value| match value {
+                    Value::Text(text) => text,
+                    Value::Number(number) => number.to_string().into(),
+                    Value::Integer(number) => number.to_string().into(),
+                    Value::Boolean(value) => value.to_string().into(),
+                }),
+            ),
             (Self::Number(all), Some(Value::Number(number))) => all.push(Some(number)),
             (Self::Number(all), Some(Value::Integer(number))) => all.push(Some(number as f64)),
             (Self::Integer(all), Some(Value::Integer(number))) => all.push(Some(number)),
@@ -145,6 +148,15 @@ impl Values {
             Self::Boolean(all) => (*all.get(row)?).map(Value::Boolean),
         }
     }
+}
+
+/// Adds a text; one that is the same as the last is that.
+fn push_text(all: &mut Vec<Option<Arc<str>>>, text: Option<Arc<str>>) {
+    let text = text.map(|text| match all.last() {
+        Some(Some(last)) if *last == text => Arc::clone(last),
+        _ => text,
+    });
+    all.push(text);
 }
 
 /// Why a table could not be written or read.
@@ -213,8 +225,8 @@ pub fn write<'a>(
         let values = values(index)?;
         match &*values {
             Values::Text(all) => {
-                let bytes = |text: &String| ByteArray::from(text.as_str());
-                put(&mut column, all, |text| bytes(text), |c| c.typed::<ByteArrayType>())
+                let bytes = |text: &Arc<str>| ByteArray::from(&**text);
+                put(&mut column, all, bytes, |c| c.typed::<ByteArrayType>())
             }
             Values::Number(all) => put(&mut column, all, |v| *v, |c| c.typed::<DoubleType>()),
             Values::Integer(all) => put(&mut column, all, |v| *v, |c| c.typed::<Int64Type>()),
@@ -231,6 +243,9 @@ pub fn write<'a>(
     Ok(())
 }
 
+/// Rows that are handed to the library, or taken from it, at a time: it wants values of its own.
+const ROWS_AT_A_TIME: usize = 16 * 1024;
+
 fn put<T, D: DataType>(
     column: &mut parquet::file::writer::SerializedColumnWriter<'_>,
     values: &[Option<T>],
@@ -239,9 +254,12 @@ fn put<T, D: DataType>(
         &'a mut parquet::file::writer::SerializedColumnWriter<'b>,
     ) -> &'a mut parquet::column::writer::ColumnWriterImpl<'b, D>,
 ) -> Result<(), ParquetError> {
-    let levels: Vec<i16> = values.iter().map(|value| i16::from(value.is_some())).collect();
-    let there: Vec<D::T> = values.iter().flatten().map(to).collect();
-    typed(column).write_batch(&there, Some(&levels), None).map(|_| ())
+    for values in values.chunks(ROWS_AT_A_TIME) {
+        let levels: Vec<i16> = values.iter().map(|value| i16::from(value.is_some())).collect();
+        let there: Vec<D::T> = values.iter().flatten().map(&to).collect();
+        typed(column).write_batch(&there, Some(&levels), None)?;
+    }
+    Ok(())
 }
 
 fn field(name: &str, kind: Kind) -> Result<Arc<Type>, ParquetError> {
@@ -346,9 +364,13 @@ impl Table {
             ColumnReader::DoubleColumnReader(reader) => self.all(reader, |v| v).map(Values::Number),
             ColumnReader::Int64ColumnReader(reader) => self.all(reader, |v| v).map(Values::Integer),
             ColumnReader::BoolColumnReader(reader) => self.all(reader, |v| v).map(Values::Boolean),
-            ColumnReader::ByteArrayColumnReader(reader) => self
-                .all(reader, |bytes: ByteArray| String::from_utf8_lossy(bytes.data()).into_owned())
-                .map(Values::Text),
+            ColumnReader::ByteArrayColumnReader(reader) => {
+                let mut all = Vec::with_capacity(self.rows);
+                self.each(reader, |bytes: Option<ByteArray>| {
+                    push_text(&mut all, bytes.map(|b| String::from_utf8_lossy(b.data()).into()));
+                })
+                .map(|()| Values::Text(all))
+            }
             _ => Err(ParquetError::General(format!("column {name} has another type"))),
         };
         values.map_err(form).map(Some)
@@ -356,22 +378,36 @@ impl Table {
 
     fn all<D: DataType, T>(
         &self,
-        mut reader: ColumnReaderImpl<D>,
+        reader: ColumnReaderImpl<D>,
         from: impl Fn(D::T) -> T,
     ) -> Result<Vec<Option<T>>, ParquetError> {
-        let (mut levels, mut there) = (Vec::new(), Vec::new());
-        while levels.len() < self.rows {
-            let left = self.rows - levels.len();
-            let (records, _, _) = reader.read_records(left, Some(&mut levels), None, &mut there)?;
+        let mut all = Vec::with_capacity(self.rows);
+        self.each(reader, |value| all.push(value.map(&from)))?;
+        Ok(all)
+    }
+
+    /// Gives every value of a column.
+    fn each<D: DataType>(
+        &self,
+        mut reader: ColumnReaderImpl<D>,
+        mut take: impl FnMut(Option<D::T>),
+    ) -> Result<(), ParquetError> {
+        let mut left = self.rows;
+        while left > 0 {
+            let (mut levels, mut there) = (Vec::new(), Vec::new());
+            let wanted = left.min(ROWS_AT_A_TIME);
+            let (records, _, _) =
+                reader.read_records(wanted, Some(&mut levels), None, &mut there)?;
             if records == 0 {
                 return Err(ParquetError::General(format!("{left} rows are missing")));
             }
+            left -= records;
+            let mut there = there.into_iter();
+            for level in levels {
+                take(if level > 0 { there.next() } else { None });
+            }
         }
-        let mut there = there.into_iter();
-        Ok(levels
-            .iter()
-            .map(|level| if *level > 0 { there.next().map(&from) } else { None })
-            .collect())
+        Ok(())
     }
 }
 
@@ -389,7 +425,7 @@ mod tests {
             let folder = tempfile::tempdir().unwrap();
             let path = folder.path().join("a/table.parquet");
             let all = [
-                Values::Text(rows.iter().map(|row| row.0.clone()).collect()),
+                Values::Text(rows.iter().map(|row| row.0.as_deref().map(Arc::from)).collect()),
                 Values::Number(rows.iter().map(|row| row.1.filter(|v| !v.is_nan())).collect()),
                 Values::Integer(rows.iter().map(|row| row.2).collect()),
                 Values::Boolean(rows.iter().map(|row| row.3).collect()),

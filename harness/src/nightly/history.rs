@@ -110,9 +110,9 @@ impl History {
         rows: &BTreeMap<String, Vec<CaseRow>>,
         comparison: Option<&Comparison>,
     ) {
-        let name = Some(Value::Text(night.id.clone()));
+        let name = Some(Value::Text(night.id.as_str().into()));
         self.rows.retain(|row| row.first() != Some(&name));
-        let text = |text: &str| Some(Value::Text(text.to_owned()));
+        let text = |text: &str| Some(Value::Text(text.into()));
         let git = night.program.git.as_ref();
         let head: Row = vec![
             name,
@@ -174,7 +174,7 @@ impl History {
     fn text(row: &Row, column: &str) -> String {
         let index = COLUMNS.iter().position(|(name, _)| *name == column);
         match index.and_then(|index| row.get(index)) {
-            Some(Some(Value::Text(text))) => text.clone(),
+            Some(Some(Value::Text(text))) => text.to_string(),
             _ => String::new(),
         }
     }

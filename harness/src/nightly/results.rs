@@ -56,7 +56,7 @@ pub fn read(folder: &Path) -> Result<Vec<CaseRow>, TableError> {
             .filter_map(|(name, values)| Some((name.clone(), values.at(row)?)))
             .collect();
         let text = |name: &str| match row.iter().find(|(other, _)| other == name) {
-            Some((_, Value::Text(text))) => text.clone(),
+            Some((_, Value::Text(text))) => text.to_string(),
             _ => String::new(),
         };
         let case = text("case");
@@ -105,7 +105,8 @@ fn checks(path: &Path) -> Result<BTreeMap<String, Checks>, TableError> {
             path: path.to_owned(),
             reason: format!("row {row} has verdict {name:?}"),
         })?;
-        all.entry(case).or_default().insert(requirement, (verdict, margin));
+        let checks = all.entry(case.to_string()).or_default();
+        checks.insert(requirement.to_string(), (verdict, margin));
     }
     Ok(all)
 }
