@@ -419,6 +419,32 @@ mod tests {
 
     type Row = (Option<String>, Option<f64>, Option<i64>, Option<bool>);
 
+    /// More rows than are handed over at a time, with nulls on both sides of the boundary.
+    #[test]
+    fn a_long_table_is_read_as_it_was_written() {
+        let rows = 2 * ROWS_AT_A_TIME + 77;
+        let kept = |row: usize| row % 3 != 1;
+        let all = [
+            Values::Text(
+                (0..rows).map(|row| kept(row).then(|| (row / 50).to_string().into())).collect(),
+            ),
+            Values::Number((0..rows).map(|row| kept(row).then_some(row as f64)).collect()),
+        ];
+        let columns: Vec<(String, Kind)> =
+            all.iter().zip(["a", "b"]).map(|(v, name)| (name.to_owned(), v.kind())).collect();
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("table.parquet");
+        write(&path, "p", &columns, |i| Ok(Cow::Borrowed(&all[i]))).unwrap();
+        let table = Table::open(&path).unwrap();
+        assert_eq!(table.rows, rows);
+        for ((name, _), values) in columns.iter().zip(&all) {
+            assert!(table.column(name).unwrap().unwrap() == *values, "{name}");
+        }
+        let Some(Values::Text(texts)) = table.column("a").unwrap() else { panic!("texts") };
+        let (first, later) = (texts[2].as_ref().unwrap(), texts[3].as_ref().unwrap());
+        assert!(Arc::ptr_eq(first, later), "held once");
+    }
+
     proptest! {
         #[test]
         fn what_was_written_is_read(rows in proptest::collection::vec(any::<Row>(), 0..50)) {
