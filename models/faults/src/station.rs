@@ -5,6 +5,7 @@
 //! with the epoch that the source has made: faults of samples and delivery act on it, in the order
 //! of the scenario. What an active fault altered is found by comparing before and after it.
 
+mod stage;
 mod state;
 
 use crate::catalogue::{Acts, Kind, Lasts};
@@ -13,13 +14,15 @@ use crate::host::Hosted;
 use crate::receipt::{Ledger, Receipt};
 use crate::rule::{Context, Rule, SetPoints, UnitEvent};
 use crate::setup::{BuildError, Setup};
-use crate::trigger::{Clock, News, Scene, Schedule, State, Trigger};
+use crate::trigger::{Clock, News, Scene, Schedule, Trigger};
 use crate::values::Values;
 use crate::wire::Wired;
 use alloc::string::String;
 use alloc::vec::Vec;
 use octant_random::stream::Phase;
 use octant_sample::{Epoch, GimbalCommand, Output, Truth};
+
+use stage::{Shared, Stage};
 
 pub use state::FORMAT as STATE_FORMAT;
 
@@ -81,93 +84,6 @@ pub struct Progress {
     pub firings: u32,
     /// Epochs that it has altered; see [`Receipt::samples_altered`].
     pub samples_altered: u64,
-}
-
-#[derive(Clone, Debug)]
-struct Stage {
-    id: String,
-    kind: &'static Kind,
-    rule: Rule,
-    clock: Clock,
-    ledger: Ledger,
-    /// It has set in, and its rule hasn't seen an epoch since.
-    fresh: bool,
-}
-
-impl Stage {
-    fn acting(&self) -> bool {
-        matches!(self.clock.state, State::Active { .. } | State::Fading { .. })
-    }
-
-    /// It acts, or something is left from when it did, and every epoch has to be looked at for that.
-    fn engaged(&self) -> bool {
-        match &self.rule {
-            Rule::Delivery(rule) => self.acting() || rule.holds() > 0,
-            Rule::Samples(rule) => self.acting() || rule.lingers() || self.is_owed(),
-            Rule::Command(_) | Rule::Unit(_) | Rule::Wire(_) => self.acting(),
-            // Between onset and end the plant or the host does it all.
-            Rule::Plant(_) | Rule::Host(_) => false,
-        }
-    }
-
-    /// Its ledger with the epochs up to this one in which it acted and nobody looked.
-    fn ledger_at(&self, epoch: u64) -> Ledger {
-        let mut ledger = self.ledger.clone();
-        if self.acts_unseen() {
-            ledger.touched_to(epoch);
-        }
-        ledger
-    }
-
-    fn acts_unseen(&self) -> bool {
-        matches!(self.rule, Rule::Plant(_)) && self.acting()
-    }
-
-    /// Its instant passed while faults before it held every epoch back: the next one gets it.
-    fn is_owed(&self) -> bool {
-        self.fresh && self.kind.lasts == Lasts::Instant
-    }
-
-    fn cuts_power(&self) -> bool {
-        self.acting() && matches!(&self.rule, Rule::Unit(rule) if rule.cuts_power())
-    }
-
-    /// The first epoch that has to be remembered as the one before an onset.
-    fn looks_back_from(&self) -> u64 {
-        match (&self.rule, self.clock.state) {
-            (Rule::Samples(rule), state) if rule.looks_back() => match state {
-                State::Pending(at) => at.saturating_sub(1),
-                State::Spent => u64::MAX,
-                State::Waiting | State::Active { .. } | State::Fading { .. } => 0,
-            },
-            _ => u64::MAX,
-        }
-    }
-
-    fn context<'a>(&self, shared: &Shared, last: &'a Epoch, output: &'a Output) -> Context<'a> {
-        Context {
-            epoch: shared.epoch,
-            phase: shared.phase,
-            counter: shared.counter,
-            dt_s: shared.dt_s,
-            since_onset: self.clock.onset().map_or(0, |onset| shared.epoch - onset),
-            firing: self.clock.firings.saturating_sub(1),
-            strength: self.clock.strength(shared.epoch),
-            last,
-            output,
-            set_points: shared.set_points,
-        }
-    }
-}
-
-/// What every context of an epoch has in common.
-#[derive(Clone, Copy, Debug)]
-struct Shared {
-    epoch: u64,
-    phase: Phase,
-    counter: u64,
-    dt_s: f64,
-    set_points: SetPoints,
 }
 
 /// Epochs that one delivery fault can hold back at most.

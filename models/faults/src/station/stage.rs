@@ -1,0 +1,102 @@
+//! One fault in the pipeline: its rule, its clock and its ledger.
+
+use crate::catalogue::{Kind, Lasts};
+use crate::receipt::Ledger;
+use crate::rule::{Context, Rule, SetPoints};
+use crate::trigger::{Clock, State};
+use alloc::string::String;
+use octant_random::stream::Phase;
+use octant_sample::{Epoch, Output};
+
+#[derive(Clone, Debug)]
+pub(super) struct Stage {
+    pub(super) id: String,
+    pub(super) kind: &'static Kind,
+    pub(super) rule: Rule,
+    pub(super) clock: Clock,
+    pub(super) ledger: Ledger,
+    /// It has set in, and its rule hasn't seen an epoch since.
+    pub(super) fresh: bool,
+}
+
+impl Stage {
+    pub(super) fn acting(&self) -> bool {
+        matches!(self.clock.state, State::Active { .. } | State::Fading { .. })
+    }
+
+    /// It acts, or something is left from when it did, and every epoch has to be looked at for that.
+    pub(super) fn engaged(&self) -> bool {
+        match &self.rule {
+            Rule::Delivery(rule) => self.acting() || rule.holds() > 0,
+            Rule::Samples(rule) => self.acting() || rule.lingers() || self.is_owed(),
+            Rule::Command(_) | Rule::Unit(_) | Rule::Wire(_) => self.acting(),
+            // Between onset and end the plant or the host does it all.
+            Rule::Plant(_) | Rule::Host(_) => false,
+        }
+    }
+
+    /// Its ledger with the epochs up to this one in which it acted and nobody looked.
+    pub(super) fn ledger_at(&self, epoch: u64) -> Ledger {
+        let mut ledger = self.ledger.clone();
+        if self.acts_unseen() {
+            ledger.touched_to(epoch);
+        }
+        ledger
+    }
+
+    /// It acts in the plant, which needs no look between its onset and its end.
+    pub(super) fn acts_unseen(&self) -> bool {
+        matches!(self.rule, Rule::Plant(_)) && self.acting()
+    }
+
+    /// Its instant passed while faults before it held every epoch back: the next one gets it.
+    pub(super) fn is_owed(&self) -> bool {
+        self.fresh && self.kind.lasts == Lasts::Instant
+    }
+
+    pub(super) fn cuts_power(&self) -> bool {
+        self.acting() && matches!(&self.rule, Rule::Unit(rule) if rule.cuts_power())
+    }
+
+    /// The first epoch that has to be remembered as the one before an onset.
+    pub(super) fn looks_back_from(&self) -> u64 {
+        match (&self.rule, self.clock.state) {
+            (Rule::Samples(rule), state) if rule.looks_back() => match state {
+                State::Pending(at) => at.saturating_sub(1),
+                State::Spent => u64::MAX,
+                State::Waiting | State::Active { .. } | State::Fading { .. } => 0,
+            },
+            _ => u64::MAX,
+        }
+    }
+
+    pub(super) fn context<'a>(
+        &self,
+        shared: &Shared,
+        last: &'a Epoch,
+        output: &'a Output,
+    ) -> Context<'a> {
+        Context {
+            epoch: shared.epoch,
+            phase: shared.phase,
+            counter: shared.counter,
+            dt_s: shared.dt_s,
+            since_onset: self.clock.onset().map_or(0, |onset| shared.epoch - onset),
+            firing: self.clock.firings.saturating_sub(1),
+            strength: self.clock.strength(shared.epoch),
+            last,
+            output,
+            set_points: shared.set_points,
+        }
+    }
+}
+
+/// What every context of an epoch has in common.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Shared {
+    pub(super) epoch: u64,
+    pub(super) phase: Phase,
+    pub(super) counter: u64,
+    pub(super) dt_s: f64,
+    pub(super) set_points: SetPoints,
+}
