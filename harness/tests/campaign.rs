@@ -1,7 +1,7 @@
 //! Campaigns: planned, run in processes of their own, in parts, interrupted, merged; and everything that
 //! must not end in a pass.
-#![allow(clippy::unwrap_used)]
 
+use crate::common::program::{OCTANT, program};
 use octant::campaign::case::{self, CaseResult};
 use octant::campaign::execute::{Event, Options, Outcome, Shard, execute};
 use octant::campaign::merge::{self, MergeError};
@@ -98,7 +98,7 @@ fn begin(
     cancel: &AtomicBool,
     again: bool,
 ) -> Result<Outcome, String> {
-    let program = Path::new(env!("CARGO_BIN_EXE_octant"));
+    let program = Path::new(OCTANT);
     let options = Options { folder, program, jobs, shard, end: plan.cases.len(), again, cancel };
     execute(plan, &options, &|_| {}).map_err(|error| error.to_string())
 }
@@ -131,7 +131,7 @@ fn the_same_bytes_on_one_processor_in_parts_and_after_interruptions() {
     let mut rounds = 0;
     loop {
         let cancel = AtomicBool::new(false);
-        let program = Path::new(env!("CARGO_BIN_EXE_octant"));
+        let program = Path::new(OCTANT);
         let options = Options {
             folder: &torn,
             program,
@@ -351,7 +351,7 @@ fn every_case_is_told_once() {
     let (plan, folder) = (bench.plan(), bench.at("out"));
     let (there, done) = (AtomicUsize::new(0), Mutex::new(Vec::new()));
     let cancel = AtomicBool::new(false);
-    let program = Path::new(env!("CARGO_BIN_EXE_octant"));
+    let program = Path::new(OCTANT);
     let options = Options {
         folder: &folder,
         program,
@@ -379,7 +379,7 @@ fn it_ends_where_enough_is_known_wherever_it_ran() {
     let stop = "[stop]\nrequirement = \"NAV-1\"\npass = 0.5\nconfidence = 0.8\nevery = 2\n";
     let bench = Bench::new(&format!("{CAMPAIGN}{stop}"));
     let octant = |arguments: &[&str]| {
-        let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_octant"));
+        let mut command = program(&[]);
         let output =
             command.current_dir(bench.folder.path()).arg("campaign").args(arguments).output();
         let output = output.unwrap();
@@ -478,7 +478,7 @@ verification = \"inspection\"
     // Traced, and as StrictDoc has it.
     plan.write(&folder, false).unwrap();
     let trace = |arguments: &[&str]| {
-        let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_octant"));
+        let mut command = program(&[]);
         command.current_dir(bench.folder.path()).args(["campaign", "trace", "out"]);
         command.args(arguments).output().unwrap()
     };

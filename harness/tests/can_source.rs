@@ -1,6 +1,4 @@
 //! An instrument on a CAN bus as a source: behind an adapter on a serial line, which is played here.
-#![cfg(unix)]
-#![allow(clippy::unwrap_used)]
 
 use octant::scenario::{Scenario, Source as Kind};
 use octant::source::{Epoch, LiveSource, Source};

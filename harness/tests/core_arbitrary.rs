@@ -1,9 +1,6 @@
 //! Whatever comes in: the core doesn't panic, and hands out finite numbers or refuses.
-#![allow(clippy::unwrap_used)]
 
-mod instrument;
-
-use instrument::{Case, PERIOD_NS};
+use crate::common::instrument::{Case, PERIOD_NS};
 use octant_calibration::Core;
 use octant_calibration::config::*;
 use octant_calibration::positions::{EIGHT, SIX};

@@ -1,11 +1,8 @@
 //! The core with the plant: forms of the error model, timing, states switched off, determinism,
 //! tables, and what the core says about damaged input.
-#![allow(clippy::unwrap_used)]
 
-mod instrument;
-
-use instrument::closed_loop::{ClosedLoop, on_two_threads};
-use instrument::{Case, LATITUDE_RAD, PERIOD_NS, dockside};
+use crate::common::instrument::closed_loop::{ClosedLoop, on_two_threads};
+use crate::common::instrument::{Case, LATITUDE_RAD, PERIOD_NS, dockside};
 use nalgebra::{Quaternion, UnitQuaternion};
 use octant_calibration::Core;
 use octant_calibration::config::*;

@@ -1,11 +1,8 @@
 //! Whole procedures of the core with the plant: perfect sensors, a moored ship, coarse alignment and
 //! the two other estimators.
-#![allow(clippy::unwrap_used)]
 
-mod instrument;
-
-use instrument::closed_loop::{ClosedLoop, on_two_threads};
-use instrument::{Case, dockside};
+use crate::common::instrument::closed_loop::{ClosedLoop, on_two_threads};
+use crate::common::instrument::{Case, dockside};
 use nalgebra::{Quaternion, UnitQuaternion};
 use octant_calibration::config::*;
 use octant_calibration::positions::{Degrees, EIGHT, SIX};
@@ -54,7 +51,7 @@ fn perfect(dockside: bool) -> ClosedLoop {
     plant.imu.velocity_random_walk = 0.0;
     if dockside {
         let ship = dockside_default(1);
-        core.screening.base = instrument::base_of(&ship);
+        core.screening.base = crate::common::instrument::base_of(&ship);
         plant.motion = plant::Motion::Dockside(ship);
     }
     core.calibration = None;

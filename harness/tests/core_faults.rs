@@ -3,12 +3,9 @@
 //! Eight positions, 4 h, Table 1, static, one seed. The figure is the largest shift of a parameter
 //! against the run without the fault, in posterior σ. Bands of the bare and the gated core come from
 //! an independent filter.
-#![allow(clippy::unwrap_used)]
 
-mod instrument;
-
-use instrument::Case;
-use instrument::closed_loop::{ClosedLoop, on_two_threads};
+use crate::common::instrument::Case;
+use crate::common::instrument::closed_loop::{ClosedLoop, on_two_threads};
 use octant_calibration::config::{Recovery, Screening};
 use octant_calibration::positions::EIGHT;
 use octant_earth::units::*;

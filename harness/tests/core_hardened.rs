@@ -3,12 +3,9 @@
 //!
 //! Eight positions, 4 h, Table 1, static. The figure is the largest shift of a parameter against the
 //! run without the fault, in posterior σ.
-#![allow(clippy::unwrap_used, clippy::print_stdout)]
 
-mod instrument;
-
-use instrument::Case;
-use instrument::closed_loop::{ClosedLoop, on_two_threads};
+use crate::common::instrument::Case;
+use crate::common::instrument::closed_loop::{ClosedLoop, on_two_threads};
 use octant_calibration::config::{Recovery, Screening};
 use octant_calibration::positions::{EIGHT, SIX};
 use octant_earth::units::*;
@@ -355,8 +352,11 @@ fn shift(faulted: &Outcome, clean: &Outcome) -> (f64, usize) {
 
 fn before(seed: u64, moored: bool) -> ClosedLoop {
     let case = Case::table_1(seed, EIGHT);
-    let (plant, core) =
-        if moored { instrument::dockside(&case) } else { (case.plant(), case.core()) };
+    let (plant, core) = if moored {
+        crate::common::instrument::dockside(&case)
+    } else {
+        (case.plant(), case.core())
+    };
     let mut run = ClosedLoop::new(&plant, &core);
     run.run_to(DWELL - 1);
     run
@@ -367,8 +367,11 @@ fn clean(seed: u64, moored: bool, six: bool, hours: f64) -> ClosedLoop {
     let positions = if six { SIX } else { EIGHT };
     let mut case = Case { calibration_h: hours, ..Case::table_1(seed, positions) };
     case.g_states = !six;
-    let (plant, core) =
-        if moored { instrument::dockside(&case) } else { (case.plant(), case.core()) };
+    let (plant, core) = if moored {
+        crate::common::instrument::dockside(&case)
+    } else {
+        (case.plant(), case.core())
+    };
     let mut run = ClosedLoop::new(&plant, &core);
     run.calibrate();
     run

@@ -1,5 +1,4 @@
 //! Posterior standard deviations against an independent covariance analysis.
-#![allow(clippy::unwrap_used)]
 
 use octant::observe::covariance::{predict, state_name};
 use octant_calibration::config::*;

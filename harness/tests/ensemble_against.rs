@@ -2,7 +2,6 @@
 //! what isn't is named.
 //!
 //! The results are made by hand, normal with the predicted σ, so that what has to come out is known.
-#![allow(clippy::unwrap_used)]
 
 use octant::campaign::case::{self, CaseResult};
 use octant::campaign::plan::Plan;

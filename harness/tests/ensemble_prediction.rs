@@ -1,6 +1,5 @@
 //! The predicted ensemble against runs: what is the same in every run, against one run without noise;
 //! what is random, against two hundred.
-#![allow(clippy::unwrap_used, clippy::print_stdout)]
 
 use nalgebra::{Quaternion, UnitQuaternion};
 use octant::observe::ensemble::{Ensemble, ensemble, state_unit};

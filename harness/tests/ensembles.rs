@@ -1,9 +1,6 @@
 //! Ensembles: the filter is consistent, and the paper's claim holds where physics lets it.
-#![allow(clippy::unwrap_used, clippy::print_stdout)]
 
-mod instrument;
-
-use instrument::{Case, PERIOD_NS};
+use crate::common::instrument::{Case, PERIOD_NS};
 use octant_calibration::Core;
 use octant_calibration::covariance::{DV, PARAMETERS, PHI};
 use octant_calibration::positions::EIGHT;

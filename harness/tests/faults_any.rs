@@ -1,6 +1,5 @@
 //! Any combination of kinds, values, triggers and seeds runs to a verdict, and what the receipts say
 //! is what the recording shows.
-#![allow(clippy::unwrap_used)]
 
 #[path = "../../models/faults/tests/any_fault/draw.rs"]
 mod draw;

@@ -1,14 +1,13 @@
 //! Faults of the host, as a user runs them: starved processors, a full disk, a recorder that stands
 //! still.
-#![allow(clippy::unwrap_used)]
 
+use crate::common::program::{json, program};
 use octant::recorder::reader::{self, Item};
 use octant::run::method::{MethodError, SetupError};
 use octant::run::{Control, Recording, run_method};
 use octant::scenario::{Method, Scenario};
 use serde_json::Value;
 use std::path::Path;
-use std::process::Command;
 use std::time::{Duration, Instant};
 
 const SECONDS: &str = "schema = 1\ntitle = \"a host\"\n[procedure.alignment]\nmethod = \"given\"\n\
@@ -27,18 +26,13 @@ fn fault(kind: &str, at: &str, more: &str) -> String {
 fn run(here: &Path, name: &str, text: &str, more: &[&str]) -> (Option<i32>, String) {
     let file = here.join(format!("{name}.toml"));
     std::fs::write(&file, text).unwrap();
-    let output = Command::new(env!("CARGO_BIN_EXE_octant"))
-        .arg("run")
+    let output = program(&["run"])
         .args([&file, Path::new("--out"), &here.join(name)])
         .args(more)
         .output()
         .unwrap();
     let said = String::from_utf8_lossy(&output.stderr).into_owned();
     (output.status.code(), said)
-}
-
-fn json(path: &Path) -> Value {
-    serde_json::from_slice(&std::fs::read(path).unwrap()).unwrap()
 }
 
 /// Samples that a recording holds up to its end or tear, and its events of kind `host`.

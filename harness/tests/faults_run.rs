@@ -1,7 +1,7 @@
 //! Faults in a run: receipts add up with the recording, nothing else is altered, what never
 //! reached the core is told from what did, and a replay gives the same bits.
-#![allow(clippy::unwrap_used)]
 
+use crate::common::program::{octant_in, program};
 use octant::endpoint::{Endpoint, InProcess};
 use octant::recorder::reader::{Epochs, RecordedEpoch, Recording as Reader, stream_hash};
 use octant::recorder::{Event, Policy, Recorder, RecorderOptions, RecorderSummary, Samples};
@@ -357,11 +357,7 @@ fn full() -> Policy {
 /// Puts the recording through the program's replay: its exit status is that of equal outputs.
 #[track_caller]
 fn assert_replays(driven: &Driven) {
-    let output = std::process::Command::new(env!("CARGO_BIN_EXE_octant"))
-        .args(["replay", "--json"])
-        .arg(&driven.path)
-        .output()
-        .unwrap();
+    let output = program(&["replay", "--json"]).arg(&driven.path).output().unwrap();
     let text = String::from_utf8_lossy(&output.stdout);
     assert!(output.status.success(), "{text}{}", String::from_utf8_lossy(&output.stderr));
     let found: serde_json::Value = serde_json::from_str(&text).unwrap();
@@ -544,10 +540,7 @@ trigger = { at = "250 s" }
 fn faults_of_every_place_leave_a_recording_that_replays_bit_for_bit() {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("all.toml"), format!("{LOCKSTEP}\n{EVERYWHERE}")).unwrap();
-    let octant = |arguments: &[&str]| {
-        let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_octant"));
-        command.args(arguments).current_dir(folder.path()).output().unwrap()
-    };
+    let octant = |arguments: &[&str]| octant_in(folder.path(), arguments);
     let run = octant(&["run", "all.toml", "--out", "all"]);
     assert!(matches!(run.status.code(), Some(0 | 1)), "{}", String::from_utf8_lossy(&run.stderr));
     let text = std::fs::read_to_string(folder.path().join("all/summary.json")).unwrap();
@@ -564,13 +557,7 @@ fn faults_of_every_place_leave_a_recording_that_replays_bit_for_bit() {
 #[test]
 fn the_program_says_what_a_fault_did() {
     let folder = tempfile::tempdir().unwrap();
-    let octant = |arguments: &[&str]| {
-        std::process::Command::new(env!("CARGO_BIN_EXE_octant"))
-            .args(arguments)
-            .current_dir(folder.path())
-            .output()
-            .unwrap()
-    };
+    let octant = |arguments: &[&str]| octant_in(folder.path(), arguments);
     let file = |name: &str, trigger: &str| {
         let text = format!("{LOCKSTEP}\n{}", spike(trigger));
         std::fs::write(folder.path().join(name), text).unwrap();

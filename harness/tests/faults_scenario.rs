@@ -1,5 +1,4 @@
 //! Faults in scenarios: what is read, and what the program says about those that can't be.
-#![allow(clippy::unwrap_used)]
 
 use octant::scenario::resolve::{Draws, Seeded};
 use octant::scenario::{Place, Problem, Scenario, fault_example};

@@ -1,5 +1,4 @@
 //! Every kind of fault in a short scenario: each ends as its suite says, and each fault fired.
-#![allow(clippy::unwrap_used)]
 
 use octant::run::{Control, MethodRun, Recording, assemble, run_method};
 use octant::scenario::suite::{Case, Suite};

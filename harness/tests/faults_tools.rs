@@ -1,10 +1,9 @@
 //! `octant faults sweep`, `minimise` and `describe` as a user runs them.
-#![allow(clippy::unwrap_used)]
 
+use crate::common::program::{ends, octant};
 use octant_faults::catalogue::Acts;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
 
 /// The ten minutes of the lock-step scenario without its navigation, with more at the end.
 fn scenario(folder: &Path, more: &str) -> PathBuf {
@@ -15,16 +14,9 @@ fn scenario(folder: &Path, more: &str) -> PathBuf {
     path
 }
 
-fn octant(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_octant")).args(arguments).output().unwrap()
-}
-
 #[track_caller]
 fn succeeds(arguments: &[&str]) -> String {
-    let output = octant(arguments);
-    let error = String::from_utf8_lossy(&output.stderr);
-    assert_eq!(output.status.code(), Some(0), "{arguments:?}: {error}");
-    String::from_utf8(output.stdout).unwrap()
+    ends(arguments, 0).0
 }
 
 /// What a refusal says; its exit status is that of bad input.

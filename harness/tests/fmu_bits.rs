@@ -1,7 +1,6 @@
 //! The Calibrator through the C functions of FMI 2.0 and FMI 3.0, and the core in process: the same
 //! bits over the whole stream, also across states that are kept, written to bytes and set in another
 //! instance in the middle of the calibration.
-#![allow(clippy::unwrap_used)]
 #![allow(unsafe_code, reason = "C functions are called")]
 #![allow(
     clippy::undocumented_unsafe_blocks,

@@ -1,5 +1,4 @@
 //! `octant fmu build`: what is in the files, that they are what the tables say, and that they run.
-#![allow(clippy::unwrap_used, clippy::float_cmp)]
 
 use octant::fmu::archive::Archive;
 use octant::fmu::build::{BuildError, Options, build};

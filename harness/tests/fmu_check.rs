@@ -1,11 +1,8 @@
 //! `octant fmu check` on real libraries: foreign FMUs as they are, and with a library that was built
 //! wrongly.
-#![cfg(all(target_os = "linux", target_arch = "x86_64"))]
-#![allow(clippy::unwrap_used)]
 
-#[path = "common/foreign.rs"]
-mod foreign;
-
+use crate::common::foreign;
+use crate::common::program::{OCTANT, program};
 use octant::fmu::build;
 use octant::fmu::check::load::load;
 use octant::fmu::check::rules::Severity;
@@ -14,7 +11,7 @@ use octant::fmu::instance::Options;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 /// A folder with an FMU of FMI 2.0, without its library, that one may change.
 fn empty(name: &str) -> (tempfile::TempDir, PathBuf) {
@@ -61,7 +58,7 @@ fn stepped(fmu: &Path) -> Vec<String> {
     assert!(checked.can_be_loaded());
     let limit = Duration::from_secs(3);
     let options = Options {
-        program: Some(env!("CARGO_BIN_EXE_octant").into()),
+        program: Some(OCTANT.into()),
         start_limit: limit,
         time_limit: limit,
         ..Options::default()
@@ -258,10 +255,9 @@ fn trouble_at_instantiation_is_a_finding() {
     let refusal = stepped(folder.path());
     assert!(refusal[0].starts_with("load.instantiates: "), "{refusal:?}");
     edit(folder.path(), "instantiate 8", "instantiate 4");
-    let begin = Instant::now();
+    // It hangs for ever: that there is a finding shows that the limit was kept.
     let hang = stepped(folder.path());
     assert!(hang[0].starts_with("load.survives: ") && hang[0].contains("3 s"), "{hang:?}");
-    assert!(begin.elapsed() < Duration::from_secs(20), "{:?}", begin.elapsed());
 }
 
 #[test]
@@ -352,12 +348,7 @@ fn other_start_values_than_the_descriptions_are_found() {
 }
 
 fn octant(arguments: &[&str], files: &[&Path]) -> (Output, String, String) {
-    let output = Command::new(env!("CARGO_BIN_EXE_octant"))
-        .args(["fmu", "check"])
-        .args(arguments)
-        .args(files)
-        .output()
-        .unwrap();
+    let output = program(&[]).args(["fmu", "check"]).args(arguments).args(files).output().unwrap();
     let text = |bytes: &[u8]| String::from_utf8(bytes.to_vec()).unwrap();
     let (out, err) = (text(&output.stdout), text(&output.stderr));
     (output, out, err)

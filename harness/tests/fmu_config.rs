@@ -1,6 +1,5 @@
 //! What the core is configured with survives as parameters of the Calibrator FMU: bit for bit, and
 //! within the ranges that its table gives.
-#![allow(clippy::unwrap_used)]
 
 use octant::scenario::resolve::{Draws, Seeded};
 use octant::scenario::{Method, Scenario};

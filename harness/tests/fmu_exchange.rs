@@ -1,9 +1,6 @@
 //! Model exchange against closed forms, and against another method.
-#![allow(clippy::unwrap_used, clippy::float_cmp)]
 
-#[path = "common/foreign.rs"]
-mod foreign;
-
+use crate::common::foreign;
 use octant::fmu::instance::{Group, Instance, InstanceError, Options, Outcome, Place};
 
 fn open(name: &str) -> Box<dyn Instance> {

@@ -1,11 +1,8 @@
 //! Foreign FMUs in this process: what they are given, what they give, and in which order they are
 //! called. The FMUs are strict: they fail where the order is wrong.
-#![allow(clippy::unwrap_used, clippy::float_cmp)]
 
+use crate::common::foreign;
 use std::path::{Path, PathBuf};
-
-#[path = "common/foreign.rs"]
-mod foreign;
 
 use octant::fmu::OpenError;
 use octant::fmu::description::Variable;

@@ -1,6 +1,5 @@
 //! The Plant and the Calibrator, wired by the names of their variables and stepped side by side, are
 //! the run in one process: sample by sample, bit for bit, with faults, and across a save.
-#![allow(clippy::unwrap_used)]
 
 use octant::endpoint::{Endpoint, InProcess};
 use octant::run::method::configurations;

@@ -1,19 +1,16 @@
 //! FMUs in processes of their own: the same answers as here, and clear errors where they crash, hang,
 //! end the process or print.
-#![cfg(target_os = "linux")]
-#![allow(clippy::unwrap_used, clippy::float_cmp)]
 
-#[path = "common/foreign.rs"]
-mod foreign;
-
+use crate::common::foreign;
+use crate::common::program::{OCTANT, passes_as_process, program, test_as_process};
 use octant::fmu::OpenError;
 use octant::fmu::instance::{Group, Instance, InstanceError, Options, Outcome, Place, Plan};
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
+use std::process::Stdio;
 use std::time::{Duration, Instant};
 
 fn apart() -> Options {
-    let program = Some(PathBuf::from(env!("CARGO_BIN_EXE_octant")));
+    let program = Some(PathBuf::from(OCTANT));
     Options { place: Place::OwnProcess, program, ..Options::default() }
 }
 
@@ -260,14 +257,13 @@ fn a_crash_is_an_error_with_signal_and_function() {
 
 #[test]
 fn a_hang_ends_at_the_limit() {
-    let options = Options { time_limit: Duration::from_millis(300), ..apart() };
+    // It hangs for ever: that anything comes back shows that the limit was kept.
+    let options = Options { time_limit: Duration::from_secs(1), ..apart() };
     for what in [HANG, BUSY] {
-        let begin = Instant::now();
         assert_eq!(
             meet(STEP, what, &options),
-            "the process of trouble_fmi2.fmu gave no answer to fmi2DoStep for 0.3 s, and was ended"
+            "the process of trouble_fmi2.fmu gave no answer to fmi2DoStep for 1 s, and was ended"
         );
-        assert!(begin.elapsed() < Duration::from_secs(5), "{:?}", begin.elapsed());
     }
     let options = Options { start_limit: Duration::from_millis(500), ..apart() };
     for place in [INSTANTIATE, INITIALIZATION] {
@@ -278,14 +274,13 @@ fn a_hang_ends_at_the_limit() {
 
 #[test]
 fn a_hang_in_its_end_holds_nobody_up_for_longer() {
-    let options = Options { time_limit: Duration::from_millis(300), ..apart() };
+    // It hangs for ever: that `drop` returns shows that the limit was kept.
+    let options = Options { time_limit: Duration::from_secs(1), ..apart() };
     for what in [HANG, CRASH, EXIT] {
         let mut trouble = try_open("trouble_fmi2", &options).unwrap();
         start(&mut *trouble);
         demand(&mut *trouble, FREE, what);
-        let begin = Instant::now();
         drop(trouble);
-        assert!(begin.elapsed() < Duration::from_secs(3), "{:?}", begin.elapsed());
     }
 }
 
@@ -324,13 +319,6 @@ fn a_failure_is_not_the_end_of_the_process() {
     assert!(trouble.messages().is_empty());
 }
 
-/// A test that is run by another, in a process of its own.
-fn as_process(test: &str) -> Command {
-    let mut command = Command::new(std::env::current_exe().unwrap());
-    command.args(["--exact", test, "--ignored", "--nocapture", "--test-threads=1"]);
-    command
-}
-
 #[test]
 #[ignore = "run by what_an_fmu_prints_goes_to_standard_error"]
 fn prints() {
@@ -345,8 +333,7 @@ fn prints() {
 
 #[test]
 fn what_an_fmu_prints_goes_to_standard_error() {
-    let output = as_process("prints").output().unwrap();
-    assert!(output.status.success(), "{output:?}");
+    let output = passes_as_process("fmu_process::prints");
     let (out, error) =
         (String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
     assert!(!out.contains("noise"), "{out}");
@@ -391,7 +378,7 @@ fn opens_and_closes() {
         gain.step(0.0, 1.0).unwrap();
         if k % 2 == 0 {
             drop(gain);
-            let options = Options { time_limit: Duration::from_millis(100), ..apart() };
+            let options = Options { time_limit: Duration::from_millis(500), ..apart() };
             meet(STEP, if k % 4 == 0 { CRASH } else { HANG }, &options);
         }
     }
@@ -401,8 +388,7 @@ fn opens_and_closes() {
 
 #[test]
 fn nothing_is_left_behind() {
-    let output = as_process("opens_and_closes").output().unwrap();
-    assert!(output.status.success(), "{output:?}");
+    passes_as_process("fmu_process::opens_and_closes");
 }
 
 #[test]
@@ -416,7 +402,8 @@ fn hangs_for_long() {
 
 #[test]
 fn the_process_ends_with_the_one_that_it_serves() {
-    let mut parent = as_process("hangs_for_long").stdout(Stdio::null()).spawn().unwrap();
+    let mut parent =
+        test_as_process("fmu_process::hangs_for_long").stdout(Stdio::null()).spawn().unwrap();
     let until = Instant::now() + Duration::from_secs(60);
     let children = loop {
         let children = children_of(parent.id());
@@ -430,7 +417,7 @@ fn the_process_ends_with_the_one_that_it_serves() {
     std::thread::sleep(Duration::from_millis(300));
     parent.kill().unwrap();
     parent.wait().unwrap();
-    let until = Instant::now() + Duration::from_secs(10);
+    let until = Instant::now() + Duration::from_secs(60);
     let lives = |pid: &u32| Path::new("/proc").join(pid.to_string()).join("exe").exists();
     while children.iter().any(lives) {
         assert!(Instant::now() < until, "{children:?} live on");
@@ -494,11 +481,7 @@ fn what_cannot_be_opened_is_said_as_it_is_here() {
 
 #[test]
 fn the_host_is_not_for_people() {
-    let output = Command::new(env!("CARGO_BIN_EXE_octant"))
-        .args(["fmu", "host"])
-        .stdin(Stdio::null())
-        .output()
-        .unwrap();
+    let output = program(&[]).args(["fmu", "host"]).stdin(Stdio::null()).output().unwrap();
     assert_eq!(output.status.code(), Some(2), "{output:?}");
     let error = String::from_utf8_lossy(&output.stderr);
     assert!(error.contains("octant fmu host is started by octant itself"), "{error}");

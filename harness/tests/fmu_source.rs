@@ -1,31 +1,15 @@
 //! FMUs as source and as endpoint, as a user runs them: our own to the bit, and others'.
-#![cfg(target_os = "linux")]
-#![allow(clippy::unwrap_used, clippy::float_cmp)]
 
-#[path = "common/foreign.rs"]
-mod foreign;
-
+use crate::common::foreign;
+use crate::common::program::{ends, json, octant};
 use octant::fmu::build::{Options, build};
 use octant::recorder::reader::{Item, Recording};
 use octant_sample::counts::{DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS};
 use octant_sample::{Mode, Output as Answer, Sample, Status, Truth};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::Command;
 use std::sync::OnceLock;
-use std::time::{Duration, Instant};
-
-fn octant(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_octant")).args(arguments).output().unwrap()
-}
-
-#[track_caller]
-fn ends(arguments: &[&str], status: i32) -> (String, String) {
-    let output = octant(arguments);
-    let error = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert_eq!(output.status.code(), Some(status), "{arguments:?}: {error}");
-    (String::from_utf8(output.stdout).unwrap(), error)
-}
 
 /// Our own FMUs.
 fn own(name: &str) -> String {
@@ -42,10 +26,6 @@ fn file(folder: &Path, name: &str, text: &str) -> String {
     let path = folder.join(name);
     std::fs::write(&path, text).unwrap();
     path.display().to_string()
-}
-
-fn json(path: &Path) -> Value {
-    serde_json::from_slice(&std::fs::read(path).unwrap()).unwrap()
 }
 
 /// What a recording holds.
@@ -240,9 +220,7 @@ fn a_foreign_instrument_gives_the_counts_of_its_closed_form() {
 fn broken(folder: &Path, scenario: &str) -> (String, Value, usize) {
     let out = folder.join("run");
     let scenario = file(folder, "s.toml", scenario);
-    let begin = Instant::now();
     let (_, error) = ends(&["run", &scenario, "--out", out.to_str().unwrap()], 4);
-    assert!(begin.elapsed() < Duration::from_secs(60));
     assert!(!out.exists(), "an unfinished run keeps its name");
     let partial = folder.join("run.partial");
     assert!(error.contains("what was recorded is in") && error.contains("run.partial"), "{error}");
@@ -268,11 +246,11 @@ fn an_instrument_that_crashes_or_hangs_ends_the_run_with_what_was_recorded() {
     );
     std::fs::remove_dir_all(folder.path().join("run.partial")).unwrap();
     let hang = imu("from = \"5 s\"\ntrouble = 2\n")
-        .replace("[source.fmu.map]", "[source.fmu]\ntime_limit = \"0.5 s\"\n[source.fmu.map]");
+        .replace("[source.fmu.map]", "[source.fmu]\ntime_limit = \"2 s\"\n[source.fmu.map]");
     let (_, summary, samples) = broken(folder.path(), &hang);
     assert_eq!(samples, 1000);
     let reason = summary["reasons"][0].as_str().unwrap();
-    assert!(reason.contains("fmi2DoStep") && reason.contains("0.5 s"), "{reason}");
+    assert!(reason.contains("fmi2DoStep") && reason.contains("for 2 s"), "{reason}");
 }
 
 const CORE: &str = "schema = 1\ntitle = \"another's core\"\n[imu]\nrate = \"100 Hz\"\n\

@@ -1,8 +1,8 @@
 //! Stored forms of earlier versions: each is read, and one that is newer is refused in plain words.
 //!
 //! The samples are in `fixtures/formats`, as the program once wrote them.
-#![allow(clippy::unwrap_used)]
 
+use crate::common::program::program;
 use octant::campaign::case::{self, CaseResult};
 use octant::campaign::execute::Shard;
 use octant::campaign::file::Campaign;
@@ -17,7 +17,6 @@ use octant::score::summary::Summary;
 use octant::score::verdict::Verdict;
 use octant_calibration::table::CalibrationTable;
 use std::path::{Path, PathBuf};
-use std::process::Command;
 use tempfile::TempDir;
 
 const KEY: &str = "key.pub";
@@ -245,9 +244,9 @@ fn make() {
         std::fs::copy(sample(name), out.join(name)).unwrap();
     }
     let octant = |arguments: &[&str]| {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_octant"));
+        let mut command = program(arguments);
         command.current_dir(&out).env("OCTANT_OPERATOR", "an operator").env_remove(signature::KEY);
-        assert!(command.args(arguments).status().unwrap().success(), "{arguments:?}");
+        assert!(command.status().unwrap().success(), "{arguments:?}");
     };
     octant(&["run", "short.toml", "--out", "run"]);
     octant(&["campaign", "plan", "campaign.toml", "--out", "campaign"]);

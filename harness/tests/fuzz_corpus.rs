@@ -1,5 +1,4 @@
 //! The inputs that the fuzzer starts from and those it found, through the same functions without it.
-#![allow(clippy::print_stdout, reason = "the last name printed is the file that fails")]
 
 #[path = "../../fuzz/inputs.rs"]
 mod inputs;

@@ -1,16 +1,14 @@
 //! A core at the other end of a wire: over pseudo terminals, UDP and adapters, driven by the program
 //! and served by it, the answers are those of the core in process to the last bit; and however a device
 //! ends, the bench says so.
-#![cfg(unix)]
-#![allow(clippy::unwrap_used)]
 
+use crate::common::program::OCTANT;
 use serde_json::Value;
 use std::io::{BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
 use std::time::{Duration, Instant};
 
-const OCTANT: &str = env!("CARGO_BIN_EXE_octant");
 const LOCKSTEP: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/scenarios/lockstep.toml");
 
 /// A short scenario: 20 s of calibration through a move, 5 s of navigation.

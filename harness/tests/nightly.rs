@@ -1,10 +1,9 @@
 //! Nights: what got worse is found, what didn't isn't; and everything that goes wrong with a history.
-#![allow(clippy::unwrap_used)]
 
+use crate::common::program::octant_in;
 use octant::campaign::table::{Table, Value as Cell};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
-use std::process::Command;
 use tempfile::TempDir;
 
 const SCENARIO: &str = "schema = 1
@@ -80,11 +79,7 @@ impl Bench {
     }
 
     fn octant(&self, words: &[&str]) -> (Option<i32>, String, String) {
-        let output = Command::new(env!("CARGO_BIN_EXE_octant"))
-            .args(words)
-            .current_dir(self.folder.path())
-            .output()
-            .unwrap();
+        let output = octant_in(self.folder.path(), words);
         let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
         (output.status.code(), text(&output.stdout), text(&output.stderr))
     }

@@ -1,6 +1,5 @@
 //! The qualification kit: every operational requirement names tests that there are, every case of the
 //! self-test verifies one, and the trace is up to date.
-#![allow(clippy::unwrap_used)]
 
 use octant::campaign::requirements::load;
 use octant_requirements::requirement::{Requirement, Requirements};

@@ -1,6 +1,5 @@
 //! A real recording on the way of every other: scenario, text source, core, passes, raw counts. The
 //! reference values come from an independent program (see the recording's README).
-#![allow(clippy::unwrap_used)]
 
 use octant::calibrate::in_passes;
 use octant::scenario::resolve::{Draws, Seeded};

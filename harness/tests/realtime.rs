@@ -1,8 +1,8 @@
 //! Runs by the clock: what is computed is the same, what was late is told, and the thread of the
 //! samples allocates nothing.
 
-#![allow(clippy::unwrap_used)]
-
+use crate::common::allocations;
+use crate::common::program::{ends, json};
 use octant::endpoint::{Endpoint, EndpointError, InProcess, ParameterEstimate, Sent};
 use octant::recorder::{Recorder, RecorderOptions};
 use octant::run::method::configurations;
@@ -13,38 +13,8 @@ use octant::source::{Epoch, PlantSource};
 use octant_realtime::clock::{HostTime, now};
 use octant_sample::{Output, Parameters};
 use serde_json::Value;
-use std::alloc::{GlobalAlloc, Layout, System};
-use std::cell::Cell;
 use std::collections::VecDeque;
 use std::path::Path;
-use std::process::Command;
-
-thread_local! {
-    /// Allocations of this thread while it is watched.
-    static COUNTED: Cell<Option<u64>> = const { Cell::new(None) };
-}
-
-struct Counting;
-
-#[allow(unsafe_code, reason = "an allocator can't be written without")]
-// SAFETY: every call goes to the system's allocator as it came.
-unsafe impl GlobalAlloc for Counting {
-    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        // A thread that ends has no cell any more, and isn't watched.
-        let _ = COUNTED.try_with(|counted| counted.set(counted.get().map(|n| n + 1)));
-        // SAFETY: the caller's promises are those that the system's allocator wants.
-        unsafe { System.alloc(layout) }
-    }
-
-    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
-        let _ = COUNTED.try_with(|counted| counted.set(counted.get().map(|n| n + 1)));
-        // SAFETY: the pointer came from `alloc`, which is the system's.
-        unsafe { System.dealloc(pointer, layout) }
-    }
-}
-
-#[global_allocator]
-static ALLOCATOR: Counting = Counting;
 
 const SECONDS: &str = "schema = 1\ntitle = \"by the clock\"\n[procedure.alignment]\nmethod = \"given\"\n\
     [procedure.navigation]\nduration = \"2 s\"\n[imu]\nrate = \"200 Hz\"\n[record]\nsamples = \"full\"\n\
@@ -54,18 +24,6 @@ const FAULTS: &str = "[[faults]]\nid = \"spike-1\"\nkind = \"spike\"\nchannels =
     amplitude = \"1000 deg/h\"\ntrigger = { at = \"0.5 s\" }\nduration = \"20 samples\"\n\
     [[faults]]\nid = \"late-1\"\nkind = \"late-delivery\"\ndelay = \"3 samples\"\n\
     trigger = { at = \"1 s\" }\nduration = \"20 samples\"\n";
-
-#[track_caller]
-fn ends(arguments: &[&str], status: i32) -> (String, String) {
-    let output = Command::new(env!("CARGO_BIN_EXE_octant")).args(arguments).output().unwrap();
-    let error = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert_eq!(output.status.code(), Some(status), "{arguments:?}: {error}");
-    (String::from_utf8(output.stdout).unwrap(), error)
-}
-
-fn json(path: &Path) -> Value {
-    serde_json::from_slice(&std::fs::read(path).unwrap()).unwrap()
-}
 
 fn scenario(folder: &Path, name: &str, text: &str) -> String {
     let path = folder.join(name);
@@ -164,10 +122,10 @@ impl Endpoint for Slow {
         self.number += 1;
         if let Some((from, to)) = self.watched {
             if self.number == from {
-                COUNTED.set(Some(0));
+                allocations::watch();
             }
             if self.number == to {
-                self.counted = COUNTED.replace(None);
+                self.counted = allocations::watched();
             }
         }
         self.waiting.iter_mut().for_each(|(frames, _)| *frames = frames.saturating_sub(1));
@@ -277,9 +235,9 @@ fn the_thread_of_the_samples_allocates_nothing() {
     assert_eq!(ended, Ok(Ended::Done));
     assert_eq!(counted, Some(0));
     // The counter counts.
-    COUNTED.set(Some(0));
+    allocations::watch();
     let boxed = std::hint::black_box(Box::new(1));
-    assert_eq!(COUNTED.replace(None), Some(*boxed));
+    assert_eq!(allocations::watched(), Some(*boxed));
 }
 
 #[test]

@@ -1,9 +1,6 @@
 //! Recordings: what was put in comes out, bit for bit, whatever happens to the file.
-#![allow(clippy::unwrap_used)]
 
-mod common;
-
-use common::{Memory, PERIOD_NS, Step, push, record, stream, truth_of};
+use crate::common::epochs::{Memory, PERIOD_NS, Step, push, record, stream, truth_of};
 use octant::endpoint::ParameterEstimate;
 use octant::recorder::reader::{self, Epochs, Item, ReadError, Recording};
 use octant::recorder::{Event, Policy, Recorder, RecorderError, RecorderOptions, Samples, message};

@@ -1,10 +1,7 @@
 //! Recordings are read by the MCAP readers of others: `tests/rigs/mcap_reader.py`, when
 //! `OCTANT_PYTHON` names a Python that has the packages of `tests/rigs/requirements.txt`.
-#![allow(clippy::unwrap_used)]
 
-mod common;
-
-use common::{push, stream};
+use crate::common::epochs::{push, stream};
 use octant::recorder::{Policy, Recorder, RecorderOptions, Samples};
 use std::path::Path;
 use std::process::Command;

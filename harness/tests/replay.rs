@@ -1,9 +1,6 @@
 //! Replay: a full recording gives every epoch again; others are refused or mapped.
-#![allow(clippy::unwrap_used)]
 
-mod common;
-
-use common::{push, record, stream, truth_of};
+use crate::common::epochs::{push, record, stream, truth_of};
 use octant::recorder::{Policy, Recorder, RecorderOptions, Samples, StreamHash};
 use octant::source::{
     Epoch, MappedField, MappedStamp, McapMapping, Quantity, Replay, Source, SourceError, TimeUnit,

@@ -1,6 +1,5 @@
 //! The pages: complete, well formed, offline. What they render is kept in cargo's directory for
 //! test files, to be looked at.
-#![allow(clippy::unwrap_used)]
 
 use octant::evidence::disposition::Dispositions;
 use octant::report::{

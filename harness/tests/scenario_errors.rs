@@ -1,5 +1,4 @@
 //! What the program says about scenarios that aren't: place, path, found, expected.
-#![allow(clippy::unwrap_used)]
 
 use octant::scenario::{Place, Problem, Scenario};
 use proptest::prelude::*;

@@ -1,5 +1,4 @@
 //! The scenarios that ship with Octant: each is read, resolved and read again.
-#![allow(clippy::unwrap_used)]
 
 use octant::scenario::resolve::{Draws, Seeded};
 use octant::scenario::{Method, Scenario};

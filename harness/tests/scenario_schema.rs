@@ -1,5 +1,4 @@
 //! The JSON Schema accepts what the program accepts and refuses unknown keys.
-#![allow(clippy::unwrap_used)]
 
 use serde_json::{Value, json};
 

@@ -1,5 +1,4 @@
 //! Scores against closed forms and golden numbers.
-#![allow(clippy::unwrap_used)]
 
 use octant::score::drift::{DriftError, DriftSample, DriftScorer};
 use octant::score::ensemble;

@@ -1,13 +1,7 @@
 //! The self-test, whole, through the program as users have it; and what it leaves.
-#![allow(clippy::unwrap_used)]
 
+use crate::common::program::{OCTANT, octant_in};
 use serde_json::Value;
-use std::path::Path;
-use std::process::{Command, Output};
-
-fn octant(words: &[&str], here: &Path) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_octant")).args(words).current_dir(here).output().unwrap()
-}
 
 #[test]
 fn every_case_comes_as_it_has_to() {
@@ -16,7 +10,7 @@ fn every_case_comes_as_it_has_to() {
     // A campaign that it is for; nothing else of a repository is here.
     std::fs::create_dir(here.join("cert")).unwrap();
     std::fs::write(here.join("cert/plan.json"), "{}").unwrap();
-    let output = octant(&["selftest", "--out", "found.json", "--for", "cert", "--json"], here);
+    let output = octant_in(here, &["selftest", "--out", "found.json", "--for", "cert", "--json"]);
     let printed = String::from_utf8(output.stdout).unwrap();
     let said = String::from_utf8_lossy(&output.stderr);
     let found: Value = serde_json::from_str(&printed).unwrap();
@@ -41,7 +35,7 @@ fn every_case_comes_as_it_has_to() {
         assert_eq!(case["source"].is_string(), of_number, "{case}");
     }
     // Bound to this file of the program.
-    let program = std::fs::read(env!("CARGO_BIN_EXE_octant")).unwrap();
+    let program = std::fs::read(OCTANT).unwrap();
     assert_eq!(found["program_sha256"], Value::from(sha256(&program)));
     assert_eq!(found["schema"], 1);
     for name in ["at", "started", "octant"] {
@@ -60,7 +54,7 @@ fn sha256(bytes: &[u8]) -> String {
 #[test]
 fn a_folder_that_is_no_campaign_is_refused_before_anything_runs() {
     let folder = tempfile::tempdir().unwrap();
-    let output = octant(&["selftest", "--for", "."], folder.path());
+    let output = octant_in(folder.path(), &["selftest", "--for", "."]);
     assert_eq!(output.status.code(), Some(2));
     let said = String::from_utf8_lossy(&output.stderr);
     assert!(
@@ -81,7 +75,7 @@ fn a_program_that_passes_everything_is_an_alarm() {
     let folder = tempfile::tempdir().unwrap();
     // It does what it is told, says nothing about it, and its exit status is 0.
     let liar = folder.path().join("liar");
-    let script = format!("#!/bin/sh\n'{}' \"$@\"\nexit 0\n", env!("CARGO_BIN_EXE_octant"));
+    let script = format!("#!/bin/sh\n'{}' \"$@\"\nexit 0\n", OCTANT);
     std::fs::write(&liar, script).unwrap();
     std::fs::set_permissions(&liar, std::fs::Permissions::from_mode(0o755)).unwrap();
     let mut some = cases();

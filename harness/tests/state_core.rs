@@ -1,11 +1,8 @@
 //! A core that was saved and loaded goes on bit for bit: at any point of the procedure, with every
 //! estimator, on ground and on a ship, with every screen, while faults are under way.
-#![allow(clippy::unwrap_used)]
 
-mod instrument;
-
-use instrument::closed_loop::{ClosedLoop, on_two_threads};
-use instrument::{Case, PERIOD_NS, dockside};
+use crate::common::instrument::closed_loop::{ClosedLoop, on_two_threads};
+use crate::common::instrument::{Case, PERIOD_NS, dockside};
 use octant_calibration::Core;
 use octant_calibration::config::*;
 use octant_calibration::positions::EIGHT;

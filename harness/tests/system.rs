@@ -1,5 +1,4 @@
 //! `octant.ssp` and its like, run by the program's own master: the bits of the core in process.
-#![allow(clippy::unwrap_used)]
 
 use octant::fmu::build::{Options, build};
 use octant::fmu::description::{Description, read_bytes};

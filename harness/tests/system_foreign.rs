@@ -1,14 +1,12 @@
 //! `octant run` of systems of foreign FMUs, as a user runs it: mixed kinds, crashes, refusals, files
 //! that are no systems.
-#![allow(clippy::unwrap_used)]
 
-#[path = "common/foreign.rs"]
-mod foreign;
-
+use crate::common::foreign;
+use crate::common::program::octant;
 use serde_json::Value;
 use std::io::Write;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::Output;
 
 const HEAD: &str = r#"<SystemStructureDescription version="1.0" name="foreign"
     xmlns="http://ssp-standard.org/SSP1/SystemStructureDescription"
@@ -54,10 +52,6 @@ fn connection(from: &str, to: &str) -> String {
         "<Connection startElement=\"{a}\" startConnector=\"{y}\" endElement=\"{b}\" \
          endConnector=\"{u}\"/>"
     )
-}
-
-fn octant(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_octant")).args(arguments).output().unwrap()
 }
 
 fn run(system: &Path, out: &Path, more: &[&str]) -> Output {

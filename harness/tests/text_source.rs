@@ -1,5 +1,4 @@
 //! Text of real instruments as a source: counts, stamps, and errors that name the place.
-#![allow(clippy::unwrap_used)]
 
 use octant::source::{
     Axis, Column, Delimiter, Epoch, GimbalColumns, Quantity, Source, SourceError, TextFiles,

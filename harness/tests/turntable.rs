@@ -1,17 +1,14 @@
 //! A real table under a real instrument, both played: the core's set points turn the table, its angles stand in
 //! the samples, and whatever ends the run stops it.
-#![cfg(unix)]
-#![allow(clippy::unwrap_used)]
 
-mod table;
-
+use crate::common::program::OCTANT;
+use crate::common::table::{Bench, Running, Stage, wait_for};
 use octant::source::{Replay, Source};
 use octant_sample::{GimbalCommand, Status};
 use octant_turntable::Axis;
 use octant_turntable::simulate::Behaviour;
 use serde_json::Value;
 use std::process::Command;
-use table::{Bench, OCTANT, Stage, wait_for};
 
 #[test]
 fn the_core_turns_the_table_and_its_angles_stand_in_the_samples() {
@@ -69,10 +66,7 @@ fn the_core_turns_the_table_and_its_angles_stand_in_the_samples() {
 }
 
 /// Ends of a run in the middle of a move of 200°, what is said of each, and that the table rests.
-fn ended_on_the_way(
-    more: &str,
-    end: impl FnOnce(&Stage, &table::Running),
-) -> (Option<i32>, String) {
+fn ended_on_the_way(more: &str, end: impl FnOnce(&Stage, &Running)) -> (Option<i32>, String) {
     let stage = Stage::new();
     let bench = Bench::new(&stage, 200, more);
     let running = bench.run(&[]);

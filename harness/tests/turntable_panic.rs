@@ -1,17 +1,21 @@
-//! A panic in the harness stops the table. A test program of its own: a panic stops every table of a program.
-#![cfg(unix)]
-#![allow(clippy::unwrap_used)]
+//! A panic in the harness stops the table.
 
-mod table;
-
+use crate::common::program::passes_as_process;
+use crate::common::table::{Bench, Stage, wait_for};
 use octant::scenario::Source as Kind;
 use octant::source::{Epoch, LiveSource, Source};
 use octant_sample::{GimbalAngles, GimbalCommand};
-use table::{Bench, Stage, wait_for};
+
+/// In a process of its own: a panic stops every table of its process.
+#[test]
+fn a_panic_anywhere_stops_the_table_and_ends_the_run() {
+    passes_as_process("turntable_panic::the_table_stops_at_a_panic");
+}
 
 /// The thread of the samples does nothing wrong: another one panics, and it is told with the next sample.
 #[test]
-fn a_panic_anywhere_stops_the_table_and_ends_the_run() {
+#[ignore = "run by a_panic_anywhere_stops_the_table_and_ends_the_run"]
+fn the_table_stops_at_a_panic() {
     let stage = Stage::new();
     // A guard would be this test program again, which can't be one.
     let scenario = Bench::new(&stage, 200, "guard = \"0 s\"\n").scenario();

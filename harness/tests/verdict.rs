@@ -1,5 +1,4 @@
 //! Verdicts, the form of the summary, JUnit.
-#![allow(clippy::unwrap_used)]
 
 use octant::evidence::discrepancy::of_run;
 use octant::run::{Control, Recording, assemble, run_method};

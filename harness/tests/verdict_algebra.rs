@@ -2,7 +2,6 @@
 //!
 //! `verdict.rs` has the algebra of two verdicts and of a run's own parts one by one, and the crate of
 //! requirements that of counts; here the parts come in any mix, on the types that programs use.
-#![allow(clippy::unwrap_used)]
 
 use octant::campaign::case::{self, CaseResult, Kept as KeptResult};
 use octant::campaign::execute::Shard;

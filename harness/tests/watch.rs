@@ -1,9 +1,7 @@
 //! Watching: a recording that grows, a run in another process, and the picture on the terminal.
-#![allow(clippy::unwrap_used)]
 
-mod common;
-
-use common::{push, record, stream};
+use crate::common::epochs::{push, record, stream};
+use crate::common::program::{ended, octant_in, program};
 use octant::evidence::{Existing, RunFolder};
 use octant::recorder::reader::{Item, Recording};
 use octant::recorder::{Event, Policy, Recorder, RecorderOptions, Samples};
@@ -18,7 +16,7 @@ use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::io::{self, Read, Write};
 use std::path::Path;
-use std::process::{Child, Command, Stdio};
+use std::process::{Child, Stdio};
 
 fn full() -> RecorderOptions {
     RecorderOptions {
@@ -295,23 +293,9 @@ fn a_run_that_was_killed_is_told_from_one_that_goes_on() {
     }
     assert_eq!(follow.stage, Stage::BrokenOff);
     assert_eq!(follow.state.time_ns, 20_000_000_000, "what it left is shown");
-    let (text, error) = ends(&["watch", "killed.partial", "--plain"], here.path(), 4);
+    let (text, error) = ended(octant_in(here.path(), &["watch", "killed.partial", "--plain"]), 4);
     shows(&text, &["20.0 s"]);
     shows(&error, &["nobody writes it any more"]);
-}
-
-#[track_caller]
-fn ends(arguments: &[&str], folder: &Path, status: i32) -> (String, String) {
-    let output = program(arguments, folder).output().unwrap();
-    let error = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert_eq!(output.status.code(), Some(status), "{arguments:?}: {error}");
-    (String::from_utf8(output.stdout).unwrap(), error)
-}
-
-fn program(arguments: &[&str], folder: &Path) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_octant"));
-    command.args(arguments).current_dir(folder);
-    command
 }
 
 const SECONDS: &str = "schema = 1\ntitle = \"by the clock\"\n[procedure.alignment]\n\
@@ -340,21 +324,27 @@ fn a_run_in_another_process_is_watched_to_its_verdict_and_does_not_notice() {
     let here = folder.path();
     std::fs::write(here.join("s.toml"), SECONDS).unwrap();
     let alone = ["run", "s.toml", "--out", "runs/alone", "--realtime"];
-    ends(&alone, here, 0);
+    ended(octant_in(here, &alone), 0);
 
-    let mut run = program(&["run", "s.toml", "--out", "runs/watched", "--realtime"], here)
+    let mut run = program(&["run", "s.toml", "--out", "runs/watched", "--realtime"])
+        .current_dir(here)
         .stdout(Stdio::null())
         .spawn()
         .unwrap();
     wait_for(&here.join("runs/watched.partial/recording.mcap"), &mut run);
     // The newest that goes on is the only one that does.
     let watch = |arguments: &[&str]| {
-        program(arguments, here).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap()
+        program(arguments)
+            .current_dir(here)
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap()
     };
     let newest = watch(&["watch", "--plain"]);
     let named = watch(&["watch", "runs/watched"]);
     let mut leaves = watch(&["watch", "runs/watched.partial", "--plain"]);
-    let (page, _) = ends(&["watch", "--once"], here, 0);
+    let (page, _) = ended(octant_in(here, &["watch", "--once"]), 0);
     shows(&page, &["by the clock", "spike-1"]);
     leaves.kill().unwrap();
     leaves.wait().unwrap();
@@ -368,9 +358,12 @@ fn a_run_in_another_process_is_watched_to_its_verdict_and_does_not_notice() {
     let watched = here.join("runs/watched");
     assert_eq!(stream_hash(&watched), stream_hash(&here.join("runs/alone")));
     // And after it.
-    let (text, _) = ends(&["watch", "runs/watched"], here, 0);
+    let (text, _) = ended(octant_in(here, &["watch", "runs/watched"]), 0);
     shows(&text, &["by the clock: pass", "100.0 %"]);
-    shows(&ends(&["watch", "--once", "runs/watched"], here, 0).0, &["ended: pass", "100.0 %"]);
+    shows(
+        &ended(octant_in(here, &["watch", "--once", "runs/watched"]), 0).0,
+        &["ended: pass", "100.0 %"],
+    );
     // The pace is told once a second.
     let bytes = std::fs::read(watched.join("recording.mcap")).unwrap();
     let paces = items(&bytes).into_iter().filter_map(|(time_ns, item)| match item {
@@ -387,15 +380,15 @@ fn a_run_in_another_process_is_watched_to_its_verdict_and_does_not_notice() {
 fn what_cannot_be_watched_is_said_in_words() {
     let folder = tempfile::tempdir().unwrap();
     let here = folder.path();
-    let (_, error) = ends(&["watch"], here, 2);
+    let (_, error) = ended(octant_in(here, &["watch"]), 2);
     shows(&error, &["no folder *.partial", "octant watch runs/NAME"]);
-    let (_, error) = ends(&["watch", "nothing"], here, 2);
+    let (_, error) = ended(octant_in(here, &["watch", "nothing"]), 2);
     shows(&error, &["neither", "nothing.partial"]);
     std::fs::create_dir(here.join("empty")).unwrap();
-    let (_, error) = ends(&["watch", "empty"], here, 2);
+    let (_, error) = ended(octant_in(here, &["watch", "empty"]), 2);
     shows(&error, &["recording.mcap is missing"]);
     std::fs::write(here.join("text.mcap"), "no recording").unwrap();
-    let (_, error) = ends(&["watch", "--once", "text.mcap"], here, 2);
+    let (_, error) = ended(octant_in(here, &["watch", "--once", "text.mcap"]), 2);
     shows(&error, &["not an MCAP file"]);
 }
 
@@ -405,11 +398,11 @@ fn a_program_without_the_server_says_how_to_build_one() {
     let folder = tempfile::tempdir().unwrap();
     let here = folder.path();
     std::fs::write(here.join("s.toml"), SECONDS).unwrap();
-    let (_, error) = ends(&["run", "s.toml", "--live"], here, 2);
+    let (_, error) = ended(octant_in(here, &["run", "s.toml", "--live"]), 2);
     shows(&error, &["--live", "--features octant/foxglove"]);
     assert!(!here.join("runs").exists(), "nothing was written");
     let (bytes, _) = record(&stream(200), &full());
     std::fs::write(here.join("a.mcap"), bytes).unwrap();
-    let (_, error) = ends(&["watch", "a.mcap", "--foxglove"], here, 2);
+    let (_, error) = ended(octant_in(here, &["watch", "a.mcap", "--foxglove"]), 2);
     shows(&error, &["--foxglove", "--features octant/foxglove"]);
 }

@@ -1,9 +1,6 @@
 //! Damaged bytes never make a reading that wasn't sent, and cost only what they touch.
-#![allow(clippy::unwrap_used)]
 
-mod common;
-
-use common::{events, readings, streams};
+use crate::common::{events, readings, streams};
 use octant_instruments::{AnyDecoder, Protocol, Reading};
 use proptest::prelude::*;
 

@@ -1,5 +1,4 @@
 //! Readings from any CAN database through a mapping.
-#![allow(clippy::unwrap_used)]
 
 #[path = "../../../fuzz/dbc.rs"]
 mod fuzz;

@@ -1,9 +1,7 @@
 //! The inputs that the fuzzer starts from and those it found, through the same function without it. The
 //! former are written by this test with `OCTANT_WRITE_FIXTURES=1`.
-#![allow(clippy::unwrap_used)]
 #![allow(clippy::print_stdout, reason = "the last name printed is the file that fails")]
 
-mod common;
 #[path = "../../../fuzz/instruments.rs"]
 mod instruments;
 

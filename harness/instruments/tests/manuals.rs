@@ -1,9 +1,6 @@
 //! Bytes that others wrote: examples from the makers' manuals, and recordings of their units.
-#![allow(clippy::unwrap_used)]
 
-mod common;
-
-use common::{events, only, readings, unhex};
+use crate::common::{events, only, readings, unhex};
 use octant_instruments::novatel::scale_of;
 use octant_instruments::{AnyDecoder, Clock, Kind, Protocol, Stamp};
 use octant_sample::Status;

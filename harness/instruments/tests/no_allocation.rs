@@ -1,8 +1,5 @@
 //! Decoding, encoding and sampling allocate nothing, damaged or not.
-#![allow(clippy::unwrap_used)]
 #![allow(unsafe_code, reason = "an allocator that counts is unsafe by its trait")]
-
-mod common;
 
 use octant_instruments::{AnyDecoder, AnyEncoder, Axes, Event, Protocol, Sampler, Settings};
 use std::alloc::{GlobalAlloc, Layout, System};

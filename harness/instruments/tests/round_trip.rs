@@ -1,9 +1,6 @@
 //! What goes in comes out, however the bytes are cut.
-#![allow(clippy::unwrap_used)]
 
-mod common;
-
-use common::{events, readings, streams};
+use crate::common::{events, readings, streams};
 use octant_instruments::{
     AnyDecoder, AnyEncoder, Clock, Event, Kind, Measured, Protocol, Reading, Stamp,
 };

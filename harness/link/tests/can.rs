@@ -1,12 +1,8 @@
 //! Sessions over a CAN interface of the kernel. `OCTANT_CAN` names one that is up, such as `vcan0`; without
 //! it these tests are skipped: an interface needs rights that a test doesn't have.
-#![cfg(target_os = "linux")]
-#![allow(clippy::unwrap_used)]
 #![allow(clippy::print_stdout, reason = "what is skipped is said")]
 
-mod common;
-
-use common::{Served, drive, facts, options};
+use crate::common::{Served, drive, facts, options};
 use octant_faults::wire::{Ways, WireAction, WireFault};
 use octant_link::fault::around;
 use octant_link::harness::{Harness, Options, Patience};

@@ -1,13 +1,9 @@
 //! The reference clients in Python and C as devices: over a pseudo terminal and UDP, good lines and bad.
 //!
 //! Where there is no `python3` or no `cc` their part is skipped, unless `OCTANT_REQUIRE_PEERS` is set.
-#![cfg(unix)]
-#![allow(clippy::unwrap_used)]
 #![allow(clippy::print_stdout, reason = "what is skipped is said")]
 
-mod common;
-
-use common::{drive, options};
+use crate::common::{drive, options};
 use octant_faults::wire::{Ways, WireAction, WireFault};
 use octant_link::fault::around;
 use octant_link::harness::{Harness, Options, Patience};

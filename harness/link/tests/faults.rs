@@ -1,11 +1,7 @@
 //! Faults on a wire: in lock-step the answers are those of the core all the same, bit for bit, and what
 //! each fault altered is counted.
-#![cfg(unix)]
-#![allow(clippy::unwrap_used)]
 
-mod common;
-
-use common::{Served, drive, facts, options, sample};
+use crate::common::{Served, drive, facts, options, sample};
 use octant_faults::wire::{Medium, Ways, WireAction, WireFault};
 use octant_link::fault::around;
 use octant_link::harness::{Harness, Options, Patience, SessionError};

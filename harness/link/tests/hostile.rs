@@ -1,9 +1,6 @@
 //! A device that is sent anything at all: it goes on serving.
-#![allow(clippy::unwrap_used)]
 
-mod common;
-
-use common::{Echo, PERIOD_NS, facts, sample};
+use crate::common::{Echo, PERIOD_NS, facts, sample};
 use octant_link::device::{Device, Notice};
 use octant_link::port::{Bytes, Port};
 use octant_link::{PortError, Wire};

@@ -1,9 +1,6 @@
 //! A peer that does what no device should: late, twice, never, something else.
-#![allow(clippy::unwrap_used)]
 
-mod common;
-
-use common::{PERIOD_NS, options, sample};
+use crate::common::{PERIOD_NS, options, sample};
 use octant_link::harness::{Harness, Options, Patience, SessionError};
 use octant_link::{Uri, Wire};
 use octant_sample::Output;

@@ -1,11 +1,7 @@
 //! A step allocates nothing: not in lock-step, and not in real time, where nothing came.
-#![cfg(unix)]
-#![allow(clippy::unwrap_used)]
 #![allow(unsafe_code, reason = "an allocator that counts is unsafe by its trait")]
 
-mod common;
-
-use common::{Served, facts, harness, options, sample};
+use crate::common::{Served, facts, harness, options, sample};
 use octant_link::Wire;
 use octant_link::harness::{Harness, Options, Sending};
 use octant_sample::Output;

@@ -1,10 +1,6 @@
 //! Sessions over pseudo terminals and UDP: the answers are those of the core, bit for bit.
-#![cfg(unix)]
-#![allow(clippy::unwrap_used)]
 
-mod common;
-
-use common::{Served, bits, drive, facts, harness, options, sample};
+use crate::common::{Served, bits, drive, facts, harness, options, sample};
 use octant_link::device::Facts;
 use octant_link::harness::{Event, Harness, Sending, SessionError};
 use octant_link::{Uri, Wire};

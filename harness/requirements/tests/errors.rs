@@ -1,5 +1,4 @@
 //! What is said of files that aren't: place, path, found, expected.
-#![allow(clippy::unwrap_used)]
 
 use octant_requirements::file::{Anything, Checker};
 use octant_requirements::requirement::{

@@ -1,5 +1,4 @@
 //! Any requirements go through every format and come back the same.
-#![allow(clippy::unwrap_used)]
 
 use octant_requirements::requirement::{
     Attribute, Check, Comparison, Definition, Ensemble, Kind, Limit, Parent, Requirement,

@@ -1,5 +1,4 @@
 //! The trace both ways, and that nothing ends in pass that wasn't shown.
-#![allow(clippy::unwrap_used)]
 
 use octant_requirements::requirement::{
     Check, Comparison, Ensemble, Limit, Requirement, Requirements, Verification,

@@ -1,5 +1,4 @@
 //! Against closed forms.
-#![allow(clippy::unwrap_used)]
 
 use octant_statistics::envelope::{EnvelopeError, envelope, resampled};
 use octant_statistics::outlier::{LIMIT, Scale, outliers};

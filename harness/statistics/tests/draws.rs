@@ -1,5 +1,4 @@
 //! Draws of factors: what they depend on, and how they are distributed.
-#![allow(clippy::unwrap_used)]
 
 use octant_statistics::draw::{
     Correlation, Distribution, DrawError, Factor, Value, latin_hypercube, monte_carlo,

@@ -1,5 +1,4 @@
 //! Holm's procedure against what it is a shortcut of.
-#![allow(clippy::unwrap_used)]
 
 use octant_statistics::multiple::holm;
 use proptest::prelude::*;

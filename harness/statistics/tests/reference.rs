@@ -1,5 +1,4 @@
 //! Against numbers of scipy and numpy: `fixtures/golden/statistics.json`, and how it was made beside it.
-#![allow(clippy::unwrap_used)]
 
 use octant_statistics::draw::{Distribution, Factor, Value};
 use octant_statistics::outlier::{Scale, outliers};

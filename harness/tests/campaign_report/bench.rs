@@ -1,5 +1,6 @@
 //! A campaign whose results the tests make up, from one real one.
 
+use crate::common::program::program;
 use octant::campaign::case;
 use octant::campaign::plan::{Case, Plan};
 use octant::run::Control;
@@ -131,9 +132,8 @@ impl Bench {
     }
 
     pub(crate) fn octant_with(&self, arguments: &[&str], variables: &[(&str, &Path)]) -> Output {
-        std::process::Command::new(env!("CARGO_BIN_EXE_octant"))
+        program(arguments)
             .current_dir(self.folder.path())
-            .args(arguments)
             .envs(variables.iter().copied())
             .output()
             .unwrap()

@@ -1,6 +1,6 @@
 //! What people say of discrepancies.
 
-use crate::bench::{Bench, CAMPAIGN, check, files, put, synthetic, troubled};
+use super::bench::{Bench, CAMPAIGN, check, files, put, synthetic, troubled};
 use octant::campaign::report::Report;
 
 #[test]

@@ -1,6 +1,6 @@
 //! The folder as evidence: its bytes, its manifest, the self-test.
 
-use crate::bench::{Bench, CAMPAIGN, SCENARIO, check, files, troubled};
+use super::bench::{Bench, CAMPAIGN, SCENARIO, check, files, troubled};
 use serde_json::{Value, json};
 use std::path::Path;
 

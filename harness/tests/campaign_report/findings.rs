@@ -1,6 +1,6 @@
 //! What is wrong with cases, what isn't shown, and what isn't of the plan.
 
-use crate::bench::{Bench, CAMPAIGN, SCENARIO, files, put, synthetic, troubled};
+use super::bench::{Bench, CAMPAIGN, SCENARIO, files, put, synthetic, troubled};
 use octant::campaign::case;
 use octant::campaign::plan::Plan;
 use octant::campaign::report::Report;

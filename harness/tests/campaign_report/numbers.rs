@@ -1,6 +1,6 @@
 //! The numbers of a report by another path, and on its page.
 
-use crate::bench::{Bench, CAMPAIGN, check, drawn, final_nmi, rate};
+use super::bench::{Bench, CAMPAIGN, check, drawn, final_nmi, rate};
 use octant::campaign::case;
 use octant::campaign::plan::FactorValue;
 use octant::report::number::significant;

@@ -1,7 +1,6 @@
 //! The FMUs of `fixtures/fmu/foreign`, compiled and packed.
 //!
 //! For a test of its own: `#[path = "common/foreign.rs"] mod foreign;`.
-#![allow(dead_code, unreachable_pub, clippy::unwrap_used)]
 
 use octant::fmu::description::Standard;
 use octant::fmu::library::platforms;

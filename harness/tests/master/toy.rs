@@ -1,5 +1,4 @@
 //! FMUs in a few lines: a description as text, and a law that steps numbers.
-#![allow(unreachable_pub)]
 
 use octant::fmu::description::{Description, read};
 use octant::fmu::instance::{Group, Instance, InstanceError, Message, Outcome, Stepped, Update};

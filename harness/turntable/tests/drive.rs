@@ -1,9 +1,6 @@
 //! Drivers against simulated controllers: moves, limits, what goes wrong.
-#![allow(clippy::unwrap_used)]
 
-mod common;
-
-use common::*;
+use crate::common::*;
 use octant_sample::{GimbalAngles, GimbalCommand};
 use octant_turntable::simulate::{Behaviour, Server};
 use octant_turntable::{

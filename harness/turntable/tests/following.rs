@@ -1,9 +1,6 @@
 //! A table that follows a run: it goes where it is told, says where it was, and stops whatever happens.
-#![allow(clippy::unwrap_used)]
 
-mod common;
-
-use common::*;
+use crate::common::*;
 use octant_sample::{GimbalAngles, GimbalCommand};
 use octant_turntable::simulate::Behaviour;
 use octant_turntable::{Axis, Following, Plan, press, stop_by_hand};

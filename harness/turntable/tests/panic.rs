@@ -1,10 +1,7 @@
 //! The table stops when the harness panics. A test program of its own: a panic stops every table of a
 //! program.
-#![allow(clippy::unwrap_used)]
 
-mod common;
-
-use common::*;
+use crate::common::*;
 use octant_turntable::{Axis, Turntable, on_panic};
 
 /// The driver is neither dropped nor asked: the panic alone stops the table.

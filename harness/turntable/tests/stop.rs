@@ -1,9 +1,6 @@
 //! The table stops: when the harness ends, is killed or hangs, and when the line is cut.
-#![allow(clippy::unwrap_used)]
 
-mod common;
-
-use common::*;
+use crate::common::*;
 use octant_turntable::simulate::Behaviour;
 use octant_turntable::{Axis, Settings, Supervisor, Turntable};
 use std::time::Duration;

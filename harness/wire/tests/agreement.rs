@@ -1,5 +1,4 @@
 //! Who fits together, and what is said to who doesn't.
-#![allow(clippy::unwrap_used)]
 
 use octant_wire::message::{
     Agreement, Capabilities, Hello, Limits, Pacing, Reason, Refusal, Role, agree,

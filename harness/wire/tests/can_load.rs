@@ -1,6 +1,5 @@
 //! Bits of CAN frames against frames that are really put together, bit by bit, with their CRC and
 //! their stuff bits; and what a bus carries.
-#![allow(clippy::unwrap_used)]
 
 use octant_wire::can::{Bits, Bus, Format, Slot, classic_bits, fd_bits};
 use octant_wire::traffic::Traffic;

@@ -2,13 +2,9 @@
 //! and against each other, over pipes, UDP and a pair of pseudo terminals.
 //!
 //! Where there is no `python3` or no `cc` their part is skipped, unless `OCTANT_REQUIRE_PEERS` is set.
-#![cfg(unix)]
-#![allow(clippy::unwrap_used)]
 #![allow(clippy::print_stdout, reason = "what is skipped is said")]
 
-mod common;
-
-use common::peer::{Echo, Peer, hello, serve};
+use crate::common::peer::{Echo, Peer, hello, serve};
 use octant_sample::{Aiding, DeviceTime, GimbalAngles, Reference, Sample};
 use octant_wire::message::*;
 use std::io::{BufRead, BufReader, Read};

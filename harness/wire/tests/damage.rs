@@ -1,10 +1,7 @@
 //! What damage costs: itself, and nothing that it didn't hit; and none of it is unnoticed.
-#![allow(clippy::unwrap_used)]
 
-mod common;
-
-use common::arbitrary::{message, one_of_each, output, sample};
-use common::{decode, encode, frames, messages, reassemble, received, same, sender};
+use crate::common::arbitrary::{message, one_of_each, output, sample};
+use crate::common::{decode, encode, frames, messages, reassemble, received, same, sender};
 use octant_wire::can::{self, Format, Frame, Reassembler};
 use octant_wire::serial::{Cause, Decoder, Event, MAX_STUFFED_BYTES};
 use octant_wire::{Kind, Message, Unreadable};

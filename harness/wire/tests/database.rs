@@ -1,5 +1,4 @@
 //! The CAN database is the one that the code makes.
-#![allow(clippy::unwrap_used)]
 
 use octant_wire::can;
 

@@ -1,6 +1,5 @@
 //! The inputs that the fuzzer starts from and those it found, through the same functions without it. The
 //! former are the conformance vectors: written by this test with `OCTANT_WRITE_FIXTURES=1`.
-#![allow(clippy::unwrap_used)]
 #![allow(clippy::print_stdout, reason = "the last name printed is the file that fails")]
 
 #[path = "../../../fuzz/wire.rs"]

@@ -1,10 +1,7 @@
 //! Encoding and decoding allocate nothing, damaged or not.
-#![allow(clippy::unwrap_used)]
 #![allow(unsafe_code, reason = "an allocator that counts is unsafe by its trait")]
 
-mod common;
-
-use common::arbitrary::one_of_each;
+use crate::common::arbitrary::one_of_each;
 use octant_wire::can::{self, Format, Reassembler};
 use octant_wire::message::{ClockTime, Role};
 use octant_wire::serial::{Decoder, Encoder};

@@ -1,5 +1,4 @@
 //! The tables of the description are those of the code, and so is its example.
-#![allow(clippy::unwrap_used)]
 
 use octant_sample::parameters::NAMES;
 use octant_sample::{DeviceTime, GimbalAngles, Health, Sample};

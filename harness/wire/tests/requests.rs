@@ -1,6 +1,5 @@
 //! Lock-step over a line that loses, doubles and reorders gives what a line without fault gives; real time
 //! goes on with what comes.
-#![allow(clippy::unwrap_used)]
 
 use octant_sample::{Aiding, DeviceTime, Reference, Sample};
 use octant_wire::message::{

@@ -1,10 +1,7 @@
 //! Every message arrives bit for bit as it was sent, in both encodings, cut anywhere.
-#![allow(clippy::unwrap_used)]
 
-mod common;
-
-use common::arbitrary::{message, one_of_each};
-use common::{decode, encode, frames, messages, reassemble, received, same, sender};
+use crate::common::arbitrary::{message, one_of_each};
+use crate::common::{decode, encode, frames, messages, reassemble, received, same, sender};
 use octant_wire::can::{Format, Reassembler};
 use octant_wire::message::ClockTime;
 use octant_wire::serial::{Decoder, Encoder, MAX_FRAME_BYTES, Order};

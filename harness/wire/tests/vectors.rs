@@ -1,11 +1,8 @@
 //! The conformance vectors in `fixtures/wire`: written by this test with `OCTANT_WRITE_FIXTURES=1`, checked
 //! by it otherwise. What a receiver has to make of damage is stated here by hand.
-#![allow(clippy::unwrap_used)]
 
-mod common;
-
-use common::vectors::{self, Vector};
-use common::{decode, reassemble, received, same};
+use crate::common::vectors::{self, Vector};
+use crate::common::{decode, reassemble, received, same};
 use octant_wire::can::{self, Format, Frame, Reassembler, Slot};
 use octant_wire::layout::{Type, fields};
 use octant_wire::message::{Kind, Message, Role};

@@ -1,6 +1,7 @@
 //! Draws faults from the catalogue: any kind, any values within the bounds, any trigger.
 
-use crate::EPOCHS;
+// Of whoever draws: the harness does too.
+use super::EPOCHS;
 use octant_faults::catalogue::{Acts, Bounds, Dimension, Kind, Lasts, Takes};
 use octant_faults::trigger::{Comparison, Repeat, Schedule, Signal, Trigger};
 use octant_faults::{Channels, Spec, Value, Values, kinds};

@@ -1,5 +1,4 @@
 //! Plant and core of the reference instrument, put together without a scenario file.
-#![allow(dead_code, unreachable_pub, clippy::unwrap_used)]
 
 pub mod closed_loop;
 

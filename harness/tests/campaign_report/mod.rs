@@ -1,6 +1,6 @@
 //! Reports of campaigns: their numbers by another path, their bytes, dispositions, manifests, and
 //! everything that must not look like a pass.
-#![allow(clippy::unwrap_used, clippy::cast_precision_loss)]
+#![allow(clippy::cast_precision_loss)]
 
 mod bench;
 mod dispositions;

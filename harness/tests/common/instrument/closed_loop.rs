@@ -1,5 +1,4 @@
 //! Plant and core in closed loop, with a hand on what passes between them.
-#![allow(dead_code, unreachable_pub, clippy::unwrap_used)]
 
 use super::Case;
 use octant_calibration::Core;

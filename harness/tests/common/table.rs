@@ -1,6 +1,6 @@
 //! A played instrument on a played table, and a run with both.
-#![allow(dead_code, unreachable_pub, clippy::unwrap_used)]
 
+use super::program::OCTANT;
 use octant::run::method::configurations;
 use octant::scenario::{Method, Scenario};
 use octant_instruments::{AnyEncoder, Protocol, Reading};
@@ -18,7 +18,6 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-pub const OCTANT: &str = env!("CARGO_BIN_EXE_octant");
 const PERIOD_NS: u64 = 5_000_000;
 
 /// Waits for what has to come, long enough for any machine.

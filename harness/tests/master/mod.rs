@@ -1,8 +1,8 @@
 //! FMUs stepped together, against closed forms.
-#![allow(clippy::unwrap_used)]
 
 mod toy;
 
+use self::toy::{Toy, describe, done, refused};
 use octant::fmu::description::Description;
 use octant::fmu::instance::{Instance, Outcome, Stepped};
 use octant::fmu::master::error::MasterError;
@@ -16,7 +16,6 @@ use octant::fmu::master::ssp::structure::Structure;
 use octant::fmu::master::system::System;
 use octant::scenario::connection_faults;
 use std::sync::{Arc, Mutex};
-use toy::{Toy, describe, done, refused};
 
 const HEAD: &str = r#"<SystemStructureDescription version="1.0" name="test"
     xmlns="http://ssp-standard.org/SSP1/SystemStructureDescription"

@@ -1,0 +1,3 @@
+//! The tests of clocks and pacing from outside, in one program.
+
+mod no_allocation;

@@ -1,0 +1,6 @@
+//! The tests of requirements and their trace, in one program.
+#![allow(clippy::unwrap_used)]
+
+mod errors;
+mod formats;
+mod trace;

@@ -1,0 +1,7 @@
+//! The tests of the statistics of campaigns, in one program.
+#![allow(clippy::unwrap_used)]
+
+mod closed_forms;
+mod draws;
+mod multiple;
+mod reference;

@@ -1,0 +1,43 @@
+//! Allocations of a thread, counted while it is watched: of one thread and no other, so that tests beside
+//! it don't count.
+
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::cell::Cell;
+
+thread_local! {
+    /// Allocations of this thread while it is watched.
+    static COUNTED: Cell<Option<u64>> = const { Cell::new(None) };
+}
+
+/// Starts to count the allocations of this thread.
+pub fn watch() {
+    COUNTED.set(Some(0));
+}
+
+/// Stops, and returns the count since [`watch`]; nothing where this thread wasn't watched.
+pub fn watched() -> Option<u64> {
+    COUNTED.replace(None)
+}
+
+struct Counting;
+
+#[allow(unsafe_code, reason = "an allocator can't be written without")]
+// SAFETY: every call goes to the system's allocator as it came.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        // A thread that ends has no cell any more, and isn't watched.
+        let _ = COUNTED.try_with(|counted| counted.set(counted.get().map(|n| n + 1)));
+        // SAFETY: the caller's promises are those that the system's allocator wants.
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
+        let _ = COUNTED.try_with(|counted| counted.set(counted.get().map(|n| n + 1)));
+        // SAFETY: the pointer came from `alloc`, which is the system's.
+        unsafe { System.dealloc(pointer, layout) }
+    }
+}
+
+// One for the whole test program.
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;

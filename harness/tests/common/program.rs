@@ -1,0 +1,63 @@
+//! The program `octant`, started as a user starts it.
+
+use serde_json::Value;
+use std::path::Path;
+use std::process::{Command, Output};
+
+/// The program of this build.
+pub const OCTANT: &str = env!("CARGO_BIN_EXE_octant");
+
+/// The program with its arguments, not yet started.
+pub fn program(arguments: &[&str]) -> Command {
+    let mut command = Command::new(OCTANT);
+    command.args(arguments);
+    command
+}
+
+/// Runs the program to its end.
+pub fn octant(arguments: &[&str]) -> Output {
+    program(arguments).output().unwrap()
+}
+
+/// Runs the program to its end in a folder.
+pub fn octant_in(folder: &Path, arguments: &[&str]) -> Output {
+    program(arguments).current_dir(folder).output().unwrap()
+}
+
+/// Holds the exit status against the one expected; returns what stands on stdout and stderr.
+#[track_caller]
+pub fn ended(output: Output, status: i32) -> (String, String) {
+    let error = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(status), "{error}");
+    (String::from_utf8(output.stdout).unwrap(), error)
+}
+
+/// Runs the program and holds its exit status against the one expected; returns stdout and stderr.
+#[track_caller]
+pub fn ends(arguments: &[&str], status: i32) -> (String, String) {
+    ended(octant(arguments), status)
+}
+
+/// A file that holds one JSON value.
+#[track_caller]
+pub fn json(path: &Path) -> Value {
+    serde_json::from_slice(&std::fs::read(path).unwrap()).unwrap()
+}
+
+/// Runs a test in a process of its own, and holds that there is such a test and that it passes.
+#[track_caller]
+pub fn passes_as_process(test: &str) -> Output {
+    let output = test_as_process(test).output().unwrap();
+    let said = String::from_utf8_lossy(&output.stdout);
+    assert!(output.status.success() && said.contains("1 passed"), "{output:?}");
+    output
+}
+
+/// A test of this program that is ignored but where another runs it, in a process of its own.
+///
+/// `test` has its module in front: `fmu_process::prints`.
+pub fn test_as_process(test: &str) -> Command {
+    let mut command = Command::new(std::env::current_exe().unwrap());
+    command.args(["--exact", test, "--ignored", "--nocapture", "--test-threads=1"]);
+    command
+}

@@ -1,0 +1,17 @@
+//! The tests of the wire protocol, in one program.
+#![allow(clippy::unwrap_used)]
+
+mod agreement;
+mod can_load;
+#[cfg(unix)]
+mod clients;
+mod common;
+mod damage;
+mod database;
+mod fuzz_corpus;
+mod no_allocation;
+mod readme;
+mod requests;
+mod round_trip;
+mod serial_load;
+mod vectors;
