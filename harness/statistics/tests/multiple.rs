@@ -40,7 +40,7 @@ fn a_worked_example() {
     for (found, expected) in found.iter().zip([0.03, 0.06, 0.06, 0.02]) {
         assert!((found - expected).abs() < 1e-15, "{found} {expected}");
     }
-    assert_eq!(holm(&[]), []);
+    assert_eq!(holm(&[]), [0.0; 0]);
     assert_eq!(holm(&[f64::NAN, 0.01]), [1.0, 0.02]);
     // Among twenty, one in twenty is nothing.
     let mut many = vec![0.5; 19];
