@@ -2,7 +2,7 @@
 //! it these tests are skipped: an interface needs rights that a test doesn't have.
 #![allow(clippy::print_stdout, reason = "what is skipped is said")]
 
-use crate::common::{Served, drive, facts, options};
+use crate::common::{self, Served, drive, facts, options};
 use octant_faults::wire::{Ways, WireAction, WireFault};
 use octant_link::fault::around;
 use octant_link::harness::{Harness, Options, Patience};

@@ -65,9 +65,10 @@ fn sending_and_polling_allocate_nothing() {
                 )
             {
                 k += 1;
-            }
-            if k % 10 == 0 && k <= 300 {
-                harness.request_time().unwrap();
+                // Once each: a flood of them would leave a busy device no room for samples.
+                if k % 10 == 0 {
+                    harness.request_time().unwrap();
+                }
             }
             harness.keep_alive().unwrap();
             nothing += u32::from(harness.poll(Duration::ZERO).unwrap().is_none());
