@@ -29,13 +29,14 @@ fn all_it_does(server: &Server, mut table: impl Turntable) {
     assert!((status.of(Axis::Roll).angle_rad - degrees(30.0)).abs() < 1e-6);
     assert_eq!(status.of(Axis::Azimuth).angle_rad, 0.0);
 
-    table.rate(Axis::Azimuth, degrees(-12.0)).unwrap();
+    // Slow: a busy host may take long until it tells it to stop, and it has its limits.
+    table.rate(Axis::Azimuth, degrees(-2.0)).unwrap();
     wait_for("the rate", || {
         let really = server.with(|c, now_ns| c.motion(Axis::Azimuth, now_ns).rate_radps);
-        (really - degrees(-12.0)).abs() < 1e-9
+        (really - degrees(-2.0)).abs() < 1e-9
     });
     if let Some(rate) = table.status().unwrap().of(Axis::Azimuth).rate_radps {
-        assert!((rate - degrees(-12.0)).abs() < 1e-6);
+        assert!((rate - degrees(-2.0)).abs() < 1e-6);
     }
     table.stop().unwrap();
     wait_for("rest", || rests(server));
@@ -64,7 +65,7 @@ fn supervised() {
     for dialect in [ensemble(), invented()] {
         // In our time: one of the languages doesn't say a rate, and it is seen by the angles.
         let (server, name) = tcp_at(dialect.clone(), 1.0);
-        let watched = Settings { watchdog: Some(Duration::from_secs(20)), ..settings() };
+        let watched = Settings { watchdog: Some(Duration::from_secs(600)), ..settings() };
         let driver = drive(&name, dialect, watched);
         let table = Supervisor::new(driver, Duration::from_millis(10)).unwrap();
         all_it_does(&server, table);
@@ -209,36 +210,46 @@ fn beyond_the_limits_nothing_is_sent() {
 
 /// Turned on with a rate, the table comes to rest before its soft limit, though its language may not even
 /// say how fast it is.
+fn ends_at_the_soft_limit(dialect: Dialect) {
+    // In our time: what is looked at is as old as it is on a real line.
+    let (server, name) = tcp_at(dialect.clone(), 1.0);
+    let mut near = settings();
+    near.limits.axes[0].most_rad = degrees(65.0);
+    let driver = drive(&name, dialect, near);
+    // It is stopped where two more periods of 10 °/s and the way of braking, 1.7°, would end beyond the
+    // limit: at 23.3°, or a period later, at 43.3°. From there a busy host has the second period to look.
+    let mut table = Supervisor::new(driver, Duration::from_secs(2)).unwrap();
+    table.rate(Axis::Azimuth, degrees(10.0)).unwrap();
+    wait_for("the stop", || table.emergency().is_tripped());
+    wait_for("rest", || rests(&server));
+    let at = angle(&server, Axis::Azimuth);
+    assert!((23.0..65.0).contains(&at), "{at}");
+    wait_for("the fault", || table.fault().is_some());
+    let fault = table.fault().unwrap();
+    assert!(fault.starts_with("azimuth ") && fault.contains("beyond its limits"), "{fault}");
+    // Until somebody has looked at it.
+    let error = table.goto(Axis::Azimuth, 0.0, None).unwrap_err().to_string();
+    assert!(error.starts_with("the table was stopped: azimuth"), "{error}");
+    table.emergency().reset();
+    table.goto(Axis::Azimuth, 0.0, None).unwrap();
+    wait_for("the way back", || angle(&server, Axis::Azimuth).abs() < 1e-5);
+}
+
 #[test]
 fn a_rate_ends_at_the_soft_limit() {
-    for dialect in [ensemble(), invented()] {
-        // In our time: what is looked at is as old as it is on a real line.
-        let (server, name) = tcp_at(dialect.clone(), 1.0);
-        let mut near = settings();
-        near.limits.axes[0].most_rad = degrees(25.0);
-        let driver = drive(&name, dialect, near);
-        let mut table = Supervisor::new(driver, Duration::from_millis(20)).unwrap();
-        table.rate(Axis::Azimuth, degrees(20.0)).unwrap();
-        wait_for("the stop", || table.emergency().is_tripped());
-        wait_for("rest", || rests(&server));
-        let at = angle(&server, Axis::Azimuth);
-        assert!((5.0..25.0).contains(&at), "{at}");
-        let fault = table.fault().unwrap();
-        assert!(fault.starts_with("azimuth ") && fault.contains("beyond its limits"), "{fault}");
-        // Until somebody has looked at it.
-        let error = table.goto(Axis::Azimuth, 0.0, None).unwrap_err().to_string();
-        assert!(error.starts_with("the table was stopped: azimuth"), "{error}");
-        table.emergency().reset();
-        table.goto(Axis::Azimuth, 0.0, None).unwrap();
-        wait_for("the way back", || angle(&server, Axis::Azimuth).abs() < 1e-5);
-    }
+    std::thread::scope(|scope| {
+        for dialect in [ensemble(), invented()] {
+            scope.spawn(|| ends_at_the_soft_limit(dialect));
+        }
+    });
 }
 
 #[test]
 fn nonsense_is_not_believed() {
     let (server, name) = tcp(ensemble());
     let mut quick = settings();
-    quick.reply_within = Duration::from_millis(300);
+    // Long for a busy host, and short enough to be waited for three times.
+    quick.reply_within = Duration::from_secs(2);
     let mut driver = drive(&name, ensemble(), quick);
     let behave = |behaviour| server.with(|controller, _| controller.behave(behaviour));
     behave(Behaviour::Nonsense("%twelve".into()));
@@ -255,7 +266,7 @@ fn nonsense_is_not_believed() {
     assert!(matches!(error, Error::Nonsense { .. }), "{error}");
     behave(Behaviour::Silent);
     let error = driver.status().unwrap_err().to_string();
-    assert_eq!(error, format!("{name}: no reply to `AXISSTATUS(@0)` within 300ms"));
+    assert_eq!(error, format!("{name}: no reply to `AXISSTATUS(@0)` within 2s"));
     assert!(!driver.emergency().is_tripped());
     // A stop that isn't answered is made sure of.
     assert!(driver.stop().is_err());

@@ -33,12 +33,18 @@ fn it_goes_where_it_is_told_and_says_where_it_was() {
     // In our time, so that what it said can be compared with where it really was then.
     let (server, name) = tcp_at(ensemble(), 1.0);
     let mut table = start(&plan(&name));
+    let begun = Instant::now();
     let homed = server.with(|controller, _| {
         controller.log().iter().filter(|line| line.starts_with("PROGRAM RUN")).count()
     });
     assert_eq!(homed, 2);
-    let mut compared = 0;
-    for (azimuth, roll) in [(0.0, 12.0), (-7.0, 12.0), (0.0, 0.0)] {
+    let (mut compared, mut moves) = (0, 0);
+    for (azimuth, roll) in [(0.0, 12.0), (-7.0, 12.0), (0.0, 0.0)].into_iter().cycle() {
+        // A busy host looks seldom: it goes to and fro until that was often enough.
+        if moves >= 3 && (compared > 10 || begun.elapsed() > Duration::from_secs(60)) {
+            break;
+        }
+        moves += 1;
         table.command(&set_point(azimuth, roll));
         wait_for("the move", || {
             table.take_looks();
@@ -68,7 +74,7 @@ fn it_goes_where_it_is_told_and_says_where_it_was() {
         });
     }
     assert!(compared > 10, "{compared}");
-    assert_eq!(table.told().commands, 3);
+    assert_eq!(table.told().commands, moves);
     assert_eq!(table.stopped(), None);
     table.finish().unwrap();
     assert!(rests(&server));
@@ -76,9 +82,9 @@ fn it_goes_where_it_is_told_and_says_where_it_was() {
 
 #[test]
 fn what_is_beyond_its_limits_stops_it() {
-    let (server, name) = tcp(ensemble());
+    let (server, name) = tcp_at(ensemble(), 1.0);
     let table = start(&plan(&name));
-    table.command(&set_point(0.0, 30.0));
+    table.command(&set_point(0.0, 300.0));
     wait_for("the turn", || turns(&server, Axis::Roll));
     table.command(&set_point(0.0, 500.0));
     wait_for("the stop", || table.is_stopped());
@@ -93,16 +99,14 @@ fn what_is_beyond_its_limits_stops_it() {
 
 #[test]
 fn who_drops_it_stops_it_and_so_does_a_silent_controller() {
-    let (server, name) = tcp(ensemble());
+    let (server, name) = tcp_at(ensemble(), 1.0);
     let table = start(&plan(&name));
     table.command(&set_point(0.0, 300.0));
     wait_for("the turn", || turns(&server, Axis::Roll));
     drop(table);
     wait_for("rest", || rests(&server));
 
-    let mut quick = plan(&name);
-    quick.settings.reply_within = Duration::from_millis(200);
-    let table = start(&quick);
+    let table = start(&plan(&name));
     table.command(&set_point(0.0, 300.0));
     wait_for("the turn", || turns(&server, Axis::Roll));
     server.with(|controller, _| controller.behave(Behaviour::Silent));
@@ -119,8 +123,10 @@ fn a_table_that_does_not_arrive_does_not_start() {
     table.command(&set_point(0.0, 20.0));
     wait_for("the way", || angle(&server, Axis::Roll) > 15.0);
     drop(table);
-    // It was stopped at some angle: the way to zero takes longer than it may.
+    wait_for("rest", || rests(&server));
+    // It was stopped at some angle: the way to zero takes longer than it may, on any host.
     (hasty.start, hasty.home) = (Duration::from_millis(300), false);
+    hasty.settings.limits.axes[1].rate_radps = degrees(0.1);
     let error = Following::start(&hasty, &mut Command::new("none")).unwrap_err().to_string();
     assert!(error.ends_with("the table still moves after 300ms"), "{error}");
     let mut narrow = plan(&name);
@@ -133,7 +139,7 @@ fn a_table_that_does_not_arrive_does_not_start() {
 #[cfg(unix)]
 #[test]
 fn another_program_can_press_the_stop() {
-    let (server, name) = tcp(ensemble());
+    let (server, name) = tcp_at(ensemble(), 1.0);
     assert_eq!(press(Some(&name)).unwrap(), []);
     let table = start(&plan(&name));
     let error = Following::start(&plan(&name), &mut Command::new("none"));

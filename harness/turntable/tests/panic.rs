@@ -1,12 +1,31 @@
-//! The table stops when the harness panics. A test program of its own: a panic stops every table of a
-//! program.
+//! The table stops when the harness panics. In a process of its own: a panic stops every table of a process,
+//! and those of the other tests are in this one.
 
 use crate::common::*;
 use octant_turntable::{Axis, Turntable, on_panic};
+use std::process::Command;
+
+/// Tells the child that it is the process of its own.
+const ALONE: &str = "OCTANT_PANICS_ALONE";
 
 /// The driver is neither dropped nor asked: the panic alone stops the table.
 #[test]
 fn a_panic_in_any_thread_stops_it() {
+    if std::env::var_os(ALONE).is_none() {
+        let output = Command::new(std::env::current_exe().unwrap())
+            .args(["--exact", "panic::a_panic_in_any_thread_stops_it", "--nocapture"])
+            .env(ALONE, "1")
+            .output()
+            .unwrap();
+        let said = String::from_utf8_lossy(&output.stdout);
+        // Of a name that is no test's, none would have run, with success.
+        assert!(
+            output.status.success() && said.contains("1 passed"),
+            "{said}{}",
+            String::from_utf8_lossy(&output.stderr)
+        );
+        return;
+    }
     on_panic();
     let (server, name) = tcp(invented());
     let mut driver = drive(&name, invented(), settings());

@@ -21,7 +21,8 @@ fn whoever_has_the_stop_can_trip_it() {
     let mut driver = drive(&name, ensemble(), settings());
     let stop = driver.emergency();
     driver.rate(Axis::Azimuth, degrees(1.0)).unwrap();
-    driver.goto(Axis::Roll, degrees(300.0), None).unwrap();
+    // Slow, so that it is under way whenever somebody looks.
+    driver.goto(Axis::Roll, degrees(300.0), Some(degrees(1.0))).unwrap();
     wait_for("both", || Axis::ALL.iter().all(|axis| turns(&server, *axis)));
     // From another thread, while the driver is busy asking.
     let tripping = std::thread::spawn(move || stop.trip("the button"));
@@ -36,30 +37,34 @@ fn whoever_has_the_stop_can_trip_it() {
 }
 
 /// The line is dead both ways: only the controller can stop the table.
+fn watched(behaviour: Behaviour) {
+    // In our time: a host that is busy for seconds feeds the watchdog too late.
+    let (server, name) = tcp_at(ensemble(), 1.0);
+    let watched = Settings { watchdog: Some(Duration::from_secs(5)), ..settings() };
+    let driver = drive(&name, ensemble(), watched);
+    let mut table = Supervisor::new(driver, Duration::from_millis(10)).unwrap();
+    table.rate(Axis::Azimuth, degrees(2.0)).unwrap();
+    wait_for("the rate", || turns(&server, Axis::Azimuth));
+    server.with(|controller, _| controller.behave(behaviour));
+    wait_for("rest", || rests(&server));
+    wait_for("the fault", || table.fault().is_some());
+    // It was heard that it isn't well: nothing is moved any more.
+    assert!(table.goto(Axis::Azimuth, 0.0, None).is_err());
+}
+
 #[test]
 fn the_watchdog_stops_it_when_nothing_is_heard() {
-    for behaviour in [Behaviour::Deaf, Behaviour::HangUp] {
-        let (server, name) = tcp(ensemble());
-        let mut watched = Settings { watchdog: Some(Duration::from_secs(4)), ..settings() };
-        watched.reply_within = Duration::from_millis(500);
-        let driver = drive(&name, ensemble(), watched);
-        let mut table = Supervisor::new(driver, Duration::from_millis(10)).unwrap();
-        table.rate(Axis::Azimuth, degrees(2.0)).unwrap();
-        wait_for("the rate", || turns(&server, Axis::Azimuth));
-        server.with(|controller, _| controller.behave(behaviour.clone()));
-        wait_for("rest", || rests(&server));
-        wait_for("the fault", || table.fault().is_some());
-        // It was heard that it isn't well: nothing is moved any more.
-        assert!(table.goto(Axis::Azimuth, 0.0, None).is_err());
-    }
+    std::thread::scope(|scope| {
+        for behaviour in [Behaviour::Deaf, Behaviour::HangUp] {
+            scope.spawn(|| watched(behaviour));
+        }
+    });
 }
 
 #[test]
 fn a_silent_controller_is_told_to_stop() {
     let (server, name) = tcp(ensemble());
-    let mut quick = settings();
-    quick.reply_within = Duration::from_millis(200);
-    let driver = drive(&name, ensemble(), quick);
+    let driver = drive(&name, ensemble(), settings());
     let mut table = Supervisor::new(driver, Duration::from_millis(10)).unwrap();
     table.rate(Axis::Roll, degrees(1.0)).unwrap();
     wait_for("the rate", || turns(&server, Axis::Roll));
@@ -73,10 +78,10 @@ fn a_silent_controller_is_told_to_stop() {
 #[test]
 fn the_end_leaves_it_at_rest() {
     let (server, name) = tcp(ensemble());
-    let watched = Settings { watchdog: Some(Duration::from_secs(30)), ..settings() };
+    let watched = Settings { watchdog: Some(Duration::from_secs(600)), ..settings() };
     let driver = drive(&name, ensemble(), watched);
     let mut table = Supervisor::new(driver, Duration::from_millis(10)).unwrap();
-    table.rate(Axis::Roll, degrees(5.0)).unwrap();
+    table.rate(Axis::Roll, degrees(1.0)).unwrap();
     wait_for("the rate", || turns(&server, Axis::Roll));
     table.finish().unwrap();
     assert!(rests(&server));
@@ -103,7 +108,7 @@ mod processes {
         let mut driver = drive(&name, ensemble(), settings());
         if std::env::var_os(GUARDED).is_some() {
             let mut program = Command::new(env!("CARGO_BIN_EXE_octant-turntable"));
-            driver.guard(program.arg("guard"), Duration::from_secs(1)).unwrap();
+            driver.guard(program.arg("guard"), Duration::from_secs(5)).unwrap();
         }
         driver.rate(Axis::Roll, degrees(0.5)).unwrap();
         loop {
@@ -114,7 +119,7 @@ mod processes {
 
     fn start(name: &str, guarded: bool) -> Child {
         let mut command = Command::new(std::env::current_exe().unwrap());
-        command.args(["--exact", "processes::harness", "--ignored", "--nocapture"]);
+        command.args(["--exact", "stop::processes::harness", "--ignored", "--nocapture"]);
         command.env(ADDRESS, name).stdout(Stdio::null()).stderr(Stdio::null());
         if guarded {
             command.env(GUARDED, "1");

@@ -1,5 +1,4 @@
 //! What the tests share.
-#![allow(dead_code)]
 
 use octant_plant::config::Turntable as Config;
 use octant_turntable::simulate::{Controller, Server};
@@ -69,6 +68,7 @@ pub(crate) fn settings() -> Settings {
     };
     Settings {
         limits: Limits { axes: [axis; 2] },
+        // Longer than a busy host takes; tests of a silent controller wait for so long.
         reply_within: Duration::from_secs(5),
         watchdog: None,
     }
