@@ -2,7 +2,7 @@
 //! by it otherwise. What a receiver has to make of damage is stated here by hand.
 
 use crate::common::vectors::{self, Vector};
-use crate::common::{decode, reassemble, received, same};
+use crate::common::{self, decode, reassemble, received, same};
 use octant_wire::can::{self, Format, Frame, Reassembler, Slot};
 use octant_wire::layout::{Type, fields};
 use octant_wire::message::{Kind, Message, Role};

@@ -1,5 +1,4 @@
 //! Messages of every kind with every value, and what becomes of them on a line or bus.
-#![allow(dead_code, reason = "each test uses its part")]
 
 pub(crate) mod arbitrary;
 pub(crate) mod peer;

@@ -94,7 +94,8 @@ impl Peer {
         messages: &[Message],
         mut answer: impl FnMut(&Message) -> Option<T>,
     ) -> T {
-        for _ in 0..25 {
+        // A minute, which is long for a busy host too.
+        for _ in 0..150 {
             for message in messages {
                 self.send(message);
             }
@@ -216,7 +217,7 @@ pub(crate) fn serve(peer: &mut Peer, lost: Option<usize>) {
     let (mut session, mut echo, mut heard) = (0, Echo::new(None), 0);
     let mut requests = Requests::new(Pacing::LockStep);
     let mut answer: Vec<Message> = Vec::new();
-    while let Some(message) = peer.receive(Duration::from_secs(20)) {
+    while let Some(message) = peer.receive(Duration::from_secs(60)) {
         heard += 1;
         if lost.is_some_and(|n| heard % n == n / 2) {
             continue;
