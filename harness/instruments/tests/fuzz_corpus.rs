@@ -5,6 +5,7 @@
 #[path = "../../../fuzz/instruments.rs"]
 mod instruments;
 
+use crate::common;
 use octant_instruments::Protocol;
 use std::path::PathBuf;
 

@@ -1,6 +1,7 @@
 //! Decoding, encoding and sampling allocate nothing, damaged or not.
 #![allow(unsafe_code, reason = "an allocator that counts is unsafe by its trait")]
 
+use crate::common;
 use octant_instruments::{AnyDecoder, AnyEncoder, Axes, Event, Protocol, Sampler, Settings};
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;

@@ -1,6 +1,6 @@
 //! What goes in comes out, however the bytes are cut.
 
-use crate::common::{events, readings, streams};
+use crate::common::{self, events, readings, streams};
 use octant_instruments::{
     AnyDecoder, AnyEncoder, Clock, Event, Kind, Measured, Protocol, Reading, Stamp,
 };

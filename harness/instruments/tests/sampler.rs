@@ -1,6 +1,6 @@
 //! Readings to samples: counts with remainders, axes, numbers and time.
 
-use crate::common::{frames, only, reading};
+use crate::common::{self, frames, only, reading};
 use octant_instruments::{Axes, Measured, Protocol, Reading, Sampler, Settings, Stamp, Unusable};
 use octant_sample::counts::{DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS};
 use octant_sample::{DeviceTime, GimbalAngles, Sample, Status};

@@ -1,5 +1,4 @@
 //! What the tests share.
-#![allow(dead_code)]
 
 use octant_instruments::{
     AnyDecoder, AnyEncoder, Clock, Event, Measured, Protocol, Reading, Stamp,
