@@ -1,5 +1,4 @@
 //! The Earth against reference numbers from an independent implementation.
-#![allow(clippy::unwrap_used)]
 
 use octant_earth::ellipsoid::{Ellipsoid, meridian_radius_m, transverse_radius_m};
 use octant_earth::frames::c_cb;
