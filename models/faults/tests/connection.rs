@@ -1,5 +1,4 @@
 //! Faults on connections: each kind against what its model says.
-#![allow(clippy::unwrap_used)]
 
 use octant_faults::catalogue::Dimension;
 use octant_faults::connection::kinds::{self, Target};

@@ -1,15 +1,11 @@
 //! Any combination of faults of delivery: nothing is invented, lost or doubled beyond what the
 //! kinds say, order is kept where they keep it, and receipts add up.
-#![allow(clippy::unwrap_used)]
 
-mod common;
-
-use common::{Outcome, clean, fault, run};
+use crate::common::{self, Outcome, bytes, clean, fault, run};
 use octant_faults::catalogue::Dimension;
 use octant_faults::trigger::{Repeat, Trigger};
 use octant_faults::{Receipt, Spec, Value};
 use octant_sample::Epoch;
-use octant_sample::canonical::{AIDING_BYTES, SAMPLE_BYTES, aiding, sample};
 use proptest::prelude::*;
 
 /// Epochs of a run, and of its first part, in which faults may set in and end.
@@ -91,27 +87,14 @@ fn by_step(outcome: &Outcome) -> Vec<Vec<Epoch>> {
     steps
 }
 
-fn bytes(epochs: &[Epoch], into: &mut crc32fast::Hasher) {
-    for epoch in epochs {
-        let mut buffer = [0; SAMPLE_BYTES];
-        sample(&epoch.sample, &mut buffer);
-        into.update(&buffer);
-        if let Some(message) = &epoch.aiding {
-            let mut buffer = [0; AIDING_BYTES];
-            aiding(message, &mut buffer);
-            into.update(&buffer);
-        }
-    }
-}
-
 /// The receipt that a stage has to give for what went in and what came out.
 fn check_receipt(receipt: &Receipt, before: &[Vec<Epoch>], after: &[Vec<Epoch>]) {
     let differs = |step: &usize| before[*step] != after[*step];
     let altered: Vec<usize> = (0..before.len()).filter(differs).collect();
     let (mut clean, mut faulted) = (crc32fast::Hasher::new(), crc32fast::Hasher::new());
     for step in &altered {
-        bytes(&before[*step], &mut clean);
-        bytes(&after[*step], &mut faulted);
+        clean.update(&bytes(&before[*step]));
+        faulted.update(&bytes(&after[*step]));
     }
     assert_eq!(receipt.samples_altered, altered.len() as u64);
     assert_eq!(receipt.first_sample, altered.first().map(|step| *step as u64));

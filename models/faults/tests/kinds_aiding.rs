@@ -1,9 +1,6 @@
 //! References that are wrong, noisy, lost or late.
-#![allow(clippy::unwrap_used)]
 
-mod common;
-
-use common::{Log, Outcome, PERIOD_NS, clean, fault, run, setup};
+use crate::common::{Log, Outcome, PERIOD_NS, clean, fault, run, setup};
 use octant_faults::catalogue::Dimension;
 use octant_faults::station::Delivered;
 use octant_faults::trigger::Repeat;

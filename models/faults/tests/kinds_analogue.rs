@@ -1,10 +1,7 @@
 //! Every analogue kind does to samples what its page says, by arithmetic of its own.
-#![allow(clippy::unwrap_used)]
 
-mod common;
-
-use common::counts::*;
-use common::{clean, fault, run};
+use crate::common::counts::*;
+use crate::common::{self, clean, fault, run};
 use octant_faults::catalogue::Dimension::*;
 use octant_faults::trigger::Trigger;
 use octant_faults::{Channels, Value};

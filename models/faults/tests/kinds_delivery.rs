@@ -1,9 +1,6 @@
 //! Lost, late, doubled, in another order.
-#![allow(clippy::unwrap_used)]
 
-mod common;
-
-use common::{Outcome, clean, fault, run, setup};
+use crate::common::{Outcome, clean, fault, refused, run, setup};
 use octant_faults::catalogue::Dimension;
 use octant_faults::station::FLIGHT_MAX;
 use octant_faults::trigger::Repeat;
@@ -21,10 +18,6 @@ fn steps(outcome: &Outcome, epochs: u64) -> Vec<Vec<u64>> {
         steps[*at as usize].push(epoch.sample.sequence);
     }
     steps
-}
-
-fn refused(spec: &Spec) -> String {
-    Station::new(std::slice::from_ref(spec), &setup()).unwrap_err().1.to_string()
 }
 
 fn dropout(loss: f64, aiding: &'static str, first: u64, epochs: u64) -> Spec {

@@ -1,7 +1,7 @@
 //! Faults of the host: raised once at each onset, and fired only where somebody takes them.
-#![allow(clippy::unwrap_used)]
 
-use octant_faults::catalogue::{Acts, Dimension};
+use crate::common::seconds;
+use octant_faults::catalogue::Acts;
 use octant_faults::disturbance::Disturbed;
 use octant_faults::host::{HostAction, Hosted};
 use octant_faults::station::{Delivered, World};
@@ -58,10 +58,6 @@ fn spec(kind: &str, values: &[(&'static str, Value)]) -> Spec {
         repeat: Repeat::Times { times: 2, every: 4 },
     };
     Spec { id: kind.into(), kind: kinds::named(kind).unwrap(), values: all, schedule }
-}
-
-fn seconds(time_s: f64) -> Value {
-    Value::Quantity(time_s, Dimension::Time)
 }
 
 fn cases() -> [(Spec, HostAction); 3] {

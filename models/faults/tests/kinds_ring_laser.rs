@@ -1,10 +1,7 @@
 //! Every ring laser kind does to samples what its page says, by arithmetic of its own.
-#![allow(clippy::unwrap_used)]
 
-mod common;
-
-use common::counts::*;
-use common::{fault, run};
+use crate::common::counts::*;
+use crate::common::{fault, run};
 use octant_faults::catalogue::Dimension::*;
 use octant_faults::{Channels, Spec, Value};
 use std::f64::consts::{PI, TAU};

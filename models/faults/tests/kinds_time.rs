@@ -1,19 +1,12 @@
 //! Stamps and numbers.
-#![allow(clippy::unwrap_used)]
 
-mod common;
-
-use common::{Outcome, PERIOD_NS, clean, fault, run, setup};
+use crate::common::{Outcome, PERIOD_NS, clean, fault, refused, run, seconds};
 use octant_faults::catalogue::Dimension;
 use octant_faults::trigger::{Repeat, Trigger};
-use octant_faults::{Spec, Station, Value};
+use octant_faults::{Spec, Value};
 use octant_sample::{DeviceTime, Epoch};
 
 const PERIOD: i64 = PERIOD_NS as i64;
-
-fn seconds(value: f64) -> Value {
-    Value::Quantity(value, Dimension::Time)
-}
 
 fn clock(name: &'static str) -> (&'static str, Value) {
     ("clock", Value::Choice(name))
@@ -43,10 +36,6 @@ fn aiding_error(outcome: &Outcome, at: u64) -> i64 {
     found.aiding.as_mut().unwrap().device_time = was;
     assert!(found.same_bits(&clean));
     is.ns as i64 - was.ns as i64
-}
-
-fn refused(spec: &Spec) -> String {
-    Station::new(std::slice::from_ref(spec), &setup()).unwrap_err().1.to_string()
 }
 
 #[test]

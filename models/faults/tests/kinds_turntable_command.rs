@@ -1,9 +1,6 @@
 //! Set points on their way to the turntable.
-#![allow(clippy::unwrap_used)]
 
-mod common;
-
-use common::{Outcome, clean, fault, run_with};
+use crate::common::{Outcome, clean, fault, run_with};
 use octant_faults::catalogue::Dimension;
 use octant_faults::trigger::{Repeat, Trigger};
 use octant_faults::{Spec, Value};

@@ -1,9 +1,6 @@
 //! The unit under test restarts, loses power, has a wrong table.
-#![allow(clippy::unwrap_used)]
 
-mod common;
-
-use common::{clean, fault, run, run_with, setup};
+use crate::common::{clean, fault, run, run_with, setup};
 use octant_faults::catalogue::Dimension;
 use octant_faults::rule::UnitEvent;
 use octant_faults::trigger::{Repeat, Trigger};

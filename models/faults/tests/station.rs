@@ -1,9 +1,6 @@
 //! The pipeline: order, receipts, triggers.
-#![allow(clippy::unwrap_used)]
 
-mod common;
-
-use common::{clean, fault, run, run_with, setup};
+use crate::common::{self, clean, fault, run, run_with, setup};
 use octant_faults::catalogue::Dimension;
 use octant_faults::station::Delivered;
 use octant_faults::trigger::{Comparison, Repeat, Schedule, Signal, Trigger};

@@ -1,6 +1,6 @@
 //! Plain values of every kind: the same ones on every run.
 
-use crate::draw::usual;
+use super::draw::usual;
 use octant_faults::catalogue::{Bounds, Kind, Takes};
 use octant_faults::{Channels, Value, Values};
 

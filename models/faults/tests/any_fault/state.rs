@@ -1,10 +1,10 @@
 //! A station that was saved and loaded goes on bit for bit, with every kind of the catalogue under
 //! way; other bytes are refused.
 
-use crate::common::{Log, setup};
-use crate::draw::spec;
-use crate::plain::plain;
-use crate::{EPOCHS, answer, bytes, source};
+use super::draw::spec;
+use super::plain::plain;
+use super::{EPOCHS, answer, source};
+use crate::common::{Log, bytes, setup};
 use octant_faults::disturbance::Disturbance;
 use octant_faults::rule::UnitEvent;
 use octant_faults::station::{Delivered, Occurrence, STATE_FORMAT};

@@ -1,13 +1,15 @@
 //! A bench for faults: a stream of samples that any test can compute by itself, and a station.
-#![allow(dead_code, clippy::unwrap_used, unreachable_pub)]
+#![allow(unreachable_pub)]
 
 pub mod counts;
 
+use octant_faults::catalogue::Dimension;
 use octant_faults::disturbance::{Disturbance, Disturbed, Motor};
 use octant_faults::rule::UnitEvent;
 use octant_faults::station::{Delivered, Occurrence, Spec, World};
 use octant_faults::trigger::{Repeat, Schedule, Trigger};
 use octant_faults::{Receipt, Setup, Station, Value, Values};
+use octant_sample::canonical::{AIDING_BYTES, SAMPLE_BYTES, aiding, sample};
 use octant_sample::{
     Aiding, DeviceTime, Epoch, GimbalAngles, GimbalCommand, Output, Reference, Sample, Truth,
 };
@@ -147,4 +149,30 @@ pub fn run_with(specs: &[Spec], epochs: u64, answer: impl Fn(u64) -> Output) -> 
 /// With a core that answers nothing.
 pub fn run(specs: &[Spec], epochs: u64) -> Outcome {
     run_with(specs, epochs, |_| Output::default())
+}
+
+/// What is said of a fault that no station is made with.
+pub fn refused(spec: &Spec) -> String {
+    Station::new(std::slice::from_ref(spec), &setup()).unwrap_err().1.to_string()
+}
+
+/// A time as a value of a fault.
+pub fn seconds(time_s: f64) -> Value {
+    Value::Quantity(time_s, Dimension::Time)
+}
+
+/// The bytes of epochs, of which receipts have the checksum.
+pub fn bytes(epochs: &[Epoch]) -> Vec<u8> {
+    let mut all = Vec::new();
+    for epoch in epochs {
+        let mut part = [0; SAMPLE_BYTES];
+        sample(&epoch.sample, &mut part);
+        all.extend_from_slice(&part);
+        if let Some(message) = &epoch.aiding {
+            let mut part = [0; AIDING_BYTES];
+            aiding(message, &mut part);
+            all.extend_from_slice(&part);
+        }
+    }
+    all
 }

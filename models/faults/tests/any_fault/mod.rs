@@ -1,22 +1,18 @@
 //! What holds for every kind of the catalogue, whatever its values and its trigger: nothing panics,
 //! nothing differs before the first onset, and the receipt is what a comparison of the clean and
 //! the delivered stream finds. Kinds are covered from the day on which they are in the catalogue.
-#![allow(clippy::unwrap_used)]
 
-#[path = "../common/mod.rs"]
-mod common;
 mod draw;
 mod plain;
 mod state;
 
-use common::{Log, clean, setup};
+use crate::common::{Log, bytes, clean, setup};
 use draw::{spec, values};
 use octant_faults::catalogue::{Acts, Family, Takes};
 use octant_faults::rule::UnitEvent;
 use octant_faults::station::{Delivered, Occurrence};
 use octant_faults::trigger::{Repeat, Schedule, Trigger};
 use octant_faults::{BuildError, Receipt, Spec, Station, kinds};
-use octant_sample::canonical::{AIDING_BYTES, SAMPLE_BYTES, aiding, sample};
 use octant_sample::imu::Status;
 use octant_sample::{
     Aiding, Epoch, GimbalAngles, GimbalCommand, Health, Mode, Output, Reference, Truth,
@@ -127,21 +123,6 @@ fn crc32(bytes: &[u8]) -> u32 {
         }
     }
     !crc
-}
-
-fn bytes(epochs: &[Epoch]) -> Vec<u8> {
-    let mut all = Vec::new();
-    for epoch in epochs {
-        let mut part = [0; SAMPLE_BYTES];
-        sample(&epoch.sample, &mut part);
-        all.extend_from_slice(&part);
-        if let Some(message) = &epoch.aiding {
-            let mut part = [0; AIDING_BYTES];
-            aiding(message, &mut part);
-            all.extend_from_slice(&part);
-        }
-    }
-    all
 }
 
 fn same(delivered: &[Epoch], k: u64) -> bool {
