@@ -1,10 +1,7 @@
 //! Whatever disturbances come and go, in whatever order: nothing panics, work stays bounded, and a
 //! clone, and what was saved and loaded, goes on as the original.
-#![allow(clippy::unwrap_used)]
 
-mod common;
-
-use common::*;
+use crate::common::*;
 use octant_faults::disturbance::*;
 use octant_plant::config::Motion;
 use octant_plant::{Plant, motion};

@@ -1,11 +1,8 @@
 //! Whatever faults do to the physical world, a perfect strapdown that integrates the samples
 //! arrives at truth while they do it and after: gyros and accelerometers feel one motion.
-#![allow(clippy::unwrap_used)]
 
-mod common;
-
-use common::strapdown::Strapdown;
-use common::*;
+use crate::common::strapdown::Strapdown;
+use crate::common::*;
 use octant_earth::units::DEG;
 use octant_faults::disturbance::*;
 use octant_plant::config::*;

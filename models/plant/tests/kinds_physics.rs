@@ -1,10 +1,7 @@
 //! Kinds of faults of motion and environment: what their pages say, by closed forms written here.
-#![allow(clippy::unwrap_used)]
 
-mod common;
-
-use common::bench::*;
-use common::*;
+use crate::common::bench::*;
+use crate::common::*;
 use octant_earth::ellipsoid::Ellipsoid;
 use octant_earth::units::{DEG, DEG_PER_HOUR, MICRO_G, PPM, STANDARD_GRAVITY_MPS2};
 use octant_faults::catalogue::Dimension::*;
@@ -13,9 +10,6 @@ use octant_plant::config::*;
 use octant_sample::Reference;
 use octant_sample::counts::{DELTA_THETA_LSB_RAD as RAD, DELTA_VELOCITY_LSB_MPS as MPS};
 use std::f64::consts::PI;
-
-const LATITUDE: f64 = 30.5 * DEG;
-const EARTH_RATE: f64 = 7.292115e-5;
 
 fn level(_: u64) -> octant_sample::GimbalCommand {
     command(0.0, 0.0)

@@ -1,11 +1,8 @@
 //! Kinds of faults of gimbals, drives and encoders: what their pages say, by closed forms written
 //! here.
-#![allow(clippy::unwrap_used)]
 
-mod common;
-
-use common::bench::*;
-use common::*;
+use crate::common::bench::*;
+use crate::common::*;
 use octant_earth::units::{ARCSEC, DEG};
 use octant_faults::Value;
 use octant_faults::catalogue::Dimension::*;

@@ -1,9 +1,6 @@
 //! Noise of the streams: size, slopes of the Allan deviation, independence.
-#![allow(clippy::unwrap_used)]
 
-mod common;
-
-use common::*;
+use crate::common::*;
 use octant_earth::units::{DEG, DEG_PER_HOUR, MICRO_G};
 use octant_plant::config::*;
 use octant_plant::{Plant, Step};

@@ -1,18 +1,12 @@
 //! The error model and every extension against closed forms.
-#![allow(clippy::unwrap_used)]
 
-mod common;
-
-use common::*;
+use crate::common::*;
 use octant_earth::ellipsoid::Ellipsoid;
 use octant_earth::units::{ARCSEC, DEG, DEG_PER_HOUR, DEG_PER_HOUR_PER_G, MICRO_G, PPM};
 use octant_plant::config::*;
 use octant_plant::{Plant, Step};
 use octant_sample::counts::{DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS};
 use octant_sample::{Parameters, Status};
-
-const EARTH_RATE: f64 = 7.292115e-5;
-const LATITUDE: f64 = 30.5 * DEG;
 
 fn gravity() -> f64 {
     Ellipsoid::at(LATITUDE, 40.0).gravity_mps2

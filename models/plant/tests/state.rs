@@ -1,10 +1,7 @@
 //! The state of a plant as bytes: what was saved and loaded goes on bit for bit, with everything that
 //! can be under way; other bytes are refused.
-#![allow(clippy::unwrap_used)]
 
-mod common;
-
-use common::*;
+use crate::common::*;
 use octant_earth::units::{ARCSEC, DEG, DEG_PER_HOUR, MICRO_G, PPM};
 use octant_faults::disturbance::*;
 use octant_plant::config::*;

@@ -1,11 +1,8 @@
 //! A perfect strapdown integrates the plant's counts and must arrive at the plant's truth:
 //! increments, Coriolis, transport rate, curvature and gravity are then consistent with the motion.
-#![allow(clippy::unwrap_used)]
 
-mod common;
-
-use common::strapdown::Strapdown;
-use common::*;
+use crate::common::strapdown::Strapdown;
+use crate::common::*;
 use octant_plant::config::*;
 use octant_plant::{Plant, motion};
 

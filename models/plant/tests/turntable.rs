@@ -1,9 +1,6 @@
 //! The turntable: durations, limits, timing of commands, encoder and play.
-#![allow(clippy::unwrap_used)]
 
-mod common;
-
-use common::*;
+use crate::common::*;
 use octant_earth::units::{ARCSEC, DEG};
 use octant_plant::Plant;
 use octant_sample::counts::{DELTA_THETA_LSB_RAD, GIMBAL_LSB_RAD};

@@ -1,5 +1,4 @@
 //! Configurations that the tests start from.
-#![allow(dead_code, reason = "each test file uses its own part")]
 
 pub(crate) mod bench;
 pub(crate) mod strapdown;
@@ -11,6 +10,10 @@ use octant_sample::{GimbalAngles, GimbalCommand, Parameters};
 
 pub(crate) const PERIOD_NS: u64 = 5_000_000;
 pub(crate) const DT: f64 = 0.005;
+/// rad/s.
+pub(crate) const EARTH_RATE: f64 = 7.292115e-5;
+/// Of the site of [`perfect`], rad.
+pub(crate) const LATITUDE: f64 = 30.5 * DEG;
 
 /// Static at 30.5° N, 200 Hz, 10 °/s and 10 °/s², perfect sensors.
 pub(crate) fn perfect() -> Config {
@@ -18,7 +21,7 @@ pub(crate) fn perfect() -> Config {
         sample_period_ns: PERIOD_NS,
         seed: 1,
         calibration_samples: u64::MAX,
-        site: Site { latitude_rad: 30.5 * DEG, longitude_rad: 114.3 * DEG, height_m: 40.0 },
+        site: Site { latitude_rad: LATITUDE, longitude_rad: 114.3 * DEG, height_m: 40.0 },
         motion: Motion::Static(CaseAttitude::default()),
         turntable: Turntable {
             rate_radps: 10.0 * DEG,

@@ -1,11 +1,11 @@
 //! A perfect strapdown, written here and nowhere else.
 
+use super::EARTH_RATE;
 use nalgebra::{Matrix3, Rotation3, UnitQuaternion, Vector3};
 use octant_plant::Truth;
 use octant_sample::Sample;
 use octant_sample::counts::{DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS};
 
-const EARTH_RATE: f64 = 7.292115e-5;
 const A: f64 = 6378137.0;
 const E2: f64 = 6.69437999014e-3;
 

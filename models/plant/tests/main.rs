@@ -1,0 +1,13 @@
+//! The tests of the plant, in one program.
+#![allow(clippy::unwrap_used)]
+
+mod common;
+mod disturbed_arbitrary;
+mod disturbed_strapdown;
+mod kinds_physics;
+mod kinds_turntable;
+mod noise;
+mod sensors;
+mod state;
+mod strapdown;
+mod turntable;
