@@ -1,6 +1,5 @@
 //! The C interface as a hostile or careless importer calls it: a C program that loads the library
 //! and checks every answer. It is in `tests/abuse`.
-#![allow(clippy::unwrap_used)]
 
 use octant_fmu::c::{Standard, token};
 use octant_fmu::calibrator::table::MODEL;

@@ -1,5 +1,4 @@
 //! The core's configuration as parameters, and back; and what is made of parameters that are wrong.
-#![allow(clippy::unwrap_used)]
 
 use octant_calibration::config::*;
 use octant_calibration::positions::{EIGHT, SIXTEEN, from_degrees, named};

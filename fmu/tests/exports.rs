@@ -1,6 +1,4 @@
 //! The shared library has all functions of both standards, and nothing else.
-#![cfg(target_os = "linux")]
-#![allow(clippy::unwrap_used)]
 
 use object::{Object, ObjectSymbol};
 use std::collections::BTreeSet;

@@ -1,7 +1,6 @@
 //! The Calibrator on a CAN bus, as an importer drives it: the frames of the wire protocol in the
 //! operations of FMI-LS-BUS, and the outputs of a core in this process, bit for bit.
 #![allow(unsafe_code, reason = "C functions are called")]
-#![allow(clippy::unwrap_used)]
 
 mod node;
 
