@@ -1,5 +1,4 @@
 //! Coarse alignment against the gyrocompass's golden values, and the formula for tilt.
-#![allow(clippy::unwrap_used)]
 
 use octant_calibration::alignment::CoarseAlignment;
 use octant_calibration::config::Site;

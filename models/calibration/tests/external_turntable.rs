@@ -1,9 +1,6 @@
 //! The external turntable as the reference: all thirty parameters, the isotropic part of G too.
-#![allow(clippy::unwrap_used)]
 
-mod instrument;
-
-use instrument::{ARW, EIGHT, HEADING_RAD, Instrument, SITE, SIX, VRW, truth};
+use crate::instrument::{ARW, EIGHT, HEADING_RAD, Instrument, SITE, SIX, VRW, truth};
 use octant_calibration::config::{ExternalTurntable, Noise};
 use octant_calibration::external_turntable::ExternalTurntableEstimator;
 use octant_calibration::least_squares::{Estimate, Refusal};

@@ -1,7 +1,6 @@
 //! The error model against a numerical Jacobian of the strapdown: each state is perturbed, the
 //! perturbed and the unperturbed navigation run through the same increments, and their difference is
 //! what the transition has to say.
-#![allow(clippy::unwrap_used)]
 
 use nalgebra::{UnitQuaternion, Vector3};
 use octant_calibration::compensation::Compensation;

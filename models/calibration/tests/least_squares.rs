@@ -1,9 +1,6 @@
 //! The least-squares estimator on samples made from the error model with known parameters.
-#![allow(clippy::unwrap_used)]
 
-mod instrument;
-
-use instrument::{EIGHT, Instrument, PERIOD_NS, SITE, SIX, truth};
+use crate::instrument::{self, EIGHT, Instrument, PERIOD_NS, SITE, SIX, truth};
 use octant_calibration::config::{GyroReference, LeastSquares, StaticIntervals};
 use octant_calibration::least_squares::{Estimate, LeastSquaresEstimator, Refusal};
 use octant_sample::Parameters;

@@ -1,5 +1,4 @@
 //! The strapdown against closed forms and an independent error propagation.
-#![allow(clippy::unwrap_used)]
 
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use octant_calibration::strapdown::{Strapdown, Vertical};

@@ -1,6 +1,5 @@
 //! The least-squares estimator on a real recording: a MEMS unit turned by hand through some forty
 //! attitudes. The reference values come from an independent program (see the recording's README).
-#![allow(clippy::unwrap_used)]
 
 use octant_calibration::config::{GyroReference, LeastSquares, Site, StaticIntervals};
 use octant_calibration::least_squares::raw::{self, Nominal};

@@ -1,5 +1,4 @@
 //! When the gimbals turn: dwells fill the time, and the cursor walks every stop.
-#![allow(clippy::unwrap_used)]
 
 use octant_calibration::config::TurntableRates;
 use octant_calibration::positions::{EIGHT, SIX, SIXTEEN, from_degrees};

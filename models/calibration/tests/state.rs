@@ -1,11 +1,8 @@
 //! The state of a core as bytes: its layout, and what becomes of bytes that are none.
 //!
 //! That a core goes on bit for bit is tested with the plant, in the harness.
-#![allow(clippy::unwrap_used)]
 
-mod instrument;
-
-use instrument::{ARW, EIGHT, HEADING_RAD, Instrument, PERIOD_NS, SITE, VRW, truth};
+use crate::instrument::{ARW, EIGHT, HEADING_RAD, Instrument, PERIOD_NS, SITE, VRW, truth};
 use octant_calibration::Core;
 use octant_calibration::config::*;
 use octant_calibration::positions::{SIXTEEN, from_degrees};

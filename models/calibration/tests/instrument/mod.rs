@@ -1,5 +1,5 @@
 //! A small instrument for tests: the error model, two gimbals and counts, independent of the plant.
-#![allow(dead_code, unreachable_pub)]
+#![allow(unreachable_pub)]
 
 use octant_calibration::config::Site;
 use octant_earth::ellipsoid::Ellipsoid;

@@ -1,0 +1,13 @@
+//! The tests of the calibration core, in one program.
+#![allow(clippy::unwrap_used)]
+
+mod alignment;
+mod external_turntable;
+mod instrument;
+mod jacobian;
+mod least_squares;
+mod mechanization;
+mod real_recording;
+mod schedule;
+#[cfg(feature = "state")]
+mod state;
