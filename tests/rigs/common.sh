@@ -69,4 +69,4 @@ apt_packages() {
 
 # cargo test, with what the test command builds everything with: another choice of packages or features
 # would build all of it again.
-test_profile=(--workspace --features octant/foxglove)
+test_profile=(--workspace)
