@@ -87,7 +87,7 @@ fn link(file: &str, name: &str) -> String {
 
 /// `trace.md`.
 fn trace(kit: &Requirements) -> String {
-    let mut text = "# Trace\n\nMade from `requirements.toml` by `OCTANT_WRITE_FIXTURES=1 cargo test --test \
+    let mut text = "# Trace\n\nMade from `requirements.toml` by `OCTANT_WRITE_FIXTURES=1 cargo test -p octant \
         qualification`; the same test fails where it isn't up to date, or where a test that it names isn't \
         there.\n\n## From requirements to tests\n"
         .to_owned();

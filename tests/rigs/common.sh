@@ -8,16 +8,30 @@ skip() {
   exit 77
 }
 
-# Runs what installs something; its output only where it fails.
+# Runs what installs or builds something; its output only where it fails.
 install_quietly() {
-  local log=.rigs/install.log
-  mkdir -p .rigs
-  "$@" >"$log" 2>&1 || { tail -n 20 "$log" >&2; return 1; }
+  local log status=0
+  log=$(mktemp)
+  "$@" >"$log" 2>&1 || status=$?
+  [ $status = 0 ] || tail -n 20 "$log" >&2
+  rm -f "$log"
+  return $status
 }
+
+# one_at_a_time FUNCTION ARGUMENT...: rigs run beside each other and want the same packages.
+one_at_a_time() {
+  mkdir -p .rigs
+  # A daemon that a package starts must not hold the lock.
+  (flock 8; "$@" 8>&-) 8>.rigs/lock || exit $?
+}
+
+# installed: ends a rig that was only asked to install what it needs.
+installed() { [ "${INSTALL_ONLY:-}" != true ] || exit 0; }
 
 # Pinned packages of tests/rigs/requirements.txt, in .rigs/python; with a NAME those of
 # requirements-NAME.txt, in .rigs/python-NAME.
-python_packages() {
+python_packages() { one_at_a_time install_python_packages "$@"; }
+install_python_packages() {
   local requirements=tests/rigs/requirements${1:+-$1}.txt folder=.rigs/python${1:+-$1}
   cmp -s "$requirements" "$folder/requirements.txt" && return
   echo "installing the packages of $requirements into $folder"
@@ -30,7 +44,8 @@ python_packages() {
 }
 
 # A Debian package, unpacked into .rigs/debian and not installed.
-debian_package() {
+debian_package() { one_at_a_time install_debian_package "$@"; }
+install_debian_package() {
   local package=$1
   [ -e ".rigs/debian/$package" ] && return
   echo "unpacking the Debian package $package into .rigs/debian"
@@ -43,7 +58,8 @@ debian_package() {
 }
 
 # Pinned packages of tests/rigs/package-lock.json, in .rigs/npm.
-npm_packages() {
+npm_packages() { one_at_a_time install_npm_packages "$@"; }
+install_npm_packages() {
   cmp -s tests/rigs/package-lock.json .rigs/npm/installed && return
   echo "installing the packages of tests/rigs/package-lock.json into .rigs/npm"
   command -v npm >/dev/null || skip "there is no npm here"
@@ -56,7 +72,8 @@ npm_packages() {
 }
 
 # apt_packages PROGRAM PACKAGE...: installs Debian packages where the program isn't there.
-apt_packages() {
+apt_packages() { one_at_a_time install_apt_packages "$@"; }
+install_apt_packages() {
   local program=$1
   shift
   command -v "$program" >/dev/null && return
@@ -65,6 +82,17 @@ apt_packages() {
   install_quietly apt-get update || skip "apt-get update failed: no $program"
   DEBIAN_FRONTEND=noninteractive install_quietly apt-get install -y --no-install-recommends "$@" \
     || skip "apt-get could not install $*"
+}
+
+# named_tests ARGUMENT...: runs integration tests by name; fails where none has such a name.
+named_tests() {
+  local log
+  log=$(mktemp)
+  cargo test --quiet "${test_profile[@]}" --test main -- "$@" 2>&1 | tee "$log"
+  local status=${PIPESTATUS[0]}
+  grep -qE '^test result: ok\. [1-9]' "$log" || { echo "no test is named so: $*" >&2; status=1; }
+  rm -f "$log"
+  return "$status"
 }
 
 # cargo test, with what the test command builds everything with: another choice of packages or features
