@@ -96,13 +96,20 @@ mod system {
     use rustix::mm::{MlockAllFlags, mlockall};
     use rustix::process::{Resource, getrlimit};
     use rustix::thread::{
-        CapabilitySet, CpuSet, capabilities, sched_setaffinity, set_current_timer_slack,
+        CapabilitySet, CpuSet, capabilities, sched_getaffinity, sched_setaffinity,
+        set_current_timer_slack,
     };
+    use std::cell::Cell;
     use std::num::NonZeroU64;
     use thread_priority::{
         Error, NormalThreadSchedulePolicy, RealtimeThreadSchedulePolicy, ThreadPriority,
         ThreadSchedulePolicy, set_thread_priority_and_policy, thread_native_id,
     };
+
+    thread_local! {
+        /// Processors of this thread before it was given one of its own.
+        static BEFORE: Cell<Option<CpuSet>> = const { Cell::new(None) };
+    }
 
     /// A thread without a real-time priority is woken up to 50 µs late on purpose, so that wakings
     /// can be put together. Not this one.
@@ -144,10 +151,10 @@ mod system {
             let _ = set_thread_priority_and_policy(thread_native_id(), ThreadPriority::Min, policy);
         }
         if granted.cpu.is_granted() {
-            let mut all = CpuSet::new();
-            (0..CpuSet::MAX_CPU).for_each(|cpu| all.set(cpu));
-            // The kernel leaves out those that there are not, or that aren't for this process.
-            let _ = sched_setaffinity(None, &all);
+            // What it had may be less than all: `taskset`, a container.
+            if let Some(before) = BEFORE.take() {
+                let _ = sched_setaffinity(None, &before);
+            }
         }
     }
 
@@ -179,8 +186,12 @@ mod system {
         }
         let mut set = CpuSet::new();
         set.set(usize::from(cpu));
+        let before = sched_getaffinity(None).ok();
         match sched_setaffinity(None, &set) {
-            Ok(()) => Outcome::Granted { what },
+            Ok(()) => {
+                BEFORE.set(before);
+                Outcome::Granted { what }
+            }
             Err(rustix::io::Errno::INVAL) => Outcome::Refused {
                 why: "there is no such processor, or it isn't for this process".to_owned(),
                 what,
