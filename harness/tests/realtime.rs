@@ -170,7 +170,9 @@ fn drive(
     Option<u64>,
 ) {
     let folder = tempfile::tempdir().unwrap();
-    let path = scenario(folder.path(), "s.toml", &format!("{SECONDS}{more}"));
+    // All of this process would be locked, with the tests beside this one.
+    let text = format!("{SECONDS}lock_memory = false\n{more}");
+    let path = scenario(folder.path(), "s.toml", &text);
     let scenario = Scenario::load(Path::new(&path), &[]).unwrap();
     let (plant, core, _) = configurations(&scenario, Method::Primary, 1).unwrap();
     let mut source = PlantSource::new(&plant, scenario.samples().unwrap()).unwrap();
