@@ -4,6 +4,7 @@
 //! [`Harness::send_sample`] and [`Harness::poll`] are called on their own, and wait for nothing. None of
 //! them allocates, but for an error.
 
+use crate::asking::Taken;
 use crate::clock::Stamps;
 use crate::port::PortError;
 use crate::wire::{Counts, Incoming, Wire};
@@ -56,7 +57,7 @@ pub struct Patience {
     pub hello: Duration,
     /// For an answer, however often it is asked for.
     pub answer: Duration,
-    /// For an answer before it is asked for again.
+    /// For an answer before it is asked for again. A device that is slow is given longer.
     pub repeat: Duration,
 }
 
@@ -265,6 +266,7 @@ pub struct Harness {
     parameters: Option<Gathered>,
     status: Option<Status>,
     effort: Effort,
+    taken: Taken,
     time_id: u16,
     bye: Option<Reason>,
     said_bye: bool,
@@ -309,6 +311,7 @@ impl Harness {
             parameters: None,
             status: None,
             effort: Effort::default(),
+            taken: Taken::default(),
             time_id: 0,
             bye: None,
             said_bye: false,
@@ -586,16 +589,25 @@ impl Harness {
         what: &'static str,
         mut found: impl FnMut(&mut Self, &Event) -> Option<T>,
     ) -> Result<T, SessionError> {
-        let patience = self.options.patience;
+        let Patience { repeat, answer, .. } = self.options.patience;
+        let silence = Duration::from_millis(self.theirs.limits.silence_ms.into());
+        let mut intervals = self.taken.ask(repeat, answer);
         let before = self.wire.counts();
         let begun = Instant::now();
         let (mut asked_at, mut asked, mut anew) = (begun, 1, 0);
         loop {
-            let wait = patience.repeat.saturating_sub(asked_at.elapsed());
+            let left = answer.saturating_sub(begun.elapsed());
+            let mut wait = intervals.now().saturating_sub(asked_at.elapsed()).min(left);
+            if !silence.is_zero() {
+                // It is waited for longer than the device may think that nobody is there.
+                self.keep_alive()?;
+                wait = wait.min(silence / 4);
+            }
             if let Some(incoming) = self.wire.receive(wait)? {
                 let event = self.take(incoming, what)?;
                 if let Some(found) = found(self, &event) {
                     self.answered = step;
+                    self.taken.add(begun.elapsed());
                     return Ok(found);
                 }
                 // A device without a session says so each time that it is asked; a frame that came
@@ -605,14 +617,15 @@ impl Harness {
                     return Err(self.started_anew());
                 }
             }
-            if asked_at.elapsed() < patience.repeat {
-                continue;
-            }
             let waited = begun.elapsed();
-            if waited >= patience.answer {
+            if waited >= answer {
                 return Err(self.no_answer(&before, step, what, waited, asked));
             }
-            self.send_request(patience.repeat)?;
+            if asked_at.elapsed() < intervals.now() {
+                continue;
+            }
+            intervals.again();
+            self.send_request(repeat)?;
             self.effort.repeated += 1;
             asked_at = Instant::now();
             asked += 1;
@@ -758,13 +771,14 @@ fn say_hello(
 ) -> Result<Hello, SessionError> {
     let before = wire.counts();
     let begun = Instant::now();
+    let mut intervals = Taken::default().ask(patience.repeat, patience.hello);
     let (mut asked, mut newer_seen) = (0, None);
     loop {
         wire.send(&Message::Hello(*ours), patience.repeat)?;
         asked += 1;
         let asked_at = Instant::now();
         loop {
-            let left = patience.repeat.saturating_sub(asked_at.elapsed());
+            let left = intervals.now().saturating_sub(asked_at.elapsed());
             match wire.receive(left)? {
                 // Nothing protects the version of a hello on a bus: it has to be said twice.
                 Some(Incoming::Newer(found)) if newer_seen.replace(found) == Some(found) => {
@@ -788,10 +802,11 @@ fn say_hello(
                 }
                 _ => {}
             }
-            if asked_at.elapsed() >= patience.repeat {
+            if asked_at.elapsed() >= intervals.now() {
                 break;
             }
         }
+        intervals.again();
         let waited = begun.elapsed();
         if waited >= patience.hello {
             return Err(SessionError::NoAnswer {

@@ -12,6 +12,7 @@
 //! In lock-step nothing is ever lost: what isn't answered is asked for again. So the outputs are the
 //! same to the last bit over every line, however bad it is.
 
+mod asking;
 pub mod clock;
 pub mod device;
 pub mod fault;

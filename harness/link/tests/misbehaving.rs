@@ -161,6 +161,51 @@ fn one_that_answers_late() {
 }
 
 #[test]
+fn one_that_is_slower_than_it_is_asked_is_asked_less_often() {
+    // A question that is repeated takes it as long as any other. Were it always asked again as soon, each
+    // step would leave more of them on the line than the one before.
+    let peer = device(|sample| {
+        let answer = output(sample.step, sample.sample.sequence);
+        vec![Say::Wait(Duration::from_millis(50)), Say::Message(answer)]
+    });
+    let mut harness = open(&peer).unwrap();
+    steps(&mut harness, 12).unwrap();
+    let repeated = harness.effort().repeated;
+    assert!(repeated < 100, "asked {repeated} times again");
+}
+
+#[test]
+fn one_that_hears_of_a_harness_that_waits() {
+    // It gives up a harness that it doesn't hear of, and its answer takes longer than that.
+    let mut waiting: Option<SampleMessage> = None;
+    let mut heard = 0;
+    let peer = Scripted::new(move |message| match message {
+        Message::Hello(theirs) => {
+            let Message::Hello(ours) = hello(theirs.session) else { unreachable!() };
+            let limits = Limits { silence_ms: 200, ..ours.limits };
+            vec![Say::Message(Message::Hello(Hello { limits, ..ours }))]
+        }
+        Message::Sample(sample) => {
+            waiting = Some(*sample);
+            Vec::new()
+        }
+        Message::Heartbeat(_) => {
+            heard += 1;
+            let answer = waiting.take_if(|_| heard % 3 == 0);
+            let said = |sample: SampleMessage| output(sample.step, sample.sample.sequence);
+            answer.map(|sample| Say::Message(said(sample))).into_iter().collect()
+        }
+        _ => Vec::new(),
+    });
+    let patience = Patience { hello: LONG, answer: LONG, repeat: LONG };
+    let options = Options { patience, ..options() };
+    let wire = Wire::open(&peer.uri, Role::Harness).unwrap();
+    let mut harness = Harness::open(wire, options).unwrap();
+    steps(&mut harness, 2).unwrap();
+    assert_eq!(harness.effort().repeated, 0);
+}
+
+#[test]
 fn one_that_answers_twice_and_with_old_answers() {
     let mut last = None;
     let peer = device(move |sample| {
