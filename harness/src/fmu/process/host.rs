@@ -5,7 +5,7 @@ use super::super::instance::open::{OpenError, open_folder};
 use super::super::instance::{Group, Instance, InstanceError, Message, Outcome, Stepped};
 use super::message::{self, Answer, Reply, Request, VERSION};
 use super::remote::{DISCARDED, EARLY, EVENT, FAILED, TERMINATE};
-use super::shared::{Shared, Word, put, spin, take};
+use super::shared::{Shared, Spin, Word, put, take};
 use rustix::event::{PollFd, PollFlags, poll};
 use std::ffi::OsStr;
 use std::io;
@@ -40,7 +40,7 @@ pub fn serve() -> Result<(), String> {
     // The mapping stays to the very end: the FMU's last calls are marked there.
     let shared: &'static Shared = Box::leak(Box::new(shared));
     watch_parent(&socket)?;
-    Host { socket, shared, plans: Vec::new(), messages: Vec::new() }
+    Host { socket, shared, spin: Spin::new(), plans: Vec::new(), messages: Vec::new() }
         .run()
         .map_err(|e| format!("octant fmu host lost the process that it serves: {e}"))
 }
@@ -76,6 +76,7 @@ struct Plan {
 struct Host {
     socket: UnixStream,
     shared: &'static Shared,
+    spin: Spin,
     plans: Vec<Plan>,
     /// Taken from the FMU, not yet asked for.
     messages: Vec<Message>,
@@ -128,7 +129,7 @@ impl Host {
     fn next(&mut self, done: &mut u64) -> io::Result<Option<Request>> {
         let word = self.shared.word(Word::Request);
         loop {
-            if !spin(word, *done) {
+            if !self.spin.until_changed(word, *done) {
                 // Either the other process sees that this one sleeps, or this one sees the request.
                 let sleeps = self.shared.word(Word::ChildSleeps);
                 sleeps.store(1, Ordering::SeqCst);

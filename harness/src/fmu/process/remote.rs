@@ -6,7 +6,7 @@ use super::super::instance::{
     Group, Instance, InstanceError, Message, Options, Outcome, Stepped, Update,
 };
 use super::message::{self, Answer, Reply, Request, VERSION};
-use super::shared::{Shared, Word, put, spin, take};
+use super::shared::{Shared, Spin, Word, put, take};
 use super::watch::{LOOK, Watch};
 use std::io::{self, Read};
 use std::os::unix::ffi::OsStrExt;
@@ -24,6 +24,7 @@ struct Remote {
     watch: Watch,
     socket: UnixStream,
     shared: Shared,
+    spin: Spin,
     plans: Vec<(Vec<Group>, Vec<Group>)>,
     start_limit: Duration,
     time_limit: Duration,
@@ -60,6 +61,7 @@ pub(in crate::fmu) fn open(
         watch,
         socket,
         shared,
+        spin: Spin::new(),
         plans: Vec::new(),
         start_limit: options.start_limit,
         time_limit: options.time_limit,
@@ -196,7 +198,7 @@ impl Remote {
 
     /// Waits for the answer to an exchange; true: it succeeded.
     fn wait(&mut self, before: u64) -> Result<bool, InstanceError> {
-        if !spin(self.shared.word(Word::Answer), before) {
+        if !self.spin.until_changed(self.shared.word(Word::Answer), before) {
             // Either the child sees that this process sleeps, or this process sees the answer.
             self.shared.word(Word::ParentSleeps).store(1, Ordering::SeqCst);
             let until = Instant::now() + self.time_limit;

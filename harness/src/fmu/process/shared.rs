@@ -9,6 +9,7 @@ use std::ops::Deref;
 use std::os::fd::{AsFd, OwnedFd};
 use std::ptr::{self, NonNull};
 use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::{Duration, Instant};
 
 /// Words before the numbers. What one side writes has cache lines of its own.
 const HEAD: usize = 32;
@@ -145,9 +146,42 @@ pub(super) fn take(from: &[AtomicU64], numbers: &mut [f64]) {
     }
 }
 
-/// Looks at a word until it isn't `old`, for as long as looking is cheaper than sleeping.
-pub(super) fn spin(word: &AtomicU64, old: u64) -> bool {
-    if !*SPINS {
+/// Looks at a word for as long as looking is cheaper than sleeping.
+///
+/// Where the other side has no processor to answer on, looking only keeps it from getting one: each look in
+/// vain halves the next, down to none, and one look in [`TRY_AGAIN`] finds out whether that has changed.
+pub(super) struct Spin {
+    patience: Duration,
+    since_in_vain: u32,
+}
+
+impl Spin {
+    pub(super) fn new() -> Self {
+        Self { patience: if *SPINS { SPIN } else { Duration::ZERO }, since_in_vain: 0 }
+    }
+
+    /// Looks at a word until it isn't `old`; false: it still was when patience ended.
+    pub(super) fn until_changed(&mut self, word: &AtomicU64, old: u64) -> bool {
+        if self.patience < SPIN && *SPINS {
+            self.since_in_vain += 1;
+            if self.since_in_vain == TRY_AGAIN {
+                self.since_in_vain = 0;
+                self.patience = SPIN;
+            }
+        }
+        let changed = changes_within(word, old, self.patience);
+        self.patience = match changed {
+            true if self.patience > Duration::ZERO => SPIN,
+            true => Duration::ZERO,
+            false if self.patience > SPIN / 16 => self.patience / 2,
+            false => Duration::ZERO,
+        };
+        changed
+    }
+}
+
+fn changes_within(word: &AtomicU64, old: u64, patience: Duration) -> bool {
+    if patience.is_zero() {
         return word.load(Ordering::Acquire) != old;
     }
     let mut until = None;
@@ -158,9 +192,9 @@ pub(super) fn spin(word: &AtomicU64, old: u64) -> bool {
             }
             std::hint::spin_loop();
         }
-        let now = std::time::Instant::now();
+        let now = Instant::now();
         match until {
-            None => until = Some(now + SPIN),
+            None => until = Some(now + patience),
             Some(until) if now >= until => return false,
             Some(_) => {}
         }
@@ -168,7 +202,10 @@ pub(super) fn spin(word: &AtomicU64, old: u64) -> bool {
 }
 
 /// How long a side looks before it sleeps: some times what sleeping and waking costs.
-const SPIN: std::time::Duration = std::time::Duration::from_micros(50);
+const SPIN: Duration = Duration::from_micros(50);
+
+/// Exchanges without patience before it is tried anew.
+const TRY_AGAIN: u32 = 64;
 
 /// With one processor nothing changes while one looks.
 static SPINS: std::sync::LazyLock<bool> = std::sync::LazyLock::new(|| {
