@@ -226,6 +226,7 @@ fn broken(folder: &Path, scenario: &str) -> (String, Value, usize) {
     assert!(error.contains("what was recorded is in") && error.contains("run.partial"), "{error}");
     let summary = json(&partial.join("summary.json"));
     assert_eq!(summary["verdict"], "error");
+    assert!(error.contains(summary["reasons"][0].as_str().unwrap()), "{error}");
     let kept = recording(&partial);
     assert!(!kept.truncated, "the file has its end");
     assert!(partial.join("manifest.json").exists() && partial.join("report.html").exists());

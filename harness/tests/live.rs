@@ -188,14 +188,19 @@ fn a_plug_that_is_pulled_ends_the_run_or_is_waited_for() {
     assert_eq!(bench.hash("back", &["--no-twin"]), expected);
     assert_eq!(bench.summary("back")["faults"][0]["samples_altered"], 1);
     let bench = Bench::new(&text(""));
-    let output = bench.run(&bench.scenario, "gone", &["--no-twin"]);
+    let output = bench.run(&bench.scenario, "gone", &["--no-twin", "--json"]);
     let said = String::from_utf8_lossy(&output.stderr);
     assert_eq!(output.status.code(), Some(4), "{said}");
     // What was recorded before stands, under the name of an unfinished run.
     let partial = bench.folder.path().join("gone.partial/summary.json");
     let summary: Value = serde_json::from_str(&std::fs::read_to_string(partial).unwrap()).unwrap();
     assert_eq!(summary["verdict"], "error");
-    assert!(summary["reasons"].to_string().contains("pulled its plug"), "{summary}");
+    let reason = summary["reasons"][0].as_str().unwrap();
+    assert!(reason.contains("pulled its plug"), "{reason}");
+    // With --json the summary alone is on stdout, and who reads the terminal is told as well.
+    assert_eq!(serde_json::from_slice::<Value>(&output.stdout).unwrap(), summary);
+    assert!(said.contains(&format!("octant: {reason}\n")), "{said}");
+    assert!(said.contains("what was recorded is in") && said.contains("gone.partial"), "{said}");
 }
 
 #[test]

@@ -175,6 +175,7 @@ fn who_discards_for_good_is_told_with_its_words() {
     let reason = summary["reasons"][0].as_str().unwrap();
     assert!(reason.starts_with("trouble discarded the step from 0.5 s to 0.5"), "{reason}");
     assert!(reason.contains("half of it at most"), "{reason}");
+    assert!(error(&ran).contains(&format!("octant: {reason}\n")), "{}", error(&ran));
     assert!(summary["rejected"].as_u64().unwrap() >= 1, "{summary}");
 }
 

@@ -6,7 +6,7 @@ use super::{Failure, ScenarioArguments, load_fired, print, write};
 use crate::endpoint::LiveEndpoint;
 use crate::evidence::{self, Existing, FmuFacts, FolderError, Manifest, RunFacts, RunFolder};
 use crate::report;
-use crate::run::assemble::{parameter_text, text};
+use crate::run::assemble::{broken as what_broke, parameter_text, text};
 use crate::run::method::{MethodError, SetupError, configurations, run_as_far_as_it_goes};
 use crate::run::raw_counts;
 use crate::run::{Control, Ended, MethodRun, Recording, Run, assemble};
@@ -149,6 +149,7 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         ("calibration", primary.table.clone()),
         ("baseline", baseline.as_ref().and_then(|b| b.table.clone())),
     ];
+    let reasons = what_broke(&primary, baseline.as_ref());
     let (link, bench) = (primary.link.clone(), primary.bench.clone());
     let realtime = primary.kept.as_ref().map(|kept| kept.granted.clone());
     let refused = primary.calibration.as_ref().is_some_and(|c| c.refused.is_some());
@@ -179,7 +180,11 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     } else {
         folder.finish().map_err(|error| Failure::bench(format!("failed to {error}")))?
     };
-    if broken.is_some() {
+    if !reasons.is_empty() {
+        // With --json stdout is for programs, and the folder of a job that failed may be gone.
+        for reason in &reasons {
+            eprintln!("octant: {reason}");
+        }
         eprintln!("octant: the run broke off; what was recorded is in {}", place.display());
     }
     if arguments.json {

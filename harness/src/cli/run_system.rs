@@ -175,6 +175,11 @@ pub(super) fn command(
     } else {
         folder.finish().map_err(|error| Failure::bench(format!("failed to {error}")))?
     };
+    if let Ended::Failed { reason, .. } = &summary.ended {
+        // With --json stdout is for programs, and the folder of a job that failed may be gone.
+        eprintln!("octant: {reason}");
+        eprintln!("octant: the run broke off; what was recorded is in {}", place.display());
+    }
     if shared.json {
         print(&json)?;
     } else {

@@ -97,10 +97,10 @@ pub fn assemble(
 
 /// What besides requirements bears on the verdict.
 fn findings(scenario: &Scenario, run: &MethodRun, baseline: Option<&MethodRun>) -> Vec<Finding> {
-    let mut findings = broken(run, "");
-    if let Some(baseline) = baseline {
-        findings.extend(broken(baseline, &format!(" in {}", baseline.label)));
-    }
+    let mut findings: Vec<Finding> = broken(run, baseline)
+        .into_iter()
+        .map(|reason| Finding { verdict: Verdict::Error, reason })
+        .collect();
     for run in std::iter::once(run).chain(baseline) {
         let late = run.kept.as_ref().map(|kept| too_late(&scenario.realtime, &kept.pacing));
         findings.extend(late.unwrap_or_default());
@@ -167,16 +167,21 @@ fn too_late(limits: &Realtime, pacing: &Pacing) -> Vec<Finding> {
     reasons.into_iter().map(|reason| Finding { verdict: Verdict::Inconclusive, reason }).collect()
 }
 
-/// What went away in a run or its twin.
-fn broken(run: &MethodRun, place: &str) -> Vec<Finding> {
-    let twin = run.twin.as_deref().map(|twin| (twin, " in the twin without faults"));
-    std::iter::once((run, ""))
-        .chain(twin)
-        .filter_map(|(run, side)| {
+/// When and where what went away, in the methods of a run and their twins.
+#[must_use]
+pub fn broken(primary: &MethodRun, baseline: Option<&MethodRun>) -> Vec<String> {
+    let baseline = baseline.map(|run| (run, format!(" in {}", run.label)));
+    let sides =
+        std::iter::once((primary, String::new())).chain(baseline).flat_map(|(run, place)| {
+            let twin = run.twin.as_deref();
+            let twin = twin.map(|twin| (twin, format!("{place} in the twin without faults")));
+            std::iter::once((run, place)).chain(twin)
+        });
+    sides
+        .filter_map(|(run, place)| {
             let error = run.broken.as_ref()?;
             let at_s = run.watcher.elapsed_s();
-            let reason = format!("after {at_s:.3} s{place}{side}: {error}");
-            Some(Finding { verdict: Verdict::Error, reason })
+            Some(format!("after {at_s:.3} s{place}: {error}"))
         })
         .collect()
 }
