@@ -85,6 +85,16 @@ pub fn apply(wish: &Wish) -> Granted {
     }
 }
 
+/// Processors that the calling thread may run on: on many hosts not all of them (`taskset`, a container).
+/// Where the system doesn't tell which, as many as there are for it, from 0 on.
+#[must_use]
+pub fn processors() -> Vec<u16> {
+    system::processors().unwrap_or_else(|| {
+        let count = std::thread::available_parallelism().map_or(1, usize::from);
+        (0..u16::try_from(count).unwrap_or(u16::MAX)).collect()
+    })
+}
+
 /// Takes from the calling thread what it was granted, but for the memory: that is the process's.
 pub fn release(granted: &Granted) {
     system::release(granted);
@@ -116,6 +126,13 @@ mod system {
     pub(super) fn prepare() {
         // Where it is refused, the lateness tells.
         let _ = set_current_timer_slack(NonZeroU64::new(1));
+    }
+
+    pub(super) fn processors() -> Option<Vec<u16>> {
+        let set = sched_getaffinity(None).ok()?;
+        let mine = (0..CpuSet::MAX_CPU).filter(|cpu| set.is_set(*cpu));
+        let mine: Vec<u16> = mine.filter_map(|cpu| u16::try_from(cpu).ok()).collect();
+        (!mine.is_empty()).then_some(mine)
     }
 
     fn has(capability: CapabilitySet) -> bool {
@@ -207,6 +224,10 @@ mod system {
 
     pub(super) fn prepare() {}
 
+    pub(super) fn processors() -> Option<Vec<u16>> {
+        None
+    }
+
     pub(super) fn release(_granted: &super::Granted) {}
 
     fn not_here(what: String) -> Outcome {
@@ -260,6 +281,20 @@ mod tests {
             let granted = applied(Wish { priority: Some(priority), ..NOTHING });
             assert!(matches!(granted.scheduling, Outcome::Refused { .. }), "{granted:?}");
         }
+    }
+
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn processors_are_those_of_the_thread() {
+        let all = processors();
+        let last = all.last().copied();
+        let of_one = std::thread::spawn(move || {
+            let granted = apply(&Wish { cpu: last, ..NOTHING });
+            (granted.cpu.is_granted(), processors())
+        });
+        let (pinned, found) = of_one.join().unwrap_or_else(|_| panic!("the thread panicked"));
+        assert!(pinned, "one of {all:?}");
+        assert_eq!(found, Vec::from_iter(last));
     }
 
     #[cfg(target_os = "linux")]

@@ -142,7 +142,8 @@ const STACK_BYTES: usize = 64 * 1024;
 impl Burners {
     /// Starts so many threads for each processor.
     fn start(threads: usize, priority: Option<u8>) -> std::io::Result<Self> {
-        let processors = std::thread::available_parallelism()?.get();
+        let cpus = schedule::processors();
+        let processors = cpus.len();
         let shared = Arc::new(Shared::default());
         let (tell, told) = sync_channel(1);
         let mut all = Vec::with_capacity(processors * threads);
@@ -153,8 +154,9 @@ impl Burners {
                 0 => all.iter().map(|other: &JoinHandle<()>| other.thread().clone()).collect(),
                 _ => Vec::new(),
             };
+            // One that isn't for this process would leave its own to everybody.
+            let cpu = cpus.get(number % processors).copied();
             let burn = move || {
-                let cpu = u16::try_from(number % processors).ok();
                 let granted = schedule::apply(&Wish { priority, lock_memory: false, cpu });
                 if number == 0 {
                     let _ = tell.send(granted);
