@@ -3,21 +3,20 @@
 
 use super::case::{self, CaseResult, Job, Kept};
 use super::plan::{Case, Plan, PlanError};
+use super::process::{Ended, TRIES, command, wait};
 use crate::score::verdict::Verdict;
 use std::io::{Read, Write};
 use std::path::{Path, PathBuf};
-use std::process::{Child, Command, ExitStatus, Stdio};
+use std::process::{ExitStatus, Stdio};
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 /// Exit status of a process that kept its result.
 const KEPT: i32 = 0;
 /// Exit status of a process that has a result and can't keep it (EX_CANTCREAT of sysexits.h): that says
 /// nothing of its case, and the next one would do no better.
 pub const NOT_KEPT: u8 = 73;
-/// How often a process is looked after.
-const LOOK: Duration = Duration::from_millis(5);
 /// Of what a process says on its standard error, so much is kept.
 const WORDS: u64 = 4096;
 
@@ -155,6 +154,17 @@ pub enum ExecuteError {
     /// A process could not keep its result; in its words.
     #[error("{0}")]
     NotKept(String),
+    /// A process was ended by somebody else, each time that its case was run.
+    #[error(
+        "run case {case}: its process was ended from outside {TRIES} times, the last time by {by}: the \
+         case has no result"
+    )]
+    Ended {
+        /// The case.
+        case: String,
+        /// The signal.
+        by: String,
+    },
     /// A result could not be kept, or a process not started.
     #[error("{action} {path}: {source}")]
     System {
@@ -178,6 +188,7 @@ pub fn execute(
 ) -> Result<Outcome, ExecuteError> {
     plan.check_files()?;
     refuse_foreign(plan, options.folder)?;
+    clean(options.folder);
     if options.again {
         forget_errors(plan, options)?;
     }
@@ -219,6 +230,8 @@ pub fn execute(
             });
         }
     });
+    // A process that was ended may have left something.
+    clean(options.folder);
     if let Some(error) = broken.into_inner().unwrap_or_else(PoisonError::into_inner) {
         return Err(error);
     }
@@ -226,6 +239,13 @@ pub fn execute(
     let mut differing = differing.into_inner().unwrap_or_else(PoisonError::into_inner);
     differing.sort();
     Ok(Outcome { run, skipped, left: open.len() - run, differing })
+}
+
+/// Removes what killed processes left of results that were not whole.
+fn clean(folder: &Path) {
+    for part in std::fs::read_dir(folder.join("cases")).into_iter().flatten().flatten() {
+        super::clean(&part.path());
+    }
 }
 
 /// Takes away the results of cases that came to no summary.
@@ -246,8 +266,29 @@ fn forget_errors(plan: &Plan, options: &Options<'_>) -> Result<(), ExecuteError>
     Ok(())
 }
 
-/// Runs one case in a process of its own; `None`: it was ended because somebody wanted that.
+/// Runs one case, again where somebody else ends its process; `None`: it was ended because somebody wanted
+/// that.
 fn one(plan: &Plan, case: &Case, options: &Options<'_>) -> Result<Option<Done>, ExecuteError> {
+    let mut by = String::new();
+    for _ in 0..TRIES {
+        match try_one(plan, case, options)? {
+            Tried::Done(done) => return Ok(Some(done)),
+            Tried::Cancelled => return Ok(None),
+            Tried::Outside(signal) => by = signal,
+        }
+    }
+    Err(ExecuteError::Ended { case: case.id.clone(), by })
+}
+
+enum Tried {
+    Done(Done),
+    Cancelled,
+    /// Its process was ended by somebody else.
+    Outside(String),
+}
+
+/// Runs one case in a process of its own.
+fn try_one(plan: &Plan, case: &Case, options: &Options<'_>) -> Result<Tried, ExecuteError> {
     let system = |action, path: &Path, source| ExecuteError::System {
         action,
         path: path.to_owned(),
@@ -259,7 +300,7 @@ fn one(plan: &Plan, case: &Case, options: &Options<'_>) -> Result<Option<Done>, 
         memory_mib: plan.limits.memory_mib,
         folder: options.folder.to_owned(),
     };
-    let mut child = Command::new(options.program)
+    let mut child = command(options.program)
         .args(["campaign", "one"])
         .stdin(Stdio::piped())
         .stdout(Stdio::null())
@@ -284,13 +325,20 @@ fn one(plan: &Plan, case: &Case, options: &Options<'_>) -> Result<Option<Done>, 
             let _ = serde_json::to_writer(&mut input, &job);
             let _ = input.flush();
         }
-        let status = wait(&mut child, plan.limits.time_s, options.cancel);
+        // A limit of no number is none.
+        let limit = Duration::try_from_secs_f64(plan.limits.time_s).unwrap_or(Duration::MAX);
+        let status = wait(&mut child, limit, options.cancel);
         (status, words.join().unwrap_or_default())
     });
     let error = match status.map_err(|error| system("wait for", options.program, error))? {
-        Ended::Cancelled => return Ok(None),
+        Ended::Cancelled => return Ok(Tried::Cancelled),
+        // It may have come after the result.
+        Ended::Outside(_) if case::file(options.folder, &case.id).exists() => {
+            return Ok(Tried::Done(kept(case, options)?));
+        }
+        Ended::Outside(by) => return Ok(Tried::Outside(by)),
         Ended::Status(status) if status.code() == Some(KEPT) => {
-            return Ok(Some(kept(case, options)?));
+            return Ok(Tried::Done(kept(case, options)?));
         }
         Ended::Status(status) if status.code() == Some(i32::from(NOT_KEPT)) => {
             return Err(ExecuteError::NotKept(said(&words).to_owned()));
@@ -304,7 +352,7 @@ fn one(plan: &Plan, case: &Case, options: &Options<'_>) -> Result<Option<Done>, 
     let kept = case::keep(options.folder, &case.id, bytes.as_bytes())
         .map_err(|error| system("write", &path, error))?;
     let differs = if let Kept::Differs(other) = kept { Some(other) } else { None };
-    Ok(Some(Done { index: 0, verdict: result.verdict, reason: result.error, differs }))
+    Ok(Tried::Done(Done { index: 0, verdict: result.verdict, reason: result.error, differs }))
 }
 
 /// What a process kept.
@@ -332,29 +380,6 @@ pub(crate) fn differing(path: &Path, id: &str) -> Option<PathBuf> {
         .collect();
     found.sort();
     found.into_iter().next()
-}
-
-enum Ended {
-    Status(ExitStatus),
-    TooLong,
-    Cancelled,
-}
-
-fn wait(child: &mut Child, limit_s: f64, cancel: &AtomicBool) -> std::io::Result<Ended> {
-    let begun = Instant::now();
-    loop {
-        if let Some(status) = child.try_wait()? {
-            return Ok(Ended::Status(status));
-        }
-        let cancelled = cancel.load(Ordering::Relaxed);
-        if cancelled || begun.elapsed().as_secs_f64() > limit_s {
-            // One that has just ended by itself can't be killed.
-            let _ = child.kill();
-            child.wait()?;
-            return Ok(if cancelled { Ended::Cancelled } else { Ended::TooLong });
-        }
-        std::thread::sleep(LOOK);
-    }
 }
 
 /// What a process said itself, without the name of the program.

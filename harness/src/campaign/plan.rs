@@ -229,6 +229,7 @@ impl Plan {
             written = Written::Extended(self.cases.len() - there.cases.len());
         }
         system("create", folder, std::fs::create_dir_all(folder))?;
+        super::clean(folder);
         let text = self.to_json();
         let new = system("create a file in", folder, super::new_file(folder))?;
         system("write", &path, std::fs::write(new.path(), text))?;

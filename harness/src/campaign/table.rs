@@ -203,6 +203,7 @@ pub fn write<'a>(
     let folder = path.parent().unwrap_or(Path::new("."));
     let system = |source| TableError::System { action: "write", path: path.to_owned(), source };
     std::fs::create_dir_all(folder).map_err(system)?;
+    super::clean(folder);
     let new = super::new_file(folder).map_err(system)?;
     let wrong = |error: ParquetError| TableError::Write {
         path: path.to_owned(),

@@ -38,6 +38,9 @@ use std::process::ExitCode;
 #[derive(Debug, Parser)]
 #[command(name = "octant", version, max_term_width = 100, propagate_version = true)]
 struct Cli {
+    /// The process that started this one for a case: this one ends with it, and leaves signals to it.
+    #[arg(long, value_name = "PID", hide = true)]
+    parent: Option<u32>,
     #[command(subcommand)]
     command: Command,
 }
@@ -188,7 +191,7 @@ impl From<crate::run::paired::PairedError> for Failure {
 /// In the words in which it would be refused.
 pub fn parses<'a>(words: impl IntoIterator<Item = &'a str>) -> Result<(), String> {
     match Cli::try_parse_from(words) {
-        Ok(Cli { command: Command::Other(words) }) => Err(other(&words).message),
+        Ok(Cli { command: Command::Other(words), .. }) => Err(other(&words).message),
         Ok(_) => Ok(()),
         Err(error) => Err(error.to_string()),
     }
@@ -198,6 +201,12 @@ pub fn parses<'a>(words: impl IntoIterator<Item = &'a str>) -> Result<(), String
 #[must_use]
 pub fn main() -> ExitCode {
     let cli = Cli::parse();
+    if let Some(parent) = cli.parent
+        && let Err(error) = progress::interrupts::leave_to(parent)
+    {
+        eprintln!("octant: failed to follow process {parent}: {error}");
+        return ExitCode::from(Verdict::Error.exit_code());
+    }
     let outcome = match cli.command {
         Command::Run(arguments) => run::command(&arguments),
         Command::Campaign(arguments) => campaign::command(&arguments),
@@ -250,15 +259,15 @@ fn print(text: &str) -> Result<(), Failure> {
     }
 }
 
-/// Writes a file of a run.
+/// Writes a file: whole or not at all, where it is one or isn't there yet.
 fn write(path: &std::path::Path, contents: impl AsRef<[u8]>) -> Result<(), Failure> {
-    std::fs::write(path, contents).map_err(|error| {
-        if error.kind() == std::io::ErrorKind::StorageFull {
-            // Half a file would be taken for a whole one.
-            let _ = std::fs::remove_file(path);
-        }
-        Failure::bench(format!("failed to write {}: {error}", path.display()))
-    })
+    let is_other = std::fs::symlink_metadata(path).is_ok_and(|there| !there.is_file());
+    let written = if is_other {
+        std::fs::write(path, contents)
+    } else {
+        crate::campaign::keep(path, contents.as_ref())
+    };
+    written.map_err(|error| Failure::bench(format!("failed to write {}: {error}", path.display())))
 }
 
 /// One JSON value and a newline on stdout.

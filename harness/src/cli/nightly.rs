@@ -93,6 +93,7 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     if arguments.campaigns.is_empty() && arguments.suite.is_none() {
         return Err(Failure::input("expected a campaign, or --suite, or both"));
     }
+    interrupts::watch();
     // What can't be compared or kept is told before anything runs.
     let mut all = History::read(history).map_err(|error| Failure::input(error).failed())?;
     let baseline = accept::read(history).map_err(Failure::input)?;
@@ -247,15 +248,30 @@ fn begin(history: &Path, inputs: &Inputs, all: &History) -> Result<Night, Failur
         suite: Vec::new(),
         campaigns: campaigns.collect(),
     };
+    // Its folder appears with everything in it.
     let folder = night::nights(history).join(&night.id);
+    let new = night::nights(history).join(format!(".{}.new", night.id));
+    let failed = |action: &str, path: &Path, error: std::io::Error| {
+        Failure::bench(format!("failed to {action} {}: {error}", path.display()))
+    };
+    remove(&new)?;
+    std::fs::create_dir_all(&new).map_err(|error| failed("create", &new, error))?;
     for (name, plan) in &inputs.plans {
-        plan.write(&folder.join(name), false)?;
+        plan.write(&new.join(name), false)?;
     }
-    std::fs::create_dir_all(&folder).map_err(|error| {
-        Failure::bench(format!("failed to create {}: {error}", folder.display()))
-    })?;
-    night.write(&folder).map_err(Failure::bench)?;
+    night.write(&new).map_err(Failure::bench)?;
+    std::fs::rename(&new, &folder).map_err(|error| failed("create", &folder, error))?;
     Ok(night)
+}
+
+/// Removes a folder that a kill may have left.
+fn remove(folder: &Path) -> Result<(), Failure> {
+    match std::fs::remove_dir_all(folder) {
+        Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
+            Err(Failure::bench(format!("failed to remove {}: {error}", folder.display())))
+        }
+        _ => Ok(()),
+    }
 }
 
 /// Runs what has no result yet; whether everything has one now.
@@ -265,7 +281,6 @@ fn run_all(
     folder: &Path,
     cancel: &AtomicBool,
 ) -> Result<bool, Failure> {
-    interrupts::watch();
     let over = AtomicBool::new(false);
     std::thread::scope(|scope| {
         scope.spawn(|| {
@@ -350,10 +365,12 @@ fn conclude(
         .map_err(failed)?;
     merge::merge(plan, &[folder.to_owned()], folder, end)?;
     let mut found = status::of(plan, folder, Shard::WHOLE).map_err(Failure::bench)?;
-    let again = tempfile::tempdir()
-        .map_err(|error| Failure::bench(format!("failed to make a folder: {error}")))?;
+    // In the folder of the night, so that what a kill leaves is found.
+    let name = folder.file_name().unwrap_or_default().to_string_lossy();
+    let again = folder.with_file_name(format!(".{name}.again"));
+    remove(&again)?;
     let options = Options {
-        folder: again.path(),
+        folder: &again,
         program,
         jobs: 1,
         shard: Shard::WHOLE,
@@ -364,10 +381,11 @@ fn conclude(
     execute(plan, &options, &|_| {})?;
     if let Some(first) = plan.cases.first() {
         let read = |folder: &Path| std::fs::read(case::file(folder, &first.id)).ok();
-        let (once, twice) = (read(folder), read(again.path()));
+        let (once, twice) = (read(folder), read(&again));
         if twice.is_some() && once != twice && !found.differing.contains(&first.id) {
             found.differing.push(first.id.clone());
         }
     }
+    remove(&again)?;
     Ok(found)
 }

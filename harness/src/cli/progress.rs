@@ -69,11 +69,19 @@ fn show(
 
 /// Ctrl-C: the first ends the run in order, the second at once.
 pub(super) mod interrupts {
+    use crate::campaign::process;
     use std::sync::Once;
     use std::sync::atomic::{AtomicBool, Ordering};
 
     static SEEN: AtomicBool = AtomicBool::new(false);
     static WATCHING: Once = Once::new();
+
+    /// Leaves interrupts to the process that started this one: a signal ends this one at once, and the
+    /// other sees by it that nothing came of the work.
+    pub(in crate::cli) fn leave_to(parent: u32) -> std::io::Result<()> {
+        WATCHING.call_once(|| {});
+        process::end_with(parent)
+    }
 
     pub(in crate::cli) fn watch() {
         WATCHING.call_once(|| {

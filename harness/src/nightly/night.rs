@@ -177,8 +177,9 @@ pub fn nights(history: &Path) -> PathBuf {
 pub fn all(history: &Path) -> Result<Vec<Night>, String> {
     let mut found = Vec::new();
     for entry in std::fs::read_dir(nights(history)).into_iter().flatten().flatten() {
-        // Where a night was broken off before its file was there, nothing is.
-        if entry.path().join(FILE_NAME).exists() {
+        // One that isn't begun has another name yet.
+        let is_new = entry.file_name().to_string_lossy().starts_with('.');
+        if !is_new && entry.path().join(FILE_NAME).exists() {
             found.push(Night::read(&entry.path())?);
         }
     }

@@ -2,21 +2,20 @@
 //! end that the suite says.
 
 use super::night::write;
+use crate::campaign::process::{self, Ended, TRIES};
 use crate::scenario::suite::{Case, Suite};
 use crate::score::summary::Summary;
 use crate::score::verdict::Verdict;
 use serde::{Deserialize, Serialize};
 use std::io::Read;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
+use std::process::Stdio;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 /// A case that takes longer is an error.
 const LIMIT: Duration = Duration::from_secs(1800);
-/// How often a process is looked after.
-const LOOK: Duration = Duration::from_millis(5);
 
 /// What a case of the suite came to.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -158,7 +157,7 @@ fn one(
         }
     }
     let out = folder.join(name);
-    let Some((status, summary, said)) = start(program, &case.scenario, &out, cancel)? else {
+    let Some((status, summary, said)) = whole(program, &case.scenario, &out, cancel)? else {
         return Ok(None);
     };
     let (verdict, reasons) = match &summary {
@@ -208,16 +207,62 @@ fn first_line(said: &str, status: Option<i32>) -> String {
     })
 }
 
-type Ended = (Option<i32>, Option<Summary>, String);
+/// Exit status, summary and standard error of a run.
+type Said = (Option<i32>, Option<Summary>, String);
+
+/// Runs a scenario, again where somebody else ends its process; `None`: somebody wanted it to end.
+fn whole(
+    program: &Path,
+    scenario: &Path,
+    out: &Path,
+    cancel: &AtomicBool,
+) -> Result<Option<Said>, String> {
+    let mut by = String::new();
+    for _ in 0..TRIES {
+        remove_left(out)?;
+        match start(program, scenario, out, cancel)? {
+            Tried::Said(said) => return Ok(Some(said)),
+            Tried::Cancelled => return Ok(None),
+            Tried::Outside(signal) => by = signal,
+        }
+    }
+    Err(format!(
+        "failed to run {}: its process was ended from outside {TRIES} times, the last time by {by}: the \
+         case has no result",
+        scenario.display()
+    ))
+}
+
+/// Removes what a run that was killed left, in whatever state.
+fn remove_left(out: &Path) -> Result<(), String> {
+    for left in ["", ".partial", ".replaced"] {
+        let mut path = out.as_os_str().to_owned();
+        path.push(left);
+        match std::fs::remove_dir_all(&path) {
+            Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
+                return Err(format!("failed to remove {}: {error}", Path::new(&path).display()));
+            }
+            _ => {}
+        }
+    }
+    Ok(())
+}
+
+enum Tried {
+    Said(Said),
+    Cancelled,
+    /// Its process was ended by somebody else.
+    Outside(String),
+}
 
 fn start(
     program: &Path,
     scenario: &Path,
     out: &Path,
     cancel: &AtomicBool,
-) -> Result<Option<Ended>, String> {
+) -> Result<Tried, String> {
     let system = |error| format!("failed to start {}: {error}", program.display());
-    let mut child = Command::new(program)
+    let mut child = process::command(program)
         .arg("run")
         .arg(scenario)
         .arg("--out")
@@ -232,30 +277,15 @@ fn start(
     std::thread::scope(|scope| {
         let printed = scope.spawn(|| all(printed));
         let words = scope.spawn(|| all(words));
-        let begun = Instant::now();
-        let status = loop {
-            if let Some(status) = child.try_wait().map_err(system)? {
-                break status.code();
-            }
-            let cancelled = cancel.load(Ordering::Relaxed);
-            if cancelled || begun.elapsed() > LIMIT {
-                // One that has just ended by itself can't be killed.
-                let _ = child.kill();
-                child.wait().map_err(system)?;
-                if cancelled {
-                    return Ok(None);
-                }
-                break None;
-            }
-            std::thread::sleep(LOOK);
+        let status = match process::wait(&mut child, LIMIT, cancel).map_err(system)? {
+            Ended::Cancelled => return Ok(Tried::Cancelled),
+            Ended::Outside(by) => return Ok(Tried::Outside(by)),
+            Ended::TooLong => None,
+            Ended::Status(status) => status.code(),
         };
-        // Ctrl-C reaches the processes of a terminal all at once: one that ended by it says nothing.
-        if cancel.load(Ordering::Relaxed) {
-            return Ok(None);
-        }
         let printed = printed.join().unwrap_or_default();
         let summary = Summary::from_json(&printed).ok();
-        Ok(Some((status, summary, words.join().unwrap_or_default())))
+        Ok(Tried::Said((status, summary, words.join().unwrap_or_default())))
     })
 }
 

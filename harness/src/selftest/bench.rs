@@ -1,17 +1,16 @@
 //! Starts the program for a case, in a folder of its own, as a user would.
 
 use super::judge::Outcome;
+use crate::campaign::process::{self, Ended};
 use crate::score::summary::Summary;
 use std::io::Read;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::{Duration, Instant};
+use std::process::Stdio;
+use std::sync::atomic::AtomicBool;
+use std::time::Duration;
 
 /// A case that takes longer than this has failed.
 const LIMIT: Duration = Duration::from_secs(300);
-/// How often a process is looked after.
-const LOOK: Duration = Duration::from_millis(5);
 
 /// What the environment of the user says and a case must not hear.
 const UNHEARD: [&str; 8] = [
@@ -94,7 +93,7 @@ impl<'a> Bench<'a> {
     /// In words, if it can't be started.
     pub fn octant_with(&self, words: &[&str], more: &[(&str, &str)]) -> Result<Said, String> {
         let system = |error| format!("start {}: {error}", self.program.display());
-        let mut command = Command::new(self.program);
+        let mut command = process::command(self.program);
         command.args(words).current_dir(&self.folder).stdin(Stdio::null());
         command.stdout(Stdio::piped()).stderr(Stdio::piped());
         for name in UNHEARD {
@@ -106,18 +105,13 @@ impl<'a> Bench<'a> {
         std::thread::scope(|scope| {
             let out = scope.spawn(|| all(out));
             let err = scope.spawn(|| all(err));
-            let begun = Instant::now();
-            let status = loop {
-                if let Some(status) = child.try_wait().map_err(system)? {
-                    break status.code();
+            let status = match process::wait(&mut child, LIMIT, self.cancel).map_err(system)? {
+                Ended::Status(status) => status.code(),
+                Ended::TooLong | Ended::Cancelled => None,
+                Ended::Outside(by) => {
+                    let program = self.program.display();
+                    return Err(format!("run {program}: it was ended from outside, by {by}"));
                 }
-                if self.cancel.load(Ordering::Relaxed) || begun.elapsed() > LIMIT {
-                    // One that has just ended by itself can't be killed.
-                    let _ = child.kill();
-                    child.wait().map_err(system)?;
-                    break None;
-                }
-                std::thread::sleep(LOOK);
             };
             let (out, err) = (out.join().unwrap_or_default(), err.join().unwrap_or_default());
             Ok(Said { status, out, err })

@@ -207,7 +207,9 @@ fn clipped(text: &str) -> String {
 pub fn write(path: &Path, text: &str) -> Result<(), String> {
     let failed = |error: std::io::Error| format!("write {}: {error}", path.display());
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
-    let new = crate::campaign::new_file(folder.unwrap_or(Path::new("."))).map_err(failed)?;
+    let folder = folder.unwrap_or(Path::new("."));
+    crate::campaign::clean(folder);
+    let new = crate::campaign::new_file(folder).map_err(failed)?;
     std::fs::write(new.path(), text).map_err(failed)?;
     new.as_file().sync_data().map_err(failed)?;
     new.persist(path).map_err(|error| failed(error.error))?;

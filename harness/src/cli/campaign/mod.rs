@@ -166,7 +166,7 @@ impl From<ExecuteError> for Failure {
             ExecuteError::Plan(error) => error.into(),
             ExecuteError::Foreign { .. } => Self::input(error).failed(),
             ExecuteError::NotKept(_) => Self::bench(error),
-            ExecuteError::System { .. } => Self::bench(error).failed(),
+            ExecuteError::Ended { .. } | ExecuteError::System { .. } => Self::bench(error).failed(),
         }
     }
 }

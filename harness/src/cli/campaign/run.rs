@@ -32,6 +32,7 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
+    interrupts::watch();
     let plan = read(&arguments.folder)?;
     let shard = match arguments.shard {
         Some(shard) => shard,
@@ -61,7 +62,6 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         // On a terminal above the bar, elsewhere by itself.
         if bar.is_hidden() { eprintln!("{line}") } else { bar.println(line) }
     };
-    interrupts::watch();
     let over = AtomicBool::new(false);
     let outcome = std::thread::scope(|scope| {
         scope.spawn(|| {

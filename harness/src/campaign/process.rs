@@ -1,0 +1,206 @@
+//! Processes that run cases: out of reach of signals to this process's group, ended with this process,
+//! and limited in the time in which they run.
+//!
+//! An interrupt is a state of the work and never the result of a case. A signal of a terminal or a
+//! scheduler goes to a whole group, so each of these processes has a group of its own and this process
+//! decides what ends. A process that somebody else ended is told apart from one that crashed.
+
+use std::io;
+use std::path::Path;
+use std::process::{Child, Command, ExitStatus};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+/// How often a case is run whose process is ended from outside, before that is told.
+pub(crate) const TRIES: u32 = 3;
+/// The option of the program that names the process which started it.
+const PARENT: &str = "--parent";
+/// How often a process is looked after.
+const LOOK: Duration = Duration::from_millis(5);
+/// Time between two looks counts up to here: if more has passed, this process was stopped, or the host
+/// had no time for it.
+const LOOK_MAX: Duration = Duration::from_millis(100);
+/// A process that is stopped for longer, in all, is ended.
+const STOPPED_MAX: Duration = Duration::from_secs(3600);
+
+/// How a process ended.
+#[derive(Debug)]
+pub(crate) enum Ended {
+    /// By itself, or by a crash.
+    Status(ExitStatus),
+    /// By this process: it ran for longer than its limit.
+    TooLong,
+    /// By this process: somebody wanted the work to end.
+    Cancelled,
+    /// By somebody else: by which signal, or for how long it was stopped.
+    Outside(String),
+}
+
+/// The program in a process that a signal to this group doesn't reach, and that ends with this process.
+///
+/// The thread that starts it has to wait for it: Linux ends it with that thread.
+pub(crate) fn command(program: &Path) -> Command {
+    let mut command = Command::new(program);
+    command.arg(PARENT).arg(std::process::id().to_string());
+    #[cfg(unix)]
+    std::os::unix::process::CommandExt::process_group(&mut command, 0);
+    command
+}
+
+/// Makes this process end with the one that started it. If that one is gone already, this process ends
+/// here.
+///
+/// # Errors
+/// If the system refuses.
+pub(crate) fn end_with(parent: u32) -> io::Result<()> {
+    #[cfg(target_os = "linux")]
+    {
+        use rustix::process::{Signal, set_parent_process_death_signal};
+        set_parent_process_death_signal(Some(Signal::KILL))?;
+        end_if_left(parent);
+    }
+    #[cfg(all(unix, not(target_os = "linux")))]
+    {
+        end_if_left(parent);
+        let watch = move || {
+            loop {
+                std::thread::sleep(LOOK_MAX);
+                end_if_left(parent);
+            }
+        };
+        std::thread::Builder::new().name("parent".into()).spawn(watch)?;
+    }
+    #[cfg(not(unix))]
+    let _ = parent;
+    Ok(())
+}
+
+#[cfg(unix)]
+fn end_if_left(parent: u32) {
+    if std::os::unix::process::parent_id() != parent {
+        std::process::exit(i32::from(crate::score::verdict::Verdict::Error.exit_code()));
+    }
+}
+
+/// Waits for the end of a process, and makes it where somebody wants that or where it ran for longer than
+/// `limit`. Time in which it or this process is stopped doesn't count.
+pub(crate) fn wait(child: &mut Child, limit: Duration, cancel: &AtomicBool) -> io::Result<Ended> {
+    let (mut ran, mut stopped) = (Duration::ZERO, Duration::ZERO);
+    let mut is_stopped = false;
+    let mut before = Instant::now();
+    loop {
+        if let Some(status) = child.try_wait()? {
+            return Ok(outside(status).map_or(Ended::Status(status), Ended::Outside));
+        }
+        let now = Instant::now();
+        let passed = now.duration_since(before).min(LOOK_MAX);
+        before = now;
+        is_stopped = stops(child, is_stopped);
+        *(if is_stopped { &mut stopped } else { &mut ran }) += passed;
+        let ended = if cancel.load(Ordering::Relaxed) {
+            Ended::Cancelled
+        } else if ran > limit {
+            Ended::TooLong
+        } else if stopped > STOPPED_MAX {
+            Ended::Outside(format!("a stop of more than {} s", STOPPED_MAX.as_secs()))
+        } else {
+            std::thread::sleep(LOOK);
+            continue;
+        };
+        // One that has just ended by itself can't be killed.
+        let _ = child.kill();
+        child.wait()?;
+        return Ok(ended);
+    }
+}
+
+/// Whether a process is stopped now.
+#[cfg(target_os = "linux")]
+fn stops(child: &Child, before: bool) -> bool {
+    use rustix::process::{Pid, WaitId, WaitIdOptions, waitid};
+    let Some(pid) = i32::try_from(child.id()).ok().and_then(Pid::from_raw) else { return before };
+    // Its end isn't asked for: that stays for `try_wait`.
+    let of = WaitIdOptions::STOPPED | WaitIdOptions::CONTINUED | WaitIdOptions::NOHANG;
+    match waitid(WaitId::Pid(pid), of) {
+        Ok(Some(status)) => status.stopped(),
+        _ => before,
+    }
+}
+
+#[cfg(not(target_os = "linux"))]
+fn stops(_: &Child, _: bool) -> bool {
+    false
+}
+
+/// The signal by which somebody else ended a process. A crash has others.
+#[cfg(unix)]
+fn outside(status: ExitStatus) -> Option<String> {
+    // The numbers are those of POSIX.
+    let name = match std::os::unix::process::ExitStatusExt::signal(&status)? {
+        1 => "SIGHUP",
+        2 => "SIGINT",
+        9 => "SIGKILL",
+        15 => "SIGTERM",
+        _ => return None,
+    };
+    Some(name.to_owned())
+}
+
+#[cfg(not(unix))]
+fn outside(_: ExitStatus) -> Option<String> {
+    None
+}
+
+#[cfg(all(test, target_os = "linux"))]
+mod tests {
+    use super::*;
+    use rustix::process::{Pid, Signal, kill_process};
+
+    fn started() -> (Child, Pid) {
+        let child = Command::new("sleep").arg("1000").spawn().unwrap();
+        let pid = Pid::from_raw(i32::try_from(child.id()).unwrap()).unwrap();
+        (child, pid)
+    }
+
+    #[test]
+    fn time_in_which_it_is_stopped_does_not_count() {
+        let (mut child, pid) = started();
+        kill_process(pid, Signal::STOP).unwrap();
+        let (cancel, limit) = (AtomicBool::new(false), Duration::from_millis(500));
+        std::thread::scope(|scope| {
+            scope.spawn(|| {
+                std::thread::sleep(3 * limit);
+                cancel.store(true, Ordering::Relaxed);
+            });
+            let ended = wait(&mut child, limit, &cancel).unwrap();
+            assert!(matches!(ended, Ended::Cancelled), "{ended:?}");
+        });
+        let (mut child, pid) = started();
+        kill_process(pid, Signal::STOP).unwrap();
+        kill_process(pid, Signal::CONT).unwrap();
+        let ended = wait(&mut child, limit, &AtomicBool::new(false)).unwrap();
+        assert!(matches!(ended, Ended::TooLong), "{ended:?}");
+    }
+
+    #[test]
+    fn who_ended_it_is_told_apart() {
+        let never = AtomicBool::new(false);
+        for (signal, expected) in [
+            (Signal::HUP, Some("SIGHUP")),
+            (Signal::INT, Some("SIGINT")),
+            (Signal::TERM, Some("SIGTERM")),
+            (Signal::KILL, Some("SIGKILL")),
+            (Signal::SEGV, None),
+            (Signal::ABORT, None),
+            (Signal::FPE, None),
+        ] {
+            let (mut child, pid) = started();
+            kill_process(pid, signal).unwrap();
+            match wait(&mut child, Duration::MAX, &never).unwrap() {
+                Ended::Outside(by) => assert_eq!(Some(by.as_str()), expected),
+                Ended::Status(status) => assert!(expected.is_none(), "{status}"),
+                other => panic!("{other:?}"),
+            }
+        }
+    }
+}
