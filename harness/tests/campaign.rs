@@ -519,3 +519,95 @@ verification = \"inspection\"
     assert_eq!(state.requirements["NAV-2"].reason, "no case verifies it");
     assert_eq!(state.requirements["NAV-2"].verdict, Verdict::Inconclusive);
 }
+
+/// Signals from outside: what was interrupted has no result, and the same command goes on.
+#[cfg(target_os = "linux")]
+mod interrupted {
+    use super::*;
+    use crate::common::running::{Running, Target, gone};
+    use rustix::process::Signal;
+
+    /// Cases that take long enough for a signal to meet them.
+    fn slow(hours: u32) -> (Bench, Plan) {
+        let bench = Bench::new(CAMPAIGN);
+        let slow = SCENARIO
+            .replace("24 min", &format!("{hours} h"))
+            .replace("10 min", &format!("{hours} h"));
+        std::fs::write(bench.at("short.toml"), slow).unwrap();
+        let plan = bench.plan();
+        plan.write(&bench.at("whole"), false).unwrap();
+        plan.write(&bench.at("torn"), false).unwrap();
+        (bench, plan)
+    }
+
+    fn start(bench: &Bench, jobs: &str) -> Running {
+        Running::start(bench.folder.path(), &["campaign", "run", "torn", "--jobs", jobs])
+    }
+
+    /// Results that are there: each of a case that came to its end.
+    fn whole_results(plan: &Plan, folder: &Path) -> usize {
+        let files = plan.cases.iter().map(|case| case::file(folder, &case.id));
+        let results = files.filter(|file| file.exists()).map(|file| CaseResult::read(&file));
+        results.inspect(|result| assert_eq!(result.as_ref().unwrap().error, None)).count()
+    }
+
+    #[test]
+    fn a_signal_leaves_no_result_and_the_same_command_goes_on() {
+        let (bench, plan) = slow(2);
+        run(&plan, &bench.at("whole"), Shard::WHOLE, 2);
+        let expected = merged(&plan, &bench.at("whole"));
+        let torn = bench.at("torn");
+        for (target, signal, statuses) in [
+            // A signal may come before the program hears of it, or after its last case.
+            (Target::Group, Signal::INT, [Some(3), Some(0)]),
+            (Target::Group, Signal::TERM, [Some(3), Some(0)]),
+            (Target::Parent, Signal::HUP, [Some(3), Some(0)]),
+            (Target::Parent, Signal::KILL, [None, Some(0)]),
+            (Target::Group, Signal::KILL, [None, Some(0)]),
+        ] {
+            // Something to interrupt, whatever came to its end before.
+            let _ = std::fs::remove_dir_all(torn.join("cases"));
+            let mut running = start(&bench, "2");
+            let children = running.children();
+            assert!(!children.is_empty());
+            running.signal(target, signal);
+            let output = running.end();
+            assert!(statuses.contains(&output.status.code()), "{signal:?}: {output:?}");
+            gone(&children);
+            whole_results(&plan, &torn);
+        }
+        let output = start(&bench, "2").end();
+        assert_eq!(output.status.code(), Some(0), "{output:?}");
+        assert!(merged(&plan, &torn) == expected);
+    }
+
+    #[test]
+    fn a_case_whose_process_is_killed_runs_again() {
+        let (bench, plan) = slow(2);
+        run(&plan, &bench.at("whole"), Shard::WHOLE, 2);
+        let mut running = start(&bench, "2");
+        for signal in [Signal::KILL, Signal::INT] {
+            assert!(!running.children().is_empty());
+            running.signal(Target::Child, signal);
+        }
+        let output = running.end();
+        assert_eq!(output.status.code(), Some(0), "{output:?}");
+        assert_eq!(whole_results(&plan, &bench.at("torn")), 6);
+        assert!(merged(&plan, &bench.at("torn")) == merged(&plan, &bench.at("whole")));
+    }
+
+    #[test]
+    fn a_case_whose_process_is_always_killed_has_no_result_and_the_bench_has_failed() {
+        // Long cases: each is met before its end.
+        let (bench, plan) = slow(1000);
+        let mut running = start(&bench, "1");
+        while !running.children().is_empty() {
+            running.signal(Target::Child, Signal::KILL);
+        }
+        let output = running.end();
+        assert_eq!(output.status.code(), Some(4), "{output:?}");
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert!(said.contains("ended from outside 3 times, the last time by SIGKILL"), "{said}");
+        assert_eq!(whole_results(&plan, &bench.at("torn")), 0);
+    }
+}

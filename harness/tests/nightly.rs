@@ -363,3 +363,45 @@ fn the_examples_for_ci_call_the_program_as_it_is() {
         assert!(!text.contains('\t'), "{name}");
     }
 }
+
+/// A signal leaves no result, finds nothing, and the same command goes on with the same night.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_night_that_is_interrupted_goes_on_and_finds_nothing() {
+    use crate::common::running::{Running, Target, gone};
+    use rustix::process::Signal;
+    let bench = Bench::new();
+    bench.edit("night.toml", "replicates = 16", "replicates = 4");
+    bench.edit("short.toml", "40 min", "3 h");
+    assert_eq!(bench.night(&["--suite", "suite.toml", "--accept"]).0, Some(0));
+    let words = [
+        "nightly",
+        "night.toml",
+        "--suite",
+        "suite.toml",
+        "--history",
+        "h",
+        "--json",
+        "--jobs",
+        "2",
+    ];
+    for (target, signal) in [
+        (Target::Group, Signal::INT),
+        (Target::Parent, Signal::KILL),
+        (Target::Child, Signal::INT),
+        (Target::Group, Signal::TERM),
+        (Target::Child, Signal::KILL),
+    ] {
+        let mut running = Running::start(bench.folder.path(), &words);
+        let children = running.children();
+        running.signal(target, signal);
+        let output = running.end();
+        gone(&children);
+        let status = output.status.code();
+        assert!(matches!(status, None | Some(0 | 3)), "{signal:?}: {output:?}");
+    }
+    let (status, night) = bench.night(&["--suite", "suite.toml"]);
+    assert_eq!((status, &night["verdict"]), (Some(0), &Value::from("pass")), "{night}");
+    assert_eq!(night["reasons"], serde_json::json!(["nothing got worse"]));
+    assert_eq!(night["campaigns"][0]["differing"], serde_json::json!([]));
+}

@@ -5,5 +5,7 @@ pub mod epochs;
 pub mod foreign;
 pub mod instrument;
 pub mod program;
+#[cfg(target_os = "linux")]
+pub mod running;
 #[cfg(unix)]
 pub mod table;
