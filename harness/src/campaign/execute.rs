@@ -332,8 +332,8 @@ fn try_one(plan: &Plan, case: &Case, options: &Options<'_>) -> Result<Tried, Exe
     });
     let error = match status.map_err(|error| system("wait for", options.program, error))? {
         Ended::Cancelled => return Ok(Tried::Cancelled),
-        // It may have come after the result.
-        Ended::Outside(_) if case::file(options.folder, &case.id).exists() => {
+        // Its end may have come after the result.
+        Ended::Outside(_) | Ended::TooLong if case::file(options.folder, &case.id).exists() => {
             return Ok(Tried::Done(kept(case, options)?));
         }
         Ended::Outside(by) => return Ok(Tried::Outside(by)),

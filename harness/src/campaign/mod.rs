@@ -75,7 +75,8 @@ pub(crate) fn keep(path: &std::path::Path, bytes: &[u8]) -> std::io::Result<()> 
     Ok(())
 }
 
-#[cfg(all(test, unix))]
+#[cfg(test)]
+#[cfg(unix)]
 mod tests {
     use super::*;
 

@@ -151,7 +151,8 @@ fn outside(_: ExitStatus) -> Option<String> {
     None
 }
 
-#[cfg(all(test, target_os = "linux"))]
+#[cfg(test)]
+#[cfg(target_os = "linux")]
 mod tests {
     use super::*;
     use rustix::process::{Pid, Signal, kill_process};

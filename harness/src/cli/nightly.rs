@@ -254,7 +254,7 @@ fn begin(history: &Path, inputs: &Inputs, all: &History) -> Result<Night, Failur
     let failed = |action: &str, path: &Path, error: std::io::Error| {
         Failure::bench(format!("failed to {action} {}: {error}", path.display()))
     };
-    remove(&new)?;
+    remove_begun(history)?;
     std::fs::create_dir_all(&new).map_err(|error| failed("create", &new, error))?;
     for (name, plan) in &inputs.plans {
         plan.write(&new.join(name), false)?;
@@ -272,6 +272,16 @@ fn remove(folder: &Path) -> Result<(), Failure> {
         }
         _ => Ok(()),
     }
+}
+
+/// Removes the folders of nights that a kill left before they had their names.
+fn remove_begun(history: &Path) -> Result<(), Failure> {
+    let entries = std::fs::read_dir(night::nights(history)).into_iter().flatten().flatten();
+    let names =
+        entries.map(|entry| (entry.file_name().to_string_lossy().into_owned(), entry.path()));
+    names
+        .filter(|(name, _)| name.starts_with('.') && name.ends_with(".new"))
+        .try_for_each(|(_, path)| remove(&path))
 }
 
 /// Runs what has no result yet; whether everything has one now.

@@ -221,7 +221,7 @@ fn whole(
     for _ in 0..TRIES {
         remove_left(out)?;
         match start(program, scenario, out, cancel)? {
-            Tried::Said(said) => return Ok(Some(said)),
+            Tried::Said(said) => return Ok(Some(*said)),
             Tried::Cancelled => return Ok(None),
             Tried::Outside(signal) => by = signal,
         }
@@ -249,7 +249,7 @@ fn remove_left(out: &Path) -> Result<(), String> {
 }
 
 enum Tried {
-    Said(Said),
+    Said(Box<Said>),
     Cancelled,
     /// Its process was ended by somebody else.
     Outside(String),
@@ -285,7 +285,7 @@ fn start(
         };
         let printed = printed.join().unwrap_or_default();
         let summary = Summary::from_json(&printed).ok();
-        Ok(Tried::Said((status, summary, words.join().unwrap_or_default())))
+        Ok(Tried::Said(Box::new((status, summary, words.join().unwrap_or_default()))))
     })
 }
 
