@@ -1,11 +1,12 @@
 //! What recording costs: on the run loop's thread, and in all.
 #![allow(missing_docs, clippy::unwrap_used)]
 
-#[path = "../tests/common/mod.rs"]
-mod common;
+#[path = "../tests/common/epochs.rs"]
+#[allow(dead_code, unreachable_pub, reason = "the tests use more of it")]
+mod epochs;
 
-use common::{PERIOD_NS, Step, push, stream};
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
+use epochs::{PERIOD_NS, Step, push, stream};
 use octant::recorder::{Frame, Policy, Recorder, RecorderOptions, Samples, StreamHash};
 use std::hint::black_box;
 
