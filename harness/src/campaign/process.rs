@@ -77,9 +77,22 @@ pub(crate) fn end_with(parent: u32) -> io::Result<()> {
 
 #[cfg(unix)]
 fn end_if_left(parent: u32) {
-    if std::os::unix::process::parent_id() != parent {
+    if std::os::unix::process::parent_id() != parent && !is_there(parent) {
         std::process::exit(i32::from(crate::score::verdict::Verdict::Error.exit_code()));
     }
+}
+
+/// Whether the process that started this one is there still, with a wrapper of the program between the two.
+#[cfg(target_os = "linux")]
+fn is_there(parent: u32) -> bool {
+    use rustix::process::{Pid, test_kill_process};
+    let pid = i32::try_from(parent).ok().and_then(Pid::from_raw);
+    pid.is_some_and(|pid| test_kill_process(pid) != Err(rustix::io::Errno::SRCH))
+}
+
+#[cfg(all(unix, not(target_os = "linux")))]
+fn is_there(_: u32) -> bool {
+    false
 }
 
 /// Waits for the end of a process, and makes it where somebody wants that or where it ran for longer than
