@@ -14,7 +14,11 @@ function check(name, holds, found = "") {
   if (!holds) failed += 1;
 }
 
+// Only what hangs takes as long, on a busy host too.
+const LONG_MS = 300_000;
+
 const browser = await chromium.launch({
+  timeout: LONG_MS,
   executablePath: "/usr/bin/chromium",
   args: [
     "--no-sandbox",
@@ -30,6 +34,7 @@ const browser = await chromium.launch({
 // What every page has to keep, whatever is on it. `use` gets the open page.
 async function visit(name, path, use) {
   const context = await browser.newContext({ offline: true, viewport: { width: 1280, height: 900 } });
+  context.setDefaultTimeout(LONG_MS);
   const page = await context.newPage();
   const errors = [];
   const requests = [];
@@ -176,6 +181,7 @@ await visit("campaign", `${campaign}/report.html`, async (page) => {
   // A section by its link, and what is folded by the space bar.
   await page.locator('nav.contents a[href="#trace"]').focus();
   await page.keyboard.press("Enter");
+  await page.waitForURL((url) => url.hash === "#trace");
   const place = await page.evaluate(() => document.querySelector("#trace").getBoundingClientRect().top);
   check("campaign: Enter goes to a section", page.url().endsWith("#trace") && place < 900, place);
   const folded = page.locator("#trace ~ details").first();
