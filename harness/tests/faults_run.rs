@@ -5,6 +5,7 @@ use crate::common::program::{octant_in, program};
 use octant::endpoint::{Endpoint, InProcess};
 use octant::recorder::reader::{Epochs, RecordedEpoch, Recording as Reader, stream_hash};
 use octant::recorder::{Event, Policy, Recorder, RecorderOptions, RecorderSummary, Samples};
+use octant::run::done::Plan;
 use octant::run::method::configurations;
 use octant::run::{
     Control, Ended, Faulted, Host, MethodRun, Recording, Watcher, assemble, drive_faulted,
@@ -334,7 +335,7 @@ fn drive_with(kind: &'static Kind, first: u64, epochs: u64, policy: Policy) -> D
     let mut recorder = Recorder::to_file(&path, &options).unwrap();
     let mut source = PlantSource::new(&plant, scenario.samples().unwrap()).unwrap();
     let mut endpoint = InProcess::new(&core).unwrap();
-    let mut watcher = Watcher::new(480.0);
+    let mut watcher = Watcher::new(Plan::lasting(&scenario));
     let control = Control::default();
     let ended = drive_faulted(
         &mut source,

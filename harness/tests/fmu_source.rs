@@ -275,7 +275,9 @@ fn a_foreign_core_commands_the_gimbals_and_is_scored() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().join("run");
     let scenario = file(folder.path(), "core.toml", &core(""));
-    ends(&["run", &scenario, "--out", out.to_str().unwrap()], 0);
+    // It tells no navigation of its own: where it was told to be it stays.
+    let (said, _) = ends(&["run", &scenario, "--out", out.to_str().unwrap()], 3);
+    assert!(said.contains("the position of the navigation doesn't follow the samples"), "{said}");
     let kept = recording(&out);
     let (samples, outputs) = (&kept.samples, &kept.outputs);
     assert_eq!(outputs.len(), 12_000);

@@ -5,6 +5,7 @@ use crate::common::allocations;
 use crate::common::program::{ends, json};
 use octant::endpoint::{Endpoint, EndpointError, InProcess, ParameterEstimate, Sent};
 use octant::recorder::{Recorder, RecorderOptions};
+use octant::run::done::Plan;
 use octant::run::method::configurations;
 use octant::run::realtime::{Line, drive_by_clock};
 use octant::run::{Control, Ended, Faulted, Host, Recording, Watcher};
@@ -80,9 +81,12 @@ fn a_bench_that_was_too_late_proves_nothing() {
     assert_eq!(summary["verdict"], "inconclusive");
     assert_eq!(summary["pacing"]["overruns"], 20);
     let reason = summary["reasons"][0].as_str().unwrap();
+    assert!(reason.starts_with("the bench failed at 0 s: a sample left "), "{reason}");
+    assert_eq!(summary["done"]["navigation_s"], 0.0, "nothing after it counts");
+    let reason = summary["reasons"][1].as_str().unwrap();
     assert!(reason.starts_with("the bench was late: 20 of 20 samples left more than"), "{reason}");
     let allowed = run(here, &file, "allowed", &["--realtime", "--set", "realtime.overruns=20"], 0);
-    assert_eq!(allowed["verdict"], "pass");
+    assert_eq!(allowed["verdict"], "none");
     let p99 =
         ["--realtime", "--set", "realtime.overruns=20", "--set", "realtime.lateness_p99=\"1 ns\""];
     let summary = run(here, &file, "p99", &p99, 3);
@@ -185,7 +189,7 @@ fn drive(
         host: Host::new(&scenario, &Recording::File(Path::new("sink")), &options.trouble).unwrap(),
     });
     let mut recorder = Recorder::to_writer(std::io::sink(), &options).unwrap();
-    let mut watcher = Watcher::new(0.0);
+    let mut watcher = Watcher::new(Plan::default());
     let faulted = faulted.as_mut();
     let line = Line { source: &mut source, faulted, endpoint: &mut endpoint };
     let (ended, kept) = drive_by_clock(

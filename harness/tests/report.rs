@@ -9,12 +9,13 @@ use octant::report::{
 use octant::score::compare::{Claim, Comparison, Maxima, PairedRun, compare};
 use octant::score::drift::{DriftSample, DriftScorer};
 use octant::score::floor::{Floor, MaximumFloor};
+use octant::score::judge::judge;
 use octant::score::parameters;
 use octant::score::reference::{ReferenceInput, reference};
 use octant::score::summary::{
     Baseline, Calibration, HealthCounts, HeightChannel, Navigation, SCHEMA, Summary,
 };
-use octant::score::verdict::{Comparison as Sign, Requirement, Verdict, judge};
+use octant::score::verdict::{Comparison as Sign, Requirement, Verdict};
 use octant_earth::units::{ARCSEC, DEG, DEG_PER_SQRT_HOUR, MICRO_G};
 use octant_sample::Parameters;
 use octant_sample::parameters::{Group, NAMES, PARAMETER_COUNT};
@@ -87,7 +88,7 @@ fn calibration(positions: &str, with_g: bool) -> (Calibration, Parameters) {
         duration_h: 24.0,
         nis_mean: Some(3.004),
         nees: parameters::nees(&parameters),
-        worst_normalized_error: parameters::worst_normalized_error(&parameters),
+        worst_normalized_error: parameters::worst_normalized_error(&parameters, &[]),
         parameters,
         refused: None,
         health: HealthCounts { measurements: 86_400, ..HealthCounts::default() },
@@ -127,12 +128,17 @@ fn data() -> ReportData {
         verdict: Verdict::Pass,
         reasons: vec![],
         requirements: vec![],
+        findings: Vec::new(),
+        planned: None,
+        done: None,
         faults: vec![],
         altered_streams: None,
         method: "eight positions".to_owned(),
         calibration: Some(eight),
         navigation: Some(navigation(g(&truth()) - g(&estimate), 1.5)),
         baseline: Some(Baseline {
+            planned: None,
+            done: None,
             label: "six positions".to_owned(),
             calibration: Some(six),
             navigation: Some(navigation(g(&truth()) - g(&six_estimate), 2.5)),
@@ -298,7 +304,7 @@ fn a_report_of_next_to_nothing_is_still_a_page() {
     judge(&mut data.summary, &[], &[]).unwrap();
     let html = run::render(&data);
     check(&html, "empty.html");
-    assert!(html.contains("no requirement checked"));
+    assert!(html.contains("nothing was required"));
 }
 
 /// Pairs whose second method is `ratio` times the first, with some scatter.

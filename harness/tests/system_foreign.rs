@@ -204,7 +204,7 @@ fn a_packed_system_is_run_and_what_is_none_is_refused() {
     let ran = run(&path, &folder.path().join("run"), &["--stop", "0.1 s"]);
     assert_eq!(ran.status.code(), Some(0), "{}", error(&ran));
     let text = String::from_utf8(ran.stdout).unwrap();
-    assert!(text.starts_with("foreign: pass\n"), "{text}");
+    assert!(text.starts_with("foreign: none\n"), "{text}");
     assert!(text.contains("ball and sum, jacobi, 10 steps of 0.01 s to 0.1 s"), "{text}");
 
     let refused = |entries: &[(&str, &[u8])], expected: &str| {

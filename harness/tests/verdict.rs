@@ -3,15 +3,15 @@
 use octant::evidence::discrepancy::of_run;
 use octant::run::{Control, Recording, assemble, run_method};
 use octant::scenario::{Method, Scenario};
+use octant::score::judge::{About, Finding, NO_REQUIREMENT, derive, judge};
 use octant::score::junit::junit;
 use octant::score::measures;
 use octant::score::summary::{
     Calibration, ErrorScore, FaultResult, HealthCounts, HeightChannel, Navigation, RadialScore,
     SCHEMA, Summary, SummaryError,
 };
-use octant::score::verdict::{
-    Comparison, Finding, NO_REQUIREMENT, Requirement, Verdict, evaluate, judge, measure,
-};
+use octant::score::verdict::{Comparison, Requirement, Verdict, evaluate, measure};
+use octant::score::work::Work;
 use proptest::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -25,6 +25,9 @@ fn summary() -> Summary {
         verdict: Verdict::Pass,
         reasons: vec![],
         requirements: vec![],
+        findings: Vec::new(),
+        planned: None,
+        done: None,
         faults: vec![],
         method: "eight".to_owned(),
         calibration: Some(Calibration {
@@ -70,7 +73,7 @@ fn judged(requirements: &[Requirement], findings: &[Finding]) -> Summary {
 #[test]
 fn exit_codes_are_those_of_the_contract() {
     let codes: Vec<u8> = Verdict::ALL.iter().map(|v| v.exit_code()).collect();
-    assert_eq!(codes, [0, 3, 1, 4], "pass, inconclusive, fail, error");
+    assert_eq!(codes, [0, 0, 3, 1, 4], "none, pass, inconclusive, fail, error");
 }
 
 fn any_verdict() -> impl Strategy<Value = Verdict> {
@@ -85,7 +88,7 @@ proptest! {
         prop_assert_eq!(a.worst(b), b.worst(a));
         prop_assert_eq!(a.worst(b).worst(c), a.worst(b.worst(c)));
         prop_assert_eq!(a.worst(a), a);
-        prop_assert_eq!(a.worst(Verdict::Pass), a);
+        prop_assert_eq!(a.worst(Verdict::None), a);
         prop_assert_eq!(a.worst(Verdict::Error), Verdict::Error);
     }
 
@@ -95,7 +98,11 @@ proptest! {
     ) {
         let findings: Vec<Finding> = verdicts
             .iter()
-            .map(|&verdict| Finding { verdict, reason: "so it was".to_owned() })
+            .map(|&verdict| Finding {
+                verdict,
+                about: About::Run,
+                reason: "so it was".to_owned(),
+            })
             .collect();
         let required =
             [requirement("navigation.longitude_error_arcmin.max", Comparison::AtMost, limit)];
@@ -166,10 +173,109 @@ fn bars_take_the_magnitude() {
 }
 
 #[test]
-fn a_run_without_requirements_passes_and_says_that_nothing_was_checked() {
+fn a_run_of_which_nothing_is_asked_is_none_and_no_pass() {
     let summary = judged(&[], &[]);
-    assert_eq!(summary.verdict, Verdict::Pass);
+    assert_eq!(summary.verdict, Verdict::None);
     assert_eq!(summary.reasons, [NO_REQUIREMENT]);
+    let xml = junit(&summary).unwrap();
+    let document = roxmltree::Document::parse(&xml).unwrap();
+    let skipped = document.descendants().find(|node| node.has_tag_name("skipped")).unwrap();
+    assert_eq!(skipped.attribute("message"), Some(NO_REQUIREMENT));
+}
+
+/// A summary with a plan, and with what was done of it.
+fn worked(navigation_s: f64) -> Summary {
+    let planned = Work { navigation_s: Some(3600.0), ..Work::default() };
+    let done = Work { navigation_s: Some(navigation_s), ..planned };
+    Summary { planned: Some(planned), done: Some(done), ..summary() }
+}
+
+const LONGITUDE: &str = "navigation.longitude_error_arcmin.max";
+
+#[test]
+fn what_falls_short_of_its_plan_passes_nothing_and_says_both() {
+    let at_most = |measure: &str, limit| requirement(measure, Comparison::AtMost, limit);
+    let mut short = worked(1.0);
+    judge(&mut short, &[at_most(LONGITUDE, 1.0)], &[]).unwrap();
+    assert_eq!(short.verdict, Verdict::Inconclusive);
+    let text = "navigation: planned 1 h, done 1 s";
+    assert_eq!(
+        short.reasons,
+        [text.to_owned(), format!("NAV-1: met as far as it was done ({text})")]
+    );
+    assert_eq!(short.requirements[0].verdict, Verdict::Inconclusive);
+    // What is broken already is broken.
+    judge(&mut short, &[at_most(LONGITUDE, 0.5)], &[]).unwrap();
+    assert_eq!(short.verdict, Verdict::Fail);
+    // What belongs to a part that was done isn't touched.
+    judge(&mut short, &[at_most("calibration.nis_mean", 4.0)], &[]).unwrap();
+    assert_eq!(short.requirements[0].verdict, Verdict::Pass);
+    assert_eq!(short.verdict, Verdict::Inconclusive);
+    let mut whole = worked(3600.0);
+    judge(&mut whole, &[at_most(LONGITUDE, 1.0)], &[]).unwrap();
+    assert_eq!(whole.verdict, Verdict::Pass);
+}
+
+#[test]
+fn after_the_bench_failed_nothing_is_judged_but_what_was_broken_before() {
+    let late = || [Finding::of_bench(Verdict::Inconclusive, "a sample left late".to_owned())];
+    let gone = || [Finding::of_bench(Verdict::Error, "the disk is full".to_owned())];
+    let final_error = "|navigation.longitude_error_arcmin.final|";
+    let at = |measure: &str, limit, findings: &[Finding]| {
+        let mut judged = worked(1800.0);
+        judge(&mut judged, &[requirement(measure, Comparison::AtMost, limit)], findings).unwrap();
+        assert!(judged.reasons.contains(&findings[0].reason), "both facts are told");
+        (judged.verdict, judged.requirements[0].verdict)
+    };
+    let (open, fail, error) = (Verdict::Inconclusive, Verdict::Fail, Verdict::Error);
+    // A maximum that was broken stays so, whatever came then; one that was met is no pass.
+    assert_eq!(at(LONGITUDE, 0.5, &late()), (fail, fail));
+    assert_eq!(at(LONGITUDE, 0.5, &gone()), (fail, fail));
+    assert_eq!(at(LONGITUDE, 1.0, &late()), (open, open));
+    assert_eq!(at(LONGITUDE, 1.0, &gone()), (error, open));
+    // What could have become better isn't held against the unit.
+    assert_eq!(at(final_error, 0.5, &late()), (open, open));
+    // Nor is a refusal after it.
+    let mut refused = worked(0.0);
+    refused.calibration.as_mut().unwrap().refused = Some("no".to_owned());
+    judge(&mut refused, &[], &late()).unwrap();
+    assert_eq!(refused.verdict, open);
+}
+
+#[test]
+fn an_answer_that_may_not_be_fails_whatever_was_met_before() {
+    let wrong = Finding::of_unit(Verdict::Fail, "the answer to sample 3: nis is -1".to_owned());
+    let mut judged = summary();
+    let met = requirement(LONGITUDE, Comparison::AtMost, 1.0);
+    judge(&mut judged, std::slice::from_ref(&met), std::slice::from_ref(&wrong)).unwrap();
+    assert_eq!(judged.verdict, Verdict::Fail);
+    assert_eq!(judged.requirements[0].verdict, Verdict::Inconclusive);
+    judge(&mut judged, &[], &[wrong]).unwrap();
+    assert_eq!(judged.verdict, Verdict::Fail);
+}
+
+#[test]
+fn a_verdict_that_was_altered_is_derived_anew() {
+    let asked = requirement(LONGITUDE, Comparison::AtMost, 0.5);
+    let mut altered = summary();
+    judge(&mut altered, &[asked], &[]).unwrap();
+    let honest = derive(&altered);
+    assert_eq!((honest.verdict, &honest.reasons), (Verdict::Fail, &altered.reasons));
+    altered.verdict = Verdict::Pass;
+    altered.reasons.clear();
+    altered.requirements[0].verdict = Verdict::Pass;
+    altered.requirements[0].margin = Some(0.1);
+    assert_eq!(derive(&altered), honest);
+}
+
+#[test]
+fn a_summary_of_before_findings_is_read_and_is_never_better_than_it_said() {
+    let mut old = summary();
+    judge(&mut old, &[requirement(LONGITUDE, Comparison::AtMost, 1.0)], &[]).unwrap();
+    old.schema = 1;
+    old.verdict = Verdict::Inconclusive;
+    let read = Summary::from_json(&old.to_json().unwrap()).unwrap();
+    assert_eq!(derive(&read).verdict, Verdict::Inconclusive);
 }
 
 #[test]
@@ -213,7 +319,7 @@ fn discrepancies_of_a_run_are_its_reasons() {
         requirement("navigation.nothing", Comparison::AtMost, 0.5),
         requirement("navigation.radial_error_nmi.max", Comparison::AtMost, 5.0),
     ];
-    let late = Finding { verdict: Verdict::Inconclusive, reason: "7 overruns".to_owned() };
+    let late = Finding::of_run("7 overruns".to_owned());
     judge(&mut told, &asked, &[late]).unwrap();
     let found = of_run(&told);
     let mut whats: Vec<&str> = found.iter().map(|found| found.what.as_str()).collect();
@@ -238,14 +344,14 @@ fn discrepancies_of_a_run_are_its_reasons() {
     assert!(of_run(&told).iter().all(|found| !ids.contains(found.id.as_str())));
 
     // A bench that failed is all there is; a run that passes has none.
-    let gone = Finding { verdict: Verdict::Error, reason: "the device went away".to_owned() };
+    let gone = Finding::of_bench(Verdict::Error, "the device went away".to_owned());
     let found = of_run(&judged(&[], &[gone]));
     assert_eq!((found.len(), found[0].verdict, found[0].kind), (1, Verdict::Error, "run"));
     assert_eq!(of_run(&judged(&[], &[])), []);
 }
 
 #[test]
-fn a_summary_survives_its_file_and_another_schema_is_refused() {
+fn a_summary_survives_its_file_and_a_newer_schema_is_refused() {
     let mut summary = judged(&[requirement("seed", Comparison::AtLeast, 1.0)], &[]);
     summary.scenario = "a \"[1, 2]\" \\ [3, 4]".to_owned();
     let text = summary.to_json().unwrap();
@@ -255,8 +361,8 @@ fn a_summary_survives_its_file_and_another_schema_is_refused() {
     let order = ["schema", "octant", "scenario", "seed", "verdict", "requirements", "stream_hash"];
     let places: Vec<_> = order.map(|key| text.find(&format!("\n  \"{key}\"")).unwrap()).into();
     assert!(places.is_sorted(), "the order of the fields is that of the type");
-    let other = text.replacen("\"schema\": 1", "\"schema\": 2", 1);
-    assert_eq!(Summary::from_json(&other), Err(SummaryError::Schema { found: 2 }));
+    let other = text.replacen("\"schema\": 2", "\"schema\": 3", 1);
+    assert_eq!(Summary::from_json(&other), Err(SummaryError::Schema { found: 3 }));
     assert!(matches!(Summary::from_json("{}"), Err(SummaryError::Form(_))));
 }
 

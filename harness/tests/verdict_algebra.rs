@@ -11,11 +11,12 @@ use octant::campaign::{status, trace};
 use octant::run::realtime::Kept;
 use octant::run::{Control, Recording, assemble, run_method};
 use octant::scenario::{Method, Scenario};
+use octant::score::judge::{About, Finding, besides, derive, judge};
 use octant::score::summary::{
     Baseline, Calibration, ErrorScore, FaultResult, HealthCounts, HeightChannel, Lateness,
     Navigation, Pacing, RadialScore, Summary,
 };
-use octant::score::verdict::{Comparison, Finding, Requirement, Verdict, besides, judge};
+use octant::score::verdict::{Comparison, Requirement, Verdict};
 use octant_realtime::schedule::{Granted, Outcome};
 use octant_requirements::requirement::{
     self as required, Check, Ensemble, Limit, Requirements, Verification,
@@ -31,7 +32,7 @@ fn any_verdict() -> impl Strategy<Value = Verdict> {
 
 /// A fold in any order, with anything in it several times.
 fn worst_of(verdicts: impl IntoIterator<Item = Verdict>) -> Verdict {
-    verdicts.into_iter().fold(Verdict::Pass, Verdict::worst)
+    verdicts.into_iter().fold(Verdict::None, Verdict::worst)
 }
 
 proptest! {
@@ -65,15 +66,15 @@ proptest! {
 
 #[test]
 fn both_kinds_of_verdict_have_one_order_and_one_name() {
-    let pairs: Vec<_> = Verdict::ALL.into_iter().zip(traced::Verdict::ALL).collect();
+    let pairs: Vec<_> = Verdict::ALL[1..].iter().zip(traced::Verdict::ALL).collect();
     for (a, b) in &pairs {
         assert_eq!(a.name(), b.name());
         for (c, d) in &pairs {
             assert_eq!(a.cmp(c), b.cmp(d));
         }
     }
-    // Only a pass is a success to the shell.
-    assert!(Verdict::ALL.iter().all(|v| (v.exit_code() == 0) == (*v == Verdict::Pass)));
+    // Only a pass is a success to the shell, and that nothing was asked.
+    assert!(Verdict::ALL.iter().all(|v| (v.exit_code() == 0) == (*v <= Verdict::Pass)));
 }
 
 /// What a requirement finds in a run.
@@ -104,7 +105,7 @@ fn parts() -> impl Strategy<Value = Parts> {
         1 => Just(Found::NoMeasure),
         1 => Just(Found::NotANumber),
     ];
-    let finding = prop::sample::select(Verdict::ALL[1..].to_vec());
+    let finding = prop::sample::select(Verdict::ALL[2..].to_vec());
     let findings = prop_oneof![4 => Just(Vec::new()), 1 => prop::collection::vec(finding, 1..3)];
     let fired = || prop::collection::vec(prop::bool::weighted(0.85), 0..3);
     let refused = || prop::bool::weighted(0.1);
@@ -163,6 +164,9 @@ impl Parts {
             verdict: Verdict::Pass,
             reasons: Vec::new(),
             requirements: Vec::new(),
+            findings: Vec::new(),
+            planned: None,
+            done: None,
             faults: self.fired.iter().map(fault).collect(),
             altered_streams: None,
             method: "eight".to_owned(),
@@ -179,6 +183,8 @@ impl Parts {
             }),
             counterfactual: None,
             baseline: self.baseline.as_ref().map(|(fired, refused)| Baseline {
+                planned: None,
+                done: None,
                 label: "six".to_owned(),
                 calibration: Some(calibration(*refused)),
                 navigation: None,
@@ -191,7 +197,11 @@ impl Parts {
             stream_hash: "00".to_owned(),
         };
         let requirements: Vec<Requirement> = self.checks.iter().map(Found::requirement).collect();
-        let finding = |verdict: &Verdict| Finding { verdict: *verdict, reason: "x".to_owned() };
+        let finding = |verdict: &Verdict| Finding {
+            verdict: *verdict,
+            about: About::Run,
+            reason: "x".to_owned(),
+        };
         let findings: Vec<Finding> = self.findings.iter().map(finding).collect();
         judge(&mut summary, &requirements, &findings).unwrap();
         summary
@@ -225,8 +235,8 @@ proptest! {
     fn a_run_is_as_good_as_the_worst_of_its_parts(parts in parts()) {
         let summary = parts.summary();
         let checks = parts.checks.iter().map(|found| found.verdict());
-        let silent = if parts.is_whole() { Verdict::Pass } else { Verdict::Inconclusive };
-        let refused = if parts.refused { Verdict::Fail } else { Verdict::Pass };
+        let silent = if parts.is_whole() { Verdict::None } else { Verdict::Inconclusive };
+        let refused = if parts.refused { Verdict::Fail } else { Verdict::None };
         let expected = worst_of(checks.chain(parts.findings.iter().copied()).chain([silent, refused]));
         prop_assert_eq!(summary.verdict, expected);
         // What is no pass says why.
@@ -237,6 +247,11 @@ proptest! {
         // Nor does a way through a file.
         let read = Summary::from_json(&summary.to_json().unwrap()).unwrap();
         prop_assert_eq!(besides(&read), besides(&summary));
+        // What was said of it is what anybody derives again, also from the file.
+        for summary in [&summary, &read] {
+            let derived = derive(summary);
+            prop_assert_eq!((derived.verdict, derived.reasons), (summary.verdict, summary.reasons.clone()));
+        }
     }
 }
 

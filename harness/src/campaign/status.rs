@@ -6,7 +6,8 @@ use super::plan::{Plan, StopRule};
 use super::requirements;
 use super::stop::{self, Decision};
 use crate::report::number::plain;
-use crate::score::verdict::{self, Verdict};
+use crate::score::judge;
+use crate::score::verdict::Verdict;
 use octant_requirements::requirement::Ensemble;
 use octant_requirements::trace::{Counts, judge};
 use octant_statistics::proportion::{Demand, Needed, further_if_all_pass};
@@ -123,7 +124,7 @@ pub fn of(plan: &Plan, folder: &Path, shard: Shard) -> Result<Status, String> {
             let counts = counts.entry(id).or_default();
             *match result.check(id) {
                 Verdict::Pass => &mut counts.pass,
-                Verdict::Inconclusive => &mut counts.inconclusive,
+                Verdict::None | Verdict::Inconclusive => &mut counts.inconclusive,
                 Verdict::Fail => &mut counts.fail,
                 Verdict::Error => &mut counts.error,
             } += 1;
@@ -155,7 +156,7 @@ pub fn of(plan: &Plan, folder: &Path, shard: Shard) -> Result<Status, String> {
 /// What a case comes to but for its requirements.
 pub(super) fn besides(result: &CaseResult) -> Verdict {
     let Some(summary) = &result.summary else { return Verdict::Error };
-    let worst = verdict::besides(summary);
+    let worst = judge::besides(summary);
     // What none of this says comes from elsewhere.
     let known = summary.requirements.iter().map(|check| check.verdict).fold(worst, Verdict::worst);
     if result.verdict > known { result.verdict } else { worst }

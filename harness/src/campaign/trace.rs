@@ -86,7 +86,8 @@ pub fn trace(plan: &Plan, requirements: &Requirements, folder: &Path) -> Result<
 const fn traced(verdict: verdict::Verdict) -> Verdict {
     match verdict {
         verdict::Verdict::Pass => Verdict::Pass,
-        verdict::Verdict::Inconclusive => Verdict::Inconclusive,
+        // What asks for nothing shows nothing of a requirement.
+        verdict::Verdict::None | verdict::Verdict::Inconclusive => Verdict::Inconclusive,
         verdict::Verdict::Fail => Verdict::Fail,
         verdict::Verdict::Error => Verdict::Error,
     }

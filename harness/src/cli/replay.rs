@@ -1,7 +1,7 @@
 //! `octant replay`: the core again, on a recorded stream.
 
 use super::{Failure, print, print_json};
-use crate::endpoint::{Endpoint, InProcess};
+use crate::endpoint::{Endpoint, InProcess, ParameterEstimate};
 use crate::recorder::StreamHash;
 use crate::run::method::configurations;
 use crate::run::unit;
@@ -9,6 +9,7 @@ use crate::scenario::Scenario;
 use crate::score::verdict::Verdict;
 use crate::source::{Epoch, Replay, Source};
 use clap::Args;
+use octant_sample::parameters::PARAMETER_COUNT;
 use octant_sample::{GimbalCommand, Output};
 use serde::Serialize;
 use std::path::PathBuf;
@@ -39,6 +40,8 @@ struct Comparison {
     samples: u64,
     stream_hash: String,
     outputs_equal: bool,
+    /// Parameters with their σ, at every sample at which either side has new ones.
+    parameters_equal: bool,
     first_difference_sample: Option<u64>,
     truncated: bool,
 }
@@ -68,7 +71,8 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     };
     let mut source = Replay::open(path, None).map_err(|e| bad(&e))?;
     let (mut hash, mut samples, mut revision) = (StreamHash::new(), 0u64, 0);
-    let mut first_difference_sample = None;
+    let (mut first_difference_sample, mut parameters_equal) = (None, true);
+    let mut outputs_equal = true;
     let (mut epoch, mut output) = (Epoch::default(), Output::default());
     while source.next(&GimbalCommand::default(), &mut epoch).map_err(|e| bad(&e))? {
         for event in &source.recorded().events {
@@ -79,21 +83,33 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         endpoint.step(&epoch, &mut output).map_err(|e| bad(&e))?;
         samples += 1;
         hash.epoch(&epoch.sample, epoch.aiding.as_ref(), &output);
-        if output.parameters_revision != revision {
+        let announced = output.parameters_revision != revision;
+        if announced {
             revision = output.parameters_revision;
             hash.parameters(&endpoint.parameters());
         }
-        if let Some(recorded) = &source.recorded().output
-            && first_difference_sample.is_none()
+        let recorded = source.recorded();
+        let equal = match &recorded.parameters {
+            Some(estimate) => announced && same_parameters(estimate, &endpoint.parameters()),
+            // A file that ends in the middle may have lost those of its last sample.
+            None => !announced || source.truncated(),
+        };
+        if !equal {
+            parameters_equal = false;
+            first_difference_sample.get_or_insert(output.sequence);
+        }
+        if let Some(recorded) = &recorded.output
             && !same(recorded, &output)
         {
-            first_difference_sample = Some(output.sequence);
+            first_difference_sample.get_or_insert(output.sequence);
+            outputs_equal = false;
         }
     }
     let comparison = Comparison {
         samples,
         stream_hash: hash.hex(),
-        outputs_equal: first_difference_sample.is_none(),
+        outputs_equal,
+        parameters_equal,
         first_difference_sample,
         truncated: source.truncated(),
     };
@@ -102,20 +118,34 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     } else {
         let equal = match comparison.first_difference_sample {
             None if samples == 0 => "nothing to compare".to_owned(),
-            None => "every output is equal to the recorded one, bit for bit".to_owned(),
+            None => "every output is equal to the recorded one, and every parameter, bit for bit"
+                .to_owned(),
             Some(sample) => {
-                format!("outputs differ from the recorded ones from sample {sample} on")
+                let what = match (comparison.outputs_equal, comparison.parameters_equal) {
+                    (false, false) => "outputs and parameters",
+                    (true, false) => "parameters",
+                    _ => "outputs",
+                };
+                format!("{what} differ from the recorded ones from sample {sample} on")
             }
         };
         let cut = if comparison.truncated { " (the recording ends in the middle)" } else { "" };
         let count = if samples == 0 { "no".to_owned() } else { samples.to_string() };
         print(&format!("{count} samples{cut}: {equal}\nstream hash {}\n", comparison.stream_hash))?;
     }
-    Ok(match (comparison.outputs_equal, comparison.truncated || samples == 0) {
+    let equal = comparison.outputs_equal && comparison.parameters_equal;
+    Ok(match (equal, comparison.truncated || samples == 0) {
         (false, _) => Verdict::Fail,
         (true, true) => Verdict::Inconclusive,
         (true, false) => Verdict::Pass,
     })
+}
+
+/// Equality of all bits, NaN included.
+fn same_parameters(a: &ParameterEstimate, b: &ParameterEstimate) -> bool {
+    let bits = |values: &[f64; PARAMETER_COUNT]| values.map(f64::to_bits);
+    bits(&a.parameters.to_array()) == bits(&b.parameters.to_array())
+        && bits(&a.sigma) == bits(&b.sigma)
 }
 
 /// Equality of all bits, NaN included.

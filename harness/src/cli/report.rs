@@ -9,11 +9,14 @@ use crate::evidence::{Manifest, discrepancy};
 use crate::recorder::Event;
 use crate::recorder::reader::{Epochs, Recording};
 use crate::report::{Provenance, ReportData};
-use crate::run::Watcher;
+use crate::run::done::Plan;
+use crate::run::{Watcher, unit};
 use crate::scenario::Scenario;
 use crate::score::summary::Summary;
 use crate::score::verdict::Verdict;
+use crate::source::Epoch;
 use clap::Args;
+use octant_faults::rule::UnitEvent;
 use octant_sample::Parameters;
 use octant_sample::parameters::{Group, NAMES};
 use std::path::{Path, PathBuf};
@@ -99,12 +102,24 @@ pub(super) fn watch(path: &Path, scenario: &Scenario) -> Result<(Watcher, Option
     };
     let recording = Recording::open(path).map_err(|error| bad(&error))?;
     let mut epochs = Epochs::new(recording);
-    let mut watcher = Watcher::new(scenario.calibration.as_ref().map_or(0.0, |c| c.duration_s));
+    // Nothing is held against a plan here: a decimated recording doesn't show all that was done.
+    let mut watcher = Watcher::new(Plan::lasting(scenario));
     let mut last = None;
     while let Some(epoch) = epochs.next_epoch().map_err(|error| bad(&error))? {
         let Some(output) = &epoch.output else { continue };
         last = Some(*output);
-        let wanted = watcher.epoch(output);
+        for event in &epoch.events {
+            if unit::of(event).ok().flatten().is_some_and(|event| event != UnitEvent::PowerOff) {
+                watcher.restarted();
+            }
+        }
+        let wanted = match epoch.sample {
+            Some(sample) => {
+                let sent = Epoch { sample, aiding: epoch.aiding };
+                watcher.answer(&sent, true, output)
+            }
+            None => watcher.epoch(output),
+        };
         if let Some(estimate) = &epoch.parameters {
             watcher.parameters(output, estimate);
         }

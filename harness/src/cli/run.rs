@@ -6,10 +6,11 @@ use super::{Failure, ScenarioArguments, load_fired, print, write};
 use crate::endpoint::LiveEndpoint;
 use crate::evidence::{self, Existing, FmuFacts, FolderError, Manifest, RunFacts, RunFolder};
 use crate::report;
-use crate::run::assemble::{broken as what_broke, parameter_text, text};
+use crate::run::assemble::{Choice, assemble_with, parameter_text, text};
+use crate::run::findings::broken as what_broke;
 use crate::run::method::{MethodError, SetupError, configurations, run_as_far_as_it_goes};
 use crate::run::raw_counts;
-use crate::run::{Control, Ended, MethodRun, Recording, Run, assemble};
+use crate::run::{Control, Ended, MethodRun, Recording, Run};
 use crate::scenario::{Endpoint, Method, Scenario, Source};
 use crate::score::junit::junit;
 use crate::score::verdict::Verdict;
@@ -44,6 +45,13 @@ pub(super) struct Arguments {
     /// Inject these of the scenario's faults alone; --only-faults= none of them.
     #[arg(long, value_name = "ID,ID", value_delimiter = ',', require_equals = true, num_args = 0..)]
     only_faults: Option<Vec<String>>,
+    /// The faults are those that a campaign plans for its case: none is left out.
+    #[arg(skip)]
+    planned_faults: bool,
+    /// Count it as inconclusive where the scenario requires nothing: for pipelines, which mustn't stay
+    /// green after somebody emptied the list.
+    #[arg(long)]
+    require: bool,
     /// Go by the clock: a sample leaves when its time has come, as with realtime.pace = "clock".
     #[arg(long)]
     realtime: bool,
@@ -87,9 +95,14 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         more.push("realtime.pace=\"clock\"".to_owned());
     }
     let mut scenario = load_fired(&arguments.scenario, &more, &arguments.fire)?;
+    let mut left_out = Vec::new();
     if let Some(faults) = &arguments.only_faults {
         // `--only-faults=` comes as one empty name.
         let faults: Vec<String> = faults.iter().filter(|id| !id.is_empty()).cloned().collect();
+        if !arguments.planned_faults {
+            let all = scenario.faults.iter().map(|fault| fault.spec.id.clone());
+            left_out = all.filter(|id| !faults.contains(id)).collect();
+        }
         scenario = scenario.with_only(&faults).map_err(|reason| {
             let file = arguments.scenario.scenario.display();
             Failure::input(format!("{file}: --only-faults: {reason}"))
@@ -154,7 +167,8 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     let realtime = primary.kept.as_ref().map(|kept| kept.granted.clone());
     let refused = primary.calibration.as_ref().is_some_and(|c| c.refused.is_some());
     let estimate = primary.watcher.last_parameters.map(|e| e.parameters).filter(|_| !refused);
-    let run = assemble(&scenario, seed, primary, baseline)
+    let choice = Choice { require: arguments.require, left_out };
+    let run = assemble_with(&scenario, seed, primary, baseline, &choice)
         .map_err(|error| Failure::bench(format!("failed to write the summary: {error}")))?;
     for (name, table) in tables {
         if let Some(table) = table {
@@ -425,6 +439,9 @@ fn rerun(arguments: &Arguments, seed: u64) -> Vec<String> {
     if let Some(faults) = &arguments.only_faults {
         line.push(format!("--only-faults={}", faults.join(",")));
     }
+    if arguments.require {
+        line.push("--require".to_owned());
+    }
     if arguments.realtime {
         line.push("--realtime".to_owned());
     }
@@ -473,6 +490,8 @@ pub(super) fn on_recording(
         endpoint: None,
         fire: Vec::new(),
         only_faults: None,
+        planned_faults: false,
+        require: false,
         realtime: false,
         no_twin: false,
         live: None,
@@ -496,6 +515,8 @@ pub(super) fn case(
         endpoint: None,
         fire: Vec::new(),
         only_faults: case.faults.clone(),
+        planned_faults: true,
+        require: true,
         realtime: false,
         no_twin: false,
         live: None,

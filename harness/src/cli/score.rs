@@ -2,6 +2,7 @@
 
 use super::{Failure, print, print_json};
 use crate::recorder::reader::Recording;
+use crate::run::method::planned_of;
 use crate::scenario::resolve::{Draws, Seeded};
 use crate::scenario::{Method, Scenario};
 use crate::score::parameters::{nees, score, worst_normalized_error};
@@ -77,12 +78,17 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         .last_parameters
         .map(|estimate| score(truth.as_ref(), &estimate.parameters, &estimate.sigma))
         .unwrap_or_default();
+    let plan = match method {
+        Method::Primary => scenario.calibration.as_ref(),
+        Method::Baseline => scenario.baseline.as_ref(),
+    };
+    let planned = plan.map(planned_of).unwrap_or_default();
     let scores = Scores {
         scenario: scenario.title.clone(),
         method: crate::run::method::label(&scenario, method),
         nis_mean: watcher.health.nis_mean(),
         nees: nees(&parameters),
-        worst_normalized_error: worst_normalized_error(&parameters),
+        worst_normalized_error: worst_normalized_error(&parameters, &planned),
         parameters,
         navigation,
     };

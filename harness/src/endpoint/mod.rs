@@ -1,5 +1,6 @@
 //! Where the core is: in this process, in an FMU, at the other end of a wire.
 
+pub mod answer;
 mod fmu;
 mod in_process;
 mod live;
@@ -42,6 +43,11 @@ pub trait Endpoint {
     /// # Errors
     /// If the endpoint failed as a bench part: device gone, process died.
     fn step(&mut self, epoch: &Epoch, output: &mut Output) -> Result<(), EndpointError>;
+
+    /// The core says where it wants the gimbals.
+    fn commands(&self) -> bool {
+        true
+    }
 
     /// Name of the endpoint in messages: its URI.
     fn uri(&self) -> String;
@@ -108,6 +114,10 @@ pub trait Endpoint {
 impl<E: Endpoint + ?Sized> Endpoint for Box<E> {
     fn step(&mut self, epoch: &Epoch, output: &mut Output) -> Result<(), EndpointError> {
         (**self).step(epoch, output)
+    }
+
+    fn commands(&self) -> bool {
+        (**self).commands()
     }
 
     fn uri(&self) -> String {
@@ -253,6 +263,9 @@ pub enum EndpointError {
     /// The session with the device can't go on.
     #[error("endpoint {0}")]
     Live(#[from] SessionError),
+    /// The core answered what no core may.
+    #[error(transparent)]
+    Misbehaved(#[from] answer::Misbehaviour),
     /// The core behind the endpoint can't be started anew.
     #[error("restart the core at {uri}: {reason}")]
     Restart {

@@ -4,8 +4,9 @@
 //! An id is made of what the discrepancy is, and of its cases: the same one has the same id in every
 //! report, and one more case that fails makes another one, which nobody has disposed of yet.
 
+use crate::score::judge;
 use crate::score::summary::Summary;
-use crate::score::verdict::{self, Verdict};
+use crate::score::verdict::Verdict;
 use serde::Serialize;
 
 /// Something that isn't a pass.
@@ -73,7 +74,7 @@ pub(crate) fn counted(discrepancies: usize) -> String {
 #[must_use]
 pub fn of_run(summary: &Summary) -> Vec<Discrepancy> {
     let mut all: Vec<Discrepancy> = Vec::new();
-    if summary.verdict == Verdict::Pass {
+    if matches!(summary.verdict, Verdict::None | Verdict::Pass) {
         return all;
     }
     let run = format!("{}\n{}", summary.scenario, summary.seed);
@@ -87,23 +88,23 @@ pub fn of_run(summary: &Summary) -> Vec<Discrepancy> {
         }
     }
     if let Some(reason) = summary.calibration.as_ref().and_then(|found| found.refused.as_ref()) {
-        let what = verdict::refusal(&summary.method, reason);
+        let what = judge::refusal(&summary.method, reason);
         all.push(found("refused", Verdict::Fail, None, &summary.method, what));
     }
-    for (fault, what) in verdict::unfired(summary) {
+    for (fault, what) in judge::unfired(summary) {
         all.push(found("fault", Verdict::Inconclusive, None, &fault.id, what));
     }
     // What the bench said. The refusal of a baseline is told, and bears on nothing; neither does a run
     // of which nothing is asked.
     let baseline = summary.baseline.as_ref().and_then(|baseline| {
         let reason = baseline.calibration.as_ref()?.refused.as_ref()?;
-        Some(verdict::refusal(&baseline.label, reason))
+        Some(judge::refusal(&baseline.label, reason))
     });
     let told: Vec<&str> = all
         .iter()
         .map(|found| found.what.as_str())
         .chain(baseline.as_deref())
-        .chain([verdict::NO_REQUIREMENT])
+        .chain([judge::NO_REQUIREMENT])
         .collect();
     let rest: Vec<&String> =
         summary.reasons.iter().filter(|reason| !told.contains(&reason.as_str())).collect();

@@ -27,6 +27,7 @@ pub(crate) fn page(title: &str, body: &Markup) -> String {
 /// A verdict as a small label: colour, word and sign, so that none of them is needed alone.
 pub(super) fn badge(verdict: Verdict) -> Markup {
     let sign = match verdict {
+        Verdict::None => "–",
         Verdict::Pass => "✓",
         Verdict::Inconclusive => "?",
         Verdict::Fail => "✕",

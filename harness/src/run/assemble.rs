@@ -1,17 +1,18 @@
 //! From the methods of a run to its summary, its report and its verdict.
 
-use super::drive::Ended;
+use super::findings::findings;
 use super::method::MethodRun;
 use super::twin::difference;
 use crate::evidence::disposition::Dispositions;
 use crate::report::counterfactual::in_words;
 use crate::report::{Provenance, ReportData, number};
-use crate::scenario::{Endpoint, Motion, Realtime, Scenario, Source};
+use crate::scenario::{Endpoint, Motion, Scenario, Source};
+use crate::score::judge::{Finding, judge};
 use crate::score::reference::{ReferenceInput, reference};
 use crate::score::summary::{
-    AlteredStreams, Baseline, FaultResult, Pacing, ParameterScore, SCHEMA, Summary,
+    AlteredStreams, Baseline, FaultResult, ParameterScore, SCHEMA, Summary,
 };
-use crate::score::verdict::{Finding, Verdict, judge};
+use crate::score::verdict::Verdict;
 use octant_earth::units::{DEG, DEG_PER_SQRT_HOUR, MICRO_G};
 use octant_sample::parameters::NAMES;
 use octant_turntable::Axis;
@@ -26,6 +27,37 @@ pub struct Run {
     pub report: ReportData,
 }
 
+/// What was chosen for a run beside its scenario, and bears on its verdict.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Choice {
+    /// Something has to be required.
+    pub require: bool,
+    /// Faults of the scenario that were left out.
+    pub left_out: Vec<String>,
+}
+
+impl Choice {
+    /// What it comes to, for a run that requires something or doesn't.
+    fn findings(&self, requires: bool) -> Vec<Finding> {
+        let mut findings = Vec::new();
+        if self.require && !requires {
+            findings.push(Finding::of_run(
+                "the scenario requires nothing, and --require wants it to".to_owned(),
+            ));
+        }
+        if requires && !self.left_out.is_empty() {
+            // A limit is to be kept in spite of the faults; without them nothing of it is shown.
+            findings.push(Finding::of_run(format!(
+                "--only-faults left out {} of the scenario's faults, with which its requirements are to be \
+                 kept: {}",
+                self.left_out.len(),
+                self.left_out.join(", ")
+            )));
+        }
+        findings
+    }
+}
+
 /// Puts the methods of a run together: summary, verdict, report.
 ///
 /// # Errors
@@ -33,8 +65,22 @@ pub struct Run {
 pub fn assemble(
     scenario: &Scenario,
     seed: u64,
+    primary: MethodRun,
+    baseline: Option<MethodRun>,
+) -> Result<Run, serde_json::Error> {
+    assemble_with(scenario, seed, primary, baseline, &Choice::default())
+}
+
+/// As [`assemble`], with what was chosen beside the scenario.
+///
+/// # Errors
+/// If the summary can't be written as JSON.
+pub fn assemble_with(
+    scenario: &Scenario,
+    seed: u64,
     mut primary: MethodRun,
     baseline: Option<MethodRun>,
+    choice: &Choice,
 ) -> Result<Run, serde_json::Error> {
     let g_zz = |run: &MethodRun| {
         run.watcher.last_parameters.map(|estimate| estimate.parameters.g_dependent[8])
@@ -50,7 +96,9 @@ pub fn assemble(
         estimated_g_zz: g_zz(&primary),
         baseline_estimated_g_zz: baseline.as_ref().and_then(g_zz),
     });
-    let findings = findings(scenario, &primary, baseline.as_ref());
+    let mut findings = findings(scenario, &primary, baseline.as_ref());
+    findings.extend(choice.findings(!scenario.requirements.is_empty()));
+    let (planned, done) = primary.watcher.work();
     let counterfactual = difference(scenario, &primary);
     let baseline_counterfactual = baseline.as_ref().and_then(|run| difference(scenario, run));
     let mut summary = Summary {
@@ -61,12 +109,17 @@ pub fn assemble(
         verdict: Verdict::Pass,
         reasons: Vec::new(),
         requirements: Vec::new(),
+        findings: Vec::new(),
+        planned: Some(planned),
+        done: Some(done),
         faults: primary.receipts.iter().map(FaultResult::from).collect(),
         altered_streams: primary.recorder.altered_streams.as_ref().map(AlteredStreams::from),
         method: primary.label.clone(),
         calibration: primary.calibration.take(),
         navigation: primary.navigation.take(),
         baseline: baseline.map(|run| Baseline {
+            planned: Some(run.watcher.work().0),
+            done: Some(run.watcher.work().1),
             label: run.label,
             calibration: run.calibration,
             navigation: run.navigation,
@@ -93,97 +146,6 @@ pub fn assemble(
         provenance: Provenance::default(),
     };
     Ok(Run { summary, report })
-}
-
-/// What besides requirements bears on the verdict.
-fn findings(scenario: &Scenario, run: &MethodRun, baseline: Option<&MethodRun>) -> Vec<Finding> {
-    let mut findings: Vec<Finding> = broken(run, baseline)
-        .into_iter()
-        .map(|reason| Finding { verdict: Verdict::Error, reason })
-        .collect();
-    for run in std::iter::once(run).chain(baseline) {
-        let late = run.kept.as_ref().map(|kept| too_late(&scenario.realtime, &kept.pacing));
-        findings.extend(late.unwrap_or_default());
-    }
-    for (run, place) in std::iter::once((run, String::new()))
-        .chain(baseline.map(|run| (run, format!(" in {}", run.label))))
-    {
-        let mut inconclusive =
-            |reason: String| findings.push(Finding { verdict: Verdict::Inconclusive, reason });
-        if run.ended == Ended::Cancelled {
-            let after_s = run.watcher.elapsed_s();
-            inconclusive(format!("interrupted after {after_s:.1} s of the run{place}"));
-        }
-        if run.watcher.health.unlisted() > 0 {
-            let unlisted = run.watcher.health.unlisted();
-            inconclusive(format!(
-                "{unlisted} reports of the core found no place in the list{place}"
-            ));
-        }
-    }
-    findings
-}
-
-/// What makes a run by the clock prove nothing.
-fn too_late(limits: &Realtime, pacing: &Pacing) -> Vec<Finding> {
-    let mut reasons = Vec::new();
-    if pacing.overruns > limits.overruns {
-        reasons.push(format!(
-            "the bench was late: {} of {} samples left more than {} us late, {} may; the latest {} us",
-            pacing.overruns,
-            pacing.frames,
-            number::plain(pacing.overrun_us, 5),
-            limits.overruns,
-            number::plain(pacing.lateness_us.max, 5),
-        ));
-    }
-    if let Some(limit_ns) = limits.lateness_p99_ns
-        && pacing.lateness_us.p99 * 1e3 > limit_ns as f64
-    {
-        reasons.push(format!(
-            "the bench was late: the lateness of 99 % of the samples is {} us, {} us are allowed",
-            number::plain(pacing.lateness_us.p99, 5),
-            number::plain(limit_ns as f64 / 1e3, 5),
-        ));
-    }
-    if pacing.late_answers > limits.late_answers {
-        reasons.push(format!(
-            "{} of {} periods ended without an answer, {} may",
-            pacing.late_answers, pacing.frames, limits.late_answers
-        ));
-    }
-    if pacing.missed_answers + pacing.not_sent > 0 {
-        reasons.push(format!(
-            "{} samples were never answered, {} could not be sent",
-            pacing.missed_answers, pacing.not_sent
-        ));
-    }
-    if pacing.dropped_records > 0 {
-        reasons.push(format!(
-            "{} steps found no room on their way to the recorder: the recording is not complete",
-            pacing.dropped_records
-        ));
-    }
-    reasons.into_iter().map(|reason| Finding { verdict: Verdict::Inconclusive, reason }).collect()
-}
-
-/// When and where what went away, in the methods of a run and their twins.
-#[must_use]
-pub fn broken(primary: &MethodRun, baseline: Option<&MethodRun>) -> Vec<String> {
-    let baseline = baseline.map(|run| (run, format!(" in {}", run.label)));
-    let sides =
-        std::iter::once((primary, String::new())).chain(baseline).flat_map(|(run, place)| {
-            let twin = run.twin.as_deref();
-            let twin = twin.map(|twin| (twin, format!("{place} in the twin without faults")));
-            std::iter::once((run, place)).chain(twin)
-        });
-    sides
-        .filter_map(|(run, place)| {
-            let error = run.broken.as_ref()?;
-            let at_s = run.watcher.elapsed_s();
-            Some(format!("after {at_s:.3} s{place}: {error}"))
-        })
-        .collect()
 }
 
 /// What a run was made on, for the head of the report.

@@ -38,6 +38,8 @@ pub enum Ended {
     SourceEnded,
     /// Somebody asked for it.
     Cancelled,
+    /// The core answered what no core may.
+    Misbehaved,
     /// Source, endpoint or the disk of the recording went away.
     Broken,
 }
@@ -66,7 +68,11 @@ impl RunError {
         matches!(
             self,
             Self::Source(SourceError::Gone { .. } | SourceError::TableStopped { .. })
-                | Self::Endpoint(_)
+                | Self::Endpoint(
+                    EndpointError::Gone { .. }
+                        | EndpointError::Live(_)
+                        | EndpointError::Restart { .. }
+                )
                 | Self::Recorder(RecorderError::Write { .. })
         )
     }
@@ -99,8 +105,12 @@ where
         endpoint.step(&epoch, &mut output)?;
         command = output.gimbal_command;
         recorder.push(Frame { clean: &epoch, faulted: &epoch, output: &output })?;
-        answered(&output, &mut revision, endpoint, recorder, watcher, source);
+        watcher.source(&epoch);
+        answered((&epoch, false), &output, &mut revision, endpoint, recorder, watcher, source);
         epochs += 1;
+        if watcher.misbehaved.is_some() {
+            return Ok(Ended::Misbehaved);
+        }
         if let Some(ended) = over(&output) {
             return Ok(ended);
         }
@@ -115,9 +125,10 @@ pub(super) fn look_every<S: Source + ?Sized>(source: &S) -> u64 {
     if source.is_live() { 1 } else { CONTROL_EPOCHS }
 }
 
-/// Parameters and truth that go with an output.
+/// Parameters and truth that go with an output, which answers an epoch that was altered or wasn't.
 #[inline(always)]
 pub(super) fn answered<S, E>(
+    (sent, altered): (&Epoch, bool),
     output: &Output,
     revision: &mut u32,
     endpoint: &E,
@@ -128,13 +139,13 @@ pub(super) fn answered<S, E>(
     S: Source + ?Sized,
     E: Endpoint + ?Sized,
 {
+    let watched = watcher.answer(sent, altered, output);
     if output.parameters_revision != *revision {
         *revision = output.parameters_revision;
         let estimate = endpoint.parameters();
         recorder.extra(&Extra::Parameters(estimate));
         watcher.parameters(output, &estimate);
     }
-    let watched = watcher.epoch(output);
     if (watched || recorder.truth_due())
         && let Some(truth) = source.truth()
     {

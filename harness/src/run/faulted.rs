@@ -169,6 +169,9 @@ impl<E: Endpoint + ?Sized> Loop<'_, E> {
     fn unit(&mut self, event: &UnitEvent, epoch: u64) -> Result<(), RunError> {
         super::unit::happen(event, self.endpoint)?;
         self.powered = *event != UnitEvent::PowerOff;
+        if self.powered {
+            self.watcher.restarted();
+        }
         self.recorder.event(super::unit::event(event, epoch));
         Ok(())
     }
@@ -180,6 +183,7 @@ impl<E: Endpoint + ?Sized> Loop<'_, E> {
         clean: &Epoch,
         these: &[Epoch],
     ) -> Result<Option<Ended>, RunError> {
+        self.watcher.source(clean);
         let these = if self.powered { these } else { &[] };
         if these.is_empty() {
             self.recorder.lost(clean)?;
@@ -190,7 +194,6 @@ impl<E: Endpoint + ?Sized> Loop<'_, E> {
             }
             return Ok(None);
         }
-        self.watcher.source_time = Some(clean.sample.device_time);
         for (index, faulted) in these.iter().enumerate() {
             self.endpoint.step(faulted, &mut self.output)?;
             let output = &self.output;
@@ -200,7 +203,11 @@ impl<E: Endpoint + ?Sized> Loop<'_, E> {
                 self.recorder.added(clean.sample.device_time.ns, faulted, output)?;
             }
             let (revision, recorder) = (&mut self.revision, &mut *self.recorder);
-            answered(output, revision, &*self.endpoint, recorder, self.watcher, source);
+            let sent = (faulted, !std::ptr::eq(clean, faulted));
+            answered(sent, output, revision, &*self.endpoint, recorder, self.watcher, source);
+            if self.watcher.misbehaved.is_some() {
+                return Ok(Some(Ended::Misbehaved));
+            }
             self.command = output.gimbal_command;
             if let Some(ended) = over(output) {
                 return Ok(Some(ended));

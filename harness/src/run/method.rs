@@ -1,18 +1,19 @@
 //! One method of a scenario, from its configuration to its scores.
 
 use super::concluded;
+use super::done::Plan;
 use super::drive::{Control, Ended, RunError, drive};
 use super::faulted::{Faulted, drive_faulted};
 use super::host::Host;
 use super::realtime::{Kept, Line, drive_by_clock};
 use super::watch::Watcher;
 use crate::calibrate::{PassError, in_passes};
-use crate::endpoint::{Conclusion, Endpoint, InProcess, ParameterEstimate};
+use crate::endpoint::{Conclusion, Endpoint, EndpointError, InProcess, ParameterEstimate};
 use crate::recorder::{
     Event, Policy, Recorder, RecorderError, RecorderOptions, RecorderSummary, Samples, Trouble,
 };
 use crate::scenario::resolve::{Draws, Seeded};
-use crate::scenario::{Method, Realtime, Scenario, Source as SourceKind};
+use crate::scenario::{self, Method, Realtime, Scenario, Source as SourceKind};
 use crate::score::parameters::{nees, score, worst_normalized_error};
 use crate::score::summary::{Calibration, HeightChannel, Navigation};
 use crate::score::trace::Trace;
@@ -23,6 +24,7 @@ use octant_calibration::state_machine::ConfigError;
 use octant_calibration::table::CalibrationTable;
 use octant_faults::Receipt;
 use octant_plant::Plant;
+use octant_sample::parameters::{Group, NAMES};
 use octant_sample::{Mode, Output, Parameters};
 use std::path::Path;
 use std::sync::Arc;
@@ -141,6 +143,8 @@ pub struct MethodRun {
     pub link: Option<serde_json::Value>,
     /// Clocks and counts of a real instrument and its table; as in the recording.
     pub bench: Option<serde_json::Value>,
+    /// Where the source ended in the middle of something.
+    pub cut_short: Option<String>,
 }
 
 /// Name of a method, for people.
@@ -264,8 +268,10 @@ pub fn run_as_far_as_it_goes(
         Recording::HashAlone => Recorder::stream_hash_only(&options),
         Recording::None => Recorder::none(),
     };
-    let calibration_s = core.calibration.as_ref().map_or(0.0, |c| c.duration_s);
-    let mut watcher = Watcher::new(calibration_s);
+    let commands = elsewhere.as_ref().is_none_or(|endpoint| endpoint.commands());
+    let recorded = opened.as_ref().and_then(|source| source.samples_planned());
+    let plan = Plan::of(scenario, method, &core, commands, recorded);
+    let mut watcher = Watcher::new(plan);
     let compared = match recording {
         Recording::HashAlone => false,
         Recording::Hash => true,
@@ -315,6 +321,7 @@ struct Closed {
     kept: Option<Kept>,
     link: Option<serde_json::Value>,
     bench: Option<serde_json::Value>,
+    cut_short: Option<String>,
 }
 
 /// Drives until the end, whatever it is, and asks the core for its last words.
@@ -347,6 +354,7 @@ fn to_the_end<S: Source, E: Endpoint>(
         None => driven,
         Some(error) => driven.and(Err(error.into())),
     };
+    let cut_short = source.cut_short();
     if let Some(detail) = &bench {
         recorder.event(Event { kind: "bench".to_owned(), detail: detail.clone() });
     }
@@ -354,7 +362,12 @@ fn to_the_end<S: Source, E: Endpoint>(
         Ended::SourceEnded => Ok((ended, endpoint.end_of_stream()?)),
         _ => Ok((ended, None)),
     });
+    if let Err(RunError::Endpoint(EndpointError::Misbehaved(misbehaviour))) = &driven {
+        watcher.misbehaved.get_or_insert_with(|| misbehaviour.clone());
+    }
     let (ended, last, broken) = match driven {
+        // What came after the misbehaviour, while the run was being stopped, is no reason of its end.
+        _ if watcher.misbehaved.is_some() => (Ended::Misbehaved, None, None),
         Ok((ended, last)) => (ended, last, None),
         // Somebody wanted its end, and stopped what moves without waiting for the run.
         Err(error) if error.is_gone() && control.cancel.load(Ordering::Relaxed) => {
@@ -374,7 +387,7 @@ fn to_the_end<S: Source, E: Endpoint>(
     let link = link.map(|event| event.detail.clone());
     conclusion.events.drain(..).for_each(|event| recorder.event(event));
     let estimate = endpoint.parameters();
-    Ok(Closed { ended, broken, last, conclusion, estimate, kept, link, bench })
+    Ok(Closed { ended, broken, last, conclusion, estimate, kept, link, bench, cut_short })
 }
 
 /// The station of a scenario, with a host to which nothing can happen; `None` without faults.
@@ -461,7 +474,7 @@ fn finish(
     mut watcher: Watcher,
     truth: Option<Parameters>,
 ) -> Result<MethodRun, MethodError> {
-    let Closed { ended, broken, last, conclusion, estimate, kept, link, bench } = closed;
+    let Closed { ended, broken, last, conclusion, estimate, kept, link, bench, cut_short } = closed;
     if let Some(output) = last {
         watcher.last_parameters = Some(estimate);
         // No sample goes with this output: the recording keeps the parameters as an event.
@@ -481,6 +494,7 @@ fn finish(
             detail: serde_json::json!({ "reason": reason }),
         });
     }
+    let (_, done) = watcher.work();
     let calibration = match method {
         Method::Primary => scenario.calibration.as_ref(),
         Method::Baseline => scenario.baseline.as_ref(),
@@ -493,10 +507,10 @@ fn finish(
         Calibration {
             positions: plan.name.clone(),
             estimator: estimator_name(&plan.estimator).to_owned(),
-            duration_h: plan.duration_s / 3600.0,
+            duration_h: done.calibration_s.unwrap_or(plan.duration_s) / 3600.0,
             nis_mean: nis_mean.filter(|nis| nis.is_finite()),
             nees: nees(&parameters),
-            worst_normalized_error: worst_normalized_error(&parameters),
+            worst_normalized_error: worst_normalized_error(&parameters, &planned_of(plan)),
             parameters,
             refused: refused.clone(),
             health,
@@ -531,7 +545,19 @@ fn finish(
         kept,
         link,
         bench,
+        cut_short,
     })
+}
+
+/// Parameters that a calibration is to estimate, where the plan says which.
+#[must_use]
+pub fn planned_of(plan: &scenario::Calibration) -> Vec<&'static str> {
+    match &plan.estimator {
+        core::Estimator::Kalman(_) => {
+            (0..NAMES.len()).filter(|i| plan.estimates(Group::of(*i))).map(|i| NAMES[i]).collect()
+        }
+        core::Estimator::LeastSquares(_) | core::Estimator::ExternalTurntable(_) => Vec::new(),
+    }
 }
 
 fn estimator_name(estimator: &core::Estimator) -> &'static str {

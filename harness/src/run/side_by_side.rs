@@ -1,6 +1,7 @@
 //! A short run with a fault beside the same run without it, epoch by epoch: what a picture of the
 //! fault is drawn from.
 
+use super::done::Plan;
 use super::drive::{Control, drive};
 use super::faulted::drive_faulted;
 use super::method::{MethodError, SetupError, configurations, faulted};
@@ -60,8 +61,8 @@ fn watched(
     let mut source = WatchedSource { source, seen: Rc::clone(&seen) };
     let endpoint = InProcess::new(&core).map_err(SetupError::Core)?;
     let mut endpoint = WatchedEndpoint { endpoint, seen: Rc::clone(&seen) };
-    let calibration_s = core.calibration.as_ref().map_or(0.0, |c| c.duration_s);
-    let (mut recorder, mut watcher) = (Recorder::none(), Watcher::new(calibration_s));
+    let plan = Plan::of(scenario, Method::Primary, &core, true, None);
+    let (mut recorder, mut watcher) = (Recorder::none(), Watcher::new(plan));
     let control = Control::default();
     let receipts = match faulted(scenario, seed)? {
         None => {

@@ -1,13 +1,19 @@
 //! What is noticed of a run while it goes by: drift, health, and the series of the report.
 //!
-//! The same watcher sees a run live and a recording afterwards ([`Watcher::epoch`], then
-//! [`Watcher::parameters`] and [`Watcher::truth`] where there are any).
+//! The same watcher sees a run live and a recording afterwards ([`Watcher::answer`], then
+//! [`Watcher::parameters`] and [`Watcher::truth`] where there are any). What the unit may not do, and what
+//! the bench may not, ends what it takes in.
 
+use super::done::{Done, Plan};
+use super::follow::Follow;
 use crate::endpoint::ParameterEstimate;
+use crate::endpoint::answer::{AnswerCheck, Misbehaviour};
 use crate::report::{GimbalPoint, HealthEvent, NisPoint, ParameterPoint};
 use crate::score::drift::{DriftSample, DriftScorer};
 use crate::score::health::HealthMonitor;
 use crate::score::trace::Trace;
+use crate::score::work::Work;
+use crate::source::Epoch;
 use octant_plant::Truth;
 use octant_sample::{DeviceTime, Health, Mode, Output};
 
@@ -38,6 +44,9 @@ pub struct Watcher {
     /// Device time of the last sample of the drift.
     scored_ns: Option<u64>,
     last_ns: u64,
+    check: AnswerCheck,
+    follow: Follow,
+    done: Done,
     drift: DriftScorer,
     drift_samples: u64,
     /// For the comparison with a twin, where there is one.
@@ -56,12 +65,26 @@ pub struct Watcher {
     pub last_parameters: Option<ParameterEstimate>,
     /// Mode after the last epoch.
     pub last_mode: Mode,
+    /// What the unit did that no unit may do, which ended the run.
+    pub misbehaved: Option<Misbehaviour>,
+    /// When and how the bench broke its promise: nothing after it counts.
+    pub bench_broke: Option<BenchBroke>,
+}
+
+/// The first time that the bench broke its promise.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BenchBroke {
+    /// Time of the source, s.
+    pub at_s: f64,
+    /// What happened, in plain words.
+    pub reason: String,
 }
 
 impl Watcher {
-    /// A watcher for a calibration of this length, s.
+    /// A watcher of a run with this plan.
     #[must_use]
-    pub fn new(calibration_s: f64) -> Self {
+    pub fn new(plan: Plan) -> Self {
+        let calibration_s = plan.work.calibration_s.unwrap_or(0.0);
         Self {
             next_score_ns: 0,
             convergence_period_ns: (calibration_s * 1e9) as u64 / CONVERGENCE_POINTS,
@@ -74,6 +97,9 @@ impl Watcher {
             navigation_start_ns: None,
             scored_ns: None,
             last_ns: 0,
+            check: AnswerCheck::new(),
+            follow: Follow::new(),
+            done: Done::towards(plan),
             drift: DriftScorer::new(),
             drift_samples: 0,
             trace: None,
@@ -84,10 +110,59 @@ impl Watcher {
             gimbals: Vec::new(),
             last_parameters: None,
             last_mode: Mode::default(),
+            misbehaved: None,
+            bench_broke: None,
         }
     }
 
-    /// Takes the output of an epoch; true if the truth of it is wanted.
+    /// Takes what the source delivered, before anything is done to it.
+    #[inline]
+    pub fn source(&mut self, clean: &Epoch) {
+        self.source_time = Some(clean.sample.device_time);
+        if clean.aiding.is_some() {
+            self.done.reference();
+        }
+    }
+
+    /// The unit was restarted.
+    pub fn restarted(&mut self) {
+        self.check.restarted();
+        self.done.restarted();
+    }
+
+    /// The bench broke its promise at a time of the source: what follows isn't judged.
+    #[cold]
+    pub fn bench_broke(&mut self, at_ns: u64, reason: String) {
+        if self.bench_broke.is_none() {
+            self.bench_broke = Some(BenchBroke { at_s: at_ns as f64 * 1e-9, reason });
+        }
+    }
+
+    /// Nothing more is judged.
+    fn is_over(&self) -> bool {
+        self.misbehaved.is_some() || self.bench_broke.is_some()
+    }
+
+    /// Takes the answer to an epoch as it reached the unit; true if the truth of it is wanted.
+    #[inline]
+    pub fn answer(&mut self, sent: &Epoch, altered: bool, output: &Output) -> bool {
+        if self.is_over() {
+            return false;
+        }
+        if let Err(misbehaviour) = self.check.answer(&sent.sample, output) {
+            self.misbehaved = Some(misbehaviour);
+            return false;
+        }
+        let now_ns = self.source_time.unwrap_or(output.device_time).ns;
+        self.done.epoch(now_ns, output);
+        if !altered {
+            self.follow.epoch(now_ns, output);
+        }
+        self.epoch(output)
+    }
+
+    /// Takes an output that answers no sample, or one that nobody knows any more; true if the truth of it is
+    /// wanted.
     #[inline]
     pub fn epoch(&mut self, output: &Output) -> bool {
         let now_ns = output.device_time.ns;
@@ -174,6 +249,13 @@ impl Watcher {
     /// Takes the parameters that came with the epoch just given.
     #[inline]
     pub fn parameters(&mut self, output: &Output, estimate: &ParameterEstimate) {
+        if self.is_over() {
+            return;
+        }
+        if let Err(misbehaviour) = self.check.parameters(output.sequence, estimate) {
+            self.misbehaved = Some(misbehaviour);
+            return;
+        }
         self.last_parameters = Some(*estimate);
         if output.device_time.ns >= self.next_convergence_ns {
             self.next_convergence_ns = output.device_time.ns + self.convergence_period_ns.max(1);
@@ -217,6 +299,18 @@ impl Watcher {
     #[must_use]
     pub fn drift(&self) -> Option<&DriftScorer> {
         (self.drift_samples >= 2).then_some(&self.drift)
+    }
+
+    /// What was planned and what was done.
+    #[must_use]
+    pub fn work(&self) -> (Work, Work) {
+        (self.done.planned(), self.done.work())
+    }
+
+    /// What of the unit's answers doesn't follow what it is given.
+    #[must_use]
+    pub fn does_not_follow(&self) -> Vec<String> {
+        self.follow.reasons()
     }
 
     /// Length of the run so far, s of device time.

@@ -84,16 +84,18 @@ fn cases(document: &Table, folder: &Path) -> Result<Suite, Problem> {
             return Err(table.problem("scenario", message));
         }
         let expect = match table.text("expect")? {
+            "none" => Verdict::None,
             "pass" => Verdict::Pass,
             "fail" => Verdict::Fail,
             _ => Verdict::Inconclusive,
         };
         let because = table.optional_text("because").map(str::to_owned);
         match (expect, because.as_deref()) {
-            (Verdict::Pass, Some(_)) => {
-                return Err(table.problem("because", "found a reason, and a pass needs none"));
+            (Verdict::None | Verdict::Pass, Some(_)) => {
+                let message = "found a reason, and a pass or none needs none";
+                return Err(table.problem("because", message));
             }
-            (Verdict::Pass, None) => {}
+            (Verdict::None | Verdict::Pass, None) => {}
             (_, None) => {
                 let message =
                     "missing, expected words that the reasons of the verdict have to contain";
@@ -171,7 +173,7 @@ mod tests {
             ("expect = \"fail\"", "s.toml:2:1: cases[0].because: missing"),
             (
                 "expect = \"pass\"\nbecause = \"x\"",
-                "s.toml:5:11: cases[0].because: found a reason, and a pass needs none",
+                "s.toml:5:11: cases[0].because: found a reason, and a pass or none needs none",
             ),
             (
                 "expct = \"pass\"",

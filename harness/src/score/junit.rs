@@ -79,6 +79,11 @@ pub fn junit_of(
 /// JUnit has no "inconclusive": it becomes an error of that type.
 pub(crate) fn status(verdict: Verdict, message: &str) -> TestCaseStatus {
     let kind = match verdict {
+        Verdict::None => {
+            let mut skipped = TestCaseStatus::skipped();
+            skipped.set_message(message);
+            return skipped;
+        }
         Verdict::Pass => return TestCaseStatus::success(),
         Verdict::Fail => NonSuccessKind::Failure,
         Verdict::Inconclusive | Verdict::Error => NonSuccessKind::Error,

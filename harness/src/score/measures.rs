@@ -37,8 +37,17 @@ fn shape(path: &[&str]) -> Shape {
     let error = ["max", "rms", "final", "slope_per_day"];
     let table = |keys: &[&'static str]| Shape::Table(keys.to_vec());
     match path {
-        [] => table(&["calibration", "navigation", "counterfactual", "baseline", "reference"]),
-        ["baseline"] => table(&["calibration", "navigation", "counterfactual"]),
+        [] => table(&[
+            "calibration",
+            "navigation",
+            "counterfactual",
+            "baseline",
+            "reference",
+            "planned",
+            "done",
+        ]),
+        ["planned" | "done"] => table(&["stops", "calibration_s", "references", "navigation_s"]),
+        ["baseline"] => table(&["calibration", "navigation", "counterfactual", "planned", "done"]),
         ["baseline", rest @ ..] => shape(rest),
         ["counterfactual"] => table(&[
             "outputs_differ_after_s",

@@ -5,7 +5,8 @@
 //! - [`mod@reference`] and [`floor`] say what physics lets the scores be
 //! - [`ensemble`] has the statistics over many runs, [`compare`] those of two methods in pairs
 //! - [`health`] counts what the core reported on the way
-//! - [`summary`] is `summary.json`, [`measures`] are the numbers in it, [`verdict`] holds it against requirements, [`junit`] tells CI
+//! - [`summary`] is `summary.json`, [`measures`] are the numbers in it, [`work`] is what was planned and done
+//! - [`verdict`] holds a measure against its limit, [`judge`] derives the verdict of a summary, [`junit`] tells CI
 
 pub mod compare;
 pub mod counterfactual;
@@ -13,6 +14,7 @@ pub mod drift;
 pub mod ensemble;
 pub mod floor;
 pub mod health;
+pub mod judge;
 pub mod junit;
 pub mod measures;
 pub mod parameters;
@@ -22,3 +24,4 @@ mod series;
 pub mod summary;
 pub mod trace;
 pub mod verdict;
+pub mod work;

@@ -100,9 +100,17 @@ pub fn beyond(parameters: &BTreeMap<String, ParameterScore>, sigmas: f64) -> Vec
         .collect()
 }
 
-/// Largest |error|/σ; `None` if no error is known.
+/// Largest |error|/σ; `None` if no error is known, or if one of those that were to be estimated isn't: a worst
+/// of those that are left would pass over it.
 #[must_use]
-pub fn worst_normalized_error(parameters: &BTreeMap<String, ParameterScore>) -> Option<f64> {
+pub fn worst_normalized_error(
+    parameters: &BTreeMap<String, ParameterScore>,
+    planned: &[&str],
+) -> Option<f64> {
+    let known = |name: &&str| parameters.get(*name).is_some_and(|p| p.normalized.is_some());
+    if !planned.iter().all(known) {
+        return None;
+    }
     parameters.values().filter_map(|p| p.normalized).map(f64::abs).reduce(f64::max)
 }
 
@@ -136,8 +144,9 @@ mod tests {
         let nees = nees(&scores);
         assert!((nees["gyro_bias"] - 20.0 / 3.0).abs() < 1e-8);
         assert_eq!(nees.len(), 1, "only the gyro biases were estimated");
+        assert_eq!(worst_normalized_error(&scores, &["gyro_bias_x", "g_zz"]), None);
         assert_eq!(beyond(&scores, 3.0), ["gyro_bias_y"]);
-        assert!((worst_normalized_error(&scores).unwrap() - 4.0).abs() < 1e-9);
+        assert!((worst_normalized_error(&scores, &["gyro_bias_x"]).unwrap() - 4.0).abs() < 1e-9);
     }
 
     #[test]
@@ -146,7 +155,7 @@ mod tests {
         assert_eq!(scores.len(), PARAMETER_COUNT);
         assert!(scores.values().all(|p| p.error.is_none() && p.r#true.is_none()));
         assert!(nees(&scores).is_empty());
-        assert_eq!(worst_normalized_error(&scores), None);
+        assert_eq!(worst_normalized_error(&scores, &[]), None);
     }
 
     #[test]

@@ -3,13 +3,18 @@
 //! Nothing of host or clock is in it: the same scenario, seed and core give the same bytes.
 
 use super::counterfactual::Counterfactual;
+use super::judge::Finding;
 use super::reference::Reference;
 use super::verdict::{RequirementResult, Verdict};
+use super::work::Work;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
 /// Version of the form of `summary.json` that this program writes.
-pub const SCHEMA: u32 = 1;
+pub const SCHEMA: u32 = 2;
+
+/// The first form with findings, plan and done: what was written before is read without them.
+pub const WITH_FINDINGS: u32 = 2;
 
 /// The summary of one run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -24,10 +29,19 @@ pub struct Summary {
     pub seed: u64,
     /// The worst of everything below.
     pub verdict: Verdict,
-    /// Why the verdict is what it is, in plain words; "no requirement checked" where none was.
+    /// Why the verdict is what it is, in plain words; "nothing was required" where nothing was.
     pub reasons: Vec<String>,
     /// Every requirement with what was found.
     pub requirements: Vec<RequirementResult>,
+    /// What besides requirements bears on the verdict.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub findings: Vec<Finding>,
+    /// What the run was to do.
+    #[serde(default)]
+    pub planned: Option<Work>,
+    /// What it did, as its stream shows.
+    #[serde(default)]
+    pub done: Option<Work>,
     /// Faults that were injected.
     pub faults: Vec<FaultResult>,
     /// Checksums of clean and faulted stream; null where they are the same.
@@ -68,7 +82,7 @@ impl Summary {
     /// Reads a `summary.json`.
     ///
     /// # Errors
-    /// If it isn't JSON, isn't a summary, or has another `schema`.
+    /// If it isn't JSON, isn't a summary, or has a newer `schema`.
     pub fn from_json(text: &str) -> Result<Self, SummaryError> {
         #[derive(Deserialize)]
         struct Version {
@@ -76,7 +90,7 @@ impl Summary {
         }
         let version: Version =
             serde_json::from_str(text).map_err(|e| SummaryError::Form(e.to_string()))?;
-        if version.schema != SCHEMA {
+        if !(1..=SCHEMA).contains(&version.schema) {
             return Err(SummaryError::Schema { found: version.schema });
         }
         serde_json::from_str(text).map_err(|e| SummaryError::Form(e.to_string()))
@@ -119,7 +133,9 @@ pub enum SummaryError {
     #[error("read the summary: {0}")]
     Form(String),
     /// Written by another version.
-    #[error("read the summary: schema {found} found, {SCHEMA} expected")]
+    #[error(
+        "read the summary: schema {found} found, 1 to {SCHEMA} expected; a newer one needs a newer octant"
+    )]
     Schema {
         /// The schema found.
         found: u32,
@@ -394,6 +410,12 @@ pub struct Baseline {
     /// What the faults did to it, against its own twin.
     #[serde(default)]
     pub counterfactual: Option<Counterfactual>,
+    /// What it was to do.
+    #[serde(default)]
+    pub planned: Option<Work>,
+    /// What it did, as its stream shows.
+    #[serde(default)]
+    pub done: Option<Work>,
     /// BLAKE3 of its stream.
     pub stream_hash: String,
     /// What became of the faults in it.

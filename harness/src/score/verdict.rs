@@ -1,6 +1,5 @@
-//! Verdicts: pass < inconclusive < fail < error, and the worst wins.
+//! Verdicts: none < pass < inconclusive < fail < error, and the worst wins; and a measure against its limit.
 
-use super::summary::{FaultResult, Summary};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
@@ -8,6 +7,8 @@ use serde_json::Value;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Verdict {
+    /// Nothing was required, so nothing is shown: the least of all, which changes no other.
+    None,
     /// It is shown to be good.
     Pass,
     /// Nothing is shown: a measure is missing, a fault never fired, a record was dropped.
@@ -20,7 +21,8 @@ pub enum Verdict {
 
 impl Verdict {
     /// All verdicts, from best to worst.
-    pub const ALL: [Self; 4] = [Self::Pass, Self::Inconclusive, Self::Fail, Self::Error];
+    pub const ALL: [Self; 5] =
+        [Self::None, Self::Pass, Self::Inconclusive, Self::Fail, Self::Error];
 
     /// The worse of the two.
     #[must_use]
@@ -32,7 +34,7 @@ impl Verdict {
     #[must_use]
     pub const fn exit_code(self) -> u8 {
         match self {
-            Self::Pass => 0,
+            Self::None | Self::Pass => 0,
             Self::Fail => 1,
             Self::Inconclusive => 3,
             Self::Error => 4,
@@ -43,6 +45,7 @@ impl Verdict {
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
+            Self::None => "none",
             Self::Pass => "pass",
             Self::Inconclusive => "inconclusive",
             Self::Fail => "fail",
@@ -147,11 +150,25 @@ impl RequirementResult {
         )
     }
 
+    /// It, with margin and verdict from value and limit again. What was inconclusive with a value was so for a
+    /// reason outside of it, which is found again where the reason is.
+    #[must_use]
+    pub(super) fn again(&self) -> Self {
+        let margin = self.value.map(|value| self.comparison.margin(value, self.limit));
+        let (verdict, reason) = match self.value {
+            _ if !self.limit.is_finite() => (Verdict::Inconclusive, self.reason.clone()),
+            None => (Verdict::Inconclusive, self.reason.clone()),
+            Some(value) if self.comparison.holds(value, self.limit) => (Verdict::Pass, None),
+            Some(_) => (Verdict::Fail, None),
+        };
+        Self { margin, verdict, reason, ..self.clone() }
+    }
+
     /// What is told of it where it isn't a pass.
     #[must_use]
     pub fn told(&self) -> Option<String> {
         match self.verdict {
-            Verdict::Pass => None,
+            Verdict::None | Verdict::Pass => None,
             Verdict::Fail | Verdict::Error => Some(self.sentence()),
             Verdict::Inconclusive => {
                 let reason = self.reason.as_deref().unwrap_or("nothing shown");
@@ -170,124 +187,6 @@ impl RequirementResult {
             [a, b] => (a, b),
         }
     }
-}
-
-/// Something other than a requirement that bears on the verdict: an overrun, a dropped record, a
-/// bench that failed.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Finding {
-    /// What it comes to.
-    pub verdict: Verdict,
-    /// What happened, in plain words.
-    pub reason: String,
-}
-
-/// Label of a run that passes because nothing was asked of it.
-pub const NO_REQUIREMENT: &str = "no requirement checked";
-
-/// What is told of a calibration that was refused.
-pub(crate) fn refusal(method: &str, reason: &str) -> String {
-    format!("calibration of {method} refused: {reason}")
-}
-
-/// Faults of both methods that never fired, with what is told of them.
-pub(crate) fn unfired(summary: &Summary) -> impl Iterator<Item = (&FaultResult, String)> {
-    let primary = summary.faults.iter().map(|fault| (fault, String::new()));
-    let baseline = summary.baseline.iter().flat_map(|baseline| {
-        baseline.faults.iter().map(|fault| (fault, format!(" in {}", baseline.label)))
-    });
-    primary.chain(baseline).filter(|(fault, _)| !fault.fired).map(|(fault, place)| {
-        let why = match fault.firings {
-            0 => "its trigger never came true",
-            _ => "it set in and altered nothing",
-        };
-        (fault, format!("fault {} never fired{place}: {why}", fault.id))
-    })
-}
-
-/// Holds a summary against its requirements, and sets `requirements`, `verdict` and `reasons`.
-///
-/// # Errors
-/// If the summary can't be written as JSON.
-pub fn judge(
-    summary: &mut Summary,
-    requirements: &[Requirement],
-    findings: &[Finding],
-) -> Result<(), serde_json::Error> {
-    let document = serde_json::to_value(&*summary)?;
-    let mut verdict = Verdict::Pass;
-    let mut reasons = Vec::new();
-    for finding in findings {
-        verdict = verdict.worst(finding.verdict);
-        reasons.push(finding.reason.clone());
-    }
-    let refusals = [
-        (summary.method.as_str(), summary.calibration.as_ref(), true),
-        summary
-            .baseline
-            .as_ref()
-            .map_or(("", None, false), |b| (b.label.as_str(), b.calibration.as_ref(), false)),
-    ];
-    for (method, calibration, primary) in refusals {
-        if let Some(reason) = calibration.and_then(|c| c.refused.as_ref()) {
-            // The baseline is there to be compared with: its refusal is told, the run stands.
-            if primary {
-                verdict = verdict.worst(Verdict::Fail);
-            }
-            reasons.push(refusal(method, reason));
-        }
-    }
-    for (_, reason) in unfired(summary) {
-        verdict = verdict.worst(Verdict::Inconclusive);
-        reasons.push(reason);
-    }
-    let results: Vec<RequirementResult> =
-        requirements.iter().map(|requirement| evaluate(requirement, &document)).collect();
-    for result in &results {
-        verdict = verdict.worst(result.verdict);
-        reasons.extend(result.told());
-    }
-    if requirements.is_empty() {
-        reasons.push(NO_REQUIREMENT.to_owned());
-    }
-    summary.verdict = verdict;
-    summary.reasons = reasons;
-    summary.requirements = results;
-    Ok(())
-}
-
-/// The worst of a judged summary but for its requirements: a calibration that was refused, a fault that
-/// never fired, a finding, and that it checks nothing.
-///
-/// A summary doesn't keep its findings, but [`judge`] gives a reason for each: where there are more
-/// reasons than the rest explains, there was one. A requirement that fails hides none of them.
-#[must_use]
-pub fn besides(summary: &Summary) -> Verdict {
-    let baseline = summary.baseline.as_ref();
-    let refused = |calibration: Option<&super::summary::Calibration>| {
-        calibration.is_some_and(|calibration| calibration.refused.is_some())
-    };
-    let primary_refused = refused(summary.calibration.as_ref());
-    let refusals = [primary_refused, refused(baseline.and_then(|b| b.calibration.as_ref()))];
-    let faults = summary.faults.iter().chain(baseline.iter().flat_map(|b| &b.faults));
-    let silent = faults.filter(|fault| !fault.fired).count();
-    let unkept = summary.requirements.iter().filter(|r| r.verdict != Verdict::Pass).count();
-    let nothing = summary.requirements.is_empty();
-    let explained = refusals.into_iter().filter(|refused| *refused).count()
-        + silent
-        + unkept
-        + usize::from(nothing);
-    let found = summary.reasons.len() > explained;
-    let mut worst = Verdict::Pass;
-    if nothing || silent > 0 || found {
-        worst = Verdict::Inconclusive;
-    }
-    if primary_refused {
-        worst = worst.worst(Verdict::Fail);
-    }
-    // How bad a finding was shows where nothing else is as bad.
-    let checks = summary.requirements.iter().map(|r| r.verdict).fold(worst, Verdict::worst);
-    if summary.verdict > checks { summary.verdict } else { worst }
 }
 
 /// Holds one requirement against a summary as JSON.

@@ -11,8 +11,6 @@ use minisign::KeyPair;
 pub(super) const SHORT: &str = include_str!("../../../fixtures/selftest/short.toml");
 const BIAS_STEP: &str = include_str!("../../../fixtures/selftest/bias-step.toml");
 const DROPPED: &str = include_str!("../../../fixtures/selftest/dropped.toml");
-/// Where no fault is wanted.
-const CLEAN: &str = "--only-faults=";
 
 type Work = fn(&Bench<'_>) -> Result<Outcome, String>;
 
@@ -32,7 +30,7 @@ fn fails(
 pub(super) fn must_pass() -> Vec<Case> {
     vec![
         passes("kept", "A requirement that is kept, without a fault.", |bench| {
-            Ok(bench.run(SHORT, &[CLEAN])?.into())
+            Ok(bench.run(&clean(SHORT)?, &[])?.into())
         }),
         passes("survived", "A spike that the core sees and survives.", |bench| {
             Ok(bench.run(SPIKE, &[])?.into())
@@ -63,8 +61,8 @@ pub(super) fn must_fail() -> Vec<Case> {
 fn runs() -> Vec<Case> {
     vec![
         fails("broken", "A limit that no run can keep.", (1, "NEAR"), |bench| {
-            let text = edited(SHORT, "limit = \"10 nmi\"", "limit = \"1e-9 nmi\"")?;
-            Ok(bench.run(&text, &[CLEAN])?.into())
+            let text = edited(&clean(SHORT)?, "limit = \"10 nmi\"", "limit = \"1e-9 nmi\"")?;
+            Ok(bench.run(&text, &[])?.into())
         }),
         fails(
             "harmed",
@@ -97,7 +95,23 @@ fn runs() -> Vec<Case> {
             (3, "NEAR: navigation is null"),
             |bench| {
                 let navigation = "[procedure.navigation]\nduration = \"10 min\"\n";
-                Ok(bench.run(&edited(SHORT, navigation, "")?, &[CLEAN])?.into())
+                Ok(bench.run(&edited(&clean(SHORT)?, navigation, "")?, &[])?.into())
+            },
+        ),
+        fails(
+            "fault-left-out",
+            "A requirement whose fault was left out on the command line is not shown.",
+            (3, "--only-faults left out"),
+            |bench| Ok(bench.run(SHORT, &["--only-faults="])?.into()),
+        ),
+        fails(
+            "nothing-required",
+            "A scenario whose requirements somebody removed doesn't pass where one is wanted.",
+            (3, "requires nothing"),
+            |bench| {
+                let text = clean(SHORT)?;
+                let end = text.find("[[requirements]]").ok_or("it has no requirement")?;
+                Ok(bench.run(&text[..end], &["--require"])?.into())
             },
         ),
         fails(
@@ -258,6 +272,18 @@ fn edited(text: &str, from: &str, to: &str) -> Result<String, String> {
     }
 }
 
+/// A scenario without its faults.
+fn clean(text: &str) -> Result<String, String> {
+    let mut parts = text.split("[[").map(str::to_owned);
+    let first = parts.next().unwrap_or_default();
+    let rest: Vec<String> = parts.collect();
+    if !rest.iter().any(|part| part.starts_with("faults]]")) {
+        return Err("leave out the faults: there is none".to_owned());
+    }
+    let kept = rest.iter().filter(|part| !part.starts_with("faults]]"));
+    Ok(kept.fold(first, |text, part| text + "[[" + part))
+}
+
 /// Turns one bit in the middle around.
 fn flip(bytes: &mut [u8]) -> Result<(), String> {
     let middle = bytes.len() / 2;
@@ -268,17 +294,17 @@ fn flip(bytes: &mut [u8]) -> Result<(), String> {
 
 /// A run with every sample in its recording.
 fn recorded(bench: &Bench<'_>) -> Result<(), String> {
-    let short = edited(SHORT, "duration = \"24 min\"", "duration = \"8 min\"")?;
+    let short = edited(&clean(SHORT)?, "duration = \"24 min\"", "duration = \"8 min\"")?;
     let short = edited(&short, "duration = \"10 min\"", "duration = \"1 min\"")?;
-    bench.run(&short, &[CLEAN, "--set", "record.samples=full"])?.summary().map(|_| ())
+    bench.run(&short, &["--set", "record.samples=full"])?.summary().map(|_| ())
 }
 
 /// A run that is signed by a new key; its public part comes back.
 fn evidence(bench: &Bench<'_>, name: &str) -> Result<String, String> {
     let public = key_pair(bench, name)?;
-    bench.write("scenario.toml", SHORT)?;
+    bench.write("scenario.toml", &clean(SHORT)?)?;
     let said = bench.octant_with(
-        &["run", "scenario.toml", "--out", "run", "--no-twin", CLEAN],
+        &["run", "scenario.toml", "--out", "run", "--no-twin"],
         &[(crate::evidence::signature::KEY, &format!("{name}.key"))],
     )?;
     needs(&said, 0).map(|()| public)

@@ -47,6 +47,17 @@ pub trait Source {
     /// Samples that the source will deliver in all, where it knows.
     fn samples_total(&self) -> Option<u64>;
 
+    /// Samples that there were to be, where the source can tell that from samples that it hasn't got: a
+    /// recording of a run that was broken off.
+    fn samples_planned(&self) -> Option<u64> {
+        self.samples_total()
+    }
+
+    /// It ends in the middle of something: what, in plain words. Known at its end.
+    fn cut_short(&self) -> Option<String> {
+        None
+    }
+
     /// The plant, where the source is one that faults can disturb.
     fn disturbed(&mut self) -> Option<&mut dyn Disturbed> {
         None
@@ -85,6 +96,14 @@ impl<S: Source + ?Sized> Source for Box<S> {
 
     fn samples_total(&self) -> Option<u64> {
         (**self).samples_total()
+    }
+
+    fn samples_planned(&self) -> Option<u64> {
+        (**self).samples_planned()
+    }
+
+    fn cut_short(&self) -> Option<String> {
+        (**self).cut_short()
     }
 
     fn disturbed(&mut self) -> Option<&mut dyn Disturbed> {

@@ -7,6 +7,7 @@ use super::foreign::{Foreign, McapMapping};
 use super::{Epoch, Source, SourceError};
 use crate::recorder::Samples;
 use crate::recorder::reader::{Epochs, Info, ReadError, RecordedEpoch, Recording};
+use crate::scenario::Scenario;
 use octant_plant::Truth;
 use octant_sample::GimbalCommand;
 use std::fs::File;
@@ -121,6 +122,18 @@ impl Source for Replay {
             Kind::Octant { total, .. } => *total,
             Kind::Foreign(_) => None,
         }
+    }
+
+    fn samples_planned(&self) -> Option<u64> {
+        let folder = Path::new(&self.path).parent().unwrap_or(Path::new(""));
+        let recorded = self.info().and_then(|info| {
+            Scenario::parse(&info.scenario, "scenario.toml", folder, &[]).ok()?.samples()
+        });
+        self.samples_total().max(recorded)
+    }
+
+    fn cut_short(&self) -> Option<String> {
+        self.truncated().then(|| format!("{} ends in the middle of a recording", self.path))
     }
 }
 

@@ -91,7 +91,7 @@ fn count<'a>(
         *match verdict {
             None => &mut counts.missing,
             Some(Verdict::Pass) => &mut counts.pass,
-            Some(Verdict::Inconclusive) => &mut counts.inconclusive,
+            Some(Verdict::None | Verdict::Inconclusive) => &mut counts.inconclusive,
             Some(Verdict::Fail) => &mut counts.fail,
             Some(Verdict::Error) => &mut counts.error,
         } += 1;

@@ -67,6 +67,7 @@ pub(super) fn command(arguments: &Arguments, scenario: &Path) -> Result<Verdict,
             Ended::Refused => "refused",
             Ended::SourceEnded => "source ended",
             Ended::Cancelled => "interrupted",
+            Ended::Misbehaved => "answered what no core may",
             Ended::Broken => "broken",
         },
         refused,
@@ -84,7 +85,7 @@ pub(super) fn command(arguments: &Arguments, scenario: &Path) -> Result<Verdict,
         return Err(Failure::bench(format!("failed to run {}: {error}", told.fmu)));
     }
     Ok(match run.ended {
-        Ended::Refused => Verdict::Fail,
+        Ended::Refused | Ended::Misbehaved => Verdict::Fail,
         Ended::Cancelled => Verdict::Inconclusive,
         _ => Verdict::Pass,
     })

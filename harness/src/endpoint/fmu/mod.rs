@@ -5,6 +5,7 @@
 
 mod ports;
 
+use super::answer::Misbehaviour;
 use super::{Conclusion, Endpoint, EndpointError, ParameterEstimate};
 use crate::fmu::mapping::bind::Cell;
 use crate::fmu::mapping::open::{self, Kept};
@@ -168,28 +169,47 @@ impl FmuEndpoint {
         let answers = &self.ports.answers;
         let read = |cell: &Option<Cell>| cell.as_ref().map(|cell| cell.read(numbers));
         let or_zero = |cell: &Option<Cell>| read(cell).unwrap_or(0.0);
-        let whole = |cell: &Option<Cell>| read(cell).map(|value| value as u64);
-        let measured = match (read(&answers.measured), read(&answers.nis)) {
-            (Some(0.0), _) => None,
-            (_, nis) => nis.filter(|nis| nis.is_finite()),
+        let wrong = |field: &str, found: f64, expected: &str| {
+            EndpointError::Misbehaved(Misbehaviour {
+                sample: epoch.sample.sequence,
+                field: field.to_owned(),
+                found: found.to_string(),
+                expected: expected.to_owned(),
+            })
+        };
+        let whole = |field: &str, cell: &Option<Cell>| match read(cell) {
+            // Doubles are whole numbers without gaps up to here.
+            Some(value)
+                if !(0.0..=9_007_199_254_740_992.0).contains(&value) || value.fract() != 0.0 =>
+            {
+                Err(wrong(field, value, "a whole number from 0 on"))
+            }
+            value => Ok(value.map(|value| value as u64)),
+        };
+        let nis = match (read(&answers.measured), read(&answers.nis)) {
+            (Some(0.0), _) | (_, None) => f64::NAN,
+            (Some(_), Some(nis)) if nis.is_nan() => {
+                return Err(wrong("nis", nis, "a number from 0 on where something was measured"));
+            }
+            (_, Some(nis)) => nis,
         };
         let mode = match read(&answers.mode) {
             Some(code) => {
                 let known = self.ports.modes.iter().find(|(value, _)| *value as f64 == code);
-                known.map(|(_, mode)| *mode).ok_or_else(|| {
-                    self.gone(format!("its mode is {code}, which modes doesn't name"))
-                })?
+                known
+                    .map(|(_, mode)| *mode)
+                    .ok_or_else(|| wrong("mode", code, "a value that the scenario's modes name"))?
             }
             None if self.taken >= self.procedure[1] => Mode::Done,
             None if self.taken >= self.procedure[0] => Mode::Navigating,
             None => Mode::Calibrating,
         };
         *output = Output {
-            sequence: whole(&answers.sequence).unwrap_or(epoch.sample.sequence),
-            device_time: whole(&answers.device_time)
+            sequence: whole("sequence", &answers.sequence)?.unwrap_or(epoch.sample.sequence),
+            device_time: whole("device_time", &answers.device_time)?
                 .map_or(epoch.sample.device_time, DeviceTime::from_ns),
             mode,
-            stop: or_zero(&answers.stop) as u16,
+            stop: whole("stop", &answers.stop)?.map_or(0, |stop| stop.min(u16::MAX.into()) as u16),
             moving: or_zero(&answers.moving) != 0.0,
             gimbal_command: GimbalCommand {
                 target: GimbalAngles::from_rad(
@@ -204,11 +224,11 @@ impl FmuEndpoint {
                 velocity_mps: answers.velocity.map_or([0.0; 3], |cells| cells.read(numbers)),
                 q_nb: answers.attitude.map_or([1.0, 0.0, 0.0, 0.0], |cells| cells.read(numbers)),
             },
-            health: Health::from_bits_retain(or_zero(&answers.health) as u32),
-            nis: measured.unwrap_or(f64::NAN),
+            health: Health::from_bits_retain(whole("health", &answers.health)?.unwrap_or(0) as u32),
+            nis,
             parameters_revision: self.estimate.revision,
         };
-        match whole(&answers.revision) {
+        match whole("parameters_revision", &answers.revision)? {
             Some(revision) => {
                 let revision = revision as u32;
                 if revision != self.estimate.revision {
@@ -267,6 +287,10 @@ impl Endpoint for FmuEndpoint {
         }
         self.taken += 1;
         self.take(epoch, output)
+    }
+
+    fn commands(&self) -> bool {
+        self.ports.answers.command.iter().any(Option::is_some)
     }
 
     fn uri(&self) -> String {

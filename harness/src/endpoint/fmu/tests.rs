@@ -188,7 +188,9 @@ fn a_core_that_ends_or_crashes_is_gone() {
         "endpoint fmu:core.fmu is gone: at 0 s the process of core was ended by SIGSEGV in fmi3DoStep"
     );
     // Mode 0 is none that the scenario names.
-    assert!(failing(Ok(true)).contains("its mode is 0, which modes doesn't name"));
+    assert!(
+        failing(Ok(true)).contains("mode is 0, expected a value that the scenario's modes name")
+    );
 }
 
 #[test]

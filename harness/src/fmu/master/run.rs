@@ -21,6 +21,7 @@ use crate::fmu::mapping::settings::Starts;
 use crate::recorder::Event;
 use crate::run::Control;
 use crate::scenario::{ScenarioError, connection_faults, text_of};
+use crate::score::judge::NO_REQUIREMENT;
 use crate::score::summary::FaultResult;
 use crate::score::verdict::Verdict;
 use std::path::{Path, PathBuf};
@@ -413,7 +414,7 @@ fn tell_faults(
 /// What a run comes to.
 fn judge(ended: &Ended, faults: &[FaultResult]) -> (Verdict, Vec<String>) {
     let mut reasons = Vec::new();
-    let mut verdict = Verdict::Pass;
+    let mut verdict = Verdict::None;
     match ended {
         Ended::AtStop | Ended::AskedByFmu { .. } => {}
         Ended::Interrupted { at_s } => {
@@ -429,8 +430,8 @@ fn judge(ended: &Ended, faults: &[FaultResult]) -> (Verdict, Vec<String>) {
         verdict = verdict.worst(Verdict::Inconclusive);
         reasons.push(fault.sentence());
     }
-    if verdict == Verdict::Pass {
-        reasons.push("no requirement checked".to_owned());
+    if verdict == Verdict::None {
+        reasons.push(NO_REQUIREMENT.to_owned());
     }
     (verdict, reasons)
 }

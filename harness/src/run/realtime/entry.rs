@@ -20,8 +20,31 @@ pub(super) enum Entry {
     Unit { event: UnitEvent, epoch: u64 },
     /// A fault, by its place in the list, set in or ended.
     Occurrence { fault: usize, begins: bool, epoch: u64 },
+    /// The bench broke its promise at a time of the source, for the first time.
+    Broke { step_ns: u64, broke: Broke },
     /// How time is kept, for who watches: once a second.
     Pace { frames: u64, latest_ns: u64, overruns: u64, late_answers: u64 },
+}
+
+/// How the bench broke its promise.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Broke {
+    /// A frame began so late, ns, that more did than may, or that nothing can be said of the time between.
+    Late(u64),
+    /// A sample could not be sent.
+    NotSent,
+    /// A step found no room on its way to the recorder.
+    Dropped,
+}
+
+impl std::fmt::Display for Broke {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Late(late_ns) => write!(f, "a sample left {} us late", late_ns / 1000),
+            Self::NotSent => write!(f, "a sample could not be sent"),
+            Self::Dropped => write!(f, "a step found no room on its way to the recorder"),
+        }
+    }
 }
 
 /// An output with what belongs to it.

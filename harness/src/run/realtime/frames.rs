@@ -1,6 +1,6 @@
 //! The real-time thread.
 
-use super::entry::{Answer, Entry};
+use super::entry::{Answer, Broke, Entry};
 use crate::endpoint::{Endpoint, EndpointError, Sent};
 use crate::run::drive::{Control, Ended, RunError, over};
 use crate::run::faulted::{Behind, Faulted};
@@ -18,6 +18,9 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Epochs whose answers may be outstanding. A device that owes more has stopped answering.
 const OUTSTANDING: usize = 256;
+
+/// A frame that begins so late was starved, whatever number of late ones may be, ns.
+const STARVED_NS: u64 = 1_000_000_000;
 
 /// From one word on the pace to the next.
 const PACE_NS: u64 = 1_000_000_000;
@@ -58,13 +61,27 @@ pub(super) struct Frames<'a> {
     /// Frames from one word on the pace to the next, and the largest lateness since the last one.
     pace_every: u64,
     latest_ns: u64,
+    /// Overruns that may be.
+    overruns_max: u64,
+    /// Stamp of the last sample of the source.
+    step_ns: u64,
+    broke: Promise,
+}
+
+/// Whether the bench has kept its promise.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Promise {
+    Kept,
+    /// Broken, and the ring had no room yet for the word.
+    Broken(u64, Broke),
+    Told,
 }
 
 impl<'a> Frames<'a> {
     pub(super) fn new(
         clock: FrameClock,
         period_ns: u64,
-        silence_ns: u64,
+        (silence_ns, overruns_max): (u64, u64),
         ring: rtrb::Producer<Entry>,
         stop: &'a AtomicBool,
     ) -> Self {
@@ -87,6 +104,16 @@ impl<'a> Frames<'a> {
             powered: true,
             pace_every: (PACE_NS / period_ns.max(1)).max(1),
             latest_ns: 0,
+            overruns_max,
+            step_ns: 0,
+            broke: Promise::Kept,
+        }
+    }
+
+    /// The bench broke its promise.
+    fn breaks(&mut self, broke: Broke) {
+        if self.broke == Promise::Kept {
+            self.broke = Promise::Broken(self.step_ns, broke);
         }
     }
 
@@ -118,7 +145,11 @@ impl<'a> Frames<'a> {
             }
             let due = self.found.clock.deadline();
             let began = self.found.clock.wait();
-            self.pace(began.since(due));
+            let late_ns = began.since(due);
+            if late_ns >= STARVED_NS || self.found.clock.overruns() > self.overruns_max {
+                self.breaks(Broke::Late(late_ns));
+            }
+            self.pace(late_ns);
             if control.look(number - 1) || self.stop.load(Ordering::Relaxed) {
                 return Ok(Ended::Cancelled);
             }
@@ -226,6 +257,7 @@ impl<'a> Frames<'a> {
     {
         let these = if self.powered { these } else { &[] };
         let step_ns = clean.sample.device_time.ns;
+        self.step_ns = step_ns;
         let truth = source.truth();
         // What was owed from frames before is answered first.
         let mut clean_told = false;
@@ -246,6 +278,7 @@ impl<'a> Frames<'a> {
                 Sent::NotSent => {
                     self.outstanding.pop_back();
                     self.found.not_sent += 1;
+                    self.breaks(Broke::NotSent);
                 }
             }
         }
@@ -316,8 +349,16 @@ impl<'a> Frames<'a> {
 
     /// Lays an entry into the ring; where that is full, counts it as dropped. True if it is in.
     fn lay(&mut self, entry: Entry) -> bool {
+        if let Promise::Broken(step_ns, broke) = self.broke
+            && self.ring.push(Entry::Broke { step_ns, broke }).is_ok()
+        {
+            self.broke = Promise::Told;
+        }
         let is_in = self.ring.push(entry).is_ok();
-        self.found.dropped += u64::from(!is_in);
+        if !is_in {
+            self.found.dropped += 1;
+            self.breaks(Broke::Dropped);
+        }
         is_in
     }
 

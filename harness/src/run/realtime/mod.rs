@@ -71,7 +71,7 @@ where
     let (ended, kept, time) = std::thread::scope(|scope| {
         let stop = &stop;
         let keeper = scope.spawn(|| {
-            let kept = keep::keep(consumer, &names, recorder, watcher);
+            let kept = keep::keep(consumer, &names, recorder, watcher, stop);
             stop.store(true, Ordering::Relaxed);
             kept
         });
@@ -81,7 +81,8 @@ where
             cpu: settings.cpu,
         });
         let clock = clock(settings, period_ns, granted.is_realtime());
-        let mut frames = frames::Frames::new(clock, period_ns, settings.silence_ns, producer, stop);
+        let limits = (settings.silence_ns, settings.overruns);
+        let mut frames = frames::Frames::new(clock, period_ns, limits, producer, stop);
         let Line { source, mut faulted, endpoint } = line;
         let ended = frames.run(source, faulted.as_deref_mut(), endpoint, control);
         // Its end of the ring goes with it: the keeper takes what is left, and ends.

@@ -12,6 +12,7 @@ static CASE: Section = section(&[
     key(
         "expect",
         Kind::Choice(&[
+            ("none", "nothing is required"),
             ("pass", "every requirement is kept"),
             ("fail", "a requirement is broken, or the calibration refused"),
             ("inconclusive", "nothing is shown"),
@@ -22,7 +23,7 @@ static CASE: Section = section(&[
     key(
         "because",
         Kind::Text,
-        Default::Absent("none: a pass is expected"),
+        Default::Absent("none: a pass is expected, or that nothing is required"),
         "Words that every reason of the verdict has to contain.",
     ),
 ]);

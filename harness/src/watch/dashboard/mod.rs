@@ -118,6 +118,7 @@ fn stage(follow: &Follow) -> (String, Style) {
     match &follow.stage {
         Stage::Ended(summary) => {
             let style = match summary.verdict {
+                Verdict::None => Style::new(),
                 Verdict::Pass => GOOD,
                 Verdict::Inconclusive => ACTS,
                 Verdict::Fail | Verdict::Error => ALERT,

@@ -1,0 +1,166 @@
+//! What a run was to do and what it did: the first thing that a verdict rests on.
+
+use crate::report::number::plain;
+use serde::{Deserialize, Serialize};
+
+/// Shortfall of a duration that is none, s: a unit changes its mode a sample or two late.
+const DURATION_SLACK_S: f64 = 1.0;
+/// Part of a duration that may be missing where the whole is short.
+const DURATION_SLACK: f64 = 0.01;
+/// Part of the references that may be missing: those due while a mode changes.
+const REFERENCE_SLACK: f64 = 0.01;
+
+/// Amounts of work, planned or done. Null: not planned, or nobody can tell.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Work {
+    /// Stops of the calibration at which the gimbals were held.
+    pub stops: Option<u64>,
+    /// Calibration with its alignment, s.
+    pub calibration_s: Option<f64>,
+    /// References (velocity or position) for the calibration.
+    pub references: Option<u64>,
+    /// Navigation, s.
+    pub navigation_s: Option<f64>,
+}
+
+/// A part of a run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Part {
+    /// The calibration.
+    Calibration,
+    /// The navigation.
+    Navigation,
+}
+
+impl Part {
+    /// The part that a measure of a summary belongs to, by its dotted path; `None`: to no part, or
+    /// to both.
+    #[must_use]
+    pub fn of(measure: &str) -> Option<Self> {
+        let path = measure.trim_matches('|');
+        let path = path.strip_prefix("baseline.").unwrap_or(path);
+        let path = path.strip_prefix("counterfactual.").unwrap_or(path);
+        match path.split('.').next() {
+            Some("calibration" | "parameters") => Some(Self::Calibration),
+            Some("navigation") => Some(Self::Navigation),
+            _ => None,
+        }
+    }
+}
+
+/// A part of a run that was not done as planned.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Short {
+    /// Which part.
+    pub part: Part,
+    /// `navigation: planned 24 h, done 1 s`.
+    pub text: String,
+}
+
+impl Work {
+    /// Where what was done falls short of this plan.
+    #[must_use]
+    pub fn short_of(&self, done: &Self) -> Vec<Short> {
+        let mut short = Vec::new();
+        let mut add = |part, what: &str, planned: String, done: String| {
+            short.push(Short { part, text: format!("{what}: planned {planned}, done {done}") });
+        };
+        let durations = [
+            (Part::Calibration, "calibration", self.calibration_s, done.calibration_s),
+            (Part::Navigation, "navigation", self.navigation_s, done.navigation_s),
+        ];
+        for (part, what, planned_s, done_s) in durations {
+            let Some(planned_s) = planned_s else { continue };
+            let done_s = done_s.unwrap_or(0.0);
+            let slack_s = DURATION_SLACK_S.min(planned_s * DURATION_SLACK);
+            // Written so that a done that is no number falls short.
+            if !(done_s >= planned_s - slack_s) {
+                add(part, what, duration(planned_s), duration(done_s));
+            }
+        }
+        if let (Some(planned), Some(done)) = (self.stops, done.stops)
+            && done < planned
+        {
+            let part = Part::Calibration;
+            add(part, "stops of the calibration", planned.to_string(), done.to_string());
+        }
+        if let (Some(planned), Some(done)) = (self.references, done.references)
+            && (done as f64) < planned as f64 * (1.0 - REFERENCE_SLACK) - 1.0
+        {
+            let part = Part::Calibration;
+            add(part, "references for the calibration", planned.to_string(), done.to_string());
+        }
+        short
+    }
+}
+
+/// A duration as people read it: `24 h`, `90 s`.
+#[must_use]
+pub fn duration(seconds: f64) -> String {
+    if seconds >= 3600.0 {
+        format!("{} h", plain(seconds / 3600.0, 6))
+    } else {
+        format!("{} s", plain(seconds, 6))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const PLAN: Work = Work {
+        stops: Some(8),
+        calibration_s: Some(14_400.0),
+        references: Some(14_400),
+        navigation_s: Some(86_400.0),
+    };
+
+    fn texts(done: &Work) -> Vec<String> {
+        PLAN.short_of(done).into_iter().map(|short| short.text).collect()
+    }
+
+    #[test]
+    fn what_is_done_as_planned_falls_short_of_nothing() {
+        assert!(texts(&PLAN).is_empty());
+        let late = Work { calibration_s: Some(14_399.5), references: Some(14_300), ..PLAN };
+        assert!(texts(&late).is_empty());
+        // What can't be told isn't held against anybody; what isn't planned neither.
+        assert!(texts(&Work { stops: None, references: None, ..PLAN }).is_empty());
+        assert!(Work::default().short_of(&Work::default()).is_empty());
+    }
+
+    #[test]
+    fn each_shortfall_is_told_with_plan_and_done() {
+        for (done, text) in [
+            (Work { navigation_s: Some(1.0), ..PLAN }, "navigation: planned 24 h, done 1 s"),
+            (Work { navigation_s: None, ..PLAN }, "navigation: planned 24 h, done 0 s"),
+            (Work { navigation_s: Some(f64::NAN), ..PLAN }, "navigation: planned 24 h, done – s"),
+            (Work { calibration_s: Some(3522.0), ..PLAN }, "calibration: planned 4 h, done 3522 s"),
+            (Work { stops: Some(3), ..PLAN }, "stops of the calibration: planned 8, done 3"),
+            (
+                Work { references: Some(200), ..PLAN },
+                "references for the calibration: planned 14400, done 200",
+            ),
+        ] {
+            assert_eq!(texts(&done), [text]);
+        }
+        // A short plan leaves little room.
+        let plan = Work { navigation_s: Some(10.0), ..Work::default() };
+        assert_eq!(plan.short_of(&Work { navigation_s: Some(9.5), ..plan }).len(), 1);
+    }
+
+    #[test]
+    fn a_measure_belongs_to_its_part() {
+        for (path, part) in [
+            ("navigation.longitude_error_arcmin.max", Some(Part::Navigation)),
+            ("|baseline.navigation.latitude_error_arcmin.final|", Some(Part::Navigation)),
+            ("counterfactual.navigation.radial_max_nmi", Some(Part::Navigation)),
+            ("|calibration.parameters.g_zz.error|", Some(Part::Calibration)),
+            ("counterfactual.parameters.g_zz.shift", Some(Part::Calibration)),
+            ("pacing.overruns", None),
+        ] {
+            assert_eq!(Part::of(path), part, "{path}");
+        }
+    }
+}
