@@ -38,6 +38,8 @@ mod fmu_process;
 mod fmu_source;
 mod formats;
 mod fuzz_corpus;
+#[cfg(target_os = "linux")]
+mod hostile;
 #[cfg(unix)]
 mod live;
 mod master;

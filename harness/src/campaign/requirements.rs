@@ -2,10 +2,12 @@
 
 use super::plan::Plan;
 use crate::scenario::read::requirement::{limit_of, path_of};
-use crate::score::verdict;
-use octant_requirements::RequirementsError;
+use crate::score::{signed, verdict};
 use octant_requirements::file::{Checker, read};
-use octant_requirements::requirement::{Comparison, Ensemble, Limit, Requirement, Requirements};
+use octant_requirements::requirement::{
+    Check, Comparison, Ensemble, Limit, Requirement, Requirements,
+};
+use octant_requirements::{Problem, RequirementsError};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 
@@ -48,14 +50,41 @@ pub fn load(path: &Path) -> Result<Requirements, RequirementsError> {
     let file = path.display().to_string();
     let text = std::fs::read_to_string(path).map_err(|error| RequirementsError {
         file: file.clone(),
-        problems: vec![octant_requirements::Problem {
+        problems: vec![Problem {
             line: 1,
             column: 1,
             path: String::new(),
             message: error.to_string(),
         }],
     })?;
-    read(&text, &file, &Measures)
+    let requirements = read(&text, &file, &Measures)?;
+    let problems = one_sided(&requirements, &text);
+    if problems.is_empty() { Ok(requirements) } else { Err(RequirementsError { file, problems }) }
+}
+
+/// Limits on one side of a measure that has a sign.
+fn one_sided(requirements: &Requirements, text: &str) -> Vec<Problem> {
+    let checks = || requirements.requirements.iter().filter_map(|r| Some((&r.id, r.check()?)));
+    let both = || checks().map(|(_, check)| (check.measure.as_str(), comparison(check.comparison)));
+    let problem = |(id, check): (&String, &Check)| {
+        let message = signed::one_sided((&check.measure, comparison(check.comparison)), both())?;
+        let quoted = format!("\"{}\"", check.measure);
+        let at = |line: &str| Some(line.find(&quoted)? + 1);
+        let (line, column) = (text.lines().enumerate())
+            .find_map(|(line, text)| Some((line + 1, at(text)?)))
+            .unwrap_or((1, 1));
+        Some(Problem { line, column, path: format!("requirements.{id}.measure"), message })
+    };
+    checks().filter_map(problem).collect()
+}
+
+const fn comparison(comparison: Comparison) -> verdict::Comparison {
+    match comparison {
+        Comparison::AtMost => verdict::Comparison::AtMost,
+        Comparison::Below => verdict::Comparison::Below,
+        Comparison::AtLeast => verdict::Comparison::AtLeast,
+        Comparison::Above => verdict::Comparison::Above,
+    }
 }
 
 /// The requirements of a file that runs verify.
@@ -66,12 +95,7 @@ pub(super) fn planned(requirements: &Requirements) -> Vec<Planned> {
             check: verdict::Requirement {
                 id: requirement.id.clone(),
                 measure: check.measure.clone(),
-                comparison: match check.comparison {
-                    Comparison::AtMost => verdict::Comparison::AtMost,
-                    Comparison::Below => verdict::Comparison::Below,
-                    Comparison::AtLeast => verdict::Comparison::AtLeast,
-                    Comparison::Above => verdict::Comparison::Above,
-                },
+                comparison: comparison(check.comparison),
                 // It was checked when the file was read.
                 limit: number(&check.measure, &check.limit).unwrap_or(f64::NAN),
             },

@@ -44,9 +44,9 @@ pub trait Endpoint {
     /// If the endpoint failed as a bench part: device gone, process died.
     fn step(&mut self, epoch: &Epoch, output: &mut Output) -> Result<(), EndpointError>;
 
-    /// The core says where it wants the gimbals.
-    fn commands(&self) -> bool {
-        true
+    /// What the core tells in its answers.
+    fn tells(&self) -> Tells {
+        Tells::ALL
     }
 
     /// Name of the endpoint in messages: its URI.
@@ -116,8 +116,8 @@ impl<E: Endpoint + ?Sized> Endpoint for Box<E> {
         (**self).step(epoch, output)
     }
 
-    fn commands(&self) -> bool {
-        (**self).commands()
+    fn tells(&self) -> Tells {
+        (**self).tells()
     }
 
     fn uri(&self) -> String {
@@ -159,6 +159,24 @@ impl<E: Endpoint + ?Sized> Endpoint for Box<E> {
     fn wired(&mut self) -> Option<&mut dyn Wired> {
         (**self).wired()
     }
+}
+
+/// What a core tells in its answers. What it doesn't isn't held against it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Tells {
+    /// Where it wants the gimbals.
+    pub commands: bool,
+    /// Latitude and longitude.
+    pub position: bool,
+    /// Velocity over ground.
+    pub velocity: bool,
+    /// Attitude.
+    pub attitude: bool,
+}
+
+impl Tells {
+    /// Everything.
+    pub const ALL: Self = Self { commands: true, position: true, velocity: true, attitude: true };
 }
 
 /// What a core says at the end of a run, as far as its realisation tells.

@@ -1,5 +1,6 @@
 //! What a run did, counted from its stream, and what it was to do, from its scenario.
 
+use crate::endpoint::Tells;
 use crate::scenario::{Calibration, Method, Scenario};
 use crate::score::work::Work;
 use octant_calibration::config::{Config, Estimator, StaticIntervals};
@@ -22,6 +23,8 @@ pub struct Plan {
     stops: Vec<PlannedStop>,
     alignment_s: f64,
     period_ns: u64,
+    /// What the unit tells; `None`: nobody knows, and it isn't looked whether that follows its input.
+    tells: Option<Tells>,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -31,6 +34,12 @@ struct PlannedStop {
 }
 
 impl Plan {
+    /// What the unit tells, where that is known.
+    #[must_use]
+    pub fn tells(&self) -> Option<Tells> {
+        self.tells
+    }
+
     /// A plan of durations alone, against which nothing is held.
     #[must_use]
     pub fn lasting(scenario: &Scenario) -> Self {
@@ -39,14 +48,13 @@ impl Plan {
         Self { work, period_ns: scenario.sample_period_ns, ..Self::default() }
     }
 
-    /// The plan of a method, whose core is configured like this. `commands`: the unit says where it wants
-    /// the gimbals. What navigates until the source ends is to navigate through all of its `samples`.
+    /// The plan of a method, whose core is configured like this. What navigates until the source ends is to navigate through all of its `samples`.
     #[must_use]
     pub fn of(
         scenario: &Scenario,
         method: Method,
         core: &Config,
-        commands: bool,
+        tells: Tells,
         samples: Option<u64>,
     ) -> Self {
         let calibration = match method {
@@ -54,7 +62,7 @@ impl Plan {
             Method::Baseline => scenario.baseline.as_ref(),
         };
         let stops = match calibration {
-            Some(calibration) if commands => stops(calibration, core),
+            Some(calibration) if tells.commands => stops(calibration, core),
             _ => Vec::new(),
         };
         let period_s = core.sample_period_ns as f64 * 1e-9;
@@ -72,7 +80,7 @@ impl Plan {
             octant_calibration::config::Alignment::Given { .. } => 0.0,
             octant_calibration::config::Alignment::Coarse { duration_s } => duration_s,
         };
-        Self { work, stops, alignment_s, period_ns: core.sample_period_ns }
+        Self { work, stops, alignment_s, period_ns: core.sample_period_ns, tells: Some(tells) }
     }
 }
 

@@ -51,6 +51,8 @@ fn of_bench(limits: &Realtime, run: &MethodRun, place: &str) -> Vec<Finding> {
             broke.reason
         ));
     }
+    // What the unit makes of the rest of a file that isn't there is not its doing.
+    reasons.extend(run.cut_short.iter().map(|cut_short| format!("{cut_short}{place}")));
     let pacing = run.kept.as_ref().map(|kept| &kept.pacing);
     reasons.extend(pacing.map(|pacing| too_late(limits, pacing)).unwrap_or_default());
     let inconclusive = |reason| Finding::of_bench(Verdict::Inconclusive, reason);
@@ -168,9 +170,6 @@ fn of_run(limits: &Realtime, run: &MethodRun, place: &str) -> Vec<Finding> {
     if run.ended == Ended::Cancelled {
         let after_s = run.watcher.elapsed_s();
         reasons.push(format!("interrupted after {after_s:.1} s of the run{place}"));
-    }
-    if let Some(cut_short) = &run.cut_short {
-        reasons.push(format!("{cut_short}{place}"));
     }
     let unlisted = run.watcher.health.unlisted();
     if unlisted > 0 {

@@ -4,6 +4,7 @@
 //! Sensors have noise, so a solution that is computed from them changes with every sample. What is found
 //! here proves nothing against a unit; it proves that nothing was shown.
 
+use crate::endpoint::Tells;
 use octant_sample::{Mode, Output};
 
 /// A navigation solution that is the same for so long stands still, ns: units that update once a second are
@@ -31,6 +32,7 @@ pub struct Follow {
     nis: Option<u64>,
     nis_count: u64,
     nis_alike: bool,
+    told: [bool; 3],
 }
 
 /// A part of the solution that stands still.
@@ -43,17 +45,13 @@ struct Standing {
 /// Names of the parts.
 const PARTS: [&str; 3] = ["position", "velocity", "attitude"];
 
-impl Default for Follow {
-    fn default() -> Self {
-        Self::new()
-    }
-}
-
 impl Follow {
-    /// Before the first answer.
+    /// Before the first answer of a unit that tells this; `None`: nothing is looked for in its solution.
     #[must_use]
-    pub fn new() -> Self {
+    pub fn new(tells: Option<Tells>) -> Self {
         Self {
+            told: tells
+                .map_or([false; 3], |tells| [tells.position, tells.velocity, tells.attitude]),
             parts: [Standing::default(); 3],
             longest: [(0, 0); 3],
             remembered: [0; REMEMBERED],
@@ -123,8 +121,9 @@ impl Follow {
         let navigated_ns = self.began_ns.map_or(0, |began| self.last_ns.saturating_sub(began));
         // Of a short navigation half of it is enough.
         let standing_ns = STANDING_NS.min((navigated_ns / 2).max(1_000_000_000));
-        for ((longest_ns, since_ns), part) in self.longest.into_iter().zip(PARTS) {
-            if longest_ns >= standing_ns {
+        for (i, part) in PARTS.into_iter().enumerate() {
+            let (longest_ns, since_ns) = self.longest[i];
+            if self.told[i] && longest_ns >= standing_ns {
                 reasons.push(format!(
                     "the {part} of the navigation doesn't follow the samples: not a bit of it changed \
                      for {:.3} s from {:.3} s on",
@@ -133,7 +132,11 @@ impl Follow {
                 ));
             }
         }
-        if reasons.is_empty() && self.seconds >= 8 && self.repeated * 2 > self.seconds {
+        if reasons.is_empty()
+            && self.told.contains(&true)
+            && self.seconds >= 8
+            && self.repeated * 2 > self.seconds
+        {
             reasons.push(format!(
                 "the navigation doesn't follow the samples: {} of {} solutions, one a second, are \
                  repetitions of those before",
@@ -166,7 +169,7 @@ mod tests {
 
     /// 300 s of navigation at 10 Hz, by what the solution of each sample is made of.
     fn watch(number: impl Fn(u64) -> [f64; 3]) -> Vec<String> {
-        let mut follow = Follow::new();
+        let mut follow = Follow::new(Some(Tells::ALL));
         for k in 1..=3000 {
             let [position, velocity, attitude] = number(k);
             let output = Output {
@@ -218,7 +221,7 @@ mod tests {
     #[test]
     fn nis_that_are_all_alike_are_found() {
         let with = |nis: &dyn Fn(u64) -> f64| {
-            let mut follow = Follow::new();
+            let mut follow = Follow::new(Some(Tells::ALL));
             for k in 0..20 {
                 follow.epoch(k, &Output { nis: nis(k), ..Output::default() });
             }

@@ -8,7 +8,7 @@ use super::host::Host;
 use super::realtime::{Kept, Line, drive_by_clock};
 use super::watch::Watcher;
 use crate::calibrate::{PassError, in_passes};
-use crate::endpoint::{Conclusion, Endpoint, EndpointError, InProcess, ParameterEstimate};
+use crate::endpoint::{Conclusion, Endpoint, EndpointError, InProcess, ParameterEstimate, Tells};
 use crate::recorder::{
     Event, Policy, Recorder, RecorderError, RecorderOptions, RecorderSummary, Samples, Trouble,
 };
@@ -268,9 +268,9 @@ pub fn run_as_far_as_it_goes(
         Recording::HashAlone => Recorder::stream_hash_only(&options),
         Recording::None => Recorder::none(),
     };
-    let commands = elsewhere.as_ref().is_none_or(|endpoint| endpoint.commands());
+    let tells = elsewhere.as_ref().map_or(Tells::ALL, |endpoint| endpoint.tells());
     let recorded = opened.as_ref().and_then(|source| source.samples_planned());
-    let plan = Plan::of(scenario, method, &core, commands, recorded);
+    let plan = Plan::of(scenario, method, &core, tells, recorded);
     let mut watcher = Watcher::new(plan);
     let compared = match recording {
         Recording::HashAlone => false,

@@ -6,7 +6,7 @@ use super::drive::{Control, drive};
 use super::faulted::drive_faulted;
 use super::method::{MethodError, SetupError, configurations, faulted};
 use super::watch::Watcher;
-use crate::endpoint::{Endpoint, EndpointError, InProcess, ParameterEstimate};
+use crate::endpoint::{Endpoint, EndpointError, InProcess, ParameterEstimate, Tells};
 use crate::recorder::Recorder;
 use crate::scenario::{Method, Scenario};
 use crate::source::{Epoch, PlantSource, Source, SourceError};
@@ -61,7 +61,7 @@ fn watched(
     let mut source = WatchedSource { source, seen: Rc::clone(&seen) };
     let endpoint = InProcess::new(&core).map_err(SetupError::Core)?;
     let mut endpoint = WatchedEndpoint { endpoint, seen: Rc::clone(&seen) };
-    let plan = Plan::of(scenario, Method::Primary, &core, true, None);
+    let plan = Plan::of(scenario, Method::Primary, &core, Tells::ALL, None);
     let (mut recorder, mut watcher) = (Recorder::none(), Watcher::new(plan));
     let control = Control::default();
     let receipts = match faulted(scenario, seed)? {

@@ -98,7 +98,7 @@ impl Watcher {
             scored_ns: None,
             last_ns: 0,
             check: AnswerCheck::new(),
-            follow: Follow::new(),
+            follow: Follow::new(plan.tells()),
             done: Done::towards(plan),
             drift: DriftScorer::new(),
             drift_samples: 0,

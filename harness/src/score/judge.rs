@@ -181,10 +181,12 @@ fn refusals(summary: &Summary) -> impl Iterator<Item = (&str, &Calibration, bool
     primary.chain(baseline.filter_map(|b| Some((b.label.as_str(), b.calibration.as_ref()?, false))))
 }
 
-/// Where the methods of a run fall short of their plan. What was refused is told as that.
+/// Where the methods of a run fall short of their plan. What was refused is told as that, unless it was the
+/// bench's doing.
 fn shortfalls(summary: &Summary) -> Vec<(Short, String)> {
+    let broke = bench_broke(summary);
     let refused = |calibration: Option<&Calibration>| {
-        calibration.is_some_and(|calibration| calibration.refused.is_some())
+        !broke && calibration.is_some_and(|calibration| calibration.refused.is_some())
     };
     let of = |planned: Option<&Work>, done: Option<&Work>, refused: bool, place: String| {
         let short = match (planned, done) {

@@ -6,7 +6,7 @@
 //! - [`ensemble`] has the statistics over many runs, [`compare`] those of two methods in pairs
 //! - [`health`] counts what the core reported on the way
 //! - [`summary`] is `summary.json`, [`measures`] are the numbers in it, [`work`] is what was planned and done
-//! - [`verdict`] holds a measure against its limit, [`judge`] derives the verdict of a summary, [`junit`] tells CI
+//! - [`verdict`] holds a measure against its limit, [`signed`] which measures have a sign, [`judge`] derives the verdict of a summary, [`junit`] tells CI
 
 pub mod compare;
 pub mod counterfactual;
@@ -21,6 +21,7 @@ pub mod parameters;
 pub mod reference;
 mod regression;
 mod series;
+pub mod signed;
 pub mod summary;
 pub mod trace;
 pub mod verdict;

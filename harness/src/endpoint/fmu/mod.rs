@@ -6,7 +6,7 @@
 mod ports;
 
 use super::answer::Misbehaviour;
-use super::{Conclusion, Endpoint, EndpointError, ParameterEstimate};
+use super::{Conclusion, Endpoint, EndpointError, ParameterEstimate, Tells};
 use crate::fmu::mapping::bind::Cell;
 use crate::fmu::mapping::open::{self, Kept};
 use crate::fmu::mapping::stepper::{Stepper, UseError};
@@ -289,8 +289,14 @@ impl Endpoint for FmuEndpoint {
         self.take(epoch, output)
     }
 
-    fn commands(&self) -> bool {
-        self.ports.answers.command.iter().any(Option::is_some)
+    fn tells(&self) -> Tells {
+        let answers = &self.ports.answers;
+        Tells {
+            commands: answers.command.iter().any(Option::is_some),
+            position: answers.position[..2].iter().any(Option::is_some),
+            velocity: answers.velocity.is_some(),
+            attitude: answers.attitude.is_some(),
+        }
     }
 
     fn uri(&self) -> String {

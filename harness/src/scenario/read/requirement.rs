@@ -5,8 +5,8 @@ use crate::scenario::Requirement;
 use crate::scenario::document::Value;
 use crate::scenario::error::{Problem, suggestion};
 use crate::scenario::quantity::{self, Quantity};
-use crate::score::measures;
 use crate::score::verdict::{self, Comparison};
+use crate::score::{measures, signed};
 use octant_sample::parameters::{Group, NAMES};
 
 /// Units that the names of measures end in, with the unit's own spelling.
@@ -53,6 +53,14 @@ pub(super) fn read(root: &Reader<'_>) -> Result<Vec<Requirement>, Problem> {
             limit_text,
             clause: table.optional_text("clause").map(str::to_owned),
         });
+    }
+    for (table, requirement) in root.tables("requirements").into_iter().zip(&all) {
+        let side = |requirement: &Requirement| requirement.check.comparison;
+        let both = all.iter().map(|other| (other.check.measure.as_str(), side(other)));
+        let this = (requirement.check.measure.as_str(), side(requirement));
+        if let Some(message) = signed::one_sided(this, both) {
+            return Err(table.problem("measure", message));
+        }
     }
     Ok(all)
 }

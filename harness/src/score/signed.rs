@@ -1,0 +1,89 @@
+//! Measures that have a sign: a limit on one side of one lets everything on the other side through.
+
+use super::verdict::Comparison;
+
+/// Whether a measure, by its path without bars, can be negative in a good run.
+#[must_use]
+pub fn is_signed(path: &str) -> bool {
+    let mut parts = path.rsplit('.');
+    let name = parts.next().unwrap_or(path);
+    match name {
+        // Distances are not; `radial_error_nmi.final` is one.
+        "final" | "slope_per_day" => !path.contains("radial"),
+        "error" | "estimate" | "true" | "normalized" | "shift" => path.contains("parameters"),
+        "latitude_arcmin" | "longitude_arcmin" => path.contains(".marks."),
+        "g_zz_deg_per_h_per_g" | "longitude_arcmin_per_day" => path.contains("reference"),
+        _ => false,
+    }
+}
+
+/// Says what is wrong with a limit on one side of a measure that has a sign; `None`: nothing. `all` are the
+/// limits that are set together with it: one on the other side makes two of them.
+#[must_use]
+pub fn one_sided<'a>(
+    (measure, comparison): (&str, Comparison),
+    all: impl IntoIterator<Item = (&'a str, Comparison)>,
+) -> Option<String> {
+    let is_upper = |comparison| matches!(comparison, Comparison::AtMost | Comparison::Below);
+    if measure.starts_with('|') || !is_signed(measure) {
+        return None;
+    }
+    let other_side = |(other, against): (&str, Comparison)| {
+        other == measure && is_upper(against) != is_upper(comparison)
+    };
+    if all.into_iter().any(other_side) {
+        return None;
+    }
+    let (sign, other) = (comparison.sign(), if is_upper(comparison) { ">=" } else { "<=" });
+    let through = if is_upper(comparison) { "small" } else { "large" };
+    Some(format!(
+        "found {measure:?} with {sign} alone: it has a sign, and however {through} it is would pass; expected \
+         \"|{measure}|\" for its magnitude, or a second requirement with {other} for the other side"
+    ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn signs_are_known() {
+        for signed in [
+            "navigation.latitude_error_arcmin.final",
+            "navigation.longitude_error_arcmin.slope_per_day",
+            "baseline.navigation.longitude_error_arcmin.final",
+            "navigation.marks.24h.longitude_arcmin",
+            "calibration.parameters.g_zz.error",
+            "calibration.parameters.g_zz.normalized",
+            "counterfactual.parameters.g_zz.shift",
+            "reference.residual_g_zz.longitude_arcmin_per_day",
+        ] {
+            assert!(is_signed(signed), "{signed}");
+        }
+        for magnitude in [
+            "navigation.latitude_error_arcmin.max",
+            "navigation.radial_error_nmi.final",
+            "navigation.marks.24h.longitude_max_arcmin",
+            "calibration.parameters.g_zz.sigma",
+            "calibration.nis_mean",
+            "counterfactual.worst_shift_sigma",
+            "reference.random_walk.latitude_final_arcmin",
+        ] {
+            assert!(!is_signed(magnitude), "{magnitude}");
+        }
+    }
+
+    #[test]
+    fn one_side_of_a_sign_is_refused_with_the_spelling_to_use() {
+        let slope = "navigation.longitude_error_arcmin.slope_per_day";
+        let upper = (slope, Comparison::AtMost);
+        let lower = (slope, Comparison::Above);
+        let text = one_sided(upper, [upper]).unwrap();
+        assert!(text.contains(&format!("\"|{slope}|\"")) && text.contains("with >= for"), "{text}");
+        assert!(one_sided(lower, [lower, lower]).unwrap().contains("with <= for"));
+        assert_eq!(one_sided(upper, [upper, lower]), None);
+        let bars = format!("|{slope}|");
+        assert_eq!(one_sided((&bars, Comparison::AtMost), []), None);
+        assert_eq!(one_sided(("calibration.nis_mean", Comparison::AtMost), []), None);
+    }
+}
