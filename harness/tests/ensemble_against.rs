@@ -95,6 +95,7 @@ impl Bench {
             reasons: Vec::new(),
             requirements: Vec::new(),
             findings: Vec::new(),
+            decision: None,
             planned: None,
             done: None,
             faults: Vec::new(),

@@ -129,6 +129,7 @@ fn data() -> ReportData {
         reasons: vec![],
         requirements: vec![],
         findings: Vec::new(),
+        decision: None,
         planned: None,
         done: None,
         faults: vec![],

@@ -3,7 +3,7 @@
 use octant::evidence::discrepancy::of_run;
 use octant::run::{Control, Recording, assemble, run_method};
 use octant::scenario::{Method, Scenario};
-use octant::score::judge::{About, Finding, NO_REQUIREMENT, derive, judge};
+use octant::score::judge::{About, Finding, NO_REQUIREMENT, derive, judge, judge_by};
 use octant::score::junit::junit;
 use octant::score::measures;
 use octant::score::summary::{
@@ -26,6 +26,7 @@ fn summary() -> Summary {
         reasons: vec![],
         requirements: vec![],
         findings: Vec::new(),
+        decision: None,
         planned: None,
         done: None,
         faults: vec![],
@@ -240,6 +241,29 @@ fn after_the_bench_failed_nothing_is_judged_but_what_was_broken_before() {
     refused.calibration.as_mut().unwrap().refused = Some("no".to_owned());
     judge(&mut refused, &[], &late()).unwrap();
     assert_eq!(refused.verdict, open);
+}
+
+#[test]
+fn within_the_uncertainty_of_the_reference_nothing_is_shown() {
+    // The longitude's maximum is 0.75.
+    let at = |limit, uncertainty: Result<f64, String>| {
+        let mut judged = summary();
+        let asked = requirement(LONGITUDE, Comparison::AtMost, limit);
+        judge_by(&mut judged, &[asked], &[], |_| uncertainty.clone()).unwrap();
+        // Whoever reads it comes to the same.
+        let read = Summary::from_json(&judged.to_json().unwrap()).unwrap();
+        assert_eq!(derive(&read).verdict, judged.verdict);
+        (judged.verdict, judged.reasons.join("; "))
+    };
+    let (pass, open, fail) = (Verdict::Pass, Verdict::Inconclusive, Verdict::Fail);
+    assert_eq!(at(1.0, Ok(0.0)).0, pass);
+    assert_eq!(at(1.0, Ok(0.2)).0, pass);
+    assert_eq!(at(0.8, Ok(0.1)).0, open);
+    assert_eq!(at(0.7, Ok(0.1)).0, open);
+    assert_eq!(at(0.5, Ok(0.1)).0, fail);
+    let (_, told) = at(0.8, Ok(0.1));
+    assert!(told.contains("is 0.75, which its reference, uncertain by 0.1, can't tell"), "{told}");
+    assert_eq!(at(1.0, Err("nobody says".to_owned())), (open, "NAV-1: nobody says".to_owned()));
 }
 
 #[test]

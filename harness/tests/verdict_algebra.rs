@@ -165,6 +165,7 @@ impl Parts {
             reasons: Vec::new(),
             requirements: Vec::new(),
             findings: Vec::new(),
+            decision: None,
             planned: None,
             done: None,
             faults: self.fired.iter().map(fault).collect(),

@@ -11,6 +11,7 @@ use crate::evidence::discrepancy;
 use crate::evidence::disposition::Dispositions;
 use crate::score::summary::{Calibration, HeightChannel, Summary};
 use crate::score::verdict::Verdict;
+use crate::score::work::duration;
 use maud::{Markup, html};
 use octant_sample::Parameters;
 use octant_sample::parameters::PARAMETER_COUNT;
@@ -102,6 +103,7 @@ pub fn render(data: &ReportData) -> String {
         (header(data))
         (figures(summary))
         (requirements(summary))
+        (planned_and_done(summary))
         (faults(summary))
         (counterfactual(summary))
         (drift(summary))
@@ -251,9 +253,43 @@ fn figures(summary: &Summary) -> Markup {
     }
 }
 
+/// What was planned and what was done of it.
+fn planned_and_done(summary: &Summary) -> Markup {
+    let (Some(planned), Some(done)) = (&summary.planned, &summary.done) else { return html! {} };
+    let count = |value: Option<u64>| value.map(|v| v.to_string());
+    let time = |value: Option<f64>| value.map(duration);
+    let rows = [
+        ("Stops of the calibration", count(planned.stops), count(done.stops)),
+        ("Calibration", time(planned.calibration_s), time(done.calibration_s)),
+        ("References for it", count(planned.references), count(done.references)),
+        ("Navigation", time(planned.navigation_s), time(done.navigation_s)),
+    ];
+    let none = || "–".to_owned();
+    html! {
+        h3 { "Planned and done" }
+        table {
+            thead { tr { th { "" } th.n { "Planned" } th.n { "Done" } } }
+            tbody {
+                @for (what, planned, done) in rows {
+                    @if planned.is_some() || done.is_some() {
+                        tr {
+                            td { (what) }
+                            td.n { (planned.unwrap_or_else(none)) }
+                            td.n { (done.unwrap_or_else(none)) }
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
 fn requirements(summary: &Summary) -> Markup {
     html! {
         h2 { "Requirements" }
+        @if let Some(decided) = &summary.decision {
+            p.hint { (decided.text) "." }
+        }
         @if summary.requirements.is_empty() {
             p.empty { "No requirement was checked: the run shows what happened, and asks nothing of it." }
         } @else {
@@ -268,7 +304,8 @@ fn requirements(summary: &Summary) -> Markup {
                             td { strong { (r.id) } }
                             td { span.mono { (r.measure) }
                                 @if let Some(reason) = &r.reason { div.reason { (reason) } } }
-                            td.n { (sign(r.comparison.sign())) " " (number::plain(r.limit, 4)) }
+                            td.n { (sign(r.comparison.sign())) " " (number::plain(r.limit, 4))
+                                @if let Some(u) = r.uncertainty { " ± " (number::plain(u, 3)) } }
                             td.n { (r.value.map_or_else(|| "–".to_owned(), |v| number::significant(v, 4))) }
                             td.n { (r.margin.map_or_else(|| "–".to_owned(), |v| number::significant(v, 3))) }
                             td.n { (badge(r.verdict)) }

@@ -7,7 +7,8 @@ use crate::evidence::disposition::Dispositions;
 use crate::report::counterfactual::in_words;
 use crate::report::{Provenance, ReportData, number};
 use crate::scenario::{Endpoint, Motion, Scenario, Source};
-use crate::score::judge::{Finding, judge};
+use crate::score::decision::{Against, Rule};
+use crate::score::judge::{Finding, judge_by};
 use crate::score::reference::{ReferenceInput, reference};
 use crate::score::summary::{
     AlteredStreams, Baseline, FaultResult, ParameterScore, SCHEMA, Summary,
@@ -99,6 +100,17 @@ pub fn assemble_with(
     let mut findings = findings(scenario, &primary, baseline.as_ref());
     findings.extend(choice.findings(!scenario.requirements.is_empty()));
     let (planned, done) = primary.watcher.work();
+    let against = Against {
+        simulated: match &scenario.source {
+            Source::Plant | Source::Fmu(_) => true,
+            // A recording of ours that has the truth has that of a simulation.
+            Source::Replay { mapping: None, .. } => primary.navigation.is_some(),
+            Source::Replay { .. } | Source::Text(_) | Source::Live(_) => false,
+        },
+        latitude_rad: scenario.site.latitude_rad,
+        height_m: scenario.site.height_m,
+        navigation_s: done.navigation_s.unwrap_or_default(),
+    };
     let counterfactual = difference(scenario, &primary);
     let baseline_counterfactual = baseline.as_ref().and_then(|run| difference(scenario, run));
     let mut summary = Summary {
@@ -110,6 +122,7 @@ pub fn assemble_with(
         reasons: Vec::new(),
         requirements: Vec::new(),
         findings: Vec::new(),
+        decision: Some(scenario.decision.decided(&against)),
         planned: Some(planned),
         done: Some(done),
         faults: primary.receipts.iter().map(FaultResult::from).collect(),
@@ -133,7 +146,12 @@ pub fn assemble_with(
         stream_hash: primary.recorder.stream_hash.clone(),
     };
     let requirements: Vec<_> = scenario.requirements.iter().map(|r| r.check.clone()).collect();
-    judge(&mut summary, &requirements, &findings)?;
+    judge_by(&mut summary, &requirements, &findings, |measure| {
+        if scenario.decision.rule() == Rule::SimpleAcceptance {
+            return Ok(0.0);
+        }
+        scenario.decision.uncertainty(measure, &against)
+    })?;
     let report = ReportData {
         summary: summary.clone(),
         facts: facts(scenario),

@@ -83,6 +83,8 @@ pub struct Scenario {
     pub faults: Vec<Fault>,
     /// Limits that the results have to keep.
     pub requirements: Vec<Requirement>,
+    /// What a value near a limit comes to.
+    pub decision: crate::score::decision::Decision,
     /// What is recorded.
     pub record: Record,
     /// Where samples come from.

@@ -84,10 +84,37 @@ pub fn judge(
     requirements: &[Requirement],
     findings: &[Finding],
 ) -> Result<(), serde_json::Error> {
+    judge_by(summary, requirements, findings, |_| Ok(0.0))
+}
+
+/// As [`judge`], with the expanded uncertainty of what each measure is held against, or why nobody knows it.
+///
+/// # Errors
+/// If the summary can't be written as JSON.
+pub fn judge_by(
+    summary: &mut Summary,
+    requirements: &[Requirement],
+    findings: &[Finding],
+    uncertainty: impl Fn(&str) -> Result<f64, String>,
+) -> Result<(), serde_json::Error> {
     let document = serde_json::to_value(&*summary)?;
     summary.findings = findings.to_vec();
-    summary.requirements =
-        requirements.iter().map(|requirement| evaluate(requirement, &document)).collect();
+    let result = |requirement: &Requirement| {
+        let result = evaluate(requirement, &document);
+        match uncertainty(&requirement.measure) {
+            Ok(uncertainty) => result.with_uncertainty(uncertainty),
+            Err(_) if result.value.is_none() => result,
+            // Without a value nothing of it is decided, now or when it is derived again.
+            Err(reason) => RequirementResult {
+                value: None,
+                margin: None,
+                verdict: Verdict::Inconclusive,
+                reason: Some(reason),
+                ..result
+            },
+        }
+    };
+    summary.requirements = requirements.iter().map(result).collect();
     let results = std::mem::take(&mut summary.requirements);
     summary.requirements =
         results.into_iter().map(|result| as_far_as_done(summary, result)).collect();

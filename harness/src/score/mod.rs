@@ -6,10 +6,11 @@
 //! - [`ensemble`] has the statistics over many runs, [`compare`] those of two methods in pairs
 //! - [`health`] counts what the core reported on the way
 //! - [`summary`] is `summary.json`, [`measures`] are the numbers in it, [`work`] is what was planned and done
-//! - [`verdict`] holds a measure against its limit, [`signed`] which measures have a sign, [`judge`] derives the verdict of a summary, [`junit`] tells CI
+//! - [`verdict`] holds a measure against its limit, [`decision`] what a value near its limit comes to, [`signed`] which measures have a sign, [`judge`] derives the verdict of a summary, [`junit`] tells CI
 
 pub mod compare;
 pub mod counterfactual;
+pub mod decision;
 pub mod drift;
 pub mod ensemble;
 pub mod floor;

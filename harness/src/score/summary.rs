@@ -3,6 +3,7 @@
 //! Nothing of host or clock is in it: the same scenario, seed and core give the same bytes.
 
 use super::counterfactual::Counterfactual;
+use super::decision::Decided;
 use super::judge::Finding;
 use super::reference::Reference;
 use super::verdict::{RequirementResult, Verdict};
@@ -36,6 +37,9 @@ pub struct Summary {
     /// What besides requirements bears on the verdict.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub findings: Vec<Finding>,
+    /// How it is decided what a value near its limit comes to.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub decision: Option<Decided>,
     /// What the run was to do.
     #[serde(default)]
     pub planned: Option<Work>,

@@ -1,5 +1,6 @@
 //! Verdicts: none < pass < inconclusive < fail < error, and the worst wins; and a measure against its limit.
 
+use super::decision::in_band;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
@@ -131,6 +132,9 @@ pub struct RequirementResult {
     pub value: Option<f64>,
     /// Room to the limit, negative where it is broken.
     pub margin: Option<f64>,
+    /// Half of the guard band about the limit; null where it is none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub uncertainty: Option<f64>,
     /// What it comes to.
     pub verdict: Verdict,
     /// Why it is inconclusive.
@@ -155,13 +159,39 @@ impl RequirementResult {
     #[must_use]
     pub(super) fn again(&self) -> Self {
         let margin = self.value.map(|value| self.comparison.margin(value, self.limit));
+        let band = self.uncertainty.unwrap_or(0.0);
         let (verdict, reason) = match self.value {
             _ if !self.limit.is_finite() => (Verdict::Inconclusive, self.reason.clone()),
             None => (Verdict::Inconclusive, self.reason.clone()),
+            Some(value) if in_band(value, self.limit, band) => {
+                (Verdict::Inconclusive, Some(self.within(value, band)))
+            }
             Some(value) if self.comparison.holds(value, self.limit) => (Verdict::Pass, None),
             Some(_) => (Verdict::Fail, None),
         };
         Self { margin, verdict, reason, ..self.clone() }
+    }
+
+    /// That a value is too near to its limit to be told from it.
+    fn within(&self, value: f64, band: f64) -> String {
+        let plain = |value| crate::report::number::plain(value, 6);
+        format!(
+            "{} is {}, which its reference, uncertain by {}, can't tell from the limit of {}",
+            self.measure,
+            plain(value),
+            plain(band),
+            plain(self.limit)
+        )
+    }
+
+    /// It, decided with an uncertainty of its reference.
+    #[must_use]
+    pub(super) fn with_uncertainty(self, uncertainty: f64) -> Self {
+        if uncertainty > 0.0 {
+            Self { uncertainty: Some(uncertainty), ..self }.again()
+        } else {
+            self
+        }
     }
 
     /// What is told of it where it isn't a pass.
@@ -213,6 +243,7 @@ pub fn evaluate(requirement: &Requirement, summary: &Value) -> RequirementResult
         limit: requirement.limit,
         value,
         margin: value.map(|v| requirement.comparison.margin(v, requirement.limit)),
+        uncertainty: None,
         verdict,
         reason,
     }

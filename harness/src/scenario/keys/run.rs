@@ -53,6 +53,12 @@ pub(crate) static SCENARIO: Section = section(&[
         "Limits that the results have to keep.",
     ),
     key(
+        "decision",
+        Kind::Table(&DECISION),
+        Default::Section,
+        "What a value near its limit comes to, by how uncertain its reference is.",
+    ),
+    key(
         "faults",
         Kind::VariantTables(&faults::FAULT, 1000),
         Default::Absent("no fault is injected"),
@@ -267,6 +273,45 @@ const fn positions() -> [(&'static str, &'static str); SEQUENCES.len()] {
 
 /// Names and meanings of the core's sequences.
 pub(crate) const POSITIONS: &[(&str, &str)] = &positions();
+
+static DECISION: Section = section(&[
+    key(
+        "rule",
+        Kind::Choice(&[
+            ("guard-band", "within the uncertainty of its limit it is inconclusive"),
+            ("simple-acceptance", "it is held against its limit as it is"),
+        ]),
+        Default::Absent("guard-band; of simulated truth the band is zero"),
+        "What a value comes to that its reference can't tell from its limit (JCGM 106).",
+    ),
+    key(
+        "position",
+        Kind::Quantity(&[Dimension::LENGTH], Bounds::NotNegative),
+        Default::Absent("not stated: exact where it is simulated"),
+        "Expanded uncertainty (95 %) of the reference position, in each direction.",
+    ),
+    key(
+        "uncertainties",
+        Kind::Tables(&UNCERTAINTY, 0, 1000),
+        Default::Absent("none is stated"),
+        "Expanded uncertainties (95 %) of what single measures are held against, such as a turntable.",
+    ),
+]);
+
+static UNCERTAINTY: Section = section(&[
+    key(
+        "measure",
+        Kind::Text,
+        Default::Required,
+        "The measure, as in a requirement, without bars.",
+    ),
+    key(
+        "uncertainty",
+        Kind::Limit,
+        Default::Required,
+        "Its uncertainty: a quantity, or a number in the measure's unit.",
+    ),
+]);
 
 static REQUIREMENT: Section = section(&[
     key("id", Kind::Text, Default::Required, "Identifier, unique in the scenario."),

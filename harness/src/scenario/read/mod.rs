@@ -221,6 +221,7 @@ pub(crate) fn scenario(document: Table, folder: &Path) -> Result<Scenario, Probl
         screening,
         faults: Vec::new(),
         requirements: requirement::read(&root)?,
+        decision: requirement::decision(&root.table("decision")?)?,
         record: record(&root.table("record")?, sample_period_ns)?,
         source,
         endpoint,

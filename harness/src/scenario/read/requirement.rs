@@ -5,6 +5,7 @@ use crate::scenario::Requirement;
 use crate::scenario::document::Value;
 use crate::scenario::error::{Problem, suggestion};
 use crate::scenario::quantity::{self, Quantity};
+use crate::score::decision::{Decision, Rule, Uncertainty};
 use crate::score::verdict::{self, Comparison};
 use crate::score::{measures, signed};
 use octant_sample::parameters::{Group, NAMES};
@@ -65,12 +66,40 @@ pub(super) fn read(root: &Reader<'_>) -> Result<Vec<Requirement>, Problem> {
     Ok(all)
 }
 
+/// The decision rule.
+pub(super) fn decision(table: &Reader<'_>) -> Result<Decision, Problem> {
+    let rule = table.optional_text("rule").map(|rule| match rule {
+        "simple-acceptance" => Rule::SimpleAcceptance,
+        _ => Rule::GuardBand,
+    });
+    let mut uncertainties: Vec<Uncertainty> = Vec::new();
+    for stated in table.tables("uncertainties") {
+        let measure = stated.text("measure")?;
+        let bare = path_of(measure).map_err(|message| stated.problem("measure", message))?;
+        if uncertainties.iter().any(|other| other.measure == bare) {
+            let message = format!("found {bare:?} a second time, expected one uncertainty of each");
+            return Err(stated.problem("measure", message));
+        }
+        let (uncertainty, _) = limit_at(&stated, "uncertainty", bare)?;
+        if !(uncertainty >= 0.0 && uncertainty.is_finite()) {
+            let message = format!("found {uncertainty}, expected a number from 0 on");
+            return Err(stated.problem("uncertainty", message));
+        }
+        uncertainties.push(Uncertainty { measure: bare.to_owned(), uncertainty });
+    }
+    Ok(Decision { rule, position_m: table.optional_si("position"), uncertainties })
+}
+
 fn limit(table: &Reader<'_>, measure: &str) -> Result<(f64, String), Problem> {
-    let Some(Value::Text(text)) = table.node("limit").map(|node| &node.value) else {
-        let number = table.number("limit")?;
+    limit_at(table, "limit", measure)
+}
+
+fn limit_at(table: &Reader<'_>, key: &str, measure: &str) -> Result<(f64, String), Problem> {
+    let Some(Value::Text(text)) = table.node(key).map(|node| &node.value) else {
+        let number = table.number(key)?;
         return Ok((number, number.to_string()));
     };
-    let number = limit_of(measure, text).map_err(|message| table.problem("limit", message))?;
+    let number = limit_of(measure, text).map_err(|message| table.problem(key, message))?;
     Ok((number, text.to_owned()))
 }
 

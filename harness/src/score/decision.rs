@@ -1,0 +1,233 @@
+//! The decision rule: what a value near its limit comes to, where what it was measured against is itself
+//! uncertain (JCGM 106:2012, guarded acceptance and rejection).
+
+use octant_earth::ellipsoid::{meridian_radius_m, transverse_radius_m};
+use serde::{Deserialize, Serialize};
+
+/// Metres of a nautical mile.
+const NMI_M: f64 = 1852.0;
+
+/// What a value within the uncertainty of its reference comes to.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Rule {
+    /// Within the uncertainty of a limit nothing is shown: the guard band is as wide as the expanded uncertainty
+    /// on both sides (JCGM 106, 8.3.2).
+    #[default]
+    GuardBand,
+    /// A value is held against its limit as it is (JCGM 106, 8.2.1).
+    SimpleAcceptance,
+}
+
+/// An uncertainty that is stated for one measure.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Uncertainty {
+    /// The measure, by its path without bars.
+    pub measure: String,
+    /// Expanded uncertainty (coverage of 95 %), in the measure's unit.
+    pub uncertainty: f64,
+}
+
+/// The rule of a scenario with what it says of its references.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Decision {
+    /// The rule; `None`: it isn't named.
+    pub rule: Option<Rule>,
+    /// Expanded uncertainty (95 %) of the reference position, m, in each direction.
+    pub position_m: Option<f64>,
+    /// Uncertainties of single measures, which go before what follows from others.
+    pub uncertainties: Vec<Uncertainty>,
+}
+
+/// Where and how long was navigated, and against what.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Against {
+    /// The truth is simulated: it is exact.
+    pub simulated: bool,
+    /// Geodetic latitude, rad.
+    pub latitude_rad: f64,
+    /// Height, m.
+    pub height_m: f64,
+    /// Length of the navigation, s.
+    pub navigation_s: f64,
+}
+
+/// How it is decided, for whoever reads the result.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Decided {
+    /// The rule.
+    pub rule: Rule,
+    /// In words: the rule, and what the references are uncertain by.
+    pub text: String,
+}
+
+impl Decision {
+    /// The expanded uncertainty of what a measure is held against, in the measure's unit.
+    ///
+    /// # Errors
+    /// In words, if a reference is not exact, and nobody has said how good it is.
+    pub fn uncertainty(&self, measure: &str, against: &Against) -> Result<f64, String> {
+        let bare = measure.trim_matches('|');
+        if let Some(stated) = self.uncertainties.iter().find(|stated| stated.measure == bare) {
+            return Ok(stated.uncertainty);
+        }
+        if !is_referred(bare) {
+            return Ok(0.0);
+        }
+        match self.position_m {
+            Some(position_m) if bare.contains("navigation.") => {
+                Ok(of_position(bare, position_m, against))
+            }
+            _ if against.simulated || self.rule == Some(Rule::SimpleAcceptance) => Ok(0.0),
+            _ => Err("nobody says how uncertain its reference is: expected decision.position, an \
+                 uncertainty of the measure in [[decision.uncertainties]], or decision.rule = \
+                 \"simple-acceptance\""
+                .to_owned()),
+        }
+    }
+
+    /// The rule by which it is decided.
+    #[must_use]
+    pub fn rule(&self) -> Rule {
+        self.rule.unwrap_or_default()
+    }
+
+    /// How it is decided.
+    #[must_use]
+    pub fn decided(&self, against: &Against) -> Decided {
+        let rule = self.rule();
+        let how = match rule {
+            Rule::GuardBand => {
+                "within the expanded uncertainty (95 %) of its reference a value is inconclusive \
+                 (guard band, JCGM 106)"
+            }
+            Rule::SimpleAcceptance => {
+                "a value is held against its limit as it is, whatever its reference is uncertain by (simple \
+                 acceptance, JCGM 106)"
+            }
+        };
+        let mut known = Vec::new();
+        if let Some(position_m) = self.position_m {
+            known.push(format!("reference position ± {position_m} m"));
+        }
+        known.extend(
+            self.uncertainties.iter().map(|u| format!("{} ± {}", u.measure, u.uncertainty)),
+        );
+        let known = match (known.is_empty(), against.simulated) {
+            (false, _) => known.join(", "),
+            (true, true) => "the truth is simulated, so the band is zero".to_owned(),
+            (true, false) => "no uncertainty of a reference is stated".to_owned(),
+        };
+        Decided { rule, text: format!("{how}; {known}") }
+    }
+}
+
+/// Whether a measure is a difference from a reference. Counts, σ, innovations and the difference between a run and
+/// its twin are not.
+fn is_referred(bare: &str) -> bool {
+    let own = bare.strip_prefix("baseline.").unwrap_or(bare);
+    let name = own.rsplit('.').next().unwrap_or(own);
+    match own.split('.').next() {
+        Some("navigation") => !own.contains("slope_window") && name != "duration_h",
+        Some("calibration") => {
+            matches!(name, "error" | "estimate" | "normalized" | "worst_normalized_error")
+                || own.contains(".nees.")
+        }
+        _ => false,
+    }
+}
+
+/// What an uncertainty of the position makes of a measure of the navigation.
+fn of_position(bare: &str, position_m: f64, against: &Against) -> f64 {
+    let (sin, cos) = (libm::sin(against.latitude_rad), libm::cos(against.latitude_rad));
+    let arcmin = |radius_m: f64| (position_m / radius_m).to_degrees() * 60.0;
+    let hours = (against.navigation_s / 3600.0).max(f64::MIN_POSITIVE);
+    let band = if bare.contains("radial") {
+        position_m / NMI_M
+    } else if bare.contains("longitude") {
+        arcmin((transverse_radius_m(sin) + against.height_m) * cos)
+    } else {
+        arcmin(meridian_radius_m(sin) + against.height_m)
+    };
+    // A reference that is wrong by the whole at one end and by the whole the other way at the other; of a
+    // regression through the origin, a constant error c leaves 3c/2T.
+    match bare.rsplit('.').next() {
+        Some("slope_per_day") => 2.0 * band / (hours / 24.0),
+        Some("rate_per_h") => 1.5 * band / hours,
+        _ => band,
+    }
+}
+
+/// Whether a value lies within the band of its limit, where nothing is shown.
+#[must_use]
+pub fn in_band(value: f64, limit: f64, uncertainty: f64) -> bool {
+    uncertainty > 0.0 && (value - limit).abs() < uncertainty
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const HERE: Against = Against {
+        simulated: false,
+        latitude_rad: std::f64::consts::FRAC_PI_3,
+        height_m: 0.0,
+        navigation_s: 86_400.0,
+    };
+
+    fn decision(position_m: Option<f64>) -> Decision {
+        Decision { position_m, ..Decision::default() }
+    }
+
+    #[test]
+    fn a_position_is_what_it_is_on_the_ellipsoid() {
+        let uncertainty =
+            |measure: &str| decision(Some(1852.0)).uncertainty(measure, &HERE).unwrap();
+        // At 60° WGS 84 has M = 6 383 454 m and N = 6 394 209 m (NIMA TR8350.2, 3rd edition, by its formulas).
+        let latitude = uncertainty("navigation.latitude_error_arcmin.max");
+        let longitude = uncertainty("navigation.longitude_error_arcmin.max");
+        let arcmin = |radius_m: f64| 1852.0 / radius_m * 3_437.746_770_784_939;
+        assert!((latitude / arcmin(6_383_453.86) - 1.0).abs() < 1e-6, "{latitude}");
+        assert!((longitude / arcmin(6_394_209.17 * 0.5) - 1.0).abs() < 1e-6, "{longitude}");
+        assert_eq!(uncertainty("navigation.radial_error_nmi.max"), 1.0);
+        assert_eq!(uncertainty("navigation.radial_error_nmi.rate_per_h"), 1.5 / 24.0);
+        let slope = uncertainty("navigation.latitude_error_arcmin.slope_per_day");
+        assert!((slope - 2.0 * latitude).abs() < 1e-12);
+        assert_eq!(uncertainty("baseline.navigation.marks.24h.radial_nmi"), 1.0);
+        // What isn't held against a position isn't made wider by it.
+        assert_eq!(uncertainty("calibration.nis_mean"), 0.0);
+        assert_eq!(uncertainty("counterfactual.navigation.radial_max_nmi"), 0.0);
+    }
+
+    #[test]
+    fn what_nobody_stated_is_exact_where_it_is_simulated_alone() {
+        let measure = "navigation.radial_error_nmi.max";
+        let simulated = Against { simulated: true, ..HERE };
+        assert_eq!(decision(None).uncertainty(measure, &simulated), Ok(0.0));
+        let error = decision(None).uncertainty(measure, &HERE).unwrap_err();
+        assert!(error.contains("decision.position") && error.contains("simple-acceptance"));
+        let simple = Decision { rule: Some(Rule::SimpleAcceptance), ..Decision::default() };
+        assert_eq!(simple.uncertainty(measure, &HERE), Ok(0.0));
+        assert_eq!(decision(None).uncertainty("calibration.nis_mean", &HERE), Ok(0.0));
+        let stated = Decision {
+            uncertainties: vec![Uncertainty { measure: measure.to_owned(), uncertainty: 0.25 }],
+            ..decision(Some(1852.0))
+        };
+        assert_eq!(stated.uncertainty(&format!("|{measure}|"), &HERE), Ok(0.25));
+        assert!(decision(None).decided(&simulated).text.contains("the band is zero"));
+    }
+
+    #[test]
+    fn a_band_is_as_wide_as_the_uncertainty_on_both_sides() {
+        for (value, uncertainty, within) in [
+            (0.9, 0.2, true),
+            (1.1, 0.2, true),
+            (1.0, 0.2, true),
+            (0.75, 0.2, false),
+            (1.25, 0.2, false),
+            (1.0, 0.0, false),
+        ] {
+            assert_eq!(in_band(value, 1.0, uncertainty), within);
+        }
+    }
+}
