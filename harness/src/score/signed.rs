@@ -35,9 +35,8 @@ pub fn one_sided<'a>(
         return None;
     }
     let (sign, other) = (comparison.sign(), if is_upper(comparison) { ">=" } else { "<=" });
-    let through = if is_upper(comparison) { "small" } else { "large" };
     Some(format!(
-        "found {measure:?} with {sign} alone: it has a sign, and however {through} it is would pass; expected \
+        "found {measure:?} with {sign} alone: it has a sign, and on the other side any value would pass; expected \
          \"|{measure}|\" for its magnitude, or a second requirement with {other} for the other side"
     ))
 }
