@@ -33,6 +33,8 @@ struct Scores {
     worst_normalized_error: Option<f64>,
     parameters: BTreeMap<String, ParameterScore>,
     navigation: Option<Navigation>,
+    /// What the unit answered that no unit may: what is scored is of before.
+    misbehaved: Option<String>,
 }
 
 /// Whether the instrument of a recording had the errors that its scenario draws.
@@ -91,8 +93,9 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         worst_normalized_error: worst_normalized_error(&parameters, &planned),
         parameters,
         navigation,
+        misbehaved: watcher.misbehaved.as_ref().map(ToString::to_string),
     };
-    if scores.navigation.is_none() && scores.parameters.is_empty() {
+    if scores.navigation.is_none() && scores.parameters.is_empty() && scores.misbehaved.is_none() {
         if let Some(event) = last_event.filter(|event| event.kind == "refused") {
             let reason = event.detail.get("reason").and_then(|r| r.as_str()).unwrap_or("no reason");
             return Err(Failure::input(format!(
@@ -110,12 +113,15 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     } else {
         print(&text(&scores))?;
     }
-    Ok(Verdict::Pass)
+    Ok(if scores.misbehaved.is_some() { Verdict::Fail } else { Verdict::Pass })
 }
 
 fn text(scores: &Scores) -> String {
     use std::fmt::Write as _;
     let mut out = format!("{}: {}\n", scores.scenario, scores.method);
+    if let Some(misbehaved) = &scores.misbehaved {
+        let _ = writeln!(out, "  {misbehaved}; what follows is of before");
+    }
     if let Some(nis) = scores.nis_mean {
         let _ = writeln!(out, "  NIS {nis:.3} (3 is right)");
     }

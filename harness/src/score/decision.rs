@@ -98,11 +98,11 @@ impl Decision {
         let rule = self.rule();
         let how = match rule {
             Rule::GuardBand => {
-                "within the expanded uncertainty (95 %) of its reference a value is inconclusive \
+                "Within the expanded uncertainty (95 %) of its reference a value is inconclusive \
                  (guard band, JCGM 106)"
             }
             Rule::SimpleAcceptance => {
-                "a value is held against its limit as it is, whatever its reference is uncertain by (simple \
+                "A value is held against its limit as it is, whatever its reference is uncertain by (simple \
                  acceptance, JCGM 106)"
             }
         };

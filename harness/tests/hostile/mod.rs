@@ -9,6 +9,7 @@ mod bench;
 mod fmu;
 mod honest;
 mod page;
+mod program;
 mod sessions;
 mod unit;
 
