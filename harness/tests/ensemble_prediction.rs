@@ -17,6 +17,8 @@ use octant_statistics::sample::{mean, percentile, rms};
 use std::path::Path;
 use std::sync::atomic::{AtomicU64, Ordering};
 
+mod sequences;
+
 /// A move at 10 °/s is still cut into 0.5°, and a filter costs what it costs a second.
 const RATE: &str = "20 Hz";
 /// Half a second after a measurement: at the last sample before it the calibration still has position
@@ -33,7 +35,7 @@ fn scenario(text: &str) -> Scenario {
 struct Run {
     /// All 39 errors at the end of the calibration, in their units, as a prediction has them.
     errors: [f64; STATE_COUNT],
-    /// Latitude and longitude error, arcmin, and radial error, nmi, by the hour.
+    /// Latitude and longitude error, arcmin, and radial error, nmi, at equal times.
     drift: Vec<[f64; 3]>,
 }
 
@@ -41,12 +43,18 @@ fn attitude(q: [f64; 4]) -> UnitQuaternion<f64> {
     UnitQuaternion::new_unchecked(Quaternion::new(q[0], q[1], q[2], q[3]))
 }
 
+/// A run with its drift by the hour.
 fn run(scenario: &Scenario, seed: u64, change: impl Fn(&mut Config)) -> Run {
+    run_every(scenario, seed, 3600, change)
+}
+
+/// A run with its drift every so many seconds.
+fn run_every(scenario: &Scenario, seed: u64, every_s: u64, change: impl Fn(&mut Config)) -> Run {
     let (mut plant, config, draws) = configurations(scenario, Method::Primary, seed).unwrap();
     change(&mut plant);
     let mut plant = Plant::new(&plant).unwrap();
     let mut core = Core::new(&config).unwrap();
-    let hour = 3_600_000_000_000 / scenario.sample_period_ns;
+    let every = every_s * 1_000_000_000 / scenario.sample_period_ns;
     let calibration = scenario.calibration_samples();
     let earth = Ellipsoid::at(config.site.latitude_rad, config.site.height_m);
     let metres = [earth.meridian_radius_m, earth.transverse_radius_m * earth.cos_latitude];
@@ -78,7 +86,7 @@ fn run(scenario: &Scenario, seed: u64, change: impl Fn(&mut Config)) -> Run {
             for (state, error) in run.errors.iter_mut().enumerate() {
                 *error /= state_unit(state).1;
             }
-        } else if sample > calibration && (sample - calibration).is_multiple_of(hour) {
+        } else if sample > calibration && (sample - calibration).is_multiple_of(every) {
             let truth = plant.truth();
             let north = output.navigation.latitude_rad - truth.latitude_rad;
             let east = output.navigation.longitude_rad - truth.longitude_rad;
@@ -244,7 +252,7 @@ fn a_prediction_says_what_it_is_not_for() {
 }
 
 /// Runs of seeds from 1 on, on all processors.
-fn runs(scenario: &Scenario, count: u64) -> Vec<Run> {
+fn runs(scenario: &Scenario, count: u64, every_s: u64) -> Vec<Run> {
     let next = AtomicU64::new(1);
     let threads = std::thread::available_parallelism().map_or(1, usize::from);
     let mut all: Vec<(u64, Run)> = std::thread::scope(|scope| {
@@ -257,7 +265,7 @@ fn runs(scenario: &Scenario, count: u64) -> Vec<Run> {
                         if seed > count {
                             return mine;
                         }
-                        mine.push((seed, run(scenario, seed, |_| ())));
+                        mine.push((seed, run_every(scenario, seed, every_s, |_| ())));
                     }
                 })
             })
@@ -274,7 +282,7 @@ fn assert_ensemble(scenario: &Scenario, count: u64, drift_hours: std::ops::Range
     let predicted = ensemble(scenario, Method::Primary).unwrap();
     let predicted_in = began.elapsed();
     let began = std::time::Instant::now();
-    let runs = runs(scenario, count);
+    let runs = runs(scenario, count, 3600);
     println!(
         "predicted in {:.2} s, {count} runs in {:.1} s",
         predicted_in.as_secs_f64(),

@@ -155,7 +155,7 @@ pub fn reach(
     let dwell = dwell_s(&calibration.sequence, calibration.duration_s, &rates)?;
     let home = GimbalAngles::default();
     let cursor = Cursor::new(calibration.sequence.clone(), home, rates, dwell, SAMPLE_S, false);
-    let mut platform = Platform::new(config, *c_nc, truth.non_orthogonality_rad, cursor);
+    let mut platform = Platform::new(config, *c_nc, truth.non_orthogonality_rad, home, cursor);
     let mut errors = TrueErrors::new(truth);
     let (start_s, end_s) = (truth.start_s, calibration.duration_s);
     let believed =
@@ -168,7 +168,7 @@ pub fn reach(
     {
         let at = platform.target();
         let cursor = Cursor::new(plan.rotation.clone(), at, rates, plan.dwell_s, SAMPLE_S, true);
-        let platform = Platform::new(config, *c_nc, truth.non_orthogonality_rad, cursor);
+        let platform = Platform::new(config, *c_nc, truth.non_orthogonality_rad, at, cursor);
         // A wander that is shorter than a step would be taken for constant in it.
         let step_s = (truth.wanders.iter())
             .map(|wander| 0.1 * wander.correlation_time_s)

@@ -255,15 +255,11 @@ fn truth(
             return Err(EnsembleError::CoarseAtSea);
         }
         start_s = duration_s;
-        let cursor = Cursor::new(
-            sequence.clone(),
-            GimbalAngles::default(),
-            config.turntable,
-            duration_s,
-            SAMPLE_S,
-            false,
-        );
-        let platform = Platform::new(config, *c, scenario.turntable.non_orthogonality_rad, cursor);
+        let home = GimbalAngles::default();
+        let rates = config.turntable;
+        let cursor = Cursor::new(sequence.clone(), home, rates, duration_s, SAMPLE_S, false);
+        let leant = scenario.turntable.non_orthogonality_rad;
+        let platform = Platform::new(config, *c, leant, home, cursor);
         Coarse::of(&platform).apply(&sigmas, noise, duration_s, &mut covariance, &mut mean);
     }
     let extensions = &imu.extensions;

@@ -28,16 +28,21 @@ pub(super) struct Platform<'a> {
 }
 
 impl<'a> Platform<'a> {
+    /// The gimbals stand at `home` and, at time 0, set out to the first stop of `cursor`, which has to be
+    /// planned from the same place: a phase that doesn't begin where the one before it ended opens with
+    /// a move, and what scale factors and misalignments make of that move is carried like any other.
     pub(super) fn new(
         config: &'a Config,
         c_nc: Matrix3<f64>,
         non_orthogonality_rad: f64,
+        home: GimbalAngles,
         cursor: Cursor,
     ) -> Self {
-        let command = cursor.command().target;
-        let at = [command.azimuth_rad(), command.roll_rad()];
+        let angles = |at: GimbalAngles| [at.azimuth_rad(), at.roll_rad()];
+        let to = angles(cursor.command().target);
+        // A cursor that takes the gimbals for there already has no move.
+        let from = if cursor.arrival_s() > 0.0 { angles(home) } else { to };
         let earth = Ellipsoid::at(config.site.latitude_rad, config.site.height_m);
-        let (from, to) = (at, at);
         Self { config, c_nc, non_orthogonality_rad, earth, cursor, from, to, departed_s: 0.0 }
     }
 

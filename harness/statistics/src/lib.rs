@@ -4,7 +4,7 @@
 //! - [`mod@deviation`] says how well a σ is known, [`radius`] how far a normal error in the plane gets
 //! - [`quantile`] bounds them without a distribution, [`proportion`] a pass probability
 //! - [`rate`] is the radial error rate and the time-RMS, [`mod@envelope`] percentiles over time
-//! - [`rank`] and [`sobol`] say what an output is sensitive to, [`outlier`] which runs stand out
+//! - [`rank`] says what an output is sensitive to, [`outlier`] which runs stand out
 //! - [`paired`] compares two sets of runs seed by seed
 //! - [`multiple`] corrects many comparisons at once
 //! - [`draw`] makes the factors of runs: distributions, Latin hypercubes, correlations
@@ -27,4 +27,3 @@ pub mod radius;
 pub mod rank;
 pub mod rate;
 pub mod sample;
-pub mod sobol;

@@ -4,11 +4,9 @@ use octant_statistics::envelope::{EnvelopeError, envelope, resampled};
 use octant_statistics::outlier::{LIMIT, Scale, outliers};
 use octant_statistics::radius::Plane;
 use octant_statistics::rate::{RadialSample, radial_rate_nmi_per_h, time_rms_nmi};
-use octant_statistics::sobol::{Design, Role, SobolError};
 use octant_statistics::{
     convergence, deviation, normal, paired, position, quantile, rank, rate, sample,
 };
-use std::f64::consts::PI;
 
 /// Standard normals of a stream, for samples.
 fn normals(seed: u64, name: &str, n: u64) -> Vec<f64> {
@@ -161,71 +159,6 @@ fn sensitivities_come_with_the_strongest_first() {
     assert_eq!(names, ["strong", "weak", "none", "constant"]);
     assert!(found[0].correlation.unwrap().p < 1e-20);
     assert_eq!(found[3].correlation, None);
-}
-
-/// Indices of a function of the three factors of the design, as probabilities.
-fn indices(rows: usize, f: impl Fn(&[f64]) -> f64) -> Vec<octant_statistics::sobol::Index> {
-    let design = Design::new(&["a", "b", "c"].map(str::to_owned), rows, 7);
-    let outputs: Vec<f64> = (0..design.runs()).map(|run| f(&design.units(run))).collect();
-    design.indices(&outputs, 0.99).unwrap()
-}
-
-#[test]
-fn sobol_indices_of_ishigami() {
-    // Ishigami and Homma, 1990: f = sin x + 7 sin² y + 0.1 z⁴ sin x on (−π, π)³.
-    let x = |u: f64| PI * (2.0 * u - 1.0);
-    let found = indices(4000, |u| {
-        let (a, b, c) = (x(u[0]), x(u[1]), x(u[2]));
-        a.sin() + 7.0 * b.sin().powi(2) + 0.1 * c.powi(4) * a.sin()
-    });
-    let v1 = 0.5 * (1.0 + 0.1 * PI.powi(4) / 5.0).powi(2);
-    let v2 = 49.0 / 8.0;
-    let v13 = 0.01 * PI.powi(8) * (1.0 / 18.0 - 1.0 / 50.0);
-    let variance = v1 + v2 + v13;
-    let first = [v1, v2, 0.0].map(|v| v / variance);
-    let total = [v1 + v13, v2, v13].map(|v| v / variance);
-    for (index, (first, total)) in found.iter().zip(first.into_iter().zip(total)) {
-        // The interval of 99 % says how far off is likely: its width is five standard errors.
-        for (found, expected) in [(index.first_order, first), (index.total, total)] {
-            let width = found.high - found.low;
-            assert!(width < 0.2 && (found.value - expected).abs() < width, "{found:?} {expected}");
-        }
-    }
-}
-
-#[test]
-fn sobol_indices_of_a_sum_are_its_parts() {
-    // Variances 1, 4 and 9 of 14, about a mean that is large against them. The interval of 99 % says how
-    // far off is likely: its width is five standard errors.
-    for index in indices(8000, |u| 1000.0 + u[0] + 2.0 * u[1] + 3.0 * u[2])
-        .iter()
-        .zip([1.0, 4.0, 9.0])
-        .flat_map(|(index, part)| [(index.first_order, part / 14.0), (index.total, part / 14.0)])
-    {
-        let (found, expected) = index;
-        let width = found.high - found.low;
-        assert!(width < 0.07 && (found.value - expected).abs() < width, "{found:?} {expected}");
-    }
-}
-
-#[test]
-fn a_sobol_design_differs_in_one_factor_at_a_time() {
-    let names = ["a", "b", "c"].map(str::to_owned);
-    let design = Design::new(&names, 10, 1);
-    assert_eq!(design.runs(), 50);
-    let row = 3 * 5;
-    let (a, b) = (design.units(row), design.units(row + 1));
-    assert_eq!(design.place(row + 3), (3, Role::Mixed(1)));
-    assert_eq!(design.units(row + 3), [a[0], b[1], a[2]]);
-    // A longer one begins with it.
-    let longer = Design::new(&names, 20, 1);
-    assert!((0..50).all(|run| longer.units(run) == design.units(run)));
-    let wrong = design.indices(&[1.0; 49], 0.9).unwrap_err();
-    assert_eq!(wrong, SobolError::Outputs { found: 49, expected: 50 });
-    assert_eq!(design.indices(&[1.0; 50], 0.9), Err(SobolError::Constant));
-    let mut outputs = vec![1.0; 50];
-    outputs[4] = f64::INFINITY;
-    assert_eq!(design.indices(&outputs, 0.9), Err(SobolError::NotFinite { run: 4 }));
 }
 
 #[test]

@@ -40,11 +40,6 @@ pub const SCHEMA: u32 = 1;
 /// Reasons that are told at most.
 const REASONS_MAX: usize = 12;
 
-/// Why there is no Sobol index on the page.
-pub const NO_SOBOL: &str = "Sobol indices need a design of their own (Saltelli: every factor exchanged \
-    between two samples). The draws of a campaign are a Monte Carlo or a Latin hypercube, from which they \
-    can't be had: rank correlations are shown instead.";
-
 /// Why there is no report.
 #[derive(Debug, thiserror::Error)]
 pub enum ReportError {

@@ -1,8 +1,8 @@
 //! What the drift goes with.
 
 use super::heading;
+use crate::campaign::report::Report;
 use crate::campaign::report::figures::FactorFigures;
-use crate::campaign::report::{NO_SOBOL, Report};
 use crate::report::number;
 use maud::{Markup, html};
 
@@ -59,7 +59,6 @@ pub(super) fn section(report: &Report<'_>) -> Markup {
                 }
             }
         }
-        p.hint { (NO_SOBOL) }
     }
 }
 
