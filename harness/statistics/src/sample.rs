@@ -28,7 +28,8 @@ pub fn deviation(values: &[f64]) -> Option<f64> {
 
 /// Percentile `p` (0 to 1), interpolated between order statistics; `None` of nothing or of a value
 /// that isn't a number. Definition 7 of Hyndman and Fan (The American Statistician 50, 1996), that of
-/// numpy, R and spreadsheets.
+/// numpy, R and spreadsheets. Values may be infinite, such as a run that is beyond every number: between a
+/// number and infinity everything is infinite.
 #[must_use]
 pub fn percentile(values: &[f64], p: f64) -> Option<f64> {
     if values.iter().any(|v| v.is_nan()) {
@@ -47,7 +48,9 @@ pub(crate) fn of_sorted(sorted: &[f64], p: f64) -> Option<f64> {
     let at = p.clamp(0.0, 1.0) * (sorted.len() - 1) as f64;
     let (low, part) = (at as usize, at - libm::floor(at));
     let high = (low + 1).min(sorted.len() - 1);
-    Some(sorted[low] + part * (sorted[high] - sorted[low]))
+    let (below, above) = (sorted[low], sorted[high]);
+    // The difference of two infinities is not a number, and no part of one is left.
+    Some(if part == 0.0 || below == above { below } else { below + part * (above - below) })
 }
 
 /// An estimate with the interval that its sample leaves.

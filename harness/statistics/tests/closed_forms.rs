@@ -166,15 +166,15 @@ fn improvement_is_paired() {
     let first = normals(6, "first", 40);
     let half: Vec<f64> = first.iter().map(|v| 0.5 * v).collect();
     // The same noise in both: the interval has no width.
-    let found = paired::improvement(&first, &half, 7).unwrap();
+    let found = paired::improvement(&first, &half, 0.9).unwrap();
     assert!([found.value, found.low, found.high].iter().all(|v| (v - 0.5).abs() < 1e-12));
     let other = normals(6, "second", 40);
-    let found = paired::improvement(&first, &other, 7).unwrap();
+    let found = paired::improvement(&first, &other, 0.9).unwrap();
     assert!(
         found.low < found.value && found.value < found.high && found.low < 0.0 && found.high > 0.0
     );
-    assert_eq!(paired::improvement(&first, &other[1..], 7), None);
-    assert_eq!(paired::improvement(&[0.0, 0.0], &[1.0, 1.0], 7), None);
+    assert_eq!(paired::improvement(&first, &other[1..], 0.9), None);
+    assert_eq!(paired::improvement(&[0.0, 0.0], &[1.0, 1.0], 0.9), None);
 }
 
 #[test]

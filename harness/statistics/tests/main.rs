@@ -2,6 +2,8 @@
 #![allow(clippy::unwrap_used)]
 
 mod closed_forms;
+mod cluster;
+mod coverage;
 mod draws;
 mod multiple;
 mod reference;

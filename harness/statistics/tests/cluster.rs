@@ -1,0 +1,94 @@
+//! The unit of inference: independent draws, not rows.
+
+use octant_statistics::cluster::{Draws, Growing, draws};
+use octant_statistics::proportion::Demand;
+use proptest::prelude::*;
+
+const ASKED: Demand = Demand { pass: 0.95, confidence: 0.95 };
+
+/// Whether the rows of a design show the demand, all of them having passed.
+fn shown(rows: impl IntoIterator<Item = (u64, Option<String>)>) -> (Draws, bool) {
+    let of = draws(rows);
+    let counts = Draws::of(of.into_iter().map(|draw| (draw, Some(true))));
+    (counts, ASKED.is_shown(counts.not_passed, counts.known()))
+}
+
+#[test]
+fn one_replicate_with_59_labels_is_one_draw() {
+    let rows = || (0..59).map(|_| (1, Some("the same stream".to_owned())));
+    let (counts, is_shown) = shown(rows());
+    assert_eq!((counts.known(), counts.rows, is_shown), (1, 59, false));
+    // Seeds of their own don't help where the streams are the same.
+    let (counts, is_shown) = shown(rows().zip(1..).map(|((_, stream), seed)| (seed, stream)));
+    assert_eq!((counts.known(), is_shown), (1, false));
+}
+
+#[test]
+fn five_instruments_at_twelve_longitudes_are_five_draws() {
+    let rows = (0..5)
+        .flat_map(|seed| (0..12).map(move |at| (seed, Some(format!("stream {seed} at {at}")))));
+    let (counts, is_shown) = shown(rows);
+    assert_eq!((counts.known(), counts.rows, is_shown), (5, 60, false));
+}
+
+#[test]
+fn fifty_nine_instruments_are_what_it_takes() {
+    let of = |count: u64| shown((0..count).map(|seed| (seed, Some(seed.to_string()))));
+    assert!(!of(58).1);
+    assert!(of(59).1);
+    // An honest neighbour of the labels: the same in twelve combinations that differ.
+    let rows = |count: u64| (0..count * 12).map(|row| (row / 12, Some(row.to_string())));
+    assert!(!shown(rows(58)).1);
+    assert!(shown(rows(59)).1);
+}
+
+#[test]
+fn a_stream_that_two_draws_share_joins_all_their_rows() {
+    let stream = |text: &str| Some(text.to_owned());
+    let rows = vec![
+        (1, stream("a")),
+        (2, stream("b")),
+        (3, stream("c")),
+        (1, stream("d")),
+        (3, stream("d")),
+        (4, None),
+        (5, None),
+    ];
+    assert_eq!(draws(rows), [0, 1, 0, 0, 0, 2, 3]);
+}
+
+#[test]
+fn a_draw_passes_if_all_of_its_rows_do() {
+    let rows = [
+        (0, Some(true)),
+        (0, Some(true)),
+        (1, Some(true)),
+        (1, Some(false)),
+        (2, Some(true)),
+        (2, None),
+        (3, None),
+        (3, Some(false)),
+    ];
+    let counts = Draws::of(rows);
+    assert_eq!(counts, Draws { passed: 1, not_passed: 2, open: 1, rows: 8 });
+    assert_eq!((counts.known(), counts.all()), (3, 4));
+}
+
+proptest! {
+    #[test]
+    fn draws_that_come_one_by_one_are_the_same(
+        seeds in prop::collection::vec(
+            prop::collection::vec((any::<bool>(), prop::option::of(0u8..12)), 1..5), 0..20),
+    ) {
+        let mut growing = Growing::default();
+        for so_far in 0..seeds.len() {
+            growing.add(seeds[so_far].iter().copied());
+            let rows: Vec<_> = (seeds[..=so_far].iter().enumerate())
+                .flat_map(|(seed, rows)| rows.iter().map(move |(passed, stream)| (seed, *passed, *stream)))
+                .collect();
+            let of = draws(rows.iter().map(|(seed, _, stream)| (*seed, *stream)));
+            let all = Draws::of(of.into_iter().zip(&rows).map(|(draw, row)| (draw, Some(row.1))));
+            prop_assert_eq!(growing.counts(), all);
+        }
+    }
+}
