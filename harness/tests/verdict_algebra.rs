@@ -288,7 +288,8 @@ fn good() -> impl Strategy<Value = Came> {
 }
 
 fn result(id: &str, parts: &Parts) -> CaseResult {
-    let summary = parts.summary();
+    // Every case has a stream of its own: it is a draw of its own.
+    let summary = Summary { stream_hash: id.to_owned(), ..parts.summary() };
     let nothing = summary.requirements.is_empty();
     let least = if nothing { Verdict::Inconclusive } else { Verdict::Pass };
     CaseResult {
@@ -397,8 +398,9 @@ proptest! {
         let (Ok(status), Ok(trace)) = (status, trace) else { return Ok(()) };
 
         // Checked more than once in a run, all have to hold; where an ensemble is asked for, one that
-        // fails may.
+        // fails may, and so may a calibration that was refused: it counts as one that failed.
         let shown = |parts: &Parts| {
+            let parts = &Parts { refused: parts.refused && ensemble.is_none(), ..parts.clone() };
             let worst = parts.checks.iter().map(|found| found.verdict()).max();
             parts.is_whole()
                 && worst.is_some_and(|worst| {
@@ -411,8 +413,11 @@ proptest! {
             prop_assert!(whole, "{outcomes:?}");
             prop_assert_eq!(trace.verdict(), traced::Verdict::Pass);
         }
+        // The trace judges requirements alone: where an ensemble is asked for, a run that came to nothing
+        // counts as one that didn't pass. What is missing or broke the bench never passes.
         if trace.verdict() == traced::Verdict::Pass {
-            prop_assert!(whole, "{outcomes:?}");
+            let ran = outcomes.iter().all(|outcome| matches!(outcome, Came::Ran(_)));
+            prop_assert!(whole || (ran && ensemble.is_some()), "{outcomes:?}");
         }
         // And it does pass where there is everything.
         if whole && ensemble.is_none() {

@@ -64,7 +64,8 @@ fn show(requirements: &str, cases: &str, folder: &Path) -> Result<(), Box<dyn Er
         let verdict = checks.iter().map(|(_, v)| *v).max().unwrap_or(Verdict::Inconclusive);
         let recording = Some(format!("runs/{id}/recording.mcap"));
         let result = Some(CaseResult { verdict, checks, recording, folder: None });
-        all.push(Case { id, verifies, result });
+        let draw = all.len();
+        all.push(Case { id, verifies, draw, result });
     }
     let trace = Trace::new(&requirements, &all);
     for (path, text) in strictdoc::folder(&requirements, &trace, "Campaign")? {

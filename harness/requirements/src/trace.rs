@@ -1,6 +1,7 @@
 //! From requirements to cases, results and recordings, and back.
 
 use crate::requirement::{Ensemble, Requirement, Requirements, Verification};
+use octant_statistics::cluster::Draws;
 use octant_statistics::proportion;
 use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
@@ -42,6 +43,8 @@ pub struct Case {
     pub id: String,
     /// Ids of the requirements that it verifies.
     pub verifies: Vec<String>,
+    /// The independent draw that it is of: cases of one draw share their instrument and its noise.
+    pub draw: usize,
     /// What came of it; without it, the case hasn't run.
     pub result: Option<CaseResult>,
 }
@@ -65,6 +68,8 @@ pub struct CaseResult {
 pub struct Link {
     /// The case.
     pub case: String,
+    /// The independent draw that it is of.
+    pub draw: usize,
     /// What the check came to; none, if the case hasn't run, or ran without this check.
     pub verdict: Option<Verdict>,
     /// The recording.
@@ -111,6 +116,8 @@ pub struct Row {
     pub cases: Vec<Link>,
     /// How many of its checks came to what.
     pub counts: Counts,
+    /// How many of its independent draws came to what.
+    pub draws: Draws,
     /// What it comes to; none where a run can't tell: it is verified by analysis or inspection.
     pub verdict: Option<Verdict>,
     /// Why, in plain words.
@@ -172,6 +179,7 @@ impl Trace {
                 known = true;
                 links[at].push(Link {
                     case: case.id.clone(),
+                    draw: case.draw,
                     verdict: worst.get(id).copied(),
                     recording: case.result.as_ref().and_then(|r| r.recording.clone()),
                     folder: case.result.as_ref().and_then(|r| r.folder.clone()),
@@ -213,9 +221,11 @@ fn row(requirement: &Requirement, cases: Vec<Link>) -> Row {
     for link in &cases {
         counts.add(link.verdict);
     }
+    let passed = |link: &Link| (link.draw, link.verdict.map(|verdict| verdict == Verdict::Pass));
+    let draws = Draws::of(cases.iter().map(passed));
     let (verdict, reason) = match &requirement.verification {
         Verification::Test(check) => {
-            let (verdict, reason) = judge(check.ensemble, counts);
+            let (verdict, reason) = judge(check.ensemble, counts, draws);
             (Some(verdict), reason)
         }
         Verification::Open => {
@@ -228,6 +238,7 @@ fn row(requirement: &Requirement, cases: Vec<Link>) -> Row {
         verification: requirement.verification.name().to_owned(),
         cases,
         counts,
+        draws,
         verdict,
         reason,
     }
@@ -235,12 +246,13 @@ fn row(requirement: &Requirement, cases: Vec<Link>) -> Row {
 
 /// What the checks of a requirement come to together.
 ///
-/// Without a statement on the ensemble the worst check wins. With one, failures are counted: it passes
-/// if the lower bound of the pass probability (Clopper and Pearson) reaches what is required, fails if
-/// the upper one doesn't, and is inconclusive between. Errors, inconclusive checks and such as are
-/// missing never end in pass.
+/// Without a statement on the ensemble the worst check wins. With one, independent draws are counted, not
+/// checks: a draw passes if all of its checks did, and whatever came to nothing (a calibration that was
+/// refused, a run that came short) counts as not passed. It passes if the lower bound of the probability
+/// that a draw passes (Clopper and Pearson) reaches what is required, fails if the upper one doesn't, and
+/// is inconclusive between. Errors, and checks that are missing, never end in pass.
 #[must_use]
-pub fn judge(ensemble: Option<Ensemble>, counts: Counts) -> (Verdict, String) {
+pub fn judge(ensemble: Option<Ensemble>, counts: Counts, draws: Draws) -> (Verdict, String) {
     let Counts { pass, inconclusive, fail, error, missing } = counts;
     let all = pass + inconclusive + fail + error + missing;
     if all == 0 {
@@ -249,8 +261,8 @@ pub fn judge(ensemble: Option<Ensemble>, counts: Counts) -> (Verdict, String) {
     if error > 0 {
         return (Verdict::Error, format!("{error} of {all} checks ended in an error"));
     }
-    let open = inconclusive + missing;
     let Some(Ensemble { pass: required, confidence }) = ensemble else {
+        let open = inconclusive + missing;
         return if fail > 0 {
             (Verdict::Fail, format!("{fail} of {all} checks failed"))
         } else if open > 0 {
@@ -258,36 +270,56 @@ pub fn judge(ensemble: Option<Ensemble>, counts: Counts) -> (Verdict, String) {
                 format!("{inconclusive} of {all} checks are inconclusive, {missing} missing");
             (Verdict::Inconclusive, told)
         } else {
-            (Verdict::Pass, format!("all {all} checks passed"))
+            let of = counted(draws.all());
+            (Verdict::Pass, format!("all {all} checks passed, of {of}"))
         };
     };
-    let (lower, upper) = (
-        proportion::success_lower_bound(fail, pass + fail, confidence),
-        // What came to nothing might have passed: failure is shown where that wouldn't help.
-        proportion::success_upper_bound(fail, all, confidence),
-    );
+    let Draws { passed, not_passed, open, .. } = draws;
+    let lower = proportion::success_lower_bound(not_passed, draws.known(), confidence);
+    // A draw that is open might pass: failure is shown where that wouldn't help.
+    let upper = proportion::success_upper_bound(not_passed, draws.all(), confidence);
     let percent = |p: f64| format!("{:.2} %", 100.0 * p);
-    let found = format!(
-        "{pass} of {} runs passed: with {} confidence the pass probability is at least {}, required {}",
-        pass + fail,
-        percent(confidence),
-        percent(lower),
-        percent(required)
-    );
     if upper < required {
-        let at_most =
-            format!("{fail} of {all} runs failed: with {} confidence", percent(confidence));
         let told = format!(
-            "the pass probability is at most {}, required {}",
+            "{not_passed} of {} did not pass: with {} confidence the probability that a draw passes \
+             is at most {}, required {}",
+            counted(draws.all()),
+            percent(confidence),
             percent(upper),
             percent(required)
         );
-        (Verdict::Fail, format!("{at_most} {told}"))
-    } else if open > 0 {
-        (Verdict::Inconclusive, format!("{found}; {open} of {all} checks came to nothing"))
-    } else if pass + fail > 0 && lower >= required {
+        return (Verdict::Fail, told);
+    }
+    let mut found = claim(draws, lower, confidence);
+    found += &format!(", required {}", percent(required));
+    if open > 0 {
+        (Verdict::Inconclusive, format!("{found}; {} without a result", counted(open)))
+    } else if passed > 0 && lower >= required {
         (Verdict::Pass, found)
     } else {
         (Verdict::Inconclusive, found)
     }
+}
+
+/// What draws show, as a sentence that names what it rests on: `lower` is the bound at this one-sided
+/// confidence.
+#[must_use]
+pub fn claim(draws: Draws, lower: f64, confidence: f64) -> String {
+    let all_of = match draws.rows {
+        rows if rows > draws.all() => format!(" in all of their {rows} checks"),
+        _ => String::new(),
+    };
+    // Rounded down: a bound isn't to be better than it is.
+    let down = (1e4 * lower).floor() / 1e2;
+    format!(
+        "{} of {} passed{all_of}: with {:.2} % confidence a draw passes with a probability of at \
+         least {down:.2} %",
+        draws.passed,
+        counted(draws.known()),
+        100.0 * confidence
+    )
+}
+
+fn counted(draws: u64) -> String {
+    format!("{draws} independent draw{}", if draws == 1 { "" } else { "s" })
 }

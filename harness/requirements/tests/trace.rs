@@ -5,6 +5,7 @@ use octant_requirements::requirement::{
 };
 use octant_requirements::strictdoc;
 use octant_requirements::trace::{Case, CaseResult, Counts, Trace, Verdict, judge};
+use octant_statistics::cluster::Draws;
 use proptest::prelude::*;
 
 fn tested(id: &str, ensemble: Option<Ensemble>) -> Requirement {
@@ -26,6 +27,7 @@ fn case(id: &str, checks: &[(&str, Verdict)]) -> Case {
         checks.iter().map(|(id, verdict)| ((*id).to_owned(), *verdict)).collect();
     Case {
         id: id.to_owned(),
+        draw: id.bytes().fold(0, |draw, byte| 256 * draw + usize::from(byte)),
         verifies: checks.iter().map(|(id, _)| id.clone()).collect(),
         result: Some(CaseResult {
             verdict: checks.iter().map(|(_, v)| *v).max().unwrap_or(Verdict::Pass),
@@ -97,22 +99,57 @@ fn nothing_shows_nothing() {
 #[test]
 fn an_ensemble_passes_by_its_bound() {
     let demand = Some(Ensemble { pass: 0.95, confidence: 0.95 });
-    let counts = |pass, fail| Counts { pass, fail, ..Counts::default() };
-    let verdict = |counts| judge(demand, counts).0;
-    assert_eq!(verdict(counts(59, 0)), Verdict::Pass);
-    assert_eq!(verdict(counts(58, 0)), Verdict::Inconclusive);
+    let judged = |pass, fail, inconclusive, missing| {
+        let counts = Counts { pass, fail, inconclusive, missing, error: 0 };
+        let rows = pass + fail + inconclusive + missing;
+        let not_passed = fail + inconclusive;
+        judge(demand, counts, Draws { passed: pass, not_passed, open: missing, rows })
+    };
+    let verdict = |pass, fail| judged(pass, fail, 0, 0).0;
+    assert_eq!(verdict(59, 0), Verdict::Pass);
+    assert_eq!(verdict(58, 0), Verdict::Inconclusive);
     // One failure takes 93 runs: 0.95^93 + 93 · 0.05 · 0.95^92 is the first below 5 %.
-    assert_eq!(verdict(counts(91, 1)), Verdict::Inconclusive);
-    assert_eq!(verdict(counts(92, 1)), Verdict::Pass);
-    assert_eq!(verdict(counts(50, 10)), Verdict::Fail);
-    assert_eq!(verdict(counts(0, 1)), Verdict::Inconclusive);
-    assert_eq!(verdict(Counts { missing: 1, ..counts(1000, 0) }), Verdict::Inconclusive);
-    assert_eq!(verdict(Counts { error: 1, ..counts(1000, 0) }), Verdict::Error);
-    let (_, reason) = judge(demand, counts(59, 0));
+    assert_eq!(verdict(91, 1), Verdict::Inconclusive);
+    assert_eq!(verdict(92, 1), Verdict::Pass);
+    assert_eq!(verdict(50, 10), Verdict::Fail);
+    assert_eq!(verdict(0, 1), Verdict::Inconclusive);
+    // What came to nothing counts as not passed: it neither blocks a pass for ever nor helps one.
+    assert_eq!(judged(91, 0, 1, 0).0, Verdict::Inconclusive);
+    assert_eq!(judged(92, 0, 1, 0).0, Verdict::Pass);
+    assert_eq!(judged(50, 0, 10, 0).0, Verdict::Fail);
+    assert_eq!(judged(1000, 0, 0, 1).0, Verdict::Inconclusive);
+    let counts = Counts { pass: 1000, error: 1, ..Counts::default() };
+    let draws = Draws { passed: 1000, not_passed: 1, open: 0, rows: 1001 };
+    assert_eq!(judge(demand, counts, draws).0, Verdict::Error);
     assert_eq!(
-        reason,
-        "59 of 59 runs passed: with 95.00 % confidence the pass probability is at least 95.05 %, required 95.00 %"
+        judged(59, 0, 0, 0).1,
+        "59 of 59 independent draws passed: with 95.00 % confidence a draw passes with a probability \
+         of at least 95.04 %, required 95.00 %"
     );
+}
+
+#[test]
+fn rows_are_not_draws() {
+    let demand = Some(Ensemble { pass: 0.95, confidence: 0.95 });
+    let one = document(vec![tested("A", demand)]);
+    let judged = |cases: u64, of: &dyn Fn(u64) -> usize| {
+        let cases: Vec<Case> = (0..cases)
+            .map(|i| Case { draw: of(i), ..case(&format!("c{i}"), &[("A", Verdict::Pass)]) })
+            .collect();
+        let row = Trace::new(&one, &cases).requirements.remove(0);
+        (row.verdict.unwrap(), row.reason)
+    };
+    // One replicate with 59 labels, and five instruments at twelve longitudes.
+    assert_eq!(judged(59, &|_| 0).0, Verdict::Inconclusive);
+    let (verdict, reason) = judged(60, &|i| i as usize % 5);
+    assert_eq!(verdict, Verdict::Inconclusive);
+    assert!(
+        reason
+            .starts_with("5 of 5 independent draws passed in all of their 60 checks: with 95.00 %"),
+        "{reason}"
+    );
+    // The honest neighbour: 59 instruments at twelve longitudes.
+    assert_eq!(judged(59 * 12, &|i| i as usize / 12).0, Verdict::Pass);
 }
 
 fn verdict() -> impl Strategy<Value = Verdict> {
@@ -129,7 +166,7 @@ proptest! {
         let requirements = document(vec![tested("A", ensemble)]);
         let cases: Vec<Case> = all.iter().enumerate().map(|(i, verdict)| match verdict {
             Some(verdict) => case(&format!("c{i}"), &[("A", *verdict)]),
-            None => Case { id: format!("c{i}"), verifies: vec!["A".to_owned()], result: None },
+            None => Case { id: format!("c{i}"), verifies: vec!["A".to_owned()], draw: usize::MAX - i, result: None },
         }).collect();
         let trace = Trace::new(&requirements, &cases);
         let counted = trace.requirements[0].counts;
@@ -139,7 +176,7 @@ proptest! {
             prop_assert!(!all.is_empty());
             let worst = all.iter().map(|v| v.unwrap_or(Verdict::Error)).max();
             // With a demand on the ensemble some may fail, and nothing else.
-            prop_assert!(worst == Some(Verdict::Pass) || (ensemble.is_some() && worst == Some(Verdict::Fail)));
+            prop_assert!(worst == Some(Verdict::Pass) || (ensemble.is_some() && worst <= Some(Verdict::Fail)));
         }
         if all.contains(&Some(Verdict::Error)) {
             prop_assert_eq!(trace.verdict(), Verdict::Error);
@@ -157,7 +194,7 @@ fn a_campaign_as_a_project_of_strictdoc() {
     let requirements = document(vec![tested("A", None), tested("B", None)]);
     let cases = [
         case("c1", &[("A", Verdict::Pass), ("B", Verdict::Inconclusive)]),
-        Case { id: "c2".to_owned(), verifies: vec!["A".to_owned()], result: None },
+        Case { id: "c2".to_owned(), verifies: vec!["A".to_owned()], draw: 2, result: None },
     ];
     let trace = Trace::new(&requirements, &cases);
     let files = strictdoc::folder(&requirements, &trace, "Night & day").unwrap();

@@ -44,6 +44,9 @@ impl Plan {
                 "it has {count} cases, at most {CASES_MAX} are expected"
             )));
         }
+        if let Some(reason) = campaign.factors.iter().find_map(equal_values) {
+            return Err(contradiction(reason));
+        }
         let draws = super::draw::draws(&campaign).map_err(&contradiction)?;
         let file = campaign.requirements.as_deref().map(requirements::load).transpose()?;
         let of_file = file.as_ref().map(requirements::planned).unwrap_or_default();
@@ -116,6 +119,56 @@ impl Plan {
         plan.id = plan.hash();
         Ok(plan)
     }
+}
+
+/// Two values of a grid that are one in another spelling: they would be the same runs under two names.
+fn equal_values(factor: &Factor) -> Option<String> {
+    let spelled: Vec<(String, String)> = match &factor.levels {
+        Levels::Values { values, drawn: false, .. } => {
+            values.iter().map(|value| (value.clone(), meaning(value))).collect()
+        }
+        Levels::Faults { lists, drawn: false, .. } => (lists.iter())
+            .map(|list| {
+                let mut sorted = list.clone();
+                sorted.sort();
+                sorted.dedup();
+                (format!("{list:?}"), format!("{sorted:?}"))
+            })
+            .collect(),
+        _ => return None,
+    };
+    let mut seen: HashMap<&str, &str> = HashMap::new();
+    spelled.iter().find_map(|(value, meaning)| {
+        let other = seen.insert(meaning, value)?;
+        Some(format!(
+            "factor {:?} has the values {other} and {value}, which are the same: expected values that differ",
+            factor.name
+        ))
+    })
+}
+
+/// A value of TOML as it is meant: numbers without their spelling, quantities in SI.
+fn meaning(value: &str) -> String {
+    fn of(value: &toml::Value) -> String {
+        match value {
+            toml::Value::Integer(number) => format!("{:?}", *number as f64 + 0.0),
+            toml::Value::Float(number) => format!("{:?}", number + 0.0),
+            toml::Value::String(text) => match crate::scenario::quantity_of(text) {
+                // Rounding of the conversion aside: 1 deg and 60 arcmin.
+                Ok(quantity) => format!("{:.12e} in SI", quantity.si + 0.0),
+                Err(_) => format!("{:?}", text.trim()),
+            },
+            toml::Value::Array(all) => format!("{:?}", all.iter().map(of).collect::<Vec<_>>()),
+            toml::Value::Table(all) => {
+                let all: BTreeMap<&String, String> = all.iter().map(|(k, v)| (k, of(v))).collect();
+                format!("{all:?}")
+            }
+            other => other.to_string(),
+        }
+    }
+    let parsed = format!("value = {value}").parse::<toml::Table>();
+    let parsed = parsed.ok().and_then(|table| table.get("value").map(of));
+    parsed.unwrap_or_else(|| value.trim().to_owned())
 }
 
 fn absolute(path: &Path) -> Result<PathBuf, PlanError> {

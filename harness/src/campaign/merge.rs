@@ -1,13 +1,14 @@
 //! Parts of shards put together: the same tables, whatever was run where and in which order.
 
 use super::execute::Shard;
+use super::independence::Shown;
 use super::plan::{Plan, short};
 use super::results::{Columns, TABLES, ordered};
 use super::stop;
 use super::table::{Kind, Table, TableError, Values, write};
 use crate::score::verdict::Verdict;
 use std::borrow::Cow;
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, HashMap, HashSet};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -100,36 +101,54 @@ struct Row {
 /// If a part can't be read.
 pub fn end(plan: &Plan, folders: &[PathBuf]) -> Result<usize, MergeError> {
     let Some(rule) = &plan.stop else { return Ok(plan.cases.len()) };
-    let mut verdicts: HashMap<Arc<str>, Verdict> = HashMap::new();
-    // A case that came to no summary checked nothing: it counts as an error.
-    for (table, of_cases) in [("cases", true), ("checks", false)] {
-        for path in parts(folders, table) {
-            let table = Table::open(&path)?;
-            let texts = |name: &str| match table.column(name) {
-                Ok(Some(Values::Text(texts))) => Ok(texts),
-                Ok(_) => Err(TableError::Form {
-                    path: path.clone(),
-                    reason: format!("it has no texts in a column {name}"),
-                }),
-                Err(error) => Err(error),
-            };
-            let which = texts(if of_cases { "error" } else { "requirement" })?;
-            for ((case, which), verdict) in
-                texts("case")?.iter().zip(&which).zip(&texts("verdict")?)
+    let mut all: HashMap<Arc<str>, Shown> = HashMap::new();
+    let pass = Some(Verdict::Pass.name());
+    // A case that came to no summary checked nothing: it isn't passed.
+    for path in parts(folders, "cases") {
+        let table = Table::open(&path)?;
+        let [cases, streams] = ["case", "stream_hash"].map(|name| texts(&table, &path, name));
+        // Parts of before have the verdict of the whole case alone.
+        let besides =
+            texts(&table, &path, "besides").or_else(|_| texts(&table, &path, "verdict"))?;
+        for ((case, stream), besides) in cases?.into_iter().zip(streams?).zip(besides) {
+            let (Some(case), passed) = (case, besides.as_deref() == pass) else { continue };
+            let stream = stream.map(|stream| stream.to_string());
+            all.insert(case, Shown { passed, stream });
+        }
+    }
+    let mut checked: HashSet<Arc<str>> = HashSet::new();
+    for path in parts(folders, "checks") {
+        let table = Table::open(&path)?;
+        let [cases, ids, verdicts] =
+            ["case", "requirement", "verdict"].map(|name| texts(&table, &path, name));
+        for ((case, id), verdict) in cases?.into_iter().zip(ids?).zip(verdicts?) {
+            if let (Some(case), Some(id)) = (case, id)
+                && *id == *rule.requirement
             {
-                let counts = match which {
-                    Some(which) => of_cases || **which == *rule.requirement,
-                    None => false,
-                };
-                let named = Verdict::ALL.iter().find(|v| Some(v.name()) == verdict.as_deref());
-                if let (true, Some(case), Some(verdict)) = (counts, case, named) {
-                    verdicts.insert(Arc::clone(case), *verdict);
+                if let Some(shown) = all.get_mut(&case) {
+                    shown.passed &= verdict.as_deref() == pass;
                 }
+                checked.insert(case);
             }
         }
     }
-    let decision = stop::decide(plan, rule, |case| verdicts.get(case.id.as_str()).copied());
+    let decision = stop::decide(plan, rule, |case| {
+        let mut shown = all.get(case.id.as_str())?.clone();
+        shown.passed &= checked.contains(case.id.as_str());
+        Some(shown)
+    });
     Ok(decision.end(plan.cases.len()))
+}
+
+/// A column of texts of a part.
+fn texts(table: &Table, path: &Path, name: &str) -> Result<Vec<Option<Arc<str>>>, TableError> {
+    match table.column(name)? {
+        Some(Values::Text(texts)) => Ok(texts),
+        _ => Err(TableError::Form {
+            path: path.to_owned(),
+            reason: format!("it has no texts in a column {name}"),
+        }),
+    }
 }
 
 /// Puts the parts in `folders` together into the tables of `out`, with the cases of the plan up to

@@ -2,13 +2,14 @@
 //!
 //! [`mod@file`] is what a user writes, [`plan`] the list of cases that it makes, [`case`] one of them run,
 //! [`execute`] all of them, each in a process of its own, [`results`] their tables, [`merge`] those of all
-//! shards.
+//! shards, [`independence`] which of them are one draw.
 
 pub mod case;
 mod draw;
 pub mod emit;
 pub mod execute;
 pub mod file;
+pub mod independence;
 mod make;
 pub mod merge;
 pub mod plan;

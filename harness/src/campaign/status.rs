@@ -2,7 +2,8 @@
 
 use super::case::{self, CaseResult};
 use super::execute::{Shard, differing};
-use super::plan::{Plan, StopRule};
+use super::independence::{self, Shown};
+use super::plan::{Case, Plan, StopRule};
 use super::requirements;
 use super::stop::{self, Decision};
 use crate::report::number::plain;
@@ -10,6 +11,7 @@ use crate::score::judge;
 use crate::score::verdict::Verdict;
 use octant_requirements::requirement::Ensemble;
 use octant_requirements::trace::{Counts, judge};
+use octant_statistics::cluster::Draws;
 use octant_statistics::proportion::{Demand, Needed, further_if_all_pass};
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -30,6 +32,12 @@ pub struct Status {
     pub cases: usize,
     /// Cases without a result.
     pub open: usize,
+    /// Independent draws among the cases: what any bound rests on.
+    pub draws: usize,
+    /// Cases that came to the same stream of samples: each group is one run, told several times.
+    pub repeated: Vec<Vec<String>>,
+    /// Factors that change nothing.
+    pub idle_factors: Vec<String>,
     /// Cases by verdict.
     pub verdicts: BTreeMap<&'static str, usize>,
     /// The worst of the cases but for their requirements: a case that ended as an error, a calibration
@@ -56,9 +64,11 @@ pub struct RequirementStatus {
     pub reason: String,
     /// Its checks.
     pub counts: Counts,
+    /// Its independent draws.
+    pub draws: Draws,
     /// What has to hold of all cases together; null: every case has to pass.
     pub ensemble: Option<Ensemble>,
-    /// Runs that are still needed if all of them pass; null where nothing is asked of them together.
+    /// Further draws that show it if all of them pass; null where nothing is asked of them together.
     pub needed: Option<Needed>,
 }
 
@@ -84,6 +94,9 @@ pub fn of(plan: &Plan, folder: &Path, shard: Shard) -> Result<Status, String> {
         plan: plan.id.clone(),
         cases: 0,
         open: 0,
+        draws: 0,
+        repeated: Vec::new(),
+        idle_factors: Vec::new(),
         verdicts: BTreeMap::new(),
         besides: Verdict::Pass,
         requirements: BTreeMap::new(),
@@ -107,6 +120,7 @@ pub fn of(plan: &Plan, folder: &Path, shard: Shard) -> Result<Status, String> {
     for id in of_file.chain(of_scenarios) {
         counts.entry(id).or_default();
     }
+    let mut looked: Vec<Looked<'_>> = Vec::new();
     status.cases = mine().filter(|(index, _)| *index < end).count();
     for (_, case) in mine().filter(|(index, _)| *index < end) {
         let path = case::file(folder, &case.id);
@@ -114,12 +128,24 @@ pub fn of(plan: &Plan, folder: &Path, shard: Shard) -> Result<Status, String> {
         let checked = checked.iter().flat_map(|scenario| &scenario.requirements);
         if !path.exists() {
             status.open += 1;
-            checked.for_each(|id| counts.entry(id).or_default().missing += 1);
+            let checked: Vec<&String> = checked.collect();
+            checked.iter().for_each(|id| counts.entry(id).or_default().missing += 1);
+            let passed = checked.into_iter().map(|id| (id.as_str(), None)).collect();
+            looked.push(Looked { case, stream: None, passed });
             continue;
         }
         let result = CaseResult::read(&path).map_err(|reason| format!("failed to {reason}"))?;
         *status.verdicts.entry(result.verdict.name()).or_default() += 1;
-        status.besides = status.besides.worst(besides(&result));
+        let counted = |id: &String| requirements::ensemble(plan, id).is_some();
+        let is_counted = checked.clone().next().is_some() && checked.clone().all(counted);
+        if !(is_counted && is_refused_alone(&result)) {
+            status.besides = status.besides.worst(besides(&result));
+        }
+        let passed =
+            checked.clone().map(|id| (id.as_str(), Some(independence::passes(&result, id))));
+        let passed = passed.collect();
+        let stream = result.summary.as_ref().map(|summary| summary.stream_hash.clone());
+        looked.push(Looked { case, stream, passed });
         for id in checked {
             let counts = counts.entry(id).or_default();
             *match result.check(id) {
@@ -138,23 +164,50 @@ pub fn of(plan: &Plan, folder: &Path, shard: Shard) -> Result<Status, String> {
             status.bad.push(Bad { case: case.id.clone(), verdict: result.verdict, reason });
         }
     }
+    let draws = independence::draws(looked.iter().map(|l| (l.case, l.stream.as_deref())));
+    status.draws = draws.iter().max().map_or(0, |last| last + 1);
+    let idle = independence::idle(plan, looked.iter().map(|l| (l.case, l.stream.as_deref())));
+    (status.repeated, status.idle_factors) = (idle.repeated, idle.factors);
+    let mut rows: BTreeMap<&str, Vec<(usize, Option<bool>)>> = BTreeMap::new();
+    for (looked, draw) in looked.iter().zip(&draws) {
+        for (id, passed) in &looked.passed {
+            rows.entry(id).or_default().push((*draw, *passed));
+        }
+    }
     let of = |(id, counts): (&str, Counts)| {
         let ensemble = requirements::ensemble(plan, id);
-        let (verdict, reason) = judge(ensemble, counts);
+        let draws = Draws::of(rows.remove(id).unwrap_or_default());
+        let (verdict, reason) = judge(ensemble, counts, draws);
         let needed = ensemble.map(|Ensemble { pass, confidence }| {
-            let runs = counts.pass + counts.fail;
-            further_if_all_pass(Demand { pass, confidence }, counts.fail, runs)
+            further_if_all_pass(Demand { pass, confidence }, draws.not_passed, draws.known())
         });
         let verdict = Verdict::ALL.into_iter().find(|known| known.name() == verdict.name());
         let verdict = verdict.unwrap_or(Verdict::Error);
-        (id.to_owned(), RequirementStatus { verdict, reason, counts, ensemble, needed })
+        (id.to_owned(), RequirementStatus { verdict, reason, counts, draws, ensemble, needed })
     };
     status.requirements = counts.into_iter().map(of).collect();
     Ok(status)
 }
 
+/// A case that counts, and what it shows of each requirement that it checks.
+struct Looked<'a> {
+    case: &'a Case,
+    stream: Option<String>,
+    passed: Vec<(&'a str, Option<bool>)>,
+}
+
+/// A refusal is all that is wrong with a case, but for its requirements. Where each of these is a
+/// probability the refusal is counted there, as a run that didn't pass, and not once more.
+fn is_refused_alone(result: &CaseResult) -> bool {
+    let Some(mut summary) = result.summary.clone() else { return false };
+    let refused = summary.calibration.as_mut().and_then(|calibration| calibration.refused.take());
+    // What comes after a refusal isn't done, and is told as that refusal.
+    (summary.planned, summary.done) = (None, None);
+    refused.is_some() && judge::besides(&summary) <= Verdict::Pass
+}
+
 /// What a case comes to but for its requirements.
-pub(super) fn besides(result: &CaseResult) -> Verdict {
+pub(in crate::campaign) fn besides(result: &CaseResult) -> Verdict {
     let Some(summary) = &result.summary else { return Verdict::Error };
     let worst = judge::besides(summary);
     // What none of this says comes from elsewhere.
@@ -167,7 +220,7 @@ pub(super) fn besides(result: &CaseResult) -> Verdict {
 pub fn decide(plan: &Plan, folder: &Path, rule: &StopRule) -> Decision {
     stop::decide(plan, rule, |case| {
         let result = CaseResult::read(&case::file(folder, &case.id)).ok()?;
-        Some(result.check(&rule.requirement))
+        Some(Shown::of(&result, &rule.requirement))
     })
 }
 
@@ -203,6 +256,27 @@ impl Status {
         requirements.fold(self.besides.worst(least), Verdict::worst)
     }
 
+    /// What of the design adds nothing, in words.
+    #[must_use]
+    pub fn idle_in_words(&self) -> Vec<String> {
+        let idle = self.idle_factors.iter().map(|factor| {
+            format!(
+                "factor {factor} changes nothing: cases that differ in it have the same streams"
+            )
+        });
+        let cases: usize = self.repeated.iter().map(Vec::len).sum();
+        let repeated = (cases > 0).then(|| {
+            let streams = self.repeated.len();
+            format!(
+                "{cases} cases came to {streams} stream{}: cases of the same stream are one run and count \
+                 once, the first are {}",
+                if streams == 1 { "" } else { "s" },
+                self.repeated.iter().flatten().take(3).cloned().collect::<Vec<_>>().join(", ")
+            )
+        });
+        idle.chain(repeated).collect()
+    }
+
     /// The state for people.
     #[must_use]
     pub fn text(&self) -> String {
@@ -221,15 +295,23 @@ impl Status {
             self.cases,
             counts(&self.verdicts)
         );
+        let many = |count: usize| if count == 1 { "" } else { "s" };
+        _ = writeln!(text, "  {} independent draw{}", self.draws, many(self.draws));
+        for found in self.idle_in_words() {
+            _ = writeln!(text, "  {found}");
+        }
         for (id, requirement) in &self.requirements {
             _ = writeln!(text, "  {id}: {}: {}", requirement.verdict.name(), requirement.reason);
             match requirement.needed {
                 None | Some(Needed::Runs(0)) => {}
                 Some(Needed::Runs(runs)) => {
-                    _ = writeln!(text, "    {runs} more cases would show it, if all of them pass");
+                    _ = writeln!(
+                        text,
+                        "    {runs} more independent draws would show it, if all of them pass"
+                    );
                 }
                 Some(Needed::CannotBeMet) => {
-                    text += "    no number of further cases can show it\n";
+                    text += "    no number of further draws can show it\n";
                 }
             }
         }

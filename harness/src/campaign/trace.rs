@@ -3,6 +3,7 @@
 use super::case::{self, CaseResult};
 use super::execute::differing;
 use super::file::Campaign;
+use super::independence;
 use super::plan::{Plan, PlanError};
 use super::requirements;
 use super::status;
@@ -37,7 +38,8 @@ pub fn requirements_of(plan: &Plan) -> Result<Requirements, PlanError> {
 /// # Errors
 /// In words, if a result is there and can't be read.
 pub fn trace(plan: &Plan, requirements: &Requirements, folder: &Path) -> Result<Trace, String> {
-    let of = |case: &super::plan::Case| -> Result<Case, String> {
+    let mut streams: Vec<Option<String>> = Vec::with_capacity(plan.cases.len());
+    let mut of = |case: &super::plan::Case| -> Result<Case, String> {
         let planned = plan.scenarios.iter().find(|scenario| scenario.id == case.scenario);
         let of_file = |id: &&String| requirements.get(id).is_some();
         let verifies: Vec<String> = (planned.iter())
@@ -67,6 +69,7 @@ pub fn trace(plan: &Plan, requirements: &Requirements, folder: &Path) -> Result<
                 (id.clone(), traced(check))
             };
             let checks = verifies.iter().map(check).collect();
+            streams.push(result.summary.as_ref().map(|summary| summary.stream_hash.clone()));
             Some(Traced {
                 verdict: traced(result.verdict),
                 checks,
@@ -75,11 +78,16 @@ pub fn trace(plan: &Plan, requirements: &Requirements, folder: &Path) -> Result<
                 folder: Some(path.display().to_string()),
             })
         } else {
+            streams.push(None);
             None
         };
-        Ok(Case { id: case.id.clone(), verifies, result })
+        Ok(Case { id: case.id.clone(), verifies, draw: 0, result })
     };
-    let cases = plan.cases.iter().map(of).collect::<Result<Vec<_>, _>>()?;
+    let mut cases = plan.cases.iter().map(&mut of).collect::<Result<Vec<_>, _>>()?;
+    let rows = plan.cases.iter().zip(streams.iter().map(Option::as_deref));
+    for (case, draw) in cases.iter_mut().zip(independence::draws(rows)) {
+        case.draw = draw;
+    }
     Ok(Trace::new(requirements, &cases))
 }
 

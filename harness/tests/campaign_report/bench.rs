@@ -116,7 +116,12 @@ impl Bench {
         campaign: &str,
         change: impl Fn(usize, &Case, &mut Value),
     ) -> (Self, Plan, PathBuf) {
-        let bench = Self::new(campaign);
+        Self::new(campaign).fill(change)
+    }
+
+    /// The same for what is in the folder.
+    pub(crate) fn fill(self, change: impl Fn(usize, &Case, &mut Value)) -> (Self, Plan, PathBuf) {
+        let bench = self;
         let (plan, out) = (bench.plan(), bench.at("out"));
         plan.write(&out, false).unwrap();
         for (index, case) in plan.cases.iter().enumerate() {

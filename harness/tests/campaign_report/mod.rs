@@ -4,6 +4,7 @@
 
 mod bench;
 mod dispositions;
+mod draws;
 mod evidence;
 mod findings;
 mod numbers;

@@ -145,9 +145,11 @@ fn the_numbers_are_those_of_another_path_and_stand_on_the_page() {
     assert_eq!((nav["id"].as_str(), nav["clause"].as_str()), (Some("NAV-1"), Some("Spec 3.1")));
     let fails = (0..80).filter(|index| broken(*index)).count() as u64;
     assert_eq!((fails, nav["counts"]["fail"].as_u64()), (9, Some(9)));
-    // The bound is where so few failures have a probability of 10 %.
+    // Both latitudes have the same 40 instruments: they are the draws, and no two cases that broke it are
+    // of the same one. The bound is where so few failures have a probability of 10 %.
+    assert_eq!(nav["draws"], json!({"passed": 31, "not_passed": 9, "open": 0, "rows": 80}));
     let bound = nav["lower_bound"].as_f64().unwrap();
-    assert!((binomial(fails, 80, 1.0 - bound) - 0.1).abs() < 1e-9, "{bound}");
+    assert!((binomial(fails, 40, 1.0 - bound) - 0.1).abs() < 1e-9, "{bound}");
     assert!(page.contains(&format!("{} %", (bound * 1e4).floor() / 1e2)), "{bound}");
     near(&nav["nearest"]["margin"], -2.5);
     let verdict = if bound >= 0.8 { "pass" } else { "inconclusive" };
@@ -155,10 +157,10 @@ fn the_numbers_are_those_of_another_path_and_stand_on_the_page() {
     // As many more passes as it takes, and not one less.
     let needed = nav["needed_if_all_pass"]["runs"].as_u64().unwrap();
     let shown = |runs: u64| binomial(fails, runs, 0.2) <= 0.1;
-    assert!(shown(80 + needed) && (needed == 0 || !shown(79 + needed)), "{needed}");
+    assert!(shown(40 + needed) && (needed == 0 || !shown(39 + needed)), "{needed}");
     let settled = nav["convergence"].as_array().unwrap().last().unwrap();
-    assert_eq!(settled["runs"], 80);
-    near(&settled["estimate"]["value"], 71.0 / 80.0);
+    assert_eq!(settled["runs"], 40);
+    near(&settled["estimate"]["value"], 31.0 / 40.0);
     let exit = if verdict == "pass" { 0 } else { 3 };
     assert_eq!(status, exit, "{said}");
     // Nine cases failed, in two combinations: whatever the verdict, somebody has to say something.
@@ -180,8 +182,9 @@ fn predictions_stand_beside_the_cases() {
         .replace("faults = [[], [\"spike-1\"]]\ndraw = true", "faults = [[], [\"spike-1\"]]");
     let bench = Bench::new(&campaign);
     bench.plan().write(&bench.at("out"), false).unwrap();
-    assert_eq!(bench.octant(&["campaign", "run", "out"]).status.code(), Some(0));
-    assert_eq!(bench.report().0, 0);
+    assert_eq!(bench.octant(&["campaign", "run", "out"]).status.code(), Some(3));
+    // Three draws don't show 80 % at 90 %, in however many combinations.
+    assert_eq!(bench.report().0, 3);
     let prediction: Value = serde_json::from_str(&bench.read("prediction.json")).unwrap();
     let compared = prediction["compared"].as_array().unwrap();
     assert_eq!((prediction["schema"].as_u64(), compared.len()), (Some(1), 2), "two latitudes");
@@ -215,7 +218,7 @@ fn predictions_stand_beside_the_cases() {
         assert!(page.contains(words), "{words}");
     }
     std::fs::remove_file(bench.at("short.toml")).unwrap();
-    assert_eq!(bench.report().0, 0);
+    assert_eq!(bench.report().0, 3);
     let prediction: Value = serde_json::from_str(&bench.read("prediction.json")).unwrap();
     assert_eq!(prediction["compared"], json!([]));
     assert!(prediction["left_out"].to_string().contains("short.toml"), "{prediction}");

@@ -57,6 +57,15 @@ pub(super) fn find(
     for combination in combinations {
         all.extend(of_combination(plan, combination, rows));
     }
+    for found in status.idle_in_words() {
+        let subject = Subject {
+            kind: "design",
+            verdict: Verdict::Inconclusive,
+            requirement: None,
+            of: &found,
+        };
+        all.push(Discrepancy::whole(&subject, found.clone()));
+    }
     let open = rows.iter().filter(|row| row.outcome.is_none()).count();
     if open > 0 {
         let subject =

@@ -2,6 +2,11 @@
 //!
 //! The statistics themselves are those of [`octant_statistics`]. An end of an interval for which there are
 //! too few cases is null.
+//!
+//! A case that ran and has no navigation, because its calibration was refused or it ended as an error, is in
+//! every figure, beyond every number: percentiles are those of the full sample, and null where they fall on
+//! such cases. What is left after leaving them out would be the drift of those that drift little. Cases of
+//! the same stream count once.
 
 use super::combination::{self, Combination, number_of, takes_part};
 use super::rows::{Curve, Drift, Row};
@@ -74,8 +79,12 @@ pub struct CombinationFigures {
     pub factors: BTreeMap<String, String>,
     /// Cases of the plan.
     pub cases: usize,
-    /// Those with a navigation: the figures are of them.
+    /// Independent draws among those that ran: the figures are of them.
+    pub draws: usize,
+    /// Draws with a navigation.
     pub navigated: usize,
+    /// Draws without one: refused or ended as errors, beyond every number.
+    pub beyond: usize,
     /// Radial error at the end of the navigation; null where no case navigated, as everything below.
     pub at_end: Option<Position>,
     /// Radial error at marks that all of them reached.
@@ -133,6 +142,8 @@ pub struct ScenarioFigures {
     pub combinations: usize,
     /// Cases with a navigation.
     pub navigated: usize,
+    /// Cases that ran and have none: beyond every number.
+    pub beyond: usize,
     /// Median of the radial error at the end, nmi.
     pub cep50_nmi: Option<f64>,
     /// Its 95th percentile.
@@ -176,6 +187,45 @@ pub struct OutlierFigures {
     pub score: f64,
 }
 
+/// The cases of a sample that ran, each with its drift; without one it is beyond every number.
+struct Sample<'a> {
+    cases: Vec<(&'a Case, Option<&'a Drift>)>,
+}
+
+impl<'a> Sample<'a> {
+    /// Cases at these places, the first of each draw.
+    fn of_draws(rows: &'a [Row<'_>], places: &[usize], draws: &[usize]) -> Self {
+        let mut seen = BTreeSet::new();
+        let is_new = |place: &&usize| draws.get(**place).is_none_or(|draw| seen.insert(*draw));
+        let run = |place: &&usize| rows.get(**place).is_some_and(|row| row.outcome.is_some());
+        Self::of(rows, places.iter().filter(run).filter(is_new).copied())
+    }
+
+    fn of(rows: &'a [Row<'_>], places: impl Iterator<Item = usize>) -> Self {
+        let one = |place: usize| {
+            let row = rows.get(place)?;
+            Some((row.case, row.outcome.as_ref()?.drift.as_ref()))
+        };
+        Self { cases: places.filter_map(one).collect() }
+    }
+
+    fn navigated(&self) -> usize {
+        self.cases.iter().filter(|(_, drift)| drift.is_some()).count()
+    }
+
+    fn beyond(&self) -> usize {
+        self.cases.len() - self.navigated()
+    }
+
+    /// A measure of all cases; nothing where no case navigates.
+    fn column(&self, of: impl Fn(&Drift) -> f64) -> Vec<f64> {
+        if self.navigated() == 0 {
+            return Vec::new();
+        }
+        self.cases.iter().map(|(_, drift)| drift.map_or(f64::INFINITY, &of)).collect()
+    }
+}
+
 /// A measure of a drift.
 type Measure = fn(&Drift) -> f64;
 
@@ -195,16 +245,14 @@ impl CombinationFigures {
         grid: &[String],
         combination: &Combination,
         rows: &[Row<'_>],
+        draws: &[usize],
     ) -> Self {
-        let there: Vec<(&Case, &Drift)> = (combination.cases.iter())
-            .filter_map(|case| Some((rows.get(*case)?.case, drift(rows, *case)?)))
-            .collect();
-        let column =
-            |f: fn(&Drift) -> f64| there.iter().map(|(_, drift)| f(drift)).collect::<Vec<_>>();
+        let sample = Sample::of_draws(rows, &combination.cases, draws);
+        let column = |f: fn(&Drift) -> f64| sample.column(f);
         let last = column(|drift| drift.final_nmi);
         let of_last = |p: f64| convergence(&last, |values| interval(values, p, CONFIDENCE));
         let curves: Vec<&Curve> =
-            there.iter().filter_map(|(_, drift)| drift.curve.as_ref()).collect();
+            sample.cases.iter().filter_map(|(_, drift)| drift.as_ref()?.curve.as_ref()).collect();
         let values = |name: &String| {
             let cases = combination.cases.iter().filter_map(|case| plan.cases.get(*case));
             cases.filter_map(|case| case.factors.get(name)).collect::<Vec<_>>()
@@ -215,30 +263,32 @@ impl CombinationFigures {
             scenario: combination.scenario.clone(),
             factors: combination.factors.iter().cloned().collect(),
             cases: combination.cases.len(),
-            navigated: there.len(),
+            draws: sample.cases.len(),
+            navigated: sample.navigated(),
+            beyond: sample.beyond(),
             at_end: Position::of(&last),
-            at_marks: marks(&there),
+            at_marks: marks(&sample),
             largest_nmi: Spread::of(&column(|drift| drift.max_nmi)),
             rate_nmi_per_h: rate_bounds(&column(|drift| drift.rate_nmi_per_h), CONFIDENCE),
             time_rms_nmi: Spread::of(&column(|drift| drift.rms_nmi)),
-            envelope: EnvelopeFigures::of(&curves),
+            envelope: EnvelopeFigures::of(&curves, sample.beyond()),
             convergence_cep50: of_last(0.5),
             convergence_r95: of_last(0.95),
             sensitivity: (plan.factors.iter().filter(drawn))
-                .filter_map(|name| FactorFigures::of(name, &there))
+                .filter_map(|name| FactorFigures::of(name, &sample))
                 .collect(),
         }
     }
 }
 
-/// Radial errors at the marks that every case reached.
-fn marks(there: &[(&Case, &Drift)]) -> BTreeMap<String, Position> {
-    let names: BTreeSet<&String> =
-        there.iter().flat_map(|(_, drift)| drift.marks_nmi.keys()).collect();
+/// Radial errors at the marks that every case reached which navigated.
+fn marks(sample: &Sample<'_>) -> BTreeMap<String, Position> {
+    let drifts = || sample.cases.iter().filter_map(|(_, drift)| *drift);
+    let names: BTreeSet<&String> = drifts().flat_map(|drift| drift.marks_nmi.keys()).collect();
     let of = |name: &String| {
-        let values: Option<Vec<f64>> =
-            there.iter().map(|(_, drift)| drift.marks_nmi.get(name).copied()).collect();
-        Some((name.clone(), Position::of(&values?)?))
+        let reached = drifts().all(|drift| drift.marks_nmi.contains_key(name));
+        let value = |drift: &Drift| drift.marks_nmi.get(name).copied().unwrap_or(f64::INFINITY);
+        Some((name.clone(), Position::of(&reached.then(|| sample.column(value))?)?))
     };
     names.into_iter().filter_map(of).collect()
 }
@@ -246,7 +296,11 @@ fn marks(there: &[(&Case, &Drift)]) -> BTreeMap<String, Position> {
 impl EnvelopeFigures {
     /// Up to where the shortest navigation ends; none of navigations whose lengths are so different that
     /// their grids are.
-    fn of(curves: &[&Curve]) -> Option<Self> {
+    ///
+    /// An error has a sign, and one beyond every number may have either: it counts as far below for the
+    /// percentiles under the median and as far above for those over it. The median of such a sample isn't
+    /// defined.
+    fn of(curves: &[&Curve], beyond: usize) -> Option<Self> {
         let step_s = curves.first()?.step_s;
         if curves.iter().any(|curve| curve.step_s != step_s) {
             return None;
@@ -254,27 +308,38 @@ impl EnvelopeFigures {
         let points = curves.iter().map(|curve| curve.latitude_arcmin.len()).min()?;
         let of = |column: fn(&Curve) -> &[f64]| {
             let all: Vec<&[f64]> = curves.iter().filter_map(|c| column(c).get(..points)).collect();
-            envelope(&all, points, &PERCENTILES).ok()
+            let with = |far: f64, percentiles: &[f64]| {
+                let far = vec![far; points];
+                let rest = std::iter::repeat_n(far.as_slice(), beyond);
+                let all: Vec<&[f64]> = all.iter().copied().chain(rest).collect();
+                envelope(&all, points, percentiles).ok()
+            };
+            let curve = |p: f64| match p.total_cmp(&0.5) {
+                std::cmp::Ordering::Less => with(f64::NEG_INFINITY, &[p])?.curves.pop(),
+                std::cmp::Ordering::Equal if beyond > 0 => Some(vec![f64::NAN; points]),
+                _ => with(f64::INFINITY, &[p])?.curves.pop(),
+            };
+            PERCENTILES.into_iter().map(curve).collect::<Option<Vec<_>>>()
         };
         Some(Self {
             hours: (0..points).map(|k| k as f64 * step_s / 3600.0).collect(),
             percentiles: PERCENTILES.to_vec(),
-            latitude_arcmin: of(|curve| &curve.latitude_arcmin)?.curves,
-            longitude_arcmin: of(|curve| &curve.longitude_arcmin)?.curves,
+            latitude_arcmin: of(|curve| &curve.latitude_arcmin)?,
+            longitude_arcmin: of(|curve| &curve.longitude_arcmin)?,
         })
     }
 }
 
 impl FactorFigures {
     /// `None` of one that isn't a number.
-    fn of(name: &str, there: &[(&Case, &Drift)]) -> Option<Self> {
+    fn of(name: &str, sample: &Sample<'_>) -> Option<Self> {
         let (mut values, mut rates) = (Vec::new(), Vec::new());
-        for (case, drift) in there {
+        for (case, drift) in &sample.cases {
             let Some(value) = case.factors.get(name) else { continue };
             let number = number_of(value)?;
             if takes_part(case, name) {
                 values.push(number);
-                rates.push(drift.rate_nmi_per_h);
+                rates.push(drift.map_or(f64::INFINITY, |drift| drift.rate_nmi_per_h));
             }
         }
         Some(Self {
@@ -305,21 +370,18 @@ impl ScenarioFigures {
     ) -> Self {
         let mine: Vec<&Combination> =
             combinations.iter().filter(|combination| combination.scenario == scenario).collect();
-        let there: Vec<(&Case, &Drift)> = (mine.iter().flat_map(|c| &c.cases))
-            .filter_map(|case| Some((rows.get(*case)?.case, drift(rows, *case)?)))
-            .collect();
-        let at = |p: f64, f: fn(&Drift) -> f64| {
-            percentile(&there.iter().map(|(_, drift)| f(drift)).collect::<Vec<_>>(), p)
-        };
+        let sample = Sample::of(rows, mine.iter().flat_map(|c| &c.cases).copied());
+        let at = |p: f64, f: fn(&Drift) -> f64| percentile(&sample.column(f), p);
         let of_grid = |factor: &String| {
-            let found = FactorFigures::of(factor, &there)?;
+            let found = FactorFigures::of(factor, &sample)?;
             let rho = found.correlation?.rho;
             Some(GridFigures { factor: factor.clone(), cases: found.cases, rho })
         };
         Self {
             scenario: scenario.to_owned(),
             combinations: mine.len(),
-            navigated: there.len(),
+            navigated: sample.navigated(),
+            beyond: sample.beyond(),
             cep50_nmi: at(0.5, |drift| drift.final_nmi),
             r95_nmi: at(0.95, |drift| drift.final_nmi),
             rate50_nmi_per_h: at(0.5, |drift| drift.rate_nmi_per_h),

@@ -40,6 +40,13 @@ pub const SCHEMA: u32 = 1;
 /// Reasons that are told at most.
 const REASONS_MAX: usize = 12;
 
+/// How cases are counted: the same here, in `[stop]`, in comparisons and in nights.
+pub const POLICY: &str = "The unit is the independent draw, an instrument with its noise: all cases of a \
+    seed are one draw, and so are cases with the same stream. A draw passes a requirement if all of its \
+    checks pass. A calibration that was refused, a check that came to nothing and an error count as not \
+    passed; in percentiles such a case is beyond every number, and a figure that falls on one is not \
+    defined. Cases that have not run are told and count as nothing.";
+
 /// Why there is no report.
 #[derive(Debug, thiserror::Error)]
 pub enum ReportError {
@@ -101,6 +108,10 @@ pub struct Statistics {
     pub results_blake3: String,
     /// Cases that count.
     pub cases: usize,
+    /// Independent draws among them: what every bound rests on.
+    pub draws: usize,
+    /// How cases are counted, in words.
+    pub policy: &'static str,
     /// Those without a result.
     pub open: usize,
     /// Cases by verdict.
@@ -191,9 +202,10 @@ impl<'a> Report<'a> {
         if let Some(test) = selftest.as_ref().filter(|test| test.verdict != Verdict::Pass) {
             wrong.push(format!("the self-test of the program came to {}", test.verdict.name()));
         }
+        let draws = rows::draws(&rows);
         let mut of_combinations: Vec<CombinationFigures> = combinations
             .iter()
-            .map(|combination| CombinationFigures::of(plan, &grid, combination, &rows))
+            .map(|combination| CombinationFigures::of(plan, &grid, combination, &rows, &draws))
             .collect();
         figures::mark(&mut of_combinations);
         let statistics = Statistics {
@@ -203,6 +215,8 @@ impl<'a> Report<'a> {
             verdict: status.verdict(),
             results_blake3,
             cases: status.cases,
+            draws: status.draws,
+            policy: POLICY,
             open: status.open,
             verdicts: status.verdicts.clone(),
             confidence: figures::CONFIDENCE,

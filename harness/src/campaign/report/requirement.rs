@@ -2,15 +2,17 @@
 
 use super::combination::Combination;
 use super::figures::CONFIDENCE;
-use super::rows::Row;
+use super::rows::{self, Outcome, Row};
 use crate::campaign::plan::Plan;
 use crate::campaign::status::{RequirementStatus, Status};
 use crate::score::verdict::{RequirementResult, Verdict};
 use octant_requirements::requirement::{Ensemble, Requirements};
-use octant_requirements::trace::Counts;
+use octant_requirements::trace::{Counts, claim};
+use octant_statistics::cluster::Draws;
 use octant_statistics::convergence::{Step, convergence, pass};
 use octant_statistics::proportion::{Demand, Needed, further_at_rate, success_lower_bound};
 use serde::Serialize;
+use std::collections::BTreeMap;
 
 /// What the cases show of a requirement.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -33,19 +35,23 @@ pub struct RequirementFigures {
     pub reason: String,
     /// Its checks.
     pub counts: Counts,
+    /// Its independent draws: one passes if all of its checks did.
+    pub draws: Draws,
+    /// What the draws show, as a sentence; null where none is known.
+    pub claim: Option<String>,
     /// What has to hold of all cases together; null: every case has to pass.
     pub asked: Option<Ensemble>,
     /// Confidence of the lower bound, one-sided: what is asked, or 95 %.
     pub confidence: f64,
-    /// Lower bound of the pass probability (Clopper and Pearson); null where nothing passed or failed.
+    /// Lower bound of the probability that a draw passes (Clopper and Pearson); null where none is known.
     pub lower_bound: Option<f64>,
-    /// Further cases that show it if all of them pass; null where nothing is asked of them together.
+    /// Further draws that show it if all of them pass; null where nothing is asked of them together.
     pub needed_if_all_pass: Option<Needed>,
-    /// Further cases that show it if they go on to fail as often as so far.
+    /// Further draws that show it if they go on to fail as often as so far.
     pub needed_at_rate: Option<Needed>,
     /// The case that came nearest to the limit, or farthest beyond it.
     pub nearest: Option<Nearest>,
-    /// How the pass probability settles, with two-sided bounds of 95 %.
+    /// How the probability that a draw passes settles, with two-sided bounds of 95 %.
     pub convergence: Vec<Step>,
     /// By combination, in their order.
     pub combinations: Vec<Part>,
@@ -67,41 +73,59 @@ pub struct Nearest {
 pub struct Part {
     /// Its checks.
     pub counts: Counts,
-    /// Lower bound of the pass probability; null where nothing passed or failed.
+    /// Its independent draws.
+    pub draws: Draws,
+    /// Lower bound of the probability that a draw passes in it; null where none is known.
     pub lower_bound: Option<f64>,
 }
 
-fn bound(counts: Counts, confidence: f64) -> Option<f64> {
-    let runs = counts.pass + counts.fail;
-    (runs > 0).then(|| success_lower_bound(counts.fail, runs, confidence))
+fn bound(draws: Draws, confidence: f64) -> Option<f64> {
+    (draws.known() > 0).then(|| success_lower_bound(draws.not_passed, draws.known(), confidence))
 }
 
-/// Counts what the cases came to that check a requirement.
-fn count<'a>(
-    plan: &Plan,
-    id: &str,
-    rows: impl Iterator<Item = &'a Row<'a>>,
-) -> (Counts, Vec<bool>) {
-    let (mut counts, mut passed) = (Counts::default(), Vec::new());
-    for row in rows {
-        if !checks(plan, &row.case.scenario, id) {
-            continue;
+/// What cases came to that check a requirement, one by one and by draw.
+struct Counted {
+    counts: Counts,
+    /// The draw of each and whether it passed, in the order of the plan.
+    rows: Vec<(usize, Option<bool>)>,
+}
+
+impl Counted {
+    fn of<'a>(plan: &Plan, id: &str, rows: impl Iterator<Item = (usize, &'a Row<'a>)>) -> Self {
+        let mut counted = Self { counts: Counts::default(), rows: Vec::new() };
+        for (draw, row) in rows {
+            if !checks(plan, &row.case.scenario, id) {
+                continue;
+            }
+            let counts = &mut counted.counts;
+            *match row.outcome.as_ref().map(|outcome| outcome.check(id)) {
+                None => &mut counts.missing,
+                Some(Verdict::Pass) => &mut counts.pass,
+                Some(Verdict::None | Verdict::Inconclusive) => &mut counts.inconclusive,
+                Some(Verdict::Fail) => &mut counts.fail,
+                Some(Verdict::Error) => &mut counts.error,
+            } += 1;
+            let passed = |outcome: &Outcome| {
+                outcome.check(id) == Verdict::Pass && outcome.besides == Verdict::Pass
+            };
+            counted.rows.push((draw, row.outcome.as_ref().map(passed)));
         }
-        let verdict = row.outcome.as_ref().map(|outcome| outcome.check(id));
-        *match verdict {
-            None => &mut counts.missing,
-            Some(Verdict::Pass) => &mut counts.pass,
-            Some(Verdict::None | Verdict::Inconclusive) => &mut counts.inconclusive,
-            Some(Verdict::Fail) => &mut counts.fail,
-            Some(Verdict::Error) => &mut counts.error,
-        } += 1;
-        match verdict {
-            Some(Verdict::Pass) => passed.push(true),
-            Some(Verdict::Fail) => passed.push(false),
-            _ => {}
-        }
+        counted
     }
-    (counts, passed)
+
+    fn draws(&self) -> Draws {
+        Draws::of(self.rows.iter().copied())
+    }
+
+    /// Whether each draw passed that is known, in the order in which they began.
+    fn passed(&self) -> Vec<bool> {
+        let mut rows: BTreeMap<usize, Vec<(usize, Option<bool>)>> = BTreeMap::new();
+        for row in &self.rows {
+            rows.entry(row.0).or_default().push(*row);
+        }
+        let known = rows.into_values().map(Draws::of).filter(|draws| draws.known() > 0);
+        known.map(|draws| draws.passed > 0).collect()
+    }
 }
 
 /// Whether the cases of a scenario check a requirement.
@@ -118,10 +142,11 @@ pub(super) fn of(
     combinations: &[Combination],
     rows: &[Row<'_>],
 ) -> Vec<RequirementFigures> {
+    let draws = rows::draws(rows);
     status
         .requirements
         .iter()
-        .map(|(id, status)| one(plan, id, status, about, combinations, rows))
+        .map(|(id, status)| one(plan, id, status, about, combinations, rows, &draws))
         .collect()
 }
 
@@ -132,6 +157,7 @@ fn one(
     about: &Requirements,
     combinations: &[Combination],
     rows: &[Row<'_>],
+    draws: &[usize],
 ) -> RequirementFigures {
     let results = || {
         rows.iter().filter_map(|row| {
@@ -151,7 +177,8 @@ fn one(
         }
         (None, None) => (None, None, None),
     };
-    let (counts, passed) = count(plan, id, rows.iter());
+    let all = Counted::of(plan, id, draws.iter().copied().zip(rows));
+    let counted = all.draws();
     let confidence = status.ensemble.map_or(CONFIDENCE, |asked| asked.confidence);
     let nearest = results()
         .filter_map(|(case, result)| {
@@ -169,21 +196,24 @@ fn one(
         limit,
         verdict: status.verdict,
         reason: status.reason.clone(),
-        counts,
+        counts: all.counts,
+        draws: counted,
+        claim: bound(counted, confidence).map(|lower| claim(counted, lower, confidence)),
         asked: status.ensemble,
         confidence,
-        lower_bound: bound(counts, confidence),
+        lower_bound: bound(counted, confidence),
         needed_if_all_pass: status.needed,
         needed_at_rate: status.ensemble.map(|Ensemble { pass, confidence }| {
-            further_at_rate(Demand { pass, confidence }, counts.fail, counts.pass + counts.fail)
+            further_at_rate(Demand { pass, confidence }, counted.not_passed, counted.known())
         }),
         nearest,
-        convergence: convergence(&passed, |passed| pass(passed, CONFIDENCE)),
+        convergence: convergence(&all.passed(), |passed| pass(passed, CONFIDENCE)),
         combinations: (combinations.iter())
             .map(|combination| {
-                let mine = combination.cases.iter().filter_map(|case| rows.get(*case));
-                let (counts, _) = count(plan, id, mine);
-                Part { counts, lower_bound: bound(counts, confidence) }
+                let row = |case: &usize| Some((*draws.get(*case)?, rows.get(*case)?));
+                let mine = Counted::of(plan, id, combination.cases.iter().filter_map(row));
+                let draws = mine.draws();
+                Part { counts: mine.counts, draws, lower_bound: bound(draws, confidence) }
             })
             .collect(),
     }

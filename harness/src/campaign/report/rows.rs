@@ -4,6 +4,7 @@ use super::ReportError;
 use crate::campaign::case::{self, CaseResult};
 use crate::campaign::execute::differing;
 use crate::campaign::plan::{Case, Plan};
+use crate::campaign::{independence, status};
 use crate::score::summary::{Navigation, Summary};
 use crate::score::verdict::{RequirementResult, Verdict};
 use octant_statistics::envelope::resampled;
@@ -30,6 +31,8 @@ pub struct Row<'a> {
 pub struct Outcome {
     /// The worst of everything.
     pub verdict: Verdict,
+    /// The worst of everything but the requirements.
+    pub besides: Verdict,
     /// Why it came to no summary.
     pub error: Option<String>,
     /// Why the verdict is what it is.
@@ -110,11 +113,21 @@ pub fn read<'a>(
     Ok((rows, hasher.finalize().to_hex().to_string()))
 }
 
+/// The independent draw that each row is of.
+pub(super) fn draws(rows: &[Row<'_>]) -> Vec<usize> {
+    let stream = |row: &Row<'_>| -> Option<String> { row.outcome.as_ref()?.stream_hash.clone() };
+    let streams: Vec<Option<String>> = rows.iter().map(stream).collect();
+    let cases = rows.iter().map(|row| row.case).zip(streams.iter().map(Option::as_deref));
+    independence::draws(cases)
+}
+
 impl Outcome {
     fn of(result: CaseResult, differs: bool) -> Self {
+        let besides = status::besides(&result);
         let (verdict, error) = (result.verdict, result.error);
         let mut outcome = Self {
             verdict,
+            besides,
             error,
             reasons: Vec::new(),
             checks: Vec::new(),

@@ -18,10 +18,10 @@ pub(super) fn section(report: &Report<'_>) -> Markup {
         @if requirements().count() + drifts().count() == 0 {
             p.empty { "There are too few cases to see anything settle." }
         } @else {
-            p.hint { "Estimates from the first cases of the plan, with intervals at 95 %, where the cases are enough for one." }
+            p.hint { "Estimates from the first draws of the plan, with intervals at 95 %, where the draws are enough for one." }
             div.multiples {
                 @for r in requirements() {
-                    (chart(&r.id, "pass probability, %", &[("passed", Role::Primary, &r.convergence)], 100.0))
+                    (chart(&r.id, "probability that a draw passes, %", &[("passed", Role::Primary, &r.convergence)], 100.0))
                 }
                 @for (combination, figures) in drifts().take(DRAWN_MAX) {
                     (chart(&combination.name(), "radial error at the end, nmi", &[
@@ -35,7 +35,7 @@ pub(super) fn section(report: &Report<'_>) -> Markup {
 }
 
 fn chart(of: &str, unit: &str, estimates: &[(&str, Role, &Vec<Step>)], factor: f64) -> Markup {
-    let mut chart = Chart::new(&format!("{of}: {unit} by number of cases"), "cases", unit);
+    let mut chart = Chart::new(&format!("{of}: {unit} by number of draws"), "draws", unit);
     (chart.width, chart.height, chart.hours) = (320.0, 190.0, false);
     for (label, role, steps) in estimates {
         let bounded = steps

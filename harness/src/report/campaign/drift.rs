@@ -23,7 +23,9 @@ pub(super) fn table(report: &Report<'_>) -> Markup {
             p.hint { "Radial errors at the end of the navigation: CEP50 is their median, R95 their 95th percentile. The \
                 rate is the regression of the radial error on time through the origin, time-RMS is √(1/T ∫ r² dt). Below \
                 each figure its interval at " (number::plain(100.0 * statistics.confidence, 3))
-                " %, from order statistics, without a distribution; ∞ where there are too few cases." }
+                " %, from order statistics, without a distribution; ∞ where there are too few cases. Cases that were \
+                refused or ended as errors are in the sample, beyond every number: a figure that falls on one is not \
+                defined." }
             div.wide tabindex="0" role="region" aria-label="Drift by combination" {
                 table {
                     thead { tr {
@@ -52,12 +54,16 @@ pub(super) fn table(report: &Report<'_>) -> Markup {
 
 /// A scenario with all of its combinations.
 fn whole(scenario: &ScenarioFigures) -> Markup {
-    let value =
-        |value: Option<f64>| value.map_or_else(|| "–".to_owned(), |v| number::significant(v, 3));
+    let value = |value: Option<f64>| match value {
+        None => "–".to_owned(),
+        Some(value) if value.is_finite() => number::significant(value, 3),
+        Some(_) => "not defined".to_owned(),
+    };
     html! {
         tr.group {
             td { (scenario.scenario) }
-            td.n { (scenario.navigated) }
+            td.n { (scenario.navigated)
+                @if scenario.beyond > 0 { div.reason { (scenario.beyond) " beyond" } } }
             td.n { (value(scenario.cep50_nmi)) } td.n { (value(scenario.r95_nmi)) } td.n { }
             td.n { (value(scenario.rate50_nmi_per_h)) } td.n { (value(scenario.rate95_nmi_per_h)) }
             td.n { (value(scenario.time_rms_nmi)) } td.n { }
@@ -70,7 +76,8 @@ fn row(name: &str, figures: &CombinationFigures) -> Markup {
         tr {
             td { (name) }
             td.n { (figures.navigated)
-                @if figures.navigated < figures.cases { div.reason { "of " (figures.cases) } } }
+                @if figures.navigated < figures.cases { div.reason { "of " (figures.cases) } }
+                @if figures.beyond > 0 { div.reason { (figures.beyond) " beyond" } } }
             @match (figures.at_end, figures.largest_nmi, figures.rate_nmi_per_h, figures.time_rms_nmi) {
                 (Some(at_end), Some(largest), Some(rate), Some(time_rms)) => {
                     td.n { (with_bounds(&at_end.cep50)) }
@@ -118,7 +125,9 @@ pub(super) fn envelopes(report: &Report<'_>) -> Markup {
         @if count == 0 {
             p.empty { "There are no errors over time, or their lengths differ too much for one picture." }
         } @else {
-            p.hint { "Navigation minus truth, by percentile of the cases at each time. Every pair has its own scale." }
+            p.hint { "Navigation minus truth, by percentile of the cases at each time. Every pair has its own scale. A case \
+                beyond every number counts as far below for the percentiles under the median and as far above for those \
+                over it: a percentile that falls on one isn't drawn, and neither is the median." }
             @for (combination, envelope) in all().take(DRAWN_MAX) {
                 h3 { (combination.name()) }
                 div.pairs {

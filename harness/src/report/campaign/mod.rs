@@ -228,6 +228,10 @@ fn with_bounds(interval: &Interval) -> Markup {
     } else {
         "0".to_owned()
     };
+    if !interval.value.is_finite() {
+        // It falls on a case that is beyond every number.
+        return html! { "not defined" div.reason { "from " (low) } };
+    }
     html! {
         (number::significant(interval.value, 3))
         div.reason { (low) " to " (end(interval.high)) }

@@ -1,14 +1,15 @@
 //! What the cases show of the requirements: together, and by combination.
 
 use super::heading;
-use crate::campaign::report::Report;
 use crate::campaign::report::requirement::{Part, RequirementFigures};
+use crate::campaign::report::{POLICY, Report};
 use crate::report::number;
 use crate::report::page::badge;
 use crate::score::verdict::Verdict;
 use maud::{Markup, html};
 use octant_requirements::requirement::percent;
 use octant_requirements::trace::Counts;
+use octant_statistics::cluster::Draws;
 use octant_statistics::proportion::Needed;
 
 pub(super) fn section(report: &Report<'_>) -> Markup {
@@ -19,8 +20,9 @@ pub(super) fn section(report: &Report<'_>) -> Markup {
             p.empty { "No requirement was checked: whatever happened, nothing is shown by it." }
         } @else {
             (table(all))
-            p.hint { "The bound is that of Clopper and Pearson on the probability that a case passes, one-sided, of \
-                the cases that passed or failed. Where nothing is asked of the cases together, every one has to pass." }
+            p.hint { "The bound is that of Clopper and Pearson on the probability that an independent draw passes in \
+                all of its checks, one-sided. Where nothing is asked of the draws together, every check has to pass. "
+                (POLICY) }
         }
         @if !report.status.not_by_test.is_empty() {
             p { "Not verified by runs: " (report.status.not_by_test.join(", ")) "." }
@@ -35,7 +37,7 @@ fn table(all: &[RequirementFigures]) -> Markup {
         div.wide tabindex="0" role="region" aria-label="Requirements" {
             table {
                 thead { tr {
-                    th { "Requirement" } th { "Has to hold" } th.n { "Checks" } th.n { "Bound" }
+                    th { "Requirement" } th { "Has to hold" } th.n { "Checks" } th.n { "Draws" } th.n { "Bound" }
                     th.n { "Asked" } th.n { "Still needed" } th.n { "Least margin" } th.n { "Verdict" }
                 } }
                 tbody { @for r in all { tr {
@@ -48,10 +50,12 @@ fn table(all: &[RequirementFigures]) -> Markup {
                             (r.limit.map_or_else(String::new, |limit| number::plain(limit, 6)))
                         }
                         div.reason { (r.reason) }
+                        @if r.asked.is_none() { @if let Some(claim) = &r.claim { div.reason { (claim) } } }
                     }
                     td.n { (checks(r.counts)) }
+                    td.n { (draws(r.draws)) }
                     td.n { (share(r.lower_bound)) div.reason { "at " (percent(r.confidence)) } }
-                    td.n { (r.asked.map_or_else(|| "every case".to_owned(), |asked| percent(asked.pass))) }
+                    td.n { (r.asked.map_or_else(|| "every check".to_owned(), |asked| percent(asked.pass))) }
                     td.n { (needed(r)) }
                     td.n {
                         @match &r.nearest {
@@ -89,6 +93,14 @@ fn checks(counts: Counts) -> Markup {
     }
 }
 
+/// `84 of 84 pass`, and how many have no result.
+fn draws(draws: Draws) -> Markup {
+    html! {
+        (draws.passed) " of " (draws.all()) " pass"
+        @if draws.open > 0 { div.reason { (draws.open) " open" } }
+    }
+}
+
 /// A probability, always rounded down: a bound isn't to be better than it is.
 fn share(bound: Option<f64>) -> String {
     let down = |p: f64| libm::floor(p * 1e4) / 1e2;
@@ -114,7 +126,7 @@ fn needed(r: &RequirementFigures) -> Markup {
     }
 }
 
-/// A combination has independent cases; all together have not.
+/// The draws of a combination are its cases; over all combinations they are the replicates.
 fn by_combination(report: &Report<'_>) -> Markup {
     let all = &report.statistics.requirements;
     let class = |part: &Part| match part.counts {
@@ -124,8 +136,8 @@ fn by_combination(report: &Report<'_>) -> Markup {
     html! {
         h3 { "By combination" }
         p.hint { "The cases of a replicate have the same instrument, noise and faults in every combination. Within \
-            one combination they are independent, and the bound means what it says; over all of them the number of \
-            independent instruments is that of the replicates." }
+            one combination they are independent draws, and the bound is of that combination alone; over all of them a draw \
+            passes if it does in every combination, and the number of draws is that of the replicates." }
         div.wide tabindex="0" role="region" aria-label="Requirements by combination" {
             table {
                 thead { tr {

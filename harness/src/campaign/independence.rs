@@ -1,0 +1,98 @@
+//! Which cases are of one independent draw, and what of a design adds nothing.
+//!
+//! A seed is an instrument with its noise: all of its combinations are one draw. Cases with the same stream
+//! of samples are one draw too, whatever their seeds, and more than that: they are the same run told
+//! several times, under the label of a factor that changes nothing or of a value in another spelling.
+
+use super::case::CaseResult;
+use super::plan::{Case, FactorValue, Plan};
+use super::report::combination::of_grid;
+use super::status;
+use crate::score::verdict::Verdict;
+use octant_statistics::cluster;
+use std::collections::{BTreeMap, HashMap};
+
+/// What a case shows of a requirement.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Shown {
+    /// It kept it, in a run that came to what it was planned to.
+    pub passed: bool,
+    /// Hash of its stream; none of a case that came to no summary.
+    pub stream: Option<String>,
+}
+
+impl Shown {
+    /// What a result shows of a requirement. Whatever isn't a pass counts as not passed: a check that
+    /// failed or came to nothing, a calibration that was refused, an error.
+    #[must_use]
+    pub fn of(result: &CaseResult, requirement: &str) -> Self {
+        Self {
+            passed: passes(result, requirement),
+            stream: result.summary.as_ref().map(|summary| summary.stream_hash.clone()),
+        }
+    }
+}
+
+/// Whether a result counts as passed for a requirement.
+pub(super) fn passes(result: &CaseResult, requirement: &str) -> bool {
+    result.check(requirement) == Verdict::Pass && status::besides(result) == Verdict::Pass
+}
+
+/// The independent draw of each case, as numbers from 0; of each case its seed and its stream.
+#[must_use]
+pub fn draws<'a>(cases: impl IntoIterator<Item = (&'a Case, Option<&'a str>)>) -> Vec<usize> {
+    cluster::draws(cases.into_iter().map(|(case, stream)| (case.seed, stream)))
+}
+
+/// What of a design adds nothing.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Idle {
+    /// Cases that came to the same stream, by that stream, in the order of the plan.
+    pub repeated: Vec<Vec<String>>,
+    /// Factors of the grid of which no value changed a stream.
+    pub factors: Vec<String>,
+}
+
+/// Looks for cases that are the same run, and for factors that change nothing.
+#[must_use]
+pub fn idle<'a>(plan: &Plan, cases: impl IntoIterator<Item = (&'a Case, Option<&'a str>)>) -> Idle {
+    let run: Vec<(&Case, &str)> =
+        cases.into_iter().filter_map(|(case, stream)| Some((case, stream?))).collect();
+    let mut by_stream: HashMap<&str, Vec<usize>> = HashMap::new();
+    for (index, (_, stream)) in run.iter().enumerate() {
+        by_stream.entry(stream).or_default().push(index);
+    }
+    let mut repeated: Vec<&Vec<usize>> = by_stream.values().filter(|all| all.len() > 1).collect();
+    repeated.sort();
+    let ids = |all: &Vec<usize>| all.iter().map(|index| run[*index].0.id.clone()).collect();
+    Idle {
+        repeated: repeated.into_iter().map(ids).collect(),
+        factors: (of_grid(plan).into_iter())
+            .filter(|factor| changes_nothing(factor, &run))
+            .collect(),
+    }
+}
+
+/// Whether cases that differ in this factor alone have the same streams, all of them. Cases are held
+/// against each other within a scenario and a seed, where nothing else differs.
+fn changes_nothing(factor: &str, run: &[(&Case, &str)]) -> bool {
+    type Others<'a> = (&'a str, u64, BTreeMap<&'a str, String>);
+    let shown = |value: &FactorValue| format!("{value:?}");
+    let mut first: HashMap<Others<'_>, &str> = HashMap::new();
+    let mut compared = false;
+    for (case, stream) in run {
+        if !case.factors.contains_key(factor) {
+            continue;
+        }
+        let others = case.factors.iter().filter(|(name, _)| *name != factor);
+        let others = others.map(|(name, value)| (name.as_str(), shown(value))).collect();
+        match first.entry((case.scenario.as_str(), case.seed, others)) {
+            std::collections::hash_map::Entry::Vacant(entry) => _ = entry.insert(stream),
+            std::collections::hash_map::Entry::Occupied(entry) if entry.get() == stream => {
+                compared = true;
+            }
+            std::collections::hash_map::Entry::Occupied(_) => return false,
+        }
+    }
+    compared
+}
