@@ -192,6 +192,18 @@ fn too_few_runs_say_nothing_and_refused_ones_are_counted() {
     let one = &bench.against().compared[0];
     assert_eq!((one.runs, one.without, one.stands), (RUNS_MIN - 23, 3, None));
     assert!(one.words[0].contains("only"), "{:?}", one.words);
+    let detects = one.detects.unwrap();
+    assert!(detects.ratio_below < 0.6 && detects.ratio_above > 1.5, "{detects:?}");
+    // However many others agree, a prediction doesn't stand for runs that came to nothing.
+    let bench = Bench::new(RUNS_MIN + 10, SCENARIO);
+    bench.keep(|run, summary| {
+        if run < 1 {
+            summary.calibration.as_mut().unwrap().refused = Some("it drifts".to_owned());
+        }
+    });
+    let one = &bench.against().compared[0];
+    assert_eq!((one.runs, one.without, one.stands), (RUNS_MIN + 9, 1, None));
+    assert!(one.words[0].contains("it can't stand for them"), "{:?}", one.words);
 }
 
 #[test]

@@ -103,10 +103,12 @@ fn measures(night: &Value, change: &str) -> Vec<String> {
 #[test]
 fn what_got_worse_is_found_and_what_is_the_same_is_the_same() {
     let bench = Bench::new();
-    // Without a baseline: no failure, and it says so.
+    // Without a baseline nothing was compared: no failure, and not green either.
     let (status, first) = bench.night(&["--suite", "suite.toml", "--out", "shown"]);
-    assert_eq!((status, &first["verdict"]), (Some(0), &Value::from("pass")), "{first}");
-    assert!(first["reasons"][0].as_str().unwrap().starts_with("no baseline was accepted yet"));
+    assert_eq!((status, &first["verdict"]), (Some(3), &Value::from("inconclusive")), "{first}");
+    assert!(
+        first["reasons"][0].as_str().unwrap().starts_with("there is no baseline to compare with")
+    );
     assert_eq!(
         (&first["suite_cases"], first["suite_broken"].as_array().unwrap().len()),
         (&2.into(), 0)
@@ -125,7 +127,16 @@ fn what_got_worse_is_found_and_what_is_the_same_is_the_same() {
     assert_eq!(measures(&same, "same").len(), tests.len());
     let pairing = &comparison["pairings"][0];
     assert_eq!((&pairing["pairs"], &pairing["changed_results"]), (&16.into(), &0.into()));
-    assert_eq!(same["reasons"], serde_json::json!(["nothing got worse"]));
+    assert_eq!(same["reasons"][0], "nothing got worse");
+    // And what it could have found: of sixteen pairs in so many tests.
+    let power = same["reasons"][1].as_str().unwrap();
+    assert!(power.starts_with("16 pairs find with 90 % a mean that moved by "), "{power}");
+    let radial = tests.iter().find(|t| t["measure"] == "navigation.radial_error_nmi.max").unwrap();
+    let (smallest, sigmas) =
+        (radial["detectable"].as_f64().unwrap(), radial["detectable_sigma"].as_f64().unwrap());
+    // All pairs are the same to the bit: what counts at all is what is found.
+    assert!(smallest > 0.0 && smallest <= 0.01 * radial["baseline"].as_f64().unwrap() * 2.0);
+    assert!((1.0..3.0).contains(&sigmas), "{sigmas}");
 
     // A worse gyro: ten times the random walk.
     bench.edit(
@@ -197,7 +208,7 @@ fn history(bench: &Bench, count: usize) {
 fn other_seeds_are_no_regression_and_growing_is_none() {
     let bench = Bench::new();
     bench.edit("night.toml", "replicates = 16", "replicates = 4");
-    assert_eq!(bench.night(&["--accept"]).0, Some(0));
+    assert_eq!(bench.night(&["--first"]).0, Some(0));
     // Half of the seeds are in both: those are compared, and are the same.
     bench.edit("night.toml", "replicates = 4", "replicates = 6");
     let (status, grown) = bench.night(&[]);
@@ -226,10 +237,33 @@ fn other_seeds_are_no_regression_and_growing_is_none() {
 }
 
 #[test]
+fn a_history_is_started_by_name_and_once() {
+    let bench = Bench::new();
+    bench.edit("night.toml", "replicates = 16", "replicates = 2");
+    // --accept alone tells of no comparison either: a baseline that was lost isn't green.
+    assert_eq!(bench.night(&["--accept"]).0, Some(3));
+    std::fs::remove_dir_all(bench.at("h")).unwrap();
+    let (status, first) = bench.night(&["--first"]);
+    assert_eq!(
+        (status, &first["reasons"][0]),
+        (Some(0), &"the first night: nothing to compare with".into())
+    );
+    let (status, out, err) = bench.octant(&["nightly", "night.toml", "--history", "h", "--first"]);
+    assert_eq!((status, out.as_str()), (Some(2), ""), "{err}");
+    assert!(err.contains("--first is for a history without one"), "{err}");
+    assert_eq!(bench.night(&[]).0, Some(0));
+    // A first night that is bad by itself starts nothing.
+    std::fs::remove_dir_all(bench.at("h")).unwrap();
+    bench.edit("spike.toml", "limit = 3", "limit = 0");
+    assert_eq!(bench.night(&["--suite", "suite.toml", "--first"]).0, Some(1));
+    assert!(!bench.at("h/baseline.json").exists());
+}
+
+#[test]
 fn newly_failing_cases_are_named_with_the_line_that_runs_them_again() {
     let bench = Bench::new();
     bench.edit("night.toml", "replicates = 16", "replicates = 3");
-    assert_eq!(bench.night(&["--suite", "suite.toml", "--accept"]).0, Some(0));
+    assert_eq!(bench.night(&["--suite", "suite.toml", "--first"]).0, Some(0));
     bench.edit("short.toml", "limit = \"10 nmi\"", "limit = \"1e-9 nmi\"");
     bench.edit("spike.toml", "limit = 3", "limit = 0");
     let (status, night) = bench.night(&["--suite", "suite.toml"]);
@@ -265,7 +299,7 @@ fn newly_failing_cases_are_named_with_the_line_that_runs_them_again() {
 fn the_same_program_and_another_result_is_an_error() {
     let bench = Bench::new();
     bench.edit("night.toml", "replicates = 16", "replicates = 2");
-    assert_eq!(bench.night(&["--suite", "suite.toml", "--accept"]).0, Some(0));
+    assert_eq!(bench.night(&["--suite", "suite.toml", "--first"]).0, Some(0));
     // As if the baseline's program had come to another stream.
     let path = bench.at("h/baselines");
     let night =
@@ -299,7 +333,8 @@ fn a_night_that_was_broken_off_goes_on() {
     let one = std::fs::read_dir(&cases).unwrap().next().unwrap().unwrap().path();
     std::fs::remove_dir_all(one).unwrap();
     let (status, again) = bench.night(&["--suite", "suite.toml"]);
-    assert_eq!((status, &again["night"]), (Some(0), &night["night"]));
+    // Whole, and without a baseline.
+    assert_eq!((status, &again["night"]), (Some(3), &night["night"]));
     assert_eq!(again["campaigns"], night["campaigns"]);
     assert_eq!(nights(&bench), [night["night"].as_str().unwrap()]);
 }
@@ -373,7 +408,7 @@ fn a_night_that_is_interrupted_goes_on_and_finds_nothing() {
     let bench = Bench::new();
     bench.edit("night.toml", "replicates = 16", "replicates = 4");
     bench.edit("short.toml", "40 min", "3 h");
-    assert_eq!(bench.night(&["--suite", "suite.toml", "--accept"]).0, Some(0));
+    assert_eq!(bench.night(&["--suite", "suite.toml", "--first"]).0, Some(0));
     let words = [
         "nightly",
         "night.toml",

@@ -321,7 +321,12 @@ fn comparison(ratio: f64, scatter: f64, floor: f64) -> Comparison {
                 latitude_72h: Some(0.9 * x),
                 longitude_72h: Some(2.6 * x),
             };
-            PairedRun { seed: k as u64 + 1, first: maxima(first), second: maxima(second.abs()) }
+            PairedRun {
+                seed: k as u64 + 1,
+                first: maxima(first),
+                second: maxima(second.abs()),
+                ..PairedRun::default()
+            }
         })
         .collect();
     let floors = [24.0, 72.0].map(|hours| MaximumFloor {

@@ -62,7 +62,9 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     let comparison =
         with_progress(&controls, epochs, sample_s, || paired(&first, &second, &seeds, &controls))?;
     write_results(arguments, &comparison)?;
-    Ok(Verdict::Pass)
+    // Where too few pairs are left nothing is shown.
+    let compared = !comparison.cells.is_empty();
+    Ok(if compared { Verdict::Pass } else { Verdict::Inconclusive })
 }
 
 fn write_results(arguments: &Arguments, comparison: &Comparison) -> Result<(), Failure> {

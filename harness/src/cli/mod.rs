@@ -178,7 +178,6 @@ impl From<crate::run::paired::PairedError> for Failure {
         let message = format!("failed to {error}");
         match error {
             PairedError::Method(error) => Self::from(error),
-            PairedError::Refused { .. } => Self { status: Verdict::Fail.exit_code(), message },
             PairedError::NoNavigation | PairedError::NotSimulated => Self::input(message),
             PairedError::Cancelled => Self { status: Verdict::Inconclusive.exit_code(), message },
         }

@@ -36,6 +36,10 @@ pub(super) struct Arguments {
     /// Folder in which nights, their history and the baseline are kept.
     #[arg(long, value_name = "DIR", required = true)]
     history: Option<PathBuf>,
+    /// Start a history: this night has no baseline to be compared with, and becomes it if it is good by
+    /// itself. Without it a night without a baseline is inconclusive.
+    #[arg(long)]
+    first: bool,
     /// Make this night the baseline, whatever it comes to.
     #[arg(long)]
     accept: bool,
@@ -97,6 +101,13 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     // What can't be compared or kept is told before anything runs.
     let mut all = History::read(history).map_err(|error| Failure::input(error).failed())?;
     let baseline = accept::read(history).map_err(Failure::input)?;
+    if let (true, Some(baseline)) = (arguments.first, &baseline) {
+        return Err(Failure::input(format!(
+            "found a baseline, night {}, in {}: --first is for a history without one, --accept replaces it",
+            baseline.accepted.night,
+            history.display()
+        )));
+    }
     let inputs = inputs(arguments)?;
     let mut night = begin(history, &inputs, &all)?;
     let folder = night::nights(history).join(&night.id);
@@ -116,7 +127,8 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         compare(before, Side { night: &night, rows: &rows }, limits, &rerun)
     };
     let comparison = baseline.as_ref().map(against);
-    let report = Report::new(&night, baseline.as_ref().map(|b| &b.night), comparison);
+    let before = baseline.as_ref().map(|b| &b.night);
+    let report = Report::new(&night, before, comparison, arguments.first);
     all.put(&night, report.verdict.name(), &rows, report.comparison.as_ref());
     all.write(history).map_err(|error| Failure::bench(error).failed())?;
     let json = report.to_json().map_err(|error| Failure::bench(error).failed())?;
@@ -125,7 +137,9 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     // From here on the night has ended: what is broken off before is gone on with.
     night.write(&folder).map_err(Failure::bench)?;
     let mut name = baseline.map(|baseline| baseline.accepted.night);
-    if arguments.accept {
+    // A first night that is bad by itself starts nothing.
+    let accepts = arguments.accept || (arguments.first && report.verdict == Verdict::Pass);
+    if accepts {
         accept_night(history, &night.id, operator()).map_err(Failure::bench)?;
         name = Some(night.id.clone());
     }
@@ -141,7 +155,7 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     }
     let mut text = format!("night {}: {}\n", night.id, report.verdict.name());
     report.reasons.iter().for_each(|reason| text += &format!("  {reason}\n"));
-    if arguments.accept {
+    if accepts {
         text += "it is the baseline now\n";
     } else if name.is_none() {
         text += &format!(

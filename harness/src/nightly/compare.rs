@@ -5,6 +5,9 @@
 //! pairs, by Wilcoxon's signed-rank test for measures and McNemar's for passes; all of these tests
 //! together have one in twenty (`Limits::alpha`) of finding what isn't there (Holm). What can't be paired
 //! isn't compared: another seed is another instrument, and its noise is no news.
+//!
+//! A measure that a case had in one night and hasn't in the other, because its calibration was refused or it
+//! ended as an error, is beyond every number there, and counts in the test with the highest rank.
 
 use super::night::{CampaignNight, Night};
 use super::results::CaseRow;
@@ -12,6 +15,7 @@ use super::suite::SuiteResult;
 use crate::score::verdict::Verdict;
 use octant_statistics::multiple::holm;
 use octant_statistics::paired::{PassPairs, difference};
+use octant_statistics::power;
 use octant_statistics::sample::rms;
 use serde::Serialize;
 use std::collections::{BTreeMap, BTreeSet, HashMap};
@@ -70,15 +74,18 @@ pub struct Tested {
     pub scenario: String,
     /// Path of the measure, `margin of ID`, or `passes of ID`.
     pub measure: String,
-    /// Pairs that have it in both nights.
+    /// Pairs that are tested: those that have it in one of the nights, or in both.
     pub pairs: usize,
-    /// Pairs that had it in the baseline alone: a calibration that is refused now has no error.
+    /// Pairs that had it in the baseline alone: a calibration that is refused now is beyond every number.
     pub lost: usize,
+    /// Pairs that have it in this night alone.
+    pub gained: usize,
     /// Mean in the baseline; of passes, their part.
     pub baseline: f64,
     /// Mean in this night.
     pub tonight: f64,
-    /// Mean difference, with its 95 % interval by Student's distribution; null with less than two pairs.
+    /// Mean difference of the pairs that have it in both, with its 95 % interval by Student's
+    /// distribution; null with less than two such pairs.
     pub difference: Option<[f64; 3]>,
     /// Probability by the test alone.
     pub p: f64,
@@ -86,6 +93,14 @@ pub struct Tested {
     pub p_adjusted: f64,
     /// What it comes to.
     pub change: Change,
+    /// Smallest change that so many pairs find with 90 % among all tests of the night: of the mean, in its
+    /// unit; of passes, the part of the pairs that turn. Null: so few pairs find none.
+    pub detectable: Option<f64>,
+    /// The same of a mean, in standard deviations of the pairs' differences.
+    pub detectable_sigma: Option<f64>,
+    /// What a shift in standard deviations is multiplied by, and the least that counts.
+    #[serde(skip)]
+    scale: Option<[f64; 2]>,
 }
 
 /// A case that ends otherwise than in the baseline.
@@ -212,10 +227,31 @@ pub fn compare(
             test.change = Change::Changed;
         }
     }
+    all.state_power();
     all
 }
 
 impl Comparison {
+    /// What the tests could have found. The first step of Holm's procedure divides the level by the number
+    /// of tests: what it finds is found however the others come out.
+    fn state_power(&mut self) {
+        let level = self.limits.alpha / self.tests.len().max(1) as f64;
+        let mut shifts: BTreeMap<usize, Option<f64>> = BTreeMap::new();
+        for test in &mut self.tests {
+            let pairs = test.pairs;
+            match test.scale {
+                Some([sigma, least]) => {
+                    let shift = shifts.entry(pairs).or_insert_with(|| {
+                        power::signed_rank_shift(pairs as u64, level, power::POWER)
+                    });
+                    test.detectable_sigma = *shift;
+                    test.detectable = shift.map(|shift| (shift * sigma).max(least));
+                }
+                None => test.detectable = power::turning(pairs as u64, level, power::POWER),
+            }
+        }
+    }
+
     fn requirements(&mut self, name: &str, before: &CampaignNight, now: &CampaignNight) {
         for (id, verdict) in &now.requirements {
             let Some(old) = before.requirements.get(id) else { continue };
@@ -338,12 +374,16 @@ impl Comparison {
                 measure: format!("passes of {id}"),
                 pairs: pairs.len(),
                 lost: 0,
+                gained: 0,
                 baseline: part(counts.both + counts.only_first),
                 tonight: part(counts.both + counts.only_second),
                 difference: None,
                 p: counts.mcnemar(),
                 p_adjusted: 1.0,
                 change,
+                detectable: None,
+                detectable_sigma: None,
+                scale: None,
             });
         }
     }
@@ -399,27 +439,37 @@ impl CaseRow {
 /// Tests pairs of numbers. The sense is 1 where less is better, −1 where more is. What Holm's correction
 /// leaves of it is known when all tests are.
 fn tested(values: &[(Option<f64>, Option<f64>)], sense: f64, limits: Limits) -> Option<Tested> {
-    let both: Vec<(f64, f64)> = values.iter().filter_map(|(a, b)| Some(((*a)?, (*b)?))).collect();
+    // What one night has and the other hasn't is as bad there as can be.
+    let far = sense * f64::INFINITY;
+    let there = values.iter().filter(|(a, b)| a.is_some() || b.is_some());
+    let carried: Vec<(f64, f64)> =
+        there.map(|(a, b)| (a.unwrap_or(far), b.unwrap_or(far))).collect();
+    if carried.is_empty() {
+        return None;
+    }
     let lost = values.iter().filter(|(a, b)| a.is_some() && b.is_none()).count();
+    let gained = values.iter().filter(|(a, b)| a.is_none() && b.is_some()).count();
+    let both: Vec<(f64, f64)> = values.iter().filter_map(|(a, b)| Some(((*a)?, (*b)?))).collect();
     let (before, now): (Vec<f64>, Vec<f64>) = both.iter().copied().unzip();
-    let mean = octant_statistics::sample::mean;
-    let (baseline, tonight) = match (mean(&before), mean(&now)) {
-        (Some(baseline), Some(tonight)) => (baseline, tonight),
-        // Nothing to test, and something to tell.
-        _ if lost > 0 => (f64::NAN, f64::NAN),
-        _ => return None,
-    };
-    let same = lost == 0 && both.iter().all(|(a, b)| a.to_bits() == b.to_bits());
-    let found = difference(&before, &now, 0.95);
+    let mean = |values: &[f64]| octant_statistics::sample::mean(values).unwrap_or(f64::NAN);
+    let same = lost + gained == 0 && both.iter().all(|(a, b)| a.to_bits() == b.to_bits());
+    let (first, second): (Vec<f64>, Vec<f64>) = carried.iter().copied().unzip();
+    let found = difference(&first, &second, 0.95);
+    let least = limits.least * rms(&before).unwrap_or(0.0);
     let (p, change) = match &found {
         _ if same => (1.0, Change::Same),
         None => (1.0, Change::Changed),
         Some(found) => {
-            let worse = sense * found.mean.value > 0.0;
+            let moved = found.mean.map_or(0.0, |mean| mean.value);
+            // A mean with one more that is beyond every number is worse than any without.
+            let (more, counts) = match lost.cmp(&gained) {
+                std::cmp::Ordering::Greater => (sense > 0.0, true),
+                std::cmp::Ordering::Less => (sense < 0.0, true),
+                std::cmp::Ordering::Equal => (moved > 0.0, moved.abs() >= least),
+            };
             // A mean that a few pairs make against all others is no direction.
-            let agrees = (found.more > found.less) == (found.mean.value > 0.0);
-            let counts = found.mean.value.abs() >= limits.least * rms(&before).unwrap_or(0.0);
-            let change = match (agrees && counts, worse) {
+            let agrees = (found.more > found.less) == more && found.more != found.less;
+            let change = match (agrees && counts, more == (sense > 0.0)) {
                 (false, _) => Change::Changed,
                 (true, true) => Change::Worse,
                 (true, false) => Change::Better,
@@ -431,13 +481,63 @@ fn tested(values: &[(Option<f64>, Option<f64>)], sense: f64, limits: Limits) -> 
         campaign: String::new(),
         scenario: String::new(),
         measure: String::new(),
-        pairs: both.len(),
+        pairs: carried.len(),
         lost,
-        baseline,
-        tonight,
-        difference: found.map(|found| [found.mean.value, found.mean.low, found.mean.high]),
+        gained,
+        baseline: mean(&before),
+        tonight: mean(&now),
+        difference: found
+            .and_then(|found| found.mean)
+            .map(|mean| [mean.value, mean.low, mean.high]),
         p,
         p_adjusted: 1.0,
         change,
+        detectable: None,
+        detectable_sigma: None,
+        scale: Some([found.and_then(|found| found.deviation).unwrap_or(0.0), least]),
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn pairs(
+        count: u32,
+        one: impl Fn(u32) -> (Option<f64>, Option<f64>),
+    ) -> Vec<(Option<f64>, Option<f64>)> {
+        (0..count).map(one).collect()
+    }
+
+    /// A number that looks drawn.
+    fn drawn(k: u32) -> f64 {
+        1.0 + 0.1 * f64::from((k * 37 + 11) % 101) / 101.0
+    }
+
+    #[test]
+    fn a_calibration_that_is_refused_now_is_worse_than_any_error() {
+        // Six of sixteen are refused, and the others got better by a little.
+        let values =
+            pairs(16, |k| (Some(drawn(k)), (k >= 6).then(|| drawn(k) - 1e-6 * drawn(k + 3))));
+        let found = tested(&values, 1.0, Limits::default()).unwrap();
+        assert_eq!((found.pairs, found.lost, found.gained), (16, 6, 0));
+        // The direction is that of the refused ones; the majority says otherwise: it isn't shown.
+        assert_eq!(found.change, Change::Changed);
+        let values = pairs(16, |k| (Some(drawn(k)), (k >= 12).then(|| drawn(k))));
+        let found = tested(&values, 1.0, Limits::default()).unwrap();
+        assert_eq!((found.change, found.lost), (Change::Worse, 12));
+        // Twelve signs alike: 2 · 2^-12.
+        assert!((found.p - 2.0 * 0.5f64.powi(12)).abs() < 1e-12, "{}", found.p);
+        // A margin is lost downwards.
+        let margin = tested(&values, -1.0, Limits::default()).unwrap();
+        assert_eq!(margin.change, Change::Worse);
+        // And what is published again is better.
+        let back: Vec<_> = values.iter().map(|(a, b)| (*b, *a)).collect();
+        assert_eq!(tested(&back, 1.0, Limits::default()).unwrap().change, Change::Better);
+        // Refused in both nights: no difference, and the pair has nothing to test.
+        let none = pairs(16, |k| if k < 8 { (None, None) } else { (Some(1.0), Some(1.0)) });
+        let found = tested(&none, 1.0, Limits::default()).unwrap();
+        assert_eq!((found.change, found.pairs, found.lost), (Change::Same, 8, 0));
+        assert!(tested(&none[..8], 1.0, Limits::default()).is_none());
+    }
 }

@@ -44,9 +44,14 @@ pub struct Report {
 }
 
 impl Report {
-    /// Judges a night.
+    /// Judges a night. `is_first`: it is known to have no baseline.
     #[must_use]
-    pub fn new(night: &Night, baseline: Option<&Night>, comparison: Option<Comparison>) -> Self {
+    pub fn new(
+        night: &Night,
+        baseline: Option<&Night>,
+        comparison: Option<Comparison>,
+        is_first: bool,
+    ) -> Self {
         let mut report = Self {
             schema: super::compare::SCHEMA,
             night: night.id.clone(),
@@ -62,7 +67,7 @@ impl Report {
             suite_cases: night.suite.len(),
             comparison: None,
         };
-        report.judge(comparison.as_ref());
+        report.judge(comparison.as_ref(), is_first);
         report.comparison = comparison;
         report
     }
@@ -72,7 +77,7 @@ impl Report {
         self.reasons.push(reason);
     }
 
-    fn judge(&mut self, comparison: Option<&Comparison>) {
+    fn judge(&mut self, comparison: Option<&Comparison>, is_first: bool) {
         let differing: Vec<String> = (self.campaigns.iter())
             .flat_map(|c| c.differing.iter().map(move |case| format!("{}: case {case}", c.name)))
             .collect();
@@ -80,7 +85,7 @@ impl Report {
             self.because(Verdict::Error, format!("{case} came to two results in one night"));
         }
         let Some(comparison) = comparison else {
-            return self.judge_alone();
+            return self.judge_alone(is_first);
         };
         if !comparison.flaky.is_empty() {
             let reason = format!(
@@ -122,13 +127,21 @@ impl Report {
         for ((campaign, scenario), tests) in worse {
             self.because(Verdict::Fail, in_words(campaign, scenario, &tests));
         }
+        for (place, pairs) in blind(comparison) {
+            let reason = format!(
+                "{place}: something changed, and {pairs} pairs are too few for any of {} tests to find it",
+                comparison.tests.len()
+            );
+            self.because(Verdict::Inconclusive, reason);
+        }
         if self.verdict == Verdict::Pass {
             self.reasons.push("nothing got worse".to_owned());
         }
+        self.reasons.extend(power_in_words(comparison));
     }
 
     /// Without a baseline a night is only as good as what it says itself.
-    fn judge_alone(&mut self) {
+    fn judge_alone(&mut self, is_first: bool) {
         let broken = self.suite_broken.len();
         if broken > 0 {
             let reason = format!("{broken} cases of the suite don't end as they have to");
@@ -140,8 +153,13 @@ impl Report {
                 self.because(Verdict::Error, reason);
             }
         }
-        let reason = "no baseline was accepted yet: nothing to compare with".to_owned();
-        self.reasons.push(reason);
+        if is_first {
+            self.reasons.push("the first night: nothing to compare with".to_owned());
+        } else {
+            let reason = "there is no baseline to compare with: it was lost, or none was accepted yet \
+                          (--first starts one)";
+            self.because(Verdict::Inconclusive, reason.to_owned());
+        }
     }
 
     /// The bytes of `nightly.json`.
@@ -208,6 +226,30 @@ impl Report {
     }
 }
 
+/// Scenarios of which something changed and no test could have found it, with their pairs.
+fn blind(comparison: &Comparison) -> BTreeMap<String, usize> {
+    let is_blind = |test: &&Tested| test.change == Change::Changed && test.detectable.is_none();
+    let blind = comparison.tests.iter().filter(is_blind);
+    blind.map(|test| (format!("{}: {}", test.campaign, test.scenario), test.pairs)).collect()
+}
+
+/// What the pairs could have found, by scenario.
+fn power_in_words(comparison: &Comparison) -> Vec<String> {
+    let mut by_pairs: BTreeMap<usize, Option<f64>> = BTreeMap::new();
+    for test in comparison.tests.iter().filter(|test| test.detectable_sigma.is_some()) {
+        by_pairs.insert(test.pairs, test.detectable_sigma);
+    }
+    let one = |(pairs, shift): (usize, Option<f64>)| {
+        let shift = significant(shift?, 2);
+        Some(format!(
+            "{pairs} pairs find with 90 % a mean that moved by {shift} standard deviations of the pairs' \
+             differences, in {} tests",
+            comparison.tests.len()
+        ))
+    };
+    by_pairs.into_iter().filter_map(one).collect()
+}
+
 fn against(text: &mut String, comparison: &Comparison) {
     tests(text, "Worse", comparison, Change::Worse);
     turned(text, "Newly worse cases", &comparison.newly_failing);
@@ -228,6 +270,7 @@ fn against(text: &mut String, comparison: &Comparison) {
             more(text, list.len());
         }
     }
+    powers(text, comparison);
     let changed = comparison.found(Change::Changed).count();
     let same = comparison.found(Change::Same).count();
     let percent = plain(100.0 * comparison.limits.least, 3);
@@ -241,14 +284,48 @@ fn against(text: &mut String, comparison: &Comparison) {
     );
 }
 
+/// What the pairs of each scenario could have found: the measures of a navigation, and passes.
+fn powers(text: &mut String, comparison: &Comparison) {
+    if comparison.tests.is_empty() {
+        return;
+    }
+    *text += "\n## Smallest change that is found with 90 %\n\n";
+    *text += "| campaign | scenario | measure | pairs | before | smallest change |\n|---|---|---|---|---|---|\n";
+    let is_told = |test: &&Tested| {
+        ["navigation.radial_error_nmi.max", "calibration.worst_normalized_error"]
+            .contains(&test.measure.as_str())
+            || test.measure.starts_with("passes of ")
+    };
+    let told: Vec<&Tested> = comparison.tests.iter().filter(is_told).collect();
+    for test in told.iter().take(TOLD) {
+        let smallest = match test.detectable {
+            None => "none: too few pairs".to_owned(),
+            Some(part) if test.detectable_sigma.is_none() => {
+                format!("{} % of the pairs turn", significant(100.0 * part, 2))
+            }
+            Some(change) => significant(change, 2),
+        };
+        _ = writeln!(
+            text,
+            "| {} | {} | {} | {} | {} | {smallest} |",
+            test.campaign,
+            escaped(&test.scenario),
+            escaped(&test.measure),
+            test.pairs,
+            significant(test.baseline, 4)
+        );
+    }
+    more(text, told.len());
+}
+
 fn tests(text: &mut String, title: &str, comparison: &Comparison, change: Change) {
     let found: Vec<&Tested> = comparison.found(change).collect();
     if found.is_empty() {
         return;
     }
     _ = writeln!(text, "\n## {title}\n");
-    *text += "| campaign | scenario | measure | pairs | before | now | difference, 95 % | p |\n";
-    *text += "|---|---|---|---|---|---|---|---|\n";
+    *text += "| campaign | scenario | measure | pairs | before | now | difference, 95 % | p | found with 90 % |\n";
+    *text += "|---|---|---|---|---|---|---|---|---|\n";
     for test in found.iter().take(TOLD) {
         let difference = test.difference.map_or("–".to_owned(), |[value, low, high]| {
             let [value, low, high] = [value, low, high].map(|v| significant(v, 3));
@@ -256,14 +333,15 @@ fn tests(text: &mut String, title: &str, comparison: &Comparison, change: Change
         });
         _ = writeln!(
             text,
-            "| {} | {} | {} | {} | {} | {} | {difference} | {} |",
+            "| {} | {} | {} | {} | {} | {} | {difference} | {} | {} |",
             test.campaign,
             escaped(&test.scenario),
             escaped(&test.measure),
             test.pairs,
             significant(test.baseline, 4),
             significant(test.tonight, 4),
-            significant(test.p_adjusted, 2)
+            significant(test.p_adjusted, 2),
+            test.detectable.map_or("–".to_owned(), |change| significant(change, 2))
         );
     }
     more(text, found.len());

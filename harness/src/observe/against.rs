@@ -1,7 +1,7 @@
 //! A predicted ensemble held against the cases of a campaign.
 //!
 //! Cases whose scenario is the same but for the seed are a sample of one ensemble. Of every error the
-//! sample's σ has an interval (χ²) and its mean another (normal), both so wide that all of them
+//! sample's σ has an interval (χ²) and its mean another (Student), both so wide that all of them
 //! together hold the truth with [`CONFIDENCE`] (Bonferroni). The prediction agrees where it is inside.
 
 use super::ensemble::{Ensemble, EnsembleError, ensemble};
@@ -11,7 +11,7 @@ use crate::scenario::Method;
 use crate::score::summary::{Calibration, Navigation, Summary};
 use octant_sample::parameters::NAMES;
 use octant_statistics::sample::{Interval, mean};
-use octant_statistics::{deviation, normal};
+use octant_statistics::{deviation, paired, power};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 
@@ -61,6 +61,9 @@ pub struct Comparison {
     pub confidence: f64,
     /// How well the sample knows a σ: half of its interval, as a part of it.
     pub known_to: f64,
+    /// What so many runs would find with 90 %; null of too few.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub detects: Option<Detects>,
     /// Parameters at the end of the calibration.
     pub states: Vec<Row>,
     /// Position errors in navigation.
@@ -73,6 +76,17 @@ pub struct Comparison {
     pub words: Vec<String>,
     /// What doesn't enter the prediction.
     pub not_modelled: Vec<String>,
+}
+
+/// Smallest differences of one error that a comparison finds with a probability of 90 %.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Detects {
+    /// True σ over the predicted one, where the prediction is too large.
+    pub ratio_below: f64,
+    /// The same, where the prediction is too small.
+    pub ratio_above: f64,
+    /// Difference of the mean, in σ.
+    pub mean_sigma: f64,
 }
 
 /// One error, predicted and simulated.
@@ -259,7 +273,8 @@ fn compare(
     let each = 1.0 - (1.0 - CONFIDENCE) / (2 * rows) as f64;
     let (low, high) = deviation::factors(count as u64 - 1, each)
         .ok_or_else(|| format!("{count} runs know no σ"))?;
-    let z = normal::quantile(0.5 + 0.5 * each);
+    let student =
+        paired::student(count - 1, each).ok_or_else(|| format!("{count} runs know no σ"))?;
 
     let mut states = Vec::with_capacity(NAMES.len());
     for name in NAMES {
@@ -270,7 +285,15 @@ fn compare(
             .collect();
         let values = values.ok_or_else(|| format!("{name} has no error in one of its cases"))?;
         let predicted = (state.mean, state.sigma);
-        states.push(row(name.to_owned(), &state.unit, None, predicted, &values, (low, high), z));
+        states.push(row(
+            name.to_owned(),
+            &state.unit,
+            None,
+            predicted,
+            &values,
+            (low, high),
+            student,
+        ));
     }
     let mut drift = Vec::with_capacity(2 * times.len());
     for (axis, what) in ["latitude", "longitude"].into_iter().enumerate() {
@@ -284,7 +307,15 @@ fn compare(
             let band = if axis == 0 { time.latitude_arcmin } else { time.longitude_arcmin };
             let name = format!("{what} at {:.1} h", time.hours);
             let predicted = (band.mean, band.sigma);
-            drift.push(row(name, "arcmin", Some(time.hours), predicted, &values, (low, high), z));
+            drift.push(row(
+                name,
+                "arcmin",
+                Some(time.hours),
+                predicted,
+                &values,
+                (low, high),
+                student,
+            ));
         }
     }
     let ratios: Vec<f64> = states.iter().filter_map(|row| row.ratio).collect();
@@ -297,6 +328,7 @@ fn compare(
         without: sample.broken + sample.summaries.len() - count,
         confidence: CONFIDENCE,
         known_to: 0.5 * (high - low),
+        detects: detects(count as u64, each),
         states,
         drift,
         mean_ratio: mean(&ratios),
@@ -315,12 +347,12 @@ fn row(
     (predicted_mean, predicted_sigma): (f64, f64),
     values: &[f64],
     (low, high): (f64, f64),
-    z: f64,
+    student: f64,
 ) -> Row {
     let value = octant_statistics::sample::deviation(values).unwrap_or(f64::NAN);
     let simulated_sigma = Interval { value, low: value * low, high: value * high };
     let middle = mean(values).unwrap_or(f64::NAN);
-    let error = z * value / libm::sqrt(values.len() as f64);
+    let error = student * value / libm::sqrt(values.len() as f64);
     let simulated_mean = Interval { value: middle, low: middle - error, high: middle + error };
     // Where nothing is random both are as exact as they can be computed.
     let rounding = 1e-9 * (predicted_mean.abs() + predicted_sigma);
@@ -341,6 +373,12 @@ fn row(
     }
 }
 
+fn detects(runs: u64, each: f64) -> Option<Detects> {
+    let (ratio_below, ratio_above) = power::sigma_ratios(runs, each, power::POWER)?;
+    let mean_sigma = power::mean_shift(runs, each, power::POWER)?;
+    Some(Detects { ratio_below, ratio_above, mean_sigma })
+}
+
 /// Whether the prediction can stand, in words.
 fn conclude(comparison: &mut Comparison) {
     let rows = || comparison.states.iter().chain(&comparison.drift);
@@ -356,6 +394,15 @@ fn conclude(comparison: &mut Comparison) {
         ));
         words.extend(differing.iter().map(|row| in_words(row)));
         Some(false)
+    } else if comparison.runs >= RUNS_MIN && comparison.without > 0 {
+        words.push(format!(
+            "all {} figures agree within the sample's own error of {error}, of the {} cases that have a \
+             calibration: of the other {} no prediction says anything, and it can't stand for them",
+            rows().count(),
+            comparison.runs,
+            comparison.without
+        ));
+        None
     } else if comparison.runs < RUNS_MIN {
         words.push(format!(
             "{} runs know σ to {error} only: from {RUNS_MIN} on it is said whether the prediction can \
@@ -371,6 +418,13 @@ fn conclude(comparison: &mut Comparison) {
         ));
         Some(true)
     };
+    if let Some(detects) = &comparison.detects {
+        words.push(format!(
+            "{} runs find with 90 % an error whose σ is below {:.2} or above {:.2} of the predicted one, \
+             or whose mean is {:.2} σ off",
+            comparison.runs, detects.ratio_below, detects.ratio_above, detects.mean_sigma
+        ));
+    }
     if let Some(ratio) = comparison.mean_ratio {
         words.push(format!(
             "predicted over simulated σ is {ratio:.3} in the mean over the parameters"

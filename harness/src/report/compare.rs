@@ -3,8 +3,9 @@
 use super::chart::{Chart, Line, Role};
 use super::number;
 use super::page::page;
-use crate::score::compare::{Cell, Claim, Comparison, interval, percent};
+use crate::score::compare::{Cell, Claim, Comparison, Refusals, interval, percent};
 use maud::{Markup, html};
+use octant_statistics::sample::Interval;
 
 /// The comparison as text for a terminal.
 #[must_use]
@@ -61,9 +62,11 @@ pub fn render(comparison: &Comparison, provenance: &[(String, String)]) -> Strin
                 }
             }
         }
+        @if let Some(refusals) = &comparison.refusals { (refused(comparison, refusals)) }
         h2 { "Improvement" }
         p.hint { "Root mean square over seeds of the largest error of each run. Improvement is 1 − ratio, \
-            with its 90 % interval by the paired bootstrap. Floor: exact parameters and attitude, \
+            with its 90 % interval by Student's distribution, of the logarithm of the ratio, with the standard error \
+            of the jackknife. Floor: exact parameters and attitude, \
             noise of the sensors alone." }
         (cells(comparison))
         h2 { "Every pair" }
@@ -76,6 +79,27 @@ pub fn render(comparison: &Comparison, provenance: &[(String, String)]) -> Strin
         } }
     };
     page(&format!("{}: comparison", comparison.scenario), &body)
+}
+
+/// How often each method refused.
+fn refused(comparison: &Comparison, refusals: &Refusals) -> Markup {
+    let row = |name: &str, count: u64, rate: &Interval| {
+        html! { tr {
+            td { (name) } td.n { (count) " of " (refusals.seeds) } td.n { (percent(rate.value)) " %" }
+            td.n { (percent(rate.low)) " to " (percent(rate.high)) " %" }
+        } }
+    };
+    html! {
+        h2 { "Refused calibrations" }
+        table {
+            thead { tr { th { "Method" } th.n { "Seeds" } th.n { "Rate" } th.n { "95 % interval" } } }
+            tbody {
+                (row(&comparison.first, refusals.first, &refusals.first_rate))
+                (row(&comparison.second, refusals.second, &refusals.second_rate))
+            }
+        }
+        p.hint { "Clopper and Pearson. Everything below is of the seeds that neither refused." }
+    }
 }
 
 /// With a capital letter, and numbers kept on one line with their per cent.
@@ -174,10 +198,18 @@ fn runs(comparison: &Comparison) -> Markup {
             } } }
             tbody { @for run in &comparison.runs {
                 tr { td.mono { (run.seed) } @for cell in &comparison.cells {
-                    td.n { (number::optional(run.first.get(cell.measure), 3)) }
-                    td.n { (number::optional(run.second.get(cell.measure), 3)) }
+                    (one(run.first.get(cell.measure), run.first_refused.as_deref()))
+                    (one(run.second.get(cell.measure), run.second_refused.as_deref()))
                 } }
             } }
         }
     }
+}
+
+/// An error, or that there is none.
+fn one(value: Option<f64>, refused: Option<&str>) -> Markup {
+    html! { @match refused {
+        Some(reason) => td.n title=(reason) { "refused" },
+        None => td.n { (number::optional(value, 3)) },
+    } }
 }

@@ -28,16 +28,6 @@ pub enum PairedError {
     /// A run gave no result.
     #[error(transparent)]
     Method(#[from] MethodError),
-    /// A core refused its calibration.
-    #[error("compare: seed {seed}, {method}: calibration refused: {reason}")]
-    Refused {
-        /// The seed.
-        seed: u64,
-        /// Name of the method.
-        method: String,
-        /// What the core said.
-        reason: String,
-    },
     /// Nothing is navigated, or not long enough.
     #[error("compare: both methods need a navigation of at least 24 h ([procedure.navigation])")]
     NoNavigation,
@@ -70,11 +60,17 @@ pub fn paired(
     if [first, second].iter().any(|side| navigated_h(&side.scenario) < MARKS_H[0]) {
         return Err(PairedError::NoNavigation);
     }
-    let maxima = ensemble([first, second], seeds, controls)?;
+    let results = ensemble([first, second], seeds, controls)?;
     let runs: Vec<PairedRun> = seeds
         .iter()
-        .zip(maxima.chunks_exact(2))
-        .map(|(seed, pair)| PairedRun { seed: *seed, first: pair[0], second: pair[1] })
+        .zip(results.chunks_exact(2))
+        .map(|(seed, pair)| PairedRun {
+            seed: *seed,
+            first: pair[0].maxima,
+            second: pair[1].maxima,
+            first_refused: pair[0].refused.clone(),
+            second_refused: pair[1].refused.clone(),
+        })
         .collect();
     let floor = Floor::new(
         scenario.site.latitude_rad,
@@ -86,7 +82,11 @@ pub fn paired(
     let [a, b] = [first, second].map(|side| label(&side.scenario, side.method));
     let (a, b) = if a == b { (format!("{a} (first)"), format!("{b} (second)")) } else { (a, b) };
     let comparison = compare(&scenario.title, &a, &b, &runs, &floor);
-    if comparison.cells.is_empty() { Err(PairedError::NoNavigation) } else { Ok(comparison) }
+    // What all seeds refused is a result too.
+    if comparison.cells.is_empty() && comparison.refusals.is_none() {
+        return Err(PairedError::NoNavigation);
+    }
+    Ok(comparison)
 }
 
 /// Length of the navigation, h; 0 without one.
@@ -99,10 +99,10 @@ fn ensemble(
     sides: [&Side; 2],
     seeds: &[u64],
     controls: &[Control],
-) -> Result<Vec<Maxima>, PairedError> {
+) -> Result<Vec<One>, PairedError> {
     let threads = std::thread::available_parallelism().map_or(1, usize::from);
     let next = AtomicUsize::new(0);
-    let results: Mutex<Vec<Option<Result<Maxima, PairedError>>>> =
+    let results: Mutex<Vec<Option<Result<One, PairedError>>>> =
         Mutex::new((0..2 * seeds.len()).map(|_| None).collect());
     std::thread::scope(|scope| {
         for _ in 0..threads {
@@ -117,7 +117,7 @@ fn ensemble(
                     let failed = result.is_err();
                     results.lock().unwrap_or_else(PoisonError::into_inner)[task] = Some(result);
                     if failed {
-                        // Nothing comes of the rest: it needn't be waited for.
+                        // Nothing comes of the rest: no need to wait for it.
                         next.fetch_max(2 * seeds.len(), Ordering::Relaxed);
                     }
                 }
@@ -137,7 +137,14 @@ fn ensemble(
     if skipped { Err(PairedError::Cancelled) } else { Ok(maxima) }
 }
 
-fn one(side: &Side, seed: u64, control: &Control) -> Result<Maxima, PairedError> {
+/// What one method came to with one seed.
+#[derive(Clone, Debug)]
+struct One {
+    maxima: Maxima,
+    refused: Option<String>,
+}
+
+fn one(side: &Side, seed: u64, control: &Control) -> Result<One, PairedError> {
     if control.cancel.load(Ordering::Relaxed) {
         return Err(PairedError::Cancelled);
     }
@@ -147,8 +154,9 @@ fn one(side: &Side, seed: u64, control: &Control) -> Result<Maxima, PairedError>
         return Err(PairedError::Cancelled);
     }
     match (&run.navigation, run.calibration.and_then(|c| c.refused)) {
-        (_, Some(reason)) => Err(PairedError::Refused { seed, method: run.label, reason }),
-        (Some(navigation), None) => Ok(Maxima::of(navigation)),
+        // One that was refused is a result: it has no errors, and counts as refused.
+        (_, Some(reason)) => Ok(One { maxima: Maxima::default(), refused: Some(reason) }),
+        (Some(navigation), None) => Ok(One { maxima: Maxima::of(navigation), refused: None }),
         (None, None) => Err(PairedError::NoNavigation),
     }
 }

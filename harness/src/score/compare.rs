@@ -3,6 +3,10 @@
 use super::ensemble::{Improvement, improvement, rms};
 use super::floor::MaximumFloor;
 use super::summary::Navigation;
+use octant_statistics::convergence::pass;
+use octant_statistics::paired::PassPairs;
+use octant_statistics::power;
+use octant_statistics::sample::Interval;
 use serde::{Deserialize, Serialize};
 
 /// Version of the form of `compare.json`.
@@ -97,8 +101,13 @@ impl Measure {
     }
 }
 
+/// Confidence of the intervals of improvements, two-sided.
+pub const CONFIDENCE: f64 = 0.9;
+/// Confidence of the intervals of rates of refusals, two-sided.
+pub const REFUSALS_CONFIDENCE: f64 = 0.95;
+
 /// Both methods with one seed.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct PairedRun {
     /// The seed.
     pub seed: u64,
@@ -106,6 +115,96 @@ pub struct PairedRun {
     pub first: Maxima,
     /// Of the second method.
     pub second: Maxima,
+    /// Why the first method refused its calibration; null: it didn't.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub first_refused: Option<String>,
+    /// Why the second method did.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub second_refused: Option<String>,
+}
+
+/// How often each method refused its calibration.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Refusals {
+    /// Seeds that were run.
+    pub seeds: u64,
+    /// Seeds that the first method refused.
+    pub first: u64,
+    /// Seeds that the second method refused.
+    pub second: u64,
+    /// Seeds that both refused.
+    pub both: u64,
+    /// Rate of the first method, with its 95 % interval (Clopper and Pearson).
+    pub first_rate: Interval,
+    /// Rate of the second method.
+    pub second_rate: Interval,
+    /// Two-sided probability of a difference like this, if both refuse as often (McNemar).
+    pub p: f64,
+    /// Smallest part of the seeds that one method refuses and the other doesn't which this test finds at
+    /// 5 % with 90 %; null: none is found by so few seeds.
+    pub detectable: Option<f64>,
+}
+
+impl Refusals {
+    /// Counts the refusals of runs; none where no seed was refused.
+    #[must_use]
+    pub fn of(runs: &[PairedRun]) -> Option<Self> {
+        let published = |of: fn(&PairedRun) -> bool| runs.iter().map(of).collect::<Vec<bool>>();
+        let first = published(|run| run.first_refused.is_none());
+        let second = published(|run| run.second_refused.is_none());
+        let pairs = PassPairs::of(&first, &second)?;
+        let refused = |published: &[bool]| published.iter().filter(|p| !**p).count() as u64;
+        let rate = |published: &[bool]| {
+            let refused: Vec<bool> = published.iter().map(|p| !p).collect();
+            pass(&refused, REFUSALS_CONFIDENCE)
+        };
+        (pairs.both < runs.len() as u64).then_some(())?;
+        Some(Self {
+            seeds: runs.len() as u64,
+            first: refused(&first),
+            second: refused(&second),
+            both: pairs.neither,
+            first_rate: rate(&first)?,
+            second_rate: rate(&second)?,
+            p: pairs.mcnemar(),
+            detectable: power::turning(runs.len() as u64, 0.05, power::POWER),
+        })
+    }
+
+    fn words(&self, names: [&str; 2]) -> Vec<String> {
+        let one = |name: &str, count: u64, rate: &Interval| {
+            format!(
+                "{name} refused {count} of {} seeds ({} %, 95 % interval [{} %, {} %])",
+                self.seeds,
+                percent(rate.value),
+                percent(rate.low),
+                percent(rate.high)
+            )
+        };
+        let [first, second] = names;
+        let either = self.first + self.second - self.both;
+        let mut words = vec![format!(
+            "{}, {}: McNemar's p = {}{}",
+            one(first, self.first, &self.first_rate),
+            one(second, self.second, &self.second_rate),
+            crate::report::number::significant(self.p, 2),
+            match self.detectable {
+                Some(part) => format!(
+                    "; so many seeds find with 90 % that one method refuses {} % more of them",
+                    percent(part)
+                ),
+                None => "; so few seeds find no difference of the rates".to_owned(),
+            }
+        )];
+        words.push(format!(
+            "a refused seed is beyond every number, so that over all {} seeds the root mean square of a \
+             method that refused one is not defined; errors are compared of the {} seeds that neither \
+             refused: how the methods compare where both publish, which says nothing of the others",
+            self.seeds,
+            self.seeds - either
+        ));
+        words
+    }
 }
 
 /// One measure over all seeds.
@@ -119,7 +218,7 @@ pub struct Cell {
     pub first: f64,
     /// Root mean square over seeds of the second method, arcmin.
     pub second: f64,
-    /// 1 − second/first with its 90 % interval.
+    /// 1 − second/first with its 90 % interval, and the smallest that so many pairs show with 90 %.
     pub improvement: Improvement,
     /// The same from the random walk alone, exact parameters and attitude, arcmin.
     pub floor: Option<f64>,
@@ -176,6 +275,9 @@ pub struct Comparison {
     pub first: String,
     /// Name of the second method.
     pub second: String,
+    /// How often the methods refused; null where none did.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub refusals: Option<Refusals>,
     /// Every measure that at least two pairs have.
     pub cells: Vec<Cell>,
     /// The claim in plain words: the verdict, then the reasons.
@@ -183,9 +285,6 @@ pub struct Comparison {
     /// Every pair of runs.
     pub runs: Vec<PairedRun>,
 }
-
-/// Seed of the bootstrap: one for all, so that the same runs give the same interval.
-const BOOTSTRAP_SEED: u64 = 0x0C7A_4747;
 
 /// Compares paired runs.
 ///
@@ -201,13 +300,15 @@ pub fn compare(
 ) -> Comparison {
     let cells: Vec<Cell> =
         Measure::ALL.into_iter().filter_map(|measure| cell(measure, runs, floor)).collect();
+    let refusals = Refusals::of(runs);
     Comparison {
         schema: SCHEMA,
         octant: env!("CARGO_PKG_VERSION").to_owned(),
         scenario: scenario.to_owned(),
         first: first.to_owned(),
         second: second.to_owned(),
-        words: words(first, second, runs.len(), &cells),
+        words: words(first, second, runs.len(), &cells, refusals.as_ref()),
+        refusals,
         cells,
         runs: runs.to_vec(),
     }
@@ -217,7 +318,7 @@ fn cell(measure: Measure, runs: &[PairedRun], floor: &[MaximumFloor]) -> Option<
     let pairs: Vec<(f64, f64)> =
         runs.iter().filter_map(|r| r.first.get(measure).zip(r.second.get(measure))).collect();
     let (first, second): (Vec<f64>, Vec<f64>) = pairs.into_iter().unzip();
-    let improvement = improvement(&first, &second, BOOTSTRAP_SEED)?;
+    let improvement = improvement(&first, &second, CONFIDENCE)?;
     Some(Cell {
         measure,
         runs: first.len() as u32,
@@ -245,19 +346,27 @@ pub fn percent(fraction: f64) -> String {
 }
 
 /// The verdict and its reasons.
-fn words(first: &str, second: &str, seeds: usize, cells: &[Cell]) -> Vec<String> {
+fn words(
+    first: &str,
+    second: &str,
+    seeds: usize,
+    cells: &[Cell],
+    refusals: Option<&Refusals>,
+) -> Vec<String> {
+    let told = refusals.map(|refusals| refusals.words([first, second])).unwrap_or_default();
     // Longitude at the latest mark is what a g-dependent bias moves most.
     let main = cells.iter().rfind(|c| c.measure.is_longitude()).or_else(|| cells.last());
     let Some(main) = main else {
-        return vec![format!(
+        let nothing = format!(
             "nothing to compare: {seeds} pairs of runs, and at least 2 with 24 h of navigation are needed"
-        )];
+        );
+        return std::iter::once(nothing).chain(told).collect();
     };
     let (measure, range) = (main.measure.name(), interval(&main.improvement));
     let value = main.improvement.value;
     let found = format!(
         "the largest error in {measure} is {} % {} with {second} than with {first}, 90 % interval \
-         of the improvement {range}, {} seeds",
+         of the improvement {range}, {} pairs",
         percent(value.abs()),
         if value < 0.0 { "larger" } else { "smaller" },
         main.runs
@@ -294,6 +403,15 @@ fn words(first: &str, second: &str, seeds: usize, cells: &[Cell]) -> Vec<String>
                 percent(best.max(0.0))
             ));
         }
+    }
+    words.extend(told);
+    if let Some(detectable) = main.improvement.detectable.filter(|part| part.is_finite()) {
+        words.push(format!(
+            "{} pairs that scatter like these show an improvement of {measure} of {} % or more with a \
+             probability of 90 %",
+            main.runs,
+            percent(detectable)
+        ));
     }
     if main.runs < 20 {
         words.push(format!(
