@@ -4,6 +4,8 @@
 //! Intervals of counts and of order statistics hold at least what they say: their steps are discrete. All
 //! others have to hold it within the sampling error of the study, four standard errors (a hundred figures
 //! are looked at). The quick version has fewer trials and the same limits in standard errors.
+// The figures are what the study is for.
+#![allow(clippy::print_stdout)]
 
 use octant_random::normal::Ziggurat;
 use octant_random::philox::block;
