@@ -497,11 +497,30 @@ verification = \"inspection\"
     let traced: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
     assert_eq!(traced["requirements"][0]["counts"]["pass"], 6);
     assert_eq!(traced["requirements"][2]["verdict"], serde_json::Value::Null);
+    // Those of the scenario itself too.
+    assert_eq!(traced["requirements"][3]["id"], "NAV-1");
+    assert_eq!(traced["requirements"][3]["verdict"], "pass");
     assert_eq!(traced["without_case"], serde_json::json!([]));
     let case =
         std::fs::read_to_string(bench.at(&format!("project/cases/{}.toml", plan.cases[0].id)));
-    assert!(case.unwrap().contains("@relation(NAV-2, NAV-3, scope=file)"));
+    assert!(case.unwrap().contains("@relation(NAV-2, NAV-3, NAV-1, scope=file)"));
     assert_eq!(trace(&["--strictdoc", "project"]).status.code(), Some(2), "it is there");
+
+    // One that the scenario alone has, and that fails, fails the trace as it fails the campaign.
+    let broken = Bench::new(&campaign);
+    let short = SCENARIO.replace("limit = \"10 nmi\"", "limit = \"1e-9 nmi\"");
+    assert_ne!(short, SCENARIO);
+    std::fs::write(broken.at("short.toml"), short).unwrap();
+    std::fs::write(broken.at("requirements.toml"), requirements).unwrap();
+    let (plan, folder) = (broken.plan(), broken.at("out"));
+    run(&plan, &folder, Shard::WHOLE, 2);
+    plan.write(&folder, false).unwrap();
+    for command in [&["campaign", "trace", "out"][..], &["campaign", "status", "out"]] {
+        let output = program(command).current_dir(broken.folder.path()).output().unwrap();
+        let said = String::from_utf8_lossy(&output.stdout);
+        assert_eq!(output.status.code(), Some(1), "{command:?}: {said}");
+        assert!(said.contains("NAV-1: fail"), "{said}");
+    }
 
     // Another limit makes other cases.
     std::fs::write(bench.at("requirements.toml"), requirements.replace("9 nmi", "8 nmi")).unwrap();

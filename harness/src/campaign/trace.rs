@@ -8,7 +8,9 @@ use super::plan::{Plan, PlanError};
 use super::requirements;
 use super::status;
 use crate::score::verdict;
-use octant_requirements::requirement::{Requirement, Requirements};
+use octant_requirements::requirement::{
+    Check, Comparison, Limit, Requirement, Requirements, Verification,
+};
 use octant_requirements::trace::{Case, CaseResult as Traced, Trace, Verdict};
 use std::path::Path;
 
@@ -33,11 +35,51 @@ pub fn requirements_of(plan: &Plan) -> Result<Requirements, PlanError> {
     Ok(requirements)
 }
 
-/// Traces a campaign by the results in its folder.
+/// The requirements of a file, and those that scenarios have of their own, which are checked as well.
+#[must_use]
+pub fn with_those_of_scenarios(plan: &Plan, of_file: &Requirements) -> Requirements {
+    let mut all = of_file.clone();
+    for planned in &plan.scenarios {
+        // A scenario that isn't here any more has said its ids.
+        let case = plan.cases.iter().find(|case| case.scenario == planned.id);
+        let scenario = case.and_then(|case| planned.scenario(case).ok());
+        for id in &planned.requirements {
+            if all.get(id).is_some() {
+                continue;
+            }
+            let own = scenario.as_ref();
+            let own = own.and_then(|s| s.requirements.iter().find(|own| own.check.id == *id));
+            let text = own.map_or("", |own| own.text.as_str());
+            let check = Check {
+                measure: own.map_or_else(String::new, |own| own.check.measure.clone()),
+                comparison: own.map_or(Comparison::AtMost, |own| comparison(own.check.comparison)),
+                limit: Limit::Number(own.map_or(f64::NAN, |own| own.check.limit)),
+                ensemble: None,
+            };
+            let mut requirement = Requirement::new(id, text, Verification::Test(check));
+            requirement.section = vec![format!("Scenario {}", planned.id)];
+            all.requirements.push(requirement);
+        }
+    }
+    all
+}
+
+const fn comparison(comparison: verdict::Comparison) -> Comparison {
+    match comparison {
+        verdict::Comparison::AtMost => Comparison::AtMost,
+        verdict::Comparison::Below => Comparison::Below,
+        verdict::Comparison::AtLeast => Comparison::AtLeast,
+        verdict::Comparison::Above => Comparison::Above,
+    }
+}
+
+/// Traces a campaign by the results in its folder: all that its cases check, of the file of requirements or of
+/// the scenarios themselves.
 ///
 /// # Errors
 /// In words, if a result is there and can't be read.
 pub fn trace(plan: &Plan, requirements: &Requirements, folder: &Path) -> Result<Trace, String> {
+    let requirements = &with_those_of_scenarios(plan, requirements);
     let mut streams: Vec<Option<String>> = Vec::with_capacity(plan.cases.len());
     let mut of = |case: &super::plan::Case| -> Result<Case, String> {
         let planned = plan.scenarios.iter().find(|scenario| scenario.id == case.scenario);

@@ -9,7 +9,7 @@ use crate::campaign::execute::{ExecuteError, NOT_KEPT, Shard};
 use crate::campaign::merge::{self, MergeError};
 use crate::campaign::plan::{FILE_NAME, Plan, PlanError, Written};
 use crate::campaign::table::TableError;
-use crate::campaign::trace::requirements_of;
+use crate::campaign::trace::{requirements_of, with_those_of_scenarios};
 use crate::campaign::{emit, status};
 use crate::run::Control;
 use crate::score::verdict::Verdict;
@@ -223,7 +223,7 @@ fn merge_parts(folder: &Path, others: &[PathBuf]) -> Result<Verdict, Failure> {
 
 fn trace(folder: &Path, strictdoc: Option<&Path>, json: bool) -> Result<Verdict, Failure> {
     let plan = read(folder)?;
-    let requirements = requirements_of(&plan)?;
+    let requirements = with_those_of_scenarios(&plan, &requirements_of(&plan)?);
     let trace = crate::campaign::trace::trace(&plan, &requirements, folder)
         .map_err(|reason| Failure::bench(format!("failed to {reason}")))?;
     if let Some(out) = strictdoc {
