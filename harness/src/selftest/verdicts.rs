@@ -205,6 +205,23 @@ fn campaigns() -> Vec<Case> {
             },
         ),
         fails(
+            "campaign-labels",
+            "One run under four labels is one draw, whatever four would show.",
+            (3, "1 of 1 independent draw passed in all of their 4 checks"),
+            |bench| {
+                let half = edited(MOSTLY, "95 %", "50 %")?;
+                let labels = "[[factors]]\nname = \"label\"\nkey = \"title\"\n\
+                              values = [\"a\", \"b\", \"c\", \"d\"]\n";
+                campaign(
+                    bench,
+                    1,
+                    &edited(&half, "confidence = \"50 %\"", "confidence = \"90 %\"")?,
+                    labels,
+                )?;
+                status(bench)
+            },
+        ),
+        fails(
             "campaign-broken",
             "A requirement that every case breaks.",
             (1, "ALWAYS: fail"),
