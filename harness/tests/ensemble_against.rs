@@ -12,6 +12,7 @@ use octant::score::summary::{
     Calibration, ErrorScore, HealthCounts, HeightChannel, Navigation, ParameterScore, RadialScore,
     SCHEMA, Summary,
 };
+use octant::score::judge::judge;
 use octant::score::verdict::Verdict;
 use octant_random::normal::Ziggurat;
 use octant_random::stream::{Phase, key};
@@ -51,13 +52,8 @@ impl Bench {
         for (run, case) in self.plan.cases.iter().enumerate() {
             let mut summary = self.summary(run as u64);
             change(run, &mut summary);
-            let result = CaseResult {
-                schema: case::SCHEMA,
-                case: case.id.clone(),
-                verdict: Verdict::Inconclusive,
-                error: None,
-                summary: Some(summary),
-            };
+            let hash = case::hash_of(self.plan.planned(case).unwrap(), case);
+            let result = CaseResult::of(&case.id, Some(hash), summary).unwrap();
             let json = result.to_json().unwrap();
             case::keep(self.folder.path(), &case.id, json.as_bytes()).unwrap();
         }
@@ -187,6 +183,7 @@ fn too_few_runs_say_nothing_and_refused_ones_are_counted() {
     bench.keep(|run, summary| {
         if run < 3 {
             summary.calibration.as_mut().unwrap().refused = Some("it drifts".to_owned());
+            judge(summary, &[], &[]).unwrap();
         }
     });
     let one = &bench.against().compared[0];

@@ -202,7 +202,7 @@ fn a_plan_and_the_results_of_its_cases() {
     assert_refused(&Plan::read(&newer).unwrap_err().to_string());
     let id = &plan.cases[0].id;
     let name = format!("campaign/cases/{}/{id}.json", &id[..2]);
-    let (_folder, newer) = changed(&name, "\"schema\":1", "\"schema\":2");
+    let (_folder, newer) = changed(&name, "\"schema\":1", "\"schema\":3");
     assert_refused(&CaseResult::read(&newer).unwrap_err());
 }
 

@@ -9,6 +9,7 @@ mod campaign;
 mod campaign_report;
 #[cfg(unix)]
 mod can_source;
+mod chain;
 mod compare_refused;
 mod core_arbitrary;
 mod core_behaviour;

@@ -287,32 +287,33 @@ fn good() -> impl Strategy<Value = Came> {
     })
 }
 
-fn result(id: &str, parts: &Parts) -> CaseResult {
+fn result(id: &str, scenario: &PlannedScenario, case: &Case, parts: &Parts) -> CaseResult {
     // Every case has a stream of its own: it is a draw of its own.
-    let summary = Summary { stream_hash: id.to_owned(), ..parts.summary() };
-    let nothing = summary.requirements.is_empty();
-    let least = if nothing { Verdict::Inconclusive } else { Verdict::Pass };
-    CaseResult {
-        schema: case::SCHEMA,
-        case: id.to_owned(),
-        verdict: summary.verdict.worst(least),
-        error: None,
-        summary: Some(summary),
-    }
+    let (seed, stream_hash) = (case.seed, id.to_owned());
+    let summary = Summary { seed, stream_hash, ..parts.summary() };
+    CaseResult::of(id, Some(case::hash_of(scenario, case)), summary).unwrap()
 }
 
 /// A campaign in a folder, and its requirements.
 fn campaign(folder: &Path, outcomes: &[Came], ensemble: Option<Ensemble>) -> (Plan, Requirements) {
-    let id = |i: usize| format!("{i:016x}");
-    let cases = (0..outcomes.len()).map(|i| Case {
-        id: id(i),
+    let planned = PlannedScenario {
+        id: "s".to_owned(),
+        file: PathBuf::from("s.toml"),
+        blake3: String::new(),
+        requirements: vec!["NAV-1".to_owned()],
+        checks: Vec::new(),
+    };
+    let case = |i: usize| Case {
+        id: String::new(),
         scenario: "s".to_owned(),
         seed: i as u64,
         replicate: i as u32,
         set: Vec::new(),
         faults: None,
         factors: BTreeMap::new(),
-    });
+    };
+    let id = |i: usize| case::hash_of(&planned, &case(i))[..16].to_owned();
+    let cases = (0..outcomes.len()).map(|i| Case { id: id(i), ..case(i) });
     let plan = Plan {
         schema: plan::SCHEMA,
         id: String::new(),
@@ -323,13 +324,7 @@ fn campaign(folder: &Path, outcomes: &[Came], ensemble: Option<Ensemble>) -> (Pl
         factors: Vec::new(),
         requirements: vec![Planned { check: Found::Kept.requirement(), ensemble }],
         not_by_test: Vec::new(),
-        scenarios: vec![PlannedScenario {
-            id: "s".to_owned(),
-            file: PathBuf::from("s.toml"),
-            blake3: String::new(),
-            requirements: vec!["NAV-1".to_owned()],
-            checks: Vec::new(),
-        }],
+        scenarios: vec![planned.clone()],
         cases: cases.collect(),
     };
     let keep = |i: usize, result: &CaseResult| {
@@ -339,15 +334,17 @@ fn campaign(folder: &Path, outcomes: &[Came], ensemble: Option<Ensemble>) -> (Pl
         match outcome {
             Came::Missing => {}
             Came::Broken => _ = keep(i, &CaseResult::broken(&id(i), "gone".to_owned())),
-            Came::Ran(parts) => _ = keep(i, &result(&id(i), parts)),
+            Came::Ran(parts) => _ = keep(i, &result(&id(i), &planned, &case(i), parts)),
             Came::Differs(parts) => {
-                let mut other = result(&id(i), parts);
+                let mut other = result(&id(i), &planned, &case(i), parts);
                 keep(i, &other);
                 other.verdict = Verdict::Error;
                 other.error = Some("another".to_owned());
                 assert!(matches!(keep(i, &other), KeptResult::Differs(_)));
             }
-            Came::Foreign(parts) => _ = keep(i, &result("ffffffffffffffff", parts)),
+            Came::Foreign(parts) => {
+                _ = keep(i, &result("ffffffffffffffff", &planned, &case(i), parts))
+            }
         }
     }
     let check = Check {

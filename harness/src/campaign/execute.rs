@@ -151,6 +151,9 @@ pub enum ExecuteError {
         /// One of them.
         one: String,
     },
+    /// A result that is there is none of its case, or contradicts itself; in words.
+    #[error("{0}")]
+    Result(String),
     /// A process could not keep its result; in its words.
     #[error("{0}")]
     NotKept(String),

@@ -263,10 +263,16 @@ fn plain(value: &str) -> FactorValue {
     number.map_or_else(|| FactorValue::Text(text.to_owned()), FactorValue::Number)
 }
 
-/// The id of a case.
-fn id_of(scenario: &PlannedScenario, case: &Case) -> String {
+/// BLAKE3 of everything that makes a case, hexadecimal.
+#[must_use]
+pub fn hash_of(scenario: &PlannedScenario, case: &Case) -> String {
     // One JSON text: no two different cases write the same.
     let content =
         serde_json::json!([scenario.blake3, scenario.checks, case.set, case.faults, case.seed]);
-    blake3::hash(content.to_string().as_bytes()).to_hex().as_str()[..16].to_owned()
+    blake3::hash(content.to_string().as_bytes()).to_hex().to_string()
+}
+
+/// The id of a case.
+fn id_of(scenario: &PlannedScenario, case: &Case) -> String {
+    hash_of(scenario, case)[..16].to_owned()
 }

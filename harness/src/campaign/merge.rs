@@ -1,5 +1,6 @@
 //! Parts of shards put together: the same tables, whatever was run where and in which order.
 
+use super::chain;
 use super::execute::Shard;
 use super::independence::Shown;
 use super::plan::{Plan, short};
@@ -162,6 +163,7 @@ pub fn merge(
     out: &Path,
     end: usize,
 ) -> Result<Merged, MergeError> {
+    check_parts(plan, folders)?;
     let place: HashMap<&str, usize> =
         plan.cases.iter().enumerate().map(|(index, case)| (case.id.as_str(), index)).collect();
     let mut merged_cases = Merged { parts: 0, cases: 0, missing: 0 };
@@ -247,6 +249,25 @@ pub fn merge(
         })?;
     }
     Ok(merged_cases)
+}
+
+/// That the parts say what the results say which lie beside them.
+fn check_parts(plan: &Plan, folders: &[PathBuf]) -> Result<(), MergeError> {
+    let end = format!(".{}.parquet", TABLES[0].0);
+    for folder in folders {
+        for path in parts(std::slice::from_ref(folder), TABLES[0].0) {
+            // One of another plan is told as that.
+            if Table::open(&path)?.plan != plan.id {
+                continue;
+            }
+            let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+            let stem = name.strip_suffix(&end).unwrap_or(&name);
+            chain::check(plan, folder, |table| {
+                path.with_file_name(format!("{stem}.{table}.parquet"))
+            })?;
+        }
+    }
+    Ok(())
 }
 
 /// Every column of any part; one of different kinds is one of texts.

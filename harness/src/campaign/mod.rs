@@ -5,11 +5,13 @@
 //! shards, [`independence`] which of them are one draw.
 
 pub mod case;
+pub mod chain;
 mod draw;
 pub mod emit;
 pub mod execute;
 pub mod file;
 pub mod independence;
+pub mod inside;
 mod make;
 pub mod merge;
 pub mod plan;

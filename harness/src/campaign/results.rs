@@ -13,6 +13,9 @@ use std::sync::Arc;
 /// Columns with their kinds.
 pub(crate) type Columns = &'static [(&'static str, Kind)];
 
+/// The column with the BLAKE3 of the file of a case's result.
+pub(super) const RESULT: &str = "result_blake3";
+
 /// The tables: the name of the file, and the columns that stand first; what others there are comes
 /// behind them, by name.
 pub(crate) const TABLES: [(&str, Columns); 3] = [
@@ -28,6 +31,7 @@ pub(crate) const TABLES: [(&str, Columns); 3] = [
             ("reasons", Kind::Text),
             ("error", Kind::Text),
             ("stream_hash", Kind::Text),
+            (RESULT, Kind::Text),
             ("set", Kind::Text),
         ],
     ),
@@ -58,9 +62,9 @@ pub(crate) const TABLES: [(&str, Columns); 3] = [
 
 /// Rows with the columns that they need.
 #[derive(Clone, Debug, Default)]
-struct Rows {
-    columns: BTreeMap<String, Values>,
-    rows: usize,
+pub(super) struct Rows {
+    pub(super) columns: BTreeMap<String, Values>,
+    pub(super) rows: usize,
 }
 
 impl Rows {
@@ -101,34 +105,53 @@ pub(super) fn ordered(first: Columns, kinds: &BTreeMap<&str, Kind>) -> Vec<(Stri
 /// Writes the tables of cases, in the order of the plan, from the results in a folder.
 ///
 /// # Errors
-/// If a result can't be read, or the system refuses.
+/// If a result can't be read or contradicts itself, or the system refuses.
 pub fn tables(
     plan: &Plan,
     folder: &Path,
     cases: impl Iterator<Item = usize>,
     path: impl Fn(&str) -> std::path::PathBuf,
 ) -> Result<(), TableError> {
+    let all = rows(plan, folder, cases, &texts(plan))?;
+    for ((name, first), rows) in TABLES.iter().zip(&all) {
+        rows.write(first, &path(name), &plan.id)?;
+    }
+    Ok(())
+}
+
+/// Factors that are texts: one that is a number in one case and a text in another is a text in all.
+pub(super) fn texts(plan: &Plan) -> BTreeSet<&str> {
+    let texts = (plan.cases.iter().flat_map(|case| &case.factors))
+        .filter(|(_, value)| matches!(value, FactorValue::Text(_)));
+    texts.map(|(name, _)| name.as_str()).collect()
+}
+
+/// The rows of all tables, from the results in a folder.
+pub(super) fn rows(
+    plan: &Plan,
+    folder: &Path,
+    cases: impl Iterator<Item = usize>,
+    texts: &BTreeSet<&str>,
+) -> Result<[Rows; 3], TableError> {
     let [mut all_cases, mut checks, mut drift] = TABLES.map(|(_, first)| Rows::new(first));
-    // A factor that is a number in one case and a text in another is a text in all.
-    let texts: BTreeSet<&str> = (plan.cases.iter().flat_map(|case| &case.factors))
-        .filter(|(_, value)| matches!(value, FactorValue::Text(_)))
-        .map(|(name, _)| name.as_str())
-        .collect();
     for index in cases {
         let Some(case) = plan.cases.get(index) else { continue };
         let file = case::file(folder, &case.id);
-        let result = CaseResult::read(&file)
-            .map_err(|reason| TableError::Form { path: file.clone(), reason })?;
-        all_cases.push(case_row(case, &result, &texts));
+        // It begins with the action and the file, as the error does.
+        let form = |reason: String| {
+            let start = format!("read {}: ", file.display());
+            let reason = reason.strip_prefix(&start).unwrap_or(&reason).to_owned();
+            TableError::Form { path: file.clone(), reason }
+        };
+        let read = CaseResult::of_plan(plan, folder, case).map_err(form)?;
+        let (result, hash) = read.ok_or_else(|| form("it is gone".to_owned()))?;
+        all_cases.push(case_row(case, &result, &hash, texts));
         if let Some(summary) = &result.summary {
             check_rows(case, summary).for_each(|row| checks.push(row));
             drift_rows(case, summary).for_each(|row| drift.push(row));
         }
     }
-    for ((name, first), rows) in TABLES.iter().zip([&all_cases, &checks, &drift]) {
-        rows.write(first, &path(name), &plan.id)?;
-    }
-    Ok(())
+    Ok([all_cases, checks, drift])
 }
 
 fn text(value: impl Into<Arc<str>>) -> Value {
@@ -140,7 +163,12 @@ fn row<'a>(pairs: impl IntoIterator<Item = (&'a str, Option<Value>)>) -> BTreeMa
     pairs.into_iter().filter_map(there).collect()
 }
 
-fn case_row(case: &Case, result: &CaseResult, texts: &BTreeSet<&str>) -> BTreeMap<String, Value> {
+fn case_row(
+    case: &Case,
+    result: &CaseResult,
+    hash: &str,
+    texts: &BTreeSet<&str>,
+) -> BTreeMap<String, Value> {
     let summary = result.summary.as_ref();
     let mut all = row([
         ("case", Some(text(case.id.as_str()))),
@@ -152,6 +180,7 @@ fn case_row(case: &Case, result: &CaseResult, texts: &BTreeSet<&str>) -> BTreeMa
         ("reasons", summary.map(|summary| text(summary.reasons.join("; ")))),
         ("error", result.error.as_deref().map(text)),
         ("stream_hash", summary.map(|summary| text(summary.stream_hash.as_str()))),
+        (RESULT, Some(text(hash))),
         ("set", Some(text(case.set.join("; ")))),
     ]);
     for (name, value) in &case.factors {

@@ -14,6 +14,7 @@ use octant_requirements::trace::{Counts, judge};
 use octant_statistics::cluster::Draws;
 use octant_statistics::proportion::{Demand, Needed, further_if_all_pass};
 use serde::Serialize;
+use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::path::Path;
@@ -108,7 +109,7 @@ pub fn of(plan: &Plan, folder: &Path, shard: Shard) -> Result<Status, String> {
     let end = match &plan.stop {
         None => plan.cases.len(),
         Some(rule) => {
-            let decision = decide(plan, folder, rule);
+            let decision = decide(plan, folder, rule)?;
             status.stopped = in_words(rule, decision);
             decision.end(plan.cases.len())
         }
@@ -126,15 +127,15 @@ pub fn of(plan: &Plan, folder: &Path, shard: Shard) -> Result<Status, String> {
         let path = case::file(folder, &case.id);
         let checked = plan.scenarios.iter().find(|scenario| scenario.id == case.scenario);
         let checked = checked.iter().flat_map(|scenario| &scenario.requirements);
-        if !path.exists() {
+        let read = CaseResult::of_plan(plan, folder, case);
+        let Some((result, _)) = read.map_err(|reason| format!("failed to {reason}"))? else {
             status.open += 1;
             let checked: Vec<&String> = checked.collect();
             checked.iter().for_each(|id| counts.entry(id).or_default().missing += 1);
             let passed = checked.into_iter().map(|id| (id.as_str(), None)).collect();
             looked.push(Looked { case, stream: None, passed });
             continue;
-        }
-        let result = CaseResult::read(&path).map_err(|reason| format!("failed to {reason}"))?;
+        };
         *status.verdicts.entry(result.verdict.name()).or_default() += 1;
         let counted = |id: &String| requirements::ensemble(plan, id).is_some();
         let is_counted = checked.clone().next().is_some() && checked.clone().all(counted);
@@ -216,12 +217,19 @@ pub(in crate::campaign) fn besides(result: &CaseResult) -> Verdict {
 }
 
 /// Looks at the results in a folder.
-#[must_use]
-pub fn decide(plan: &Plan, folder: &Path, rule: &StopRule) -> Decision {
-    stop::decide(plan, rule, |case| {
-        let result = CaseResult::read(&case::file(folder, &case.id)).ok()?;
-        Some(Shown::of(&result, &rule.requirement))
-    })
+///
+/// # Errors
+/// If a result is there and can't be read, or contradicts itself.
+pub fn decide(plan: &Plan, folder: &Path, rule: &StopRule) -> Result<Decision, String> {
+    let wrong = RefCell::new(None);
+    let decision = stop::decide(plan, rule, |case| {
+        let read = CaseResult::of_plan(plan, folder, case).unwrap_or_else(|reason| {
+            wrong.borrow_mut().get_or_insert(format!("failed to {reason}"));
+            None
+        });
+        Some(Shown::of(&read?.0, &rule.requirement))
+    });
+    wrong.into_inner().map_or(Ok(decision), Err)
 }
 
 fn in_words(rule: &StopRule, decision: Decision) -> Option<String> {

@@ -89,8 +89,7 @@ pub fn trace(plan: &Plan, requirements: &Requirements, folder: &Path) -> Result<
             .cloned()
             .collect();
         let path = case::file(folder, &case.id);
-        let result = if path.exists() {
-            let result = CaseResult::read(&path)?;
+        let result = if let Some((result, _)) = CaseResult::of_plan(plan, folder, case)? {
             // A check that passes in a run which shows nothing isn't shown either, and of two results
             // none counts.
             let most = match status::besides(&result) {

@@ -382,7 +382,9 @@ fn conclude(
 ) -> Result<status::Status, Failure> {
     let failed = |error: crate::campaign::table::TableError| Failure::bench(error).failed();
     let end = match &plan.stop {
-        Some(rule) => status::decide(plan, folder, rule).end(plan.cases.len()),
+        Some(rule) => {
+            status::decide(plan, folder, rule).map_err(Failure::bench)?.end(plan.cases.len())
+        }
         None => plan.cases.len(),
     };
     results::tables(plan, folder, 0..end, |table| merge::part(folder, Shard::WHOLE, table))

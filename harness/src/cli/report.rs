@@ -4,14 +4,16 @@ use super::{Failure, print, write};
 use crate::campaign::keep;
 use crate::evidence::discrepancy::counted;
 use crate::evidence::disposition::Dispositions;
+use crate::evidence::inside::SUMMARY;
 use crate::evidence::manifest::shell_line;
-use crate::evidence::{Manifest, discrepancy};
+use crate::evidence::{Manifest, ManifestError, discrepancy};
 use crate::recorder::Event;
 use crate::recorder::reader::{Epochs, Recording};
 use crate::report::{Provenance, ReportData};
 use crate::run::done::Plan;
 use crate::run::{Watcher, unit};
 use crate::scenario::Scenario;
+use crate::score::rederive;
 use crate::score::summary::Summary;
 use crate::score::verdict::Verdict;
 use crate::source::Epoch;
@@ -37,17 +39,27 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
-    let read = |name: &str| {
-        let path = arguments.run.join(name);
-        std::fs::read_to_string(&path)
-            .map_err(|error| Failure::input(format!("failed to read {}: {error}", path.display())))
-    };
-    let summary = Summary::from_json(&read("summary.json")?)
-        .map_err(|error| Failure::input(format!("failed to {error}")))?;
-    let scenario_path = arguments.run.join("scenario.toml");
-    let scenario = Scenario::load(&scenario_path, &[]).map_err(Failure::input)?;
+    // What the manifest contradicts isn't shown: the summary, the scenario and the recording are those of
+    // the run.
     let manifest = Manifest::read(&arguments.run)
         .map_err(|error| Failure::input(format!("failed to {error}")))?;
+    let failed = |error: ManifestError| Failure::input(error).failed();
+    let path = arguments.run.join(SUMMARY);
+    let bytes = manifest.read_file(&arguments.run, SUMMARY).map_err(failed)?;
+    let wrong =
+        |reason: String| Failure::input(format!("failed to read {}: {reason}", path.display()));
+    let text = String::from_utf8(bytes).map_err(|_| wrong("it is no text".to_owned()))?;
+    let summary =
+        Summary::from_json(&text).map_err(|error| Failure::input(format!("failed to {error}")))?;
+    let found = rederive::contradictions(&summary);
+    if !found.is_empty() {
+        return Err(wrong(format!("it contradicts itself: {}", found.join("; "))));
+    }
+    for name in ["scenario.toml", "recording.mcap"] {
+        manifest.check_file(&arguments.run, name).map_err(failed)?;
+    }
+    let scenario_path = arguments.run.join("scenario.toml");
+    let scenario = Scenario::load(&scenario_path, &[]).map_err(Failure::input)?;
     let dispositions = match &arguments.dispositions {
         None => Dispositions::default(),
         Some(path) => disposed(&summary, path, &arguments.run)?,

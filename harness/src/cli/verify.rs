@@ -1,12 +1,14 @@
-//! `octant verify`: whether a folder of evidence is what was written.
+//! `octant verify`: whether a folder of evidence is what was written, and, apart from that, what it says.
 
 use super::{Failure, print, print_json};
+use crate::campaign;
+use crate::evidence::inside::{self, Inside};
 use crate::evidence::manifest::{self, Difference, Manifest};
 use crate::evidence::signature::{self, Key};
 use crate::score::verdict::Verdict;
 use clap::Args;
 use serde::Serialize;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 #[derive(Debug, Args)]
@@ -18,19 +20,95 @@ pub(super) struct Arguments {
     /// the files are held against the manifest.
     #[arg(long, value_name = "KEY")]
     key: Option<String>,
+    /// What the folder has to be of: scenario=TITLE, seed=N, run=HASH (the stream hash of a run or the plan
+    /// of a campaign, 12 digits or more).
+    #[arg(long, value_name = "NAME=VALUE", value_delimiter = ',', value_parser = Expected::parse)]
+    expect: Vec<Expected>,
     /// Print one JSON object.
     #[arg(long)]
     json: bool,
+}
+
+/// Least digits of a hash that is expected.
+const DIGITS_MIN: usize = 12;
+
+/// Something that the folder has to be of.
+#[derive(Clone, Debug)]
+enum Expected {
+    Scenario(String),
+    Seed(u64),
+    Run(String),
+}
+
+impl Expected {
+    fn parse(text: &str) -> Result<Self, String> {
+        let expected = "expected scenario=TITLE, seed=N or run=HASH";
+        let (name, value) = text.split_once('=').ok_or(expected)?;
+        match name.trim() {
+            "scenario" => Ok(Self::Scenario(value.to_owned())),
+            "seed" => {
+                let seed = value.trim().parse();
+                Ok(Self::Seed(
+                    seed.map_err(|_| format!("found seed {value:?}, expected a number"))?,
+                ))
+            }
+            "run" => {
+                let hash = value.trim().to_ascii_lowercase();
+                let is_hash = hash.chars().all(|c| c.is_ascii_hexdigit());
+                if !is_hash || hash.len() < DIGITS_MIN {
+                    return Err(format!(
+                        "found run {value:?}, expected {DIGITS_MIN} hexadecimal digits or more"
+                    ));
+                }
+                Ok(Self::Run(hash))
+            }
+            _ => Err(format!("found {name:?}, {expected}")),
+        }
+    }
+
+    /// Why a folder isn't it.
+    fn missed(&self, inside: &Inside) -> Option<String> {
+        let none = || "none".to_owned();
+        let (what, found, expected, met) = match self {
+            Self::Scenario(title) => {
+                let found = inside.title.clone();
+                let met = found.as_ref() == Some(title);
+                (
+                    "scenario",
+                    found.map_or_else(none, |t| format!("{t:?}")),
+                    format!("{title:?}"),
+                    met,
+                )
+            }
+            Self::Seed(seed) => {
+                let found = inside.seed.map_or_else(none, |seed| seed.to_string());
+                ("seed", found, seed.to_string(), inside.seed == Some(*seed))
+            }
+            Self::Run(hash) => {
+                let met = inside.run.as_ref().is_some_and(|found| found.starts_with(hash));
+                ("run", inside.run.clone().unwrap_or_else(none), hash.clone(), met)
+            }
+        };
+        (!met).then(|| format!("it is of another {what}: found {found}, expected {expected}"))
+    }
 }
 
 /// What was found.
 #[derive(Serialize)]
 struct Found {
     folder: String,
-    verdict: Verdict,
+    /// Whether the folder is what was written, agrees with itself and is the one that was expected.
+    whole: bool,
     files: usize,
     /// Every difference, in words.
     differences: Vec<String>,
+    /// What the run or the campaign in it came to; null: it can't be told.
+    verdict: Option<Verdict>,
+    /// Why, as the run or the campaign tells it.
+    reasons: Vec<String>,
+    scenario: Option<String>,
+    seed: Option<u64>,
+    run: Option<String>,
     /// Who signed the manifest; null: nobody whose key was given.
     signed_by: Option<String>,
     /// The key that the manifest names; null: it isn't signed.
@@ -53,13 +131,12 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         }
     }
     let manifest = Manifest::read(folder).map_err(|error| Failure::input(error).failed())?;
+    if is_partial(folder) {
+        differences.push("it is a .partial: the run in it didn't end as a run does".to_owned());
+    }
     let found = manifest.verify(folder).map_err(|error| Failure::bench(error).failed())?;
-    differences.extend(found.iter().map(|difference| match difference {
-        Difference::Missing(path) => format!("{path} is missing"),
-        Difference::Unknown(path) => format!("{path} was added: the manifest doesn't name it"),
-        Difference::Changed(path) => format!("{path} was changed"),
-    }));
-    let there = folder.join(signature::FILE_NAME).exists();
+    differences.extend(found.iter().map(Difference::to_string));
+    let there = std::fs::symlink_metadata(folder.join(signature::FILE_NAME)).is_ok();
     if manifest.signature.is_none() && there && signed_by.is_none() {
         differences.push(format!("{} was added: the manifest names no key", signature::FILE_NAME));
     }
@@ -70,12 +147,26 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         let named = manifest.signature.as_deref().unwrap_or("none");
         differences.push(format!("the manifest names another key: {named}"));
     }
-    let verdict = if differences.is_empty() { Verdict::Pass } else { Verdict::Fail };
+    // A folder with a FIFO in it is told, and its contents are left alone.
+    let opened = !found.iter().any(|difference| matches!(difference, Difference::NoFile(..)));
+    let inside = match &manifest.campaign {
+        _ if !opened => Inside::default(),
+        Some(facts) => campaign::inside::look(folder, facts),
+        None => inside::of_run(folder, &manifest),
+    };
+    differences.extend(inside.contradictions.iter().cloned());
+    differences.extend(arguments.expect.iter().filter_map(|expected| expected.missed(&inside)));
+    let whole = differences.is_empty();
     let found = Found {
         folder: folder.display().to_string(),
-        verdict,
+        whole,
         files: manifest.files.len(),
         differences,
+        verdict: inside.verdict,
+        reasons: inside.reasons,
+        scenario: inside.title,
+        seed: inside.seed,
+        run: inside.run,
         signed_by,
         signature: manifest.signature,
     };
@@ -84,7 +175,16 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     } else {
         print(&text(&found))?
     }
-    Ok(verdict)
+    // The status tells integrity alone: 0 of a whole folder, whatever the run in it came to.
+    Ok(if whole { Verdict::Pass } else { Verdict::Fail })
+}
+
+/// Whether a folder has the name of one that isn't finished, by whatever path it is named.
+fn is_partial(folder: &Path) -> bool {
+    let named = |path: &Path| {
+        path.file_name().is_some_and(|name| name.to_string_lossy().ends_with(".partial"))
+    };
+    named(folder) || std::fs::canonicalize(folder).is_ok_and(|path| named(&path))
 }
 
 fn text(found: &Found) -> String {
@@ -98,10 +198,22 @@ fn text(found: &Found) -> String {
         }
     };
     let mut text = format!("{}: {} files, {signed}\n", found.folder, found.files);
-    if found.differences.is_empty() {
-        text += "every file is as it was written\n";
+    if found.whole {
+        text +=
+            "integrity: whole: every file is as it was written, and they agree with each other\n";
+    } else {
+        text += "integrity: not whole\n";
     }
     found.differences.iter().for_each(|difference| text += &format!("  {difference}\n"));
+    match found.verdict {
+        // Of a folder that isn't whole nothing is believed.
+        _ if !found.whole => text += "verdict: none to be relied on\n",
+        Some(verdict) => {
+            text += &format!("verdict: {}\n", verdict.name());
+            found.reasons.iter().for_each(|reason| text += &format!("  {reason}\n"));
+        }
+        None => text += "verdict: none\n",
+    }
     text
 }
 

@@ -1,14 +1,12 @@
 //! `manifest.json`: who made a run, with what, and the hashes of everything in its folder.
 
+use super::files::{self, Entries, system};
 use super::folder::LOCK;
-use super::signature::{self, Key, SignatureError};
+use super::signature::{Key, SignatureError};
 use crate::score::verdict::Verdict;
 use octant_realtime::schedule::Granted;
 use serde::{Deserialize, Serialize};
-use sha2::{Digest, Sha256};
-use std::collections::BTreeSet;
-use std::fs::File;
-use std::io::{self, Read};
+use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::SystemTime;
@@ -59,6 +57,9 @@ pub struct Manifest {
     pub campaign: Option<CampaignFacts>,
     /// Every other file of the folder, by path.
     pub files: Vec<FileHash>,
+    /// Folders of it without anything in them; left out where there are none.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub empty_folders: Vec<String>,
     /// Who ran it: what `OCTANT_OPERATOR` says, or the name of the account; `null` without either.
     #[serde(default)]
     pub operator: Option<String>,
@@ -228,6 +229,14 @@ pub enum ManifestError {
         /// Found and expected.
         reason: String,
     },
+    /// Something in the folder can't be evidence.
+    #[error("write the manifest: {path}: {reason}")]
+    Form {
+        /// What it is about.
+        path: PathBuf,
+        /// Found and expected.
+        reason: String,
+    },
     /// It can't be signed.
     #[error(transparent)]
     Signature(#[from] SignatureError),
@@ -242,6 +251,31 @@ pub enum Difference {
     Unknown(String),
     /// The file has another content.
     Changed(String),
+    /// There is a folder without anything in it that the manifest doesn't name.
+    EmptyFolder(String),
+    /// It is neither a file nor a folder, but what stands beside it.
+    NoFile(String, &'static str),
+    /// The lock of a run that goes on is there.
+    Locked,
+}
+
+impl std::fmt::Display for Difference {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Missing(path) => write!(f, "{path} is missing"),
+            Self::Unknown(path) => write!(f, "{path} was added: the manifest doesn't name it"),
+            Self::Changed(path) => write!(f, "{path} was changed"),
+            Self::EmptyFolder(path) => {
+                write!(f, "{path}/ was added: an empty folder that the manifest doesn't name")
+            }
+            Self::NoFile(path, what) => {
+                write!(f, "{path} is {what}: evidence is regular files and folders")
+            }
+            Self::Locked => {
+                write!(f, "{LOCK} is there: the run goes on, or a kill left it")
+            }
+        }
+    }
 }
 
 impl Manifest {
@@ -270,6 +304,7 @@ impl Manifest {
             realtime: facts.realtime.clone(),
             campaign: facts.campaign.clone(),
             files: Vec::new(),
+            empty_folders: Vec::new(),
             operator: operator(),
             lock_file: some(env!("OCTANT_LOCK_FILE")),
             signature: facts.key.as_ref().map(|key| format!("minisign key {}", key.id())),
@@ -342,14 +377,20 @@ impl Manifest {
     /// # Errors
     /// If a file can't be read or the manifest not written.
     pub fn write(folder: &Path, facts: &RunFacts) -> Result<Self, ManifestError> {
+        let path = folder.join(FILE_NAME);
+        let entries = Entries::of(folder)?;
+        if let Some((name, what)) = entries.others.first_key_value() {
+            return Err(ManifestError::Form {
+                path: folder.join(name),
+                reason: format!("it is {what}: evidence is regular files and folders"),
+            });
+        }
+        let hash = |path: &String| files::hash(folder, path);
         let manifest = Self {
-            files: files(folder)?
-                .iter()
-                .map(|path| hash_file(folder, path))
-                .collect::<Result<_, _>>()?,
+            files: entries.files.iter().map(hash).collect::<Result<_, _>>()?,
+            empty_folders: entries.empty.into_iter().collect(),
             ..Self::of(facts)
         };
-        let path = folder.join(FILE_NAME);
         let mut text = serde_json::to_string_pretty(&manifest).map_err(|error| {
             ManifestError::Content { path: path.clone(), reason: error.to_string() }
         })?;
@@ -367,7 +408,7 @@ impl Manifest {
     /// If there is none, or none of this version.
     pub fn read(folder: &Path) -> Result<Self, ManifestError> {
         let path = folder.join(FILE_NAME);
-        let text = system("read", &path, std::fs::read(&path))?;
+        let text = system("read", &path, files::read(&path))?;
         let content = |reason: String| ManifestError::Content { path: path.clone(), reason };
         // The version first: a later layout is not to fail on a field.
         #[derive(Deserialize)]
@@ -390,17 +431,63 @@ impl Manifest {
     /// # Errors
     /// If a file can't be read.
     pub fn verify(&self, folder: &Path) -> Result<Vec<Difference>, ManifestError> {
-        let mut found = files(folder)?;
+        let mut found = Entries::of(folder)?;
         let mut differences = Vec::new();
         for file in &self.files {
-            if !found.remove(&file.path) {
+            if let Some(what) = found.others.remove(&file.path) {
+                differences.push(Difference::NoFile(file.path.clone(), what));
+            } else if !found.files.remove(&file.path) {
                 differences.push(Difference::Missing(file.path.clone()));
-            } else if hash_file(folder, &file.path)? != *file {
+            } else if files::hash(folder, &file.path)? != *file {
                 differences.push(Difference::Changed(file.path.clone()));
             }
         }
-        differences.extend(found.into_iter().map(Difference::Unknown));
+        for empty in &self.empty_folders {
+            if !found.empty.remove(empty) {
+                differences.push(Difference::Missing(empty.clone()));
+            }
+        }
+        differences.extend(found.files.into_iter().map(Difference::Unknown));
+        differences.extend(found.empty.into_iter().map(Difference::EmptyFolder));
+        let others = found.others.into_iter();
+        differences.extend(others.map(|(path, what)| Difference::NoFile(path, what)));
+        if found.locked {
+            differences.push(Difference::Locked);
+        }
         Ok(differences)
+    }
+
+    /// The bytes of a file of the folder, as far as they are those that the manifest names.
+    ///
+    /// # Errors
+    /// If the file can't be read, the manifest doesn't name it, or it is another one.
+    pub fn read_file(&self, folder: &Path, name: &str) -> Result<Vec<u8>, ManifestError> {
+        let path = folder.join(name);
+        let bytes = system("read", &path, files::read(&path))?;
+        let hash = blake3::hash(&bytes).to_hex();
+        self.holds(folder, name, hash.as_str())?;
+        Ok(bytes)
+    }
+
+    /// That a file of the folder is the one that the manifest names, without keeping its bytes.
+    ///
+    /// # Errors
+    /// As of [`Manifest::read_file`].
+    pub fn check_file(&self, folder: &Path, name: &str) -> Result<(), ManifestError> {
+        let found = files::hash(folder, name)?;
+        self.holds(folder, name, &found.blake3)
+    }
+
+    fn holds(&self, folder: &Path, name: &str, blake3: &str) -> Result<(), ManifestError> {
+        let wrong = |reason: String| ManifestError::Content { path: folder.join(name), reason };
+        match self.files.iter().find(|file| file.path == name) {
+            Some(file) if file.blake3 == blake3 => Ok(()),
+            Some(file) => Err(wrong(format!(
+                "it isn't what {FILE_NAME} names: BLAKE3 {blake3} found, {} expected",
+                file.blake3
+            ))),
+            None => Err(wrong(format!("{FILE_NAME} doesn't name it"))),
+        }
     }
 }
 
@@ -431,52 +518,6 @@ pub(crate) fn operator() -> Option<String> {
     ["OCTANT_OPERATOR", "USER", "LOGNAME", "USERNAME"].into_iter().find_map(variable)
 }
 
-/// Files of a folder by path, without the manifest, its signature, and the lock of a run that goes on.
-fn files(folder: &Path) -> Result<BTreeSet<String>, ManifestError> {
-    let mut found = BTreeSet::new();
-    let mut open = vec![String::new()];
-    while let Some(prefix) = open.pop() {
-        let path = folder.join(&prefix);
-        for entry in system("list", &path, std::fs::read_dir(&path))? {
-            let entry = system("list", &path, entry)?;
-            let name = entry.file_name().to_string_lossy().into_owned();
-            let kind = system("list", &path, entry.file_type())?;
-            let own = [FILE_NAME, signature::FILE_NAME, LOCK];
-            if prefix.is_empty() && own.contains(&name.as_str()) {
-                continue;
-            }
-            if kind.is_dir() {
-                open.push(format!("{prefix}{name}/"));
-            } else {
-                found.insert(format!("{prefix}{name}"));
-            }
-        }
-    }
-    Ok(found)
-}
-
-fn hash_file(folder: &Path, path: &str) -> Result<FileHash, ManifestError> {
-    let full = folder.join(path);
-    let mut file = system("read", &full, File::open(&full))?;
-    let (mut blake3, mut sha256, mut bytes) = (blake3::Hasher::new(), Sha256::new(), 0);
-    let mut buffer = vec![0; 1 << 17];
-    loop {
-        let n = system("read", &full, file.read(&mut buffer))?;
-        if n == 0 {
-            break;
-        }
-        bytes += n as u64;
-        blake3.update(&buffer[..n]);
-        sha256.update(&buffer[..n]);
-    }
-    Ok(FileHash {
-        path: path.into(),
-        bytes,
-        blake3: blake3.finalize().to_hex().to_string(),
-        sha256: sha256.finalize().iter().map(|byte| format!("{byte:02x}")).collect(),
-    })
-}
-
 /// Quotes what a POSIX shell would not take as it is.
 pub(crate) fn shell_line(words: &[String]) -> String {
     let plain = |c: char| c.is_ascii_alphanumeric() || "-_./:=+,@%".contains(c);
@@ -491,10 +532,6 @@ pub(crate) fn shell_line(words: &[String]) -> String {
         })
         .collect();
     quoted.join(" ")
-}
-
-fn system<T>(action: &'static str, path: &Path, result: io::Result<T>) -> Result<T, ManifestError> {
-    result.map_err(|source| ManifestError::System { action, path: path.into(), source })
 }
 
 #[cfg(test)]

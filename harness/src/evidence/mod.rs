@@ -3,8 +3,10 @@
 
 pub mod discrepancy;
 pub mod disposition;
+pub(crate) mod files;
 mod fmus;
 pub mod folder;
+pub mod inside;
 pub mod manifest;
 pub mod signature;
 

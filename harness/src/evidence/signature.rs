@@ -114,7 +114,7 @@ impl Key {
     /// If the manifest can't be read, or the signature not written.
     pub fn sign(&self, manifest: &Path) -> Result<(), SignatureError> {
         let failed = |reason: String| SignatureError::Sign { path: manifest.to_owned(), reason };
-        let bytes = std::fs::read(manifest).map_err(|error| failed(error.to_string()))?;
+        let bytes = super::files::read(manifest).map_err(|error| failed(error.to_string()))?;
         // Verified at once: a damaged key would make signatures that nobody can verify.
         let public =
             PublicKey::from_secret_key(&self.secret).map_err(|error| failed(error.to_string()))?;
@@ -146,7 +146,8 @@ pub fn verify(manifest: &Path, key: &str) -> Result<String, SignatureError> {
     };
     let path = manifest.with_file_name(FILE_NAME);
     let wrong = |reason: String| SignatureError::Signature { path: path.clone(), reason };
-    let text = std::fs::read_to_string(&path).map_err(|error| wrong(error.to_string()))?;
+    let text = super::files::read(&path).map_err(|error| wrong(error.to_string()))?;
+    let text = String::from_utf8(text).map_err(|_| wrong("it is no text".to_owned()))?;
     let signature = SignatureBox::from_string(&text)
         .map_err(|error| wrong(format!("{error}; expected a signature of minisign")))?;
     // Base64 has bits without a meaning, and the first line is covered by nothing.
@@ -154,7 +155,7 @@ pub fn verify(manifest: &Path, key: &str) -> Result<String, SignatureError> {
     if signature.to_string() != text || text.lines().next() != Some(known.as_str()) {
         return Err(wrong("it was changed: this is not how octant writes it".to_owned()));
     }
-    let bytes = std::fs::read(manifest).map_err(|error| wrong(error.to_string()))?;
+    let bytes = super::files::read(manifest).map_err(|error| wrong(error.to_string()))?;
     minisign::verify(&public, &signature, std::io::Cursor::new(bytes), true, false, false)
         .map_err(|error| wrong(error.to_string()))?;
     if signature.trusted_comment().ok().as_deref() != Some(TRUSTED) {

@@ -2,7 +2,8 @@
 
 use crate::campaign::merge::merged;
 use crate::campaign::table::{Table, TableError, Value, Values};
-use crate::score::verdict::Verdict;
+use crate::score::rederive::stands;
+use crate::score::verdict::{Comparison, Verdict};
 use octant_sample::parameters::{Group, NAMES};
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -64,6 +65,19 @@ pub fn read(folder: &Path) -> Result<Vec<CaseRow>, TableError> {
             path: of_cases.clone(),
             reason: format!("case {case} has verdict {:?}", text("verdict")),
         })?;
+        let checks = checks.remove(&case).unwrap_or_default();
+        if let Some(worst) = checks.values().map(|(verdict, _)| *verdict).max()
+            && verdict < worst
+        {
+            return Err(TableError::Form {
+                path: of_cases.clone(),
+                reason: format!(
+                    "case {case} says {}, its checks come to {}",
+                    verdict.name(),
+                    worst.name()
+                ),
+            });
+        }
         let reasons = [text("error"), text("reasons")].into_iter().find(|text| !text.is_empty());
         all.push(CaseRow {
             scenario: text("scenario"),
@@ -71,7 +85,7 @@ pub fn read(folder: &Path) -> Result<Vec<CaseRow>, TableError> {
             verdict,
             reasons: reasons.unwrap_or_default(),
             measures: measures(&row),
-            checks: checks.remove(&case).unwrap_or_default(),
+            checks,
             row,
             case,
         });
@@ -105,6 +119,24 @@ fn checks(path: &Path) -> Result<BTreeMap<String, Checks>, TableError> {
             path: path.to_owned(),
             reason: format!("row {row} has verdict {name:?}"),
         })?;
+        let number = |name: &str| match at(name, row) {
+            Some(Value::Number(number)) => Some(number),
+            _ => None,
+        };
+        // What a table says is believed as far as its value and its limit say it too.
+        let sign = Comparison::ALL
+            .into_iter()
+            .find(|known| at("comparison", row) == Some(Value::Text(known.sign().into())));
+        let known = sign.zip(number("limit"));
+        if !known.is_some_and(|(sign, limit)| stands(verdict, sign, number("value"), limit)) {
+            return Err(TableError::Form {
+                path: path.to_owned(),
+                reason: format!(
+                    "case {case} says {} of {requirement}, its value and its limit say something else",
+                    verdict.name()
+                ),
+            });
+        }
         let checks = all.entry(case.to_string()).or_default();
         checks.insert(requirement.to_string(), (verdict, margin));
     }

@@ -239,7 +239,7 @@ fn bench_broke(summary: &Summary) -> bool {
 
 /// What a result comes to where its part of the run was not done as planned: no pass; and where the unit
 /// could not be judged to the end, no fail of what might have become better.
-fn as_far_as_done(summary: &Summary, result: RequirementResult) -> RequirementResult {
+pub(super) fn as_far_as_done(summary: &Summary, result: RequirementResult) -> RequirementResult {
     let part = Part::of(&result.measure);
     let baseline = result.measure.trim_start_matches('|').starts_with("baseline.");
     let short = shortfalls(summary)

@@ -7,6 +7,7 @@
 //! - [`health`] counts what the core reported on the way
 //! - [`summary`] is `summary.json`, [`measures`] are the numbers in it, [`work`] is what was planned and done
 //! - [`verdict`] holds a measure against its limit, [`decision`] what a value near its limit comes to, [`signed`] which measures have a sign, [`judge`] derives the verdict of a summary, [`junit`] tells CI
+//! - [`rederive`] holds a stored summary against itself
 
 pub mod compare;
 pub mod counterfactual;
@@ -19,6 +20,7 @@ pub mod judge;
 pub mod junit;
 pub mod measures;
 pub mod parameters;
+pub mod rederive;
 pub mod reference;
 mod regression;
 mod series;

@@ -73,6 +73,9 @@ pub enum Comparison {
 }
 
 impl Comparison {
+    /// All of them.
+    pub const ALL: [Self; 4] = [Self::AtMost, Self::Below, Self::AtLeast, Self::Above];
+
     /// The sign as it is written.
     #[must_use]
     pub const fn sign(self) -> &'static str {
@@ -92,7 +95,7 @@ impl Comparison {
         }
     }
 
-    fn holds(self, value: f64, limit: f64) -> bool {
+    pub(crate) fn holds(self, value: f64, limit: f64) -> bool {
         match self {
             Self::AtMost => value <= limit,
             Self::Below => value < limit,

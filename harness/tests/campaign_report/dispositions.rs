@@ -34,9 +34,9 @@ fn dispositions_survive_to_the_letter_and_change_no_verdict() {
     assert!(!page.contains("not occurring"));
 
     // Another case fails, and one of the others doesn't any more.
-    let mut result = synthetic(5, &plan.cases[5]);
+    let mut result = synthetic(&plan, 5, &plan.cases[5]);
     put(&out, &plan.cases[5], &result);
-    result = synthetic(2, &plan.cases[2]);
+    result = synthetic(&plan, 2, &plan.cases[2]);
     check(&mut result, "CAL-1", 77.0, 50.0);
     put(&out, &plan.cases[2], &result);
     let (status, _) = bench.report();

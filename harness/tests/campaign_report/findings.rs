@@ -145,7 +145,7 @@ fn nothing_looks_like_a_pass_that_is_none() {
     let plan = bench.plan();
     plan.write(&bench.at("out"), false).unwrap();
     for (index, case) in plan.cases.iter().enumerate() {
-        let mut result = synthetic(index, case);
+        let mut result = synthetic(&plan, index, case);
         result["summary"]["requirements"] = json!([]);
         result["verdict"] = "inconclusive".into();
         put(&bench.at("out"), case, &result);
@@ -186,7 +186,7 @@ fn what_is_not_of_the_plan_is_refused_and_nothing_is_written() {
     };
     assert!(status == Some(2) && said.contains("no/such/key"), "{said}");
     // A table of before, when there were fewer cases.
-    put(&out, &plan.cases[0], &synthetic(0, &plan.cases[0]));
+    put(&out, &plan.cases[0], &synthetic(&plan, 0, &plan.cases[0]));
     octant::campaign::results::tables(&plan, &out, 0..79, |table| {
         octant::campaign::merge::merged(&out, table)
     })

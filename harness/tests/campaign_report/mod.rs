@@ -2,7 +2,7 @@
 //! everything that must not look like a pass.
 #![allow(clippy::cast_precision_loss)]
 
-mod bench;
+pub(crate) mod bench;
 mod dispositions;
 mod draws;
 mod evidence;

@@ -186,7 +186,7 @@ impl<'a> Report<'a> {
         };
         let status = status::of(plan, folder, Shard::WHOLE).map_err(words)?;
         let end = match &plan.stop {
-            Some(rule) => status::decide(plan, folder, rule).end(plan.cases.len()),
+            Some(rule) => status::decide(plan, folder, rule).map_err(words)?.end(plan.cases.len()),
             None => plan.cases.len(),
         };
         let (rows, results_blake3) = rows::read(plan, folder, end)?;
@@ -194,7 +194,7 @@ impl<'a> Report<'a> {
         let (about, notes) = about::requirements(plan);
         let trace = trace(plan, &about, folder).map_err(words)?;
         let run = rows.iter().filter(|row| row.outcome.is_some()).count();
-        let (tables, mut wrong) = tables::look(plan, folder, run);
+        let (tables, mut wrong) = tables::look(plan, folder, run)?;
         let selftest = selftest::read(folder).unwrap_or_else(|reason| {
             wrong.push(reason);
             None

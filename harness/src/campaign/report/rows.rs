@@ -94,19 +94,13 @@ pub fn read<'a>(
     let mut rows = Vec::with_capacity(end);
     for case in plan.cases.iter().take(end) {
         let path = case::file(folder, &case.id);
-        if !path.exists() {
+        let read = CaseResult::of_plan(plan, folder, case).map_err(ReportError::Result)?;
+        let Some((result, hash)) = read else {
             hasher.update(format!("{} -\n", case.id).as_bytes());
             rows.push(Row { case, outcome: None });
             continue;
-        }
-        let bytes = std::fs::read(&path).map_err(|source| ReportError::System {
-            action: "read",
-            path: path.clone(),
-            source,
-        })?;
-        let hash = blake3::hash(&bytes).to_hex();
+        };
         hasher.update(format!("{} {hash}\n", case.id).as_bytes());
-        let result = CaseResult::read(&path).map_err(ReportError::Result)?;
         let differs = differing(&path, &case.id).is_some();
         rows.push(Row { case, outcome: Some(Outcome::of(result, differs)) });
     }

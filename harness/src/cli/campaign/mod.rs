@@ -165,7 +165,7 @@ impl From<ExecuteError> for Failure {
         match error {
             ExecuteError::Plan(error) => error.into(),
             ExecuteError::Foreign { .. } => Self::input(error).failed(),
-            ExecuteError::NotKept(_) => Self::bench(error),
+            ExecuteError::NotKept(_) | ExecuteError::Result(_) => Self::bench(error),
             ExecuteError::Ended { .. } | ExecuteError::System { .. } => Self::bench(error).failed(),
         }
     }

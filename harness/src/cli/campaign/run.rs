@@ -102,7 +102,8 @@ pub(in crate::cli) fn in_rounds(
     };
     let mut all = Outcome::default();
     let mut told = 0;
-    while let Decision::Open { next } = status::decide(plan, options.folder, rule) {
+    let decide = || status::decide(plan, options.folder, rule).map_err(ExecuteError::Result);
+    while let Decision::Open { next } = decide()? {
         options.end = next;
         let outcome = execute(plan, options, &|event| match event {
             // Those of the rounds before are told.
@@ -148,7 +149,8 @@ fn conclude(
     super::print(&(text + "\n"))?;
     let end = match &plan.stop {
         Some(rule) if shard == Shard::WHOLE => {
-            status::decide(plan, &arguments.folder, rule).end(plan.cases.len())
+            let decision = status::decide(plan, &arguments.folder, rule);
+            decision.map_err(Failure::bench)?.end(plan.cases.len())
         }
         _ => plan.cases.len(),
     };

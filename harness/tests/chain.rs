@@ -1,0 +1,262 @@
+//! Hostile hands on evidence: verdicts, values, limits, tables and summaries that were edited. None goes along.
+
+use crate::campaign_report::bench::{Bench, CAMPAIGN, check};
+use crate::common::program::{ends, octant_in, program};
+use octant::campaign::case;
+use octant::campaign::execute::Shard;
+use octant::campaign::plan::Plan;
+use octant::campaign::table::{Table, Value as Cell, Values, write};
+use octant::campaign::{merge, results};
+use serde_json::{Value, json};
+use std::borrow::Cow;
+use std::path::{Path, PathBuf};
+use tempfile::TempDir;
+
+/// Two by two cases, of which the first is over its limit.
+fn campaign() -> (Bench, Plan, PathBuf) {
+    let small = CAMPAIGN.replace("replicates = 40", "replicates = 2");
+    Bench::filled(&small, |index, _, result| {
+        if index == 0 {
+            check(result, "CAL-1", 99.0, 50.0);
+        }
+    })
+}
+
+fn parts(plan: &Plan, out: &Path) {
+    results::tables(plan, out, 0..plan.cases.len(), |table| merge::part(out, Shard::WHOLE, table))
+        .unwrap();
+}
+
+/// What each reader of a campaign says; status and words.
+fn readers(bench: &Bench) -> Vec<(&'static str, i32, String)> {
+    ["status", "report", "merge", "trace"]
+        .into_iter()
+        .map(|command| {
+            let output = bench.octant(&["campaign", command, "out"]);
+            let said = String::from_utf8_lossy(&output.stderr).into_owned();
+            (command, output.status.code().unwrap(), said)
+        })
+        .collect()
+}
+
+#[test]
+fn an_edited_case_result_is_refused_by_every_reader_and_named() {
+    let (bench, plan, out) = campaign();
+    parts(&plan, &out);
+    let path = case::file(&out, &plan.cases[0].id);
+    let whole: Value = serde_json::from_slice(&std::fs::read(&path).unwrap()).unwrap();
+    assert_eq!(whole["verdict"], "fail");
+    assert!(readers(&bench).iter().all(|(_, status, _)| [0, 1, 3].contains(status)));
+
+    let forged_verdict = |result: &mut Value| {
+        result["verdict"] = "pass".into();
+        result["summary"]["verdict"] = "pass".into();
+        result["summary"]["reasons"] = json!([]);
+        for check in result["summary"]["requirements"].as_array_mut().unwrap() {
+            check["verdict"] = "pass".into();
+        }
+    };
+    let forged_check = |field: &str, to: Value| {
+        let field = field.to_owned();
+        move |result: &mut Value| {
+            forged_verdict(result);
+            let checks = result["summary"]["requirements"].as_array_mut().unwrap();
+            let check = checks.iter_mut().find(|check| check["id"] == "CAL-1").unwrap();
+            check[&field] = to.clone();
+        }
+    };
+    type Edit = Box<dyn Fn(&mut Value)>;
+    let edits: Vec<(&str, Edit)> = vec![
+        ("the verdict alone", Box::new(|result| result["verdict"] = "pass".into())),
+        ("every verdict", Box::new(forged_verdict)),
+        ("the value too", Box::new(forged_check("value", 9.0.into()))),
+        ("the margin too", Box::new(forged_check("margin", 1.0.into()))),
+        ("no value", Box::new(forged_check("value", Value::Null))),
+        ("the seed", Box::new(|result| result["summary"]["seed"] = 4711.into())),
+        ("an error that passes", Box::new(|result| result["summary"] = Value::Null)),
+        ("the hash of the case", Box::new(|result| result["case_blake3"] = "ab".repeat(32).into())),
+        ("no hash of the case", Box::new(|result| result["case_blake3"] = Value::Null)),
+    ];
+    for (what, edit) in &edits {
+        // Once as a hand leaves it, and once by somebody who makes the hash of the summary anew.
+        for rehash in [false, true] {
+            let mut result = whole.clone();
+            edit(&mut result);
+            if rehash && !result["summary"].is_null() {
+                let hash = case::hash_of_summary(&result["summary"]);
+                result["summary_blake3"] = hash.into();
+            }
+            std::fs::write(&path, format!("{result}\n")).unwrap();
+            for (command, status, said) in readers(&bench) {
+                assert!(![0, 1, 3].contains(&status), "{what}, {rehash}: {command}: {status}");
+                assert!(said.contains(path.file_name().unwrap().to_str().unwrap()), "{said}");
+            }
+        }
+    }
+    // A number that nothing is derived from: its hash tells.
+    let mut result = whole.clone();
+    result["summary"]["navigation"]["latitude_error_arcmin"]["max"] = 0.001.into();
+    std::fs::write(&path, format!("{result}\n")).unwrap();
+    assert!(readers(&bench).iter().all(|(_, status, said)| *status == 4 || said.contains("read")));
+    // And as it was, everything goes on.
+    std::fs::write(&path, format!("{whole}\n")).unwrap();
+    parts(&plan, &out);
+    assert!(readers(&bench).iter().all(|(_, status, _)| [0, 1, 3].contains(status)));
+}
+
+#[test]
+fn a_limit_that_differs_from_the_plan_is_refused() {
+    let (bench, plan, out) = campaign();
+    let path = case::file(&out, &plan.cases[1].id);
+    let mut result: Value = serde_json::from_slice(&std::fs::read(&path).unwrap()).unwrap();
+    let checks = result["summary"]["requirements"].as_array_mut().unwrap();
+    let check = checks.iter_mut().find(|check| check["id"] == "NAV-1").unwrap();
+    let value = check["value"].as_f64().unwrap();
+    (check["limit"], check["margin"]) = (1000.0.into(), (1000.0 - value).into());
+    result["summary_blake3"] = case::hash_of_summary(&result["summary"]).into();
+    std::fs::write(&path, format!("{result}\n")).unwrap();
+    let (status, said) = bench.report();
+    assert!(status != 0 && said.contains("1000") && said.contains("<= 10"), "{said}");
+}
+
+/// Changes cells of a table.
+fn edited(path: &Path, column: &str, change: impl Fn(usize, Option<Cell>) -> Option<Cell>) {
+    let table = Table::open(path).unwrap();
+    let all: Vec<Values> = table
+        .columns
+        .iter()
+        .map(|(name, kind)| {
+            let values = table.column(name).unwrap().unwrap();
+            let mut new = Values::new(*kind);
+            for row in 0..table.rows {
+                let value = values.at(row);
+                new.push(if name == column { change(row, value) } else { value });
+            }
+            new
+        })
+        .collect();
+    let (plan, columns) = (table.plan.clone(), table.columns.clone());
+    write(path, &plan, &columns, |index| Ok(Cow::Borrowed(&all[index]))).unwrap();
+}
+
+#[test]
+fn tables_that_contradict_the_cases_are_refused() {
+    let (bench, plan, out) = campaign();
+    parts(&plan, &out);
+    let octant = |command: &str| {
+        let output = bench.octant(&["campaign", command, "out"]);
+        (output.status.code().unwrap(), String::from_utf8(output.stderr).unwrap())
+    };
+    assert_eq!(octant("merge").0, 0);
+    assert_eq!(bench.report().0, 1);
+    let pass = |_: usize, _: Option<Cell>| Some(Cell::Text("pass".into()));
+    for (table, column) in [("cases", "verdict"), ("checks", "verdict")] {
+        for path in [merge::merged(&out, table), merge::part(&out, Shard::WHOLE, table)] {
+            let whole = std::fs::read(&path).unwrap();
+            edited(&path, column, pass);
+            let is_part = path.parent() != Some(&out);
+            let (status, said) = if is_part { octant("merge") } else { bench.report() };
+            let name = path.file_name().unwrap().to_str().unwrap();
+            assert!(status == 2 && said.contains(name), "{table}: {status}: {said}");
+            assert!(said.contains(&plan.cases[0].id), "{said}");
+            std::fs::write(&path, whole).unwrap();
+        }
+    }
+    let path = merge::merged(&out, "drift");
+    let whole = std::fs::read(&path).unwrap();
+    edited(&path, "hours", |row, value| if row == 1 { None } else { value });
+    assert_eq!(bench.report().0, 2);
+    std::fs::write(&path, whole).unwrap();
+    assert_eq!(bench.report().0, 1);
+
+    // Parts of another machine, without its results: a row is held against itself.
+    let other = bench.at("other");
+    std::fs::create_dir_all(other.join("parts")).unwrap();
+    for table in ["cases", "checks", "drift"] {
+        std::fs::copy(
+            merge::part(&out, Shard::WHOLE, table),
+            merge::part(&other, Shard::WHOLE, table),
+        )
+        .unwrap();
+    }
+    std::fs::copy(out.join("plan.json"), other.join("plan.json")).unwrap();
+    let merged = || {
+        let output = bench.octant(&["campaign", "merge", "other"]);
+        (output.status.code().unwrap(), String::from_utf8(output.stderr).unwrap())
+    };
+    assert_eq!(merged().0, 0);
+    for table in ["cases", "checks"] {
+        let path = merge::part(&other, Shard::WHOLE, table);
+        let whole = std::fs::read(&path).unwrap();
+        edited(&path, "verdict", pass);
+        let (status, said) = merged();
+        assert!(status == 2 && said.contains(&plan.cases[0].id), "{table}: {said}");
+        std::fs::write(&path, whole).unwrap();
+    }
+}
+
+/// A short run in a folder.
+pub(crate) fn run(requirement: &str) -> TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    let text = format!(
+        "schema = 1\ntitle = \"t\"\nseed = 3\n[procedure.calibration]\npositions = \"eight\"\n\
+         duration = \"24 min\"\n[procedure.navigation]\nduration = \"1 min\"\n{requirement}"
+    );
+    std::fs::write(folder.path().join("s.toml"), text).unwrap();
+    let output = octant_in(folder.path(), &["run", "s.toml", "--out", "run"]);
+    assert!([0, 1].contains(&output.status.code().unwrap()), "{output:?}");
+    folder
+}
+
+pub(crate) const TOO_NEAR: &str = "[[requirements]]\nid = \"NAV-1\"\ntext = \"x\"\n\
+    measure = \"navigation.radial_error_nmi.max\"\nlimit = \"1e-9 nmi\"\n";
+
+#[test]
+fn the_report_of_a_run_refuses_what_the_manifest_contradicts() {
+    let folder = run(TOO_NEAR);
+    let path = folder.path().join("run/summary.json");
+    let whole = std::fs::read_to_string(&path).unwrap();
+    let out = folder.path().join("again.html");
+    let run = folder.path().join("run");
+    let report = || {
+        let arguments = ["report", run.to_str().unwrap(), "--out", out.to_str().unwrap()];
+        let output = program(&arguments).output().unwrap();
+        (output.status.code().unwrap(), String::from_utf8(output.stderr).unwrap())
+    };
+    assert_eq!(report().0, 0);
+    std::fs::write(&path, whole.replace("\"fail\"", "\"pass\"")).unwrap();
+    std::fs::remove_file(&out).unwrap();
+    let (status, said) = report();
+    assert!(status == 2 && said.contains("summary.json"), "{status} {said}");
+    assert!(!out.exists());
+    // The manifest made anew over it: the summary contradicts itself.
+    let manifest = std::fs::read_to_string(run.join("manifest.json")).unwrap();
+    let mut all: Value = serde_json::from_str(&manifest).unwrap();
+    let bytes = std::fs::read(&path).unwrap();
+    for file in all["files"].as_array_mut().unwrap() {
+        if file["path"] == "summary.json" {
+            use sha2::{Digest, Sha256};
+            let sha256 = Sha256::digest(&bytes);
+            let sha256: String = sha256.iter().map(|byte| format!("{byte:02x}")).collect();
+            file["blake3"] = blake3::hash(&bytes).to_hex().as_str().into();
+            file["sha256"] = sha256.into();
+            file["bytes"] = bytes.len().into();
+        }
+    }
+    std::fs::write(run.join("manifest.json"), all.to_string()).unwrap();
+    let (status, said) = report();
+    assert!(status == 2 && said.contains("NAV-1 says pass"), "{status} {said}");
+    let (said, _) = ends(&["verify", run.to_str().unwrap()], 1);
+    assert!(said.contains("NAV-1 says pass"), "{said}");
+    // And the recording, of which the report draws.
+    std::fs::write(&path, &whole).unwrap();
+    std::fs::write(run.join("manifest.json"), manifest).unwrap();
+    assert_eq!(report().0, 0);
+    let recording = run.join("recording.mcap");
+    let mut bytes = std::fs::read(&recording).unwrap();
+    let middle = bytes.len() / 2;
+    bytes[middle] ^= 1;
+    std::fs::write(&recording, bytes).unwrap();
+    let (status, said) = report();
+    assert!(status == 2 && said.contains("recording.mcap"), "{status} {said}");
+}
