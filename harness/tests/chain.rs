@@ -260,3 +260,119 @@ fn the_report_of_a_run_refuses_what_the_manifest_contradicts() {
     let (status, said) = report();
     assert!(status == 2 && said.contains("recording.mcap"), "{status} {said}");
 }
+
+/// What `verify` says of a folder: its status, and the object that it prints.
+fn verified(folder: &Path, more: &[&str]) -> (i32, Value) {
+    let mut arguments = vec!["verify", folder.to_str().unwrap(), "--json"];
+    arguments.extend_from_slice(more);
+    let output = program(&arguments).output().unwrap();
+    let found = serde_json::from_slice(&output.stdout).unwrap_or(Value::Null);
+    (output.status.code().unwrap(), found)
+}
+
+#[test]
+fn integrity_and_the_verdict_inside_are_two_answers() {
+    let folder = run(TOO_NEAR);
+    let run = folder.path().join("run");
+    let (status, found) = verified(&run, &[]);
+    assert_eq!((status, &found["whole"], &found["verdict"]), (0, &json!(true), &json!("fail")));
+    let (said, _) = ends(&["verify", run.to_str().unwrap()], 0);
+    assert!(said.contains("verdict: fail") && said.contains("NAV-1"), "{said}");
+    assert!(!said.contains("pass"), "{said}");
+
+    // It is this run, and no other.
+    let hash = found["run"].as_str().unwrap().to_owned();
+    for (expected, status) in [
+        ("scenario=t,seed=3".to_owned(), 0),
+        (format!("run={}", &hash[..12]), 0),
+        (format!("run={hash}"), 0),
+        ("scenario=T".to_owned(), 1),
+        ("seed=4".to_owned(), 1),
+        (format!("run={}", "ab".repeat(8)), 1),
+        ("seed=three".to_owned(), 2),
+        ("run=ab".to_owned(), 2),
+        ("case=3".to_owned(), 2),
+    ] {
+        assert_eq!(verified(&run, &["--expect", &expected]).0, status, "{expected}");
+    }
+    // A name that isn't finished.
+    let partial = folder.path().join("run.partial");
+    std::fs::rename(&run, &partial).unwrap();
+    let (status, found) = verified(&partial, &[]);
+    assert!(status == 1 && found["differences"][0].as_str().unwrap().contains(".partial"));
+    let output = octant_in(&partial, &["verify", "."]);
+    assert_eq!(output.status.code(), Some(1), "also from inside");
+}
+
+#[cfg(unix)]
+#[test]
+fn what_is_added_to_a_folder_is_found_and_nothing_hangs() {
+    let folder = run(TOO_NEAR);
+    let run = folder.path().join("run");
+    let fifo = |path: &Path| {
+        let made = std::process::Command::new("mkfifo").arg(path).status().unwrap();
+        assert!(made.success());
+    };
+    let added = |name: &str, add: &dyn Fn(&Path), words: &str| {
+        let path = run.join(name);
+        let before = std::fs::read(&path).ok();
+        add(&path);
+        let (status, found) = verified(&run, &[]);
+        let told = found["differences"].as_array().unwrap();
+        let told = told.iter().any(|what| {
+            let what = what.as_str().unwrap();
+            what.contains(name) && what.contains(words)
+        });
+        assert!(status == 1 && told, "{name}: {status} {found}");
+        if path.is_dir() && !path.is_symlink() {
+            std::fs::remove_dir(&path).unwrap();
+        } else {
+            std::fs::remove_file(&path).unwrap();
+        }
+        if let Some(bytes) = before {
+            std::fs::write(&path, bytes).unwrap();
+        }
+        assert_eq!(verified(&run, &[]).0, 0);
+    };
+    let secret = folder.path().join("secret");
+    std::fs::write(&secret, "x").unwrap();
+    let link = |path: &Path| std::os::unix::fs::symlink(&secret, path).unwrap();
+    let instead = |add: fn(&Path)| {
+        move |path: &Path| {
+            std::fs::remove_file(path).unwrap();
+            add(path);
+        }
+    };
+    added("extra.txt", &|path| std::fs::write(path, "").unwrap(), "was added");
+    added("empty", &|path| std::fs::create_dir(path).unwrap(), "empty folder");
+    added(".writing", &|path| std::fs::write(path, "").unwrap(), "goes on");
+    added("link", &link, "a link");
+    added("fifo", &fifo, "a FIFO");
+    added("socket", &|path| drop(std::os::unix::net::UnixListener::bind(path)), "a socket");
+    // In the place of files that are read.
+    let made = |path: &Path| {
+        std::fs::remove_file(path).unwrap();
+        fifo(path);
+    };
+    added("summary.json", &made, "a FIFO");
+    added("recording.mcap", &made, "a FIFO");
+    added(
+        "summary.json",
+        &instead(|path| {
+            std::os::unix::fs::symlink("/dev/zero", path).unwrap();
+        }),
+        "a link",
+    );
+    for name in ["manifest.json", "manifest.json.minisig"] {
+        let path = run.join(name);
+        let before = std::fs::read(&path).ok();
+        let _ = std::fs::remove_file(&path);
+        fifo(&path);
+        assert_ne!(verified(&run, &[]).0, 0, "{name}");
+        std::fs::remove_file(&path).unwrap();
+        if let Some(bytes) = before {
+            std::fs::write(&path, bytes).unwrap();
+        }
+    }
+    assert_eq!(verified(&run, &[]).0, 0);
+}

@@ -8,11 +8,11 @@ use octant::campaign::plan::Plan;
 use octant::observe::against::{Against, RUNS_MIN, Selection, against};
 use octant::observe::ensemble::{Ensemble, ensemble};
 use octant::scenario::{Method, Scenario};
+use octant::score::judge::judge;
 use octant::score::summary::{
     Calibration, ErrorScore, HealthCounts, HeightChannel, Navigation, ParameterScore, RadialScore,
     SCHEMA, Summary,
 };
-use octant::score::judge::judge;
 use octant::score::verdict::Verdict;
 use octant_random::normal::Ziggurat;
 use octant_random::stream::{Phase, key};
@@ -87,7 +87,7 @@ impl Bench {
             octant: "0.1.0".to_owned(),
             scenario: "short".to_owned(),
             seed: run,
-            verdict: Verdict::Pass,
+            verdict: Verdict::None,
             reasons: Vec::new(),
             requirements: Vec::new(),
             findings: Vec::new(),

@@ -213,7 +213,7 @@ fn a_stopping_rule_and_its_tables_count_alike() {
             }
         });
         let rule = plan.stop.as_ref().unwrap();
-        let by_results = status::decide(&plan, &folder, rule);
+        let by_results = status::decide(&plan, &folder, rule).unwrap();
         let part =
             |table: &str| merge::part(&folder, octant::campaign::execute::Shard::WHOLE, table);
         results::tables(&plan, &folder, 0..plan.cases.len(), part).unwrap();
