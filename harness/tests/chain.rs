@@ -304,6 +304,28 @@ fn integrity_and_the_verdict_inside_are_two_answers() {
     assert_eq!(output.status.code(), Some(1), "also from inside");
 }
 
+#[test]
+fn watching_a_run_tells_its_verdict_and_never_one_that_its_numbers_deny() {
+    let folder = run(TOO_NEAR);
+    let watched = |more: &[&str]| {
+        let arguments = [&["watch", "run"], more].concat();
+        let output = octant_in(folder.path(), &arguments);
+        (output.status.code().unwrap(), String::from_utf8(output.stdout).unwrap())
+    };
+    assert_eq!((watched(&["--once"]).0, watched(&["--plain"]).0), (1, 1));
+    let path = folder.path().join("run/summary.json");
+    let whole = std::fs::read_to_string(&path).unwrap();
+    std::fs::write(&path, whole.replace("\"fail\"", "\"pass\"")).unwrap();
+    for more in ["--once", "--plain"] {
+        let (status, said) = watched(&[more]);
+        assert!(status == 4 && said.contains("contradicts itself"), "{status} {said}");
+    }
+    // One that broke off.
+    std::fs::rename(folder.path().join("run"), folder.path().join("run.partial")).unwrap();
+    std::fs::remove_file(folder.path().join("run.partial/summary.json")).unwrap();
+    assert_eq!((watched(&["--once"]).0, watched(&["--plain"]).0), (4, 4));
+}
+
 #[cfg(unix)]
 #[test]
 fn what_is_added_to_a_folder_is_found_and_nothing_hangs() {
@@ -375,4 +397,39 @@ fn what_is_added_to_a_folder_is_found_and_nothing_hangs() {
         }
     }
     assert_eq!(verified(&run, &[]).0, 0);
+}
+
+#[test]
+fn what_a_terminal_obeys_is_refused_in_files_and_escaped_in_words() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = "schema = 1\ntitle = \"t\"\n[procedure.navigation]\nduration = \"4 s\"\n";
+    let path = folder.path().join("s.toml");
+    let run = |text: &str, more: &[&str]| {
+        std::fs::write(&path, text).unwrap();
+        let arguments = [&["run", "s.toml", "--out", "run"], more].concat();
+        let output = octant_in(folder.path(), &arguments);
+        let said = String::from_utf8(output.stderr).unwrap();
+        assert!(!said.contains('\u{1b}') && !said.contains('\u{202e}'), "{said:?}");
+        (output.status.code().unwrap(), said)
+    };
+    for (found, told) in [
+        ("t\\u001b[2J", "title"),
+        ("t\\nverdict: pass", "title"),
+        ("\\u202Essap", "title"),
+        ("t\\u009b31m", "title"),
+    ] {
+        let (status, said) = run(&text.replace("\"t\"", &format!("\"{found}\"")), &[]);
+        assert!(status == 2 && said.contains(told) && said.contains("control"), "{said}");
+    }
+    let fault = "[[faults]]\nid = \"a\\u0007b\"\nkind = \"spike\"\n";
+    let (status, said) = run(&format!("{text}{fault}"), &[]);
+    assert!(status == 2 && said.contains("faults.id") && said.contains("s.toml:6"), "{said}");
+    let (status, said) = run(text, &["--set", "title=a\u{1b}[31mb"]);
+    assert!(status == 2 && said.contains("control character"), "{said}");
+    // What comes from elsewhere: the name of a folder.
+    let (_, said) = run(text, &["--set", "site.latitude=\u{1b}[31m"]);
+    assert!(said.contains("\\u001b"), "{said}");
+    let output = octant_in(folder.path(), &["verify", "a\u{1b}[2Jb\u{202e}"]);
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert!(said.contains("a\\u001b[2Jb\\u202e") && !said.contains('\u{1b}'), "{said:?}");
 }

@@ -16,7 +16,6 @@ pub(super) use without_server::{Live, serve};
 mod with_server {
     use super::{Failure, Follow, Verdict};
     use crate::cli::progress::interrupts;
-    use crate::watch::follow::Stage;
     use crate::watch::foxglove::{ServeError, Server};
     use crate::watch::place::Place;
     use crate::watch::plain;
@@ -35,7 +34,7 @@ mod with_server {
             if error.is_bench() { Failure::bench(message) } else { Failure::input(message) }
         })?;
         let host = address.rsplit_once(':').map_or(address, |(host, _)| host);
-        eprintln!("octant: served to Foxglove at ws://{host}:{}", server.port());
+        note!("octant: served to Foxglove at ws://{host}:{}", server.port());
         Ok(server)
     }
 
@@ -53,15 +52,12 @@ mod with_server {
                 let end = plain::end(&follow);
                 let stage = plain::stage(&follow);
                 crate::cli::print(&if end.is_empty() { format!("{stage}\n") } else { end })?;
-                eprintln!("octant: still served; Ctrl-C ends it");
+                note!("octant: still served; Ctrl-C ends it");
             }
             std::thread::sleep(LOOK);
         }
         server.stop();
-        if follow.stage == Stage::BrokenOff {
-            return crate::cli::watch::verdict(&follow);
-        }
-        Ok(Verdict::Pass)
+        crate::cli::watch::verdict(&follow)
     }
 
     /// A server beside a run.
@@ -90,7 +86,7 @@ mod with_server {
                         Ok(true) => continue,
                         Ok(false) => {}
                         Err(error) => {
-                            eprintln!("octant: served no more: failed to {error}");
+                            note!("octant: served no more: failed to {error}");
                             break;
                         }
                     }

@@ -3,6 +3,11 @@
 //! Exit status: 0 pass, 1 fail, 2 bad input or usage, 3 inconclusive, 4 error (the bench failed).
 #![allow(clippy::print_stdout, reason = "results go to stdout")]
 
+/// A line for people on stderr, in which nothing is obeyed by a terminal.
+macro_rules! note {
+    ($($words:tt)*) => { eprintln!("{}", $crate::cli::printable(&format!($($words)*))) };
+}
+
 mod campaign;
 mod compare;
 mod doctor;
@@ -203,7 +208,7 @@ pub fn main() -> ExitCode {
     if let Some(parent) = cli.parent
         && let Err(error) = progress::interrupts::leave_to(parent)
     {
-        eprintln!("octant: failed to follow process {parent}: {error}");
+        note!("octant: failed to follow process {parent}: {error}");
         return ExitCode::from(Verdict::Error.exit_code());
     }
     let outcome = match cli.command {
@@ -232,7 +237,7 @@ pub fn main() -> ExitCode {
     match outcome {
         Ok(verdict) => ExitCode::from(verdict.exit_code()),
         Err(failure) => {
-            eprintln!("octant: {}", failure.message);
+            note!("octant: {}", failure.message);
             ExitCode::from(failure.status)
         }
     }
@@ -247,10 +252,30 @@ fn seconds(name: &str, text: &str) -> Result<f64, Failure> {
     })
 }
 
+/// A text in which nothing is obeyed by a terminal: control characters as their escapes, line breaks and tabs
+/// as they are. Names come from files, devices and file systems.
+fn printable(text: &str) -> std::borrow::Cow<'_, str> {
+    let turns = |c: char| matches!(c, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
+    let is_bad = |c: char| turns(c) || (c.is_control() && !"\n\t".contains(c));
+    if !text.contains(is_bad) {
+        return text.into();
+    }
+    let mut all = String::with_capacity(text.len() + 8);
+    for c in text.chars() {
+        if is_bad(c) {
+            // As JSON writes it: results are JSON too.
+            all += &format!("\\u{:04x}", u32::from(c));
+        } else {
+            all.push(c);
+        }
+    }
+    all.into()
+}
+
 /// Writes a result to stdout. A reader that has gone (`| head`) is no failure.
 fn print(text: &str) -> Result<(), Failure> {
     use std::io::Write;
-    match std::io::stdout().write_all(text.as_bytes()) {
+    match std::io::stdout().write_all(printable(text).as_bytes()) {
         Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
             Err(Failure::bench(format!("failed to write to stdout: {error}")))
         }
@@ -296,7 +321,7 @@ fn load_fired(
     let scenario =
         crate::scenario::Scenario::load_fired(path, &overrides, fires).map_err(Failure::input)?;
     for warning in scenario.warnings() {
-        eprintln!("octant: {}: {warning}", path.display());
+        note!("octant: {}: {warning}", path.display());
     }
     Ok(scenario)
 }

@@ -237,7 +237,7 @@ fn begin(history: &Path, inputs: &Inputs, all: &History) -> Result<Night, Failur
                 .all(|(c, (name, plan))| c.name == *name && c.plan == *plan)
     });
     if let Some(night) = open {
-        eprintln!("octant: night {} goes on", night.id);
+        note!("octant: night {} goes on", night.id);
         return Ok(night);
     }
     let now = SystemTime::now();
@@ -330,7 +330,7 @@ fn run_parts(
     if let Some(suite) = &inputs.suite {
         let tell = |result: &SuiteResult| {
             if let Some(problem) = &result.problem {
-                eprintln!("suite: {}: {problem}", result.name);
+                note!("suite: {}: {problem}", result.name);
             }
         };
         let into = folder.join("suite");
@@ -346,7 +346,7 @@ fn run_parts(
             {
                 let case = plan.cases.get(*index).map_or("", |case| case.id.as_str());
                 let reason = reason.as_deref().unwrap_or("");
-                eprintln!("{name}: case {case}: {}: {reason}", verdict.name());
+                note!("{name}: case {case}: {}: {reason}", verdict.name());
             }
         };
         let mut options = Options {

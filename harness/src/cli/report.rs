@@ -144,7 +144,7 @@ pub(super) fn watch(path: &Path, scenario: &Scenario) -> Result<(Watcher, Option
         watcher.parameters(&output, &estimate);
     }
     if epochs.recording().truncated() {
-        eprintln!("octant: {} ends in the middle; what stands before is used", path.display());
+        note!("octant: {} ends in the middle; what stands before is used", path.display());
     }
     Ok((watcher, epochs.last_event().cloned()))
 }

@@ -107,7 +107,7 @@ fn read(path: &Path) -> Result<Requirements, Failure> {
     }
     .map_err(Failure::input)?;
     for note in &imported.notes {
-        eprintln!("octant: {name}: {note}");
+        note!("octant: {name}: {note}");
     }
     Ok(imported.requirements)
 }

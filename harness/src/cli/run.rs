@@ -114,9 +114,7 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     let once = matches!(scenario.source, Source::Live(_));
     let twins = !arguments.no_twin && !once;
     if once && !arguments.no_twin && !scenario.faults.is_empty() {
-        eprintln!(
-            "octant: no twin without faults: a real instrument doesn't measure the same again"
-        );
+        note!("octant: no twin without faults: a real instrument doesn't measure the same again");
     }
     let tasks = tasks(&scenario, twins);
     for method in methods(&scenario) {
@@ -197,9 +195,9 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     if !reasons.is_empty() {
         // With --json stdout is for programs, and the folder of a job that failed may be gone.
         for reason in &reasons {
-            eprintln!("octant: {reason}");
+            note!("octant: {reason}");
         }
-        eprintln!("octant: the run broke off; what was recorded is in {}", place.display());
+        note!("octant: the run broke off; what was recorded is in {}", place.display());
     }
     if arguments.json {
         print(&json.text)?;

@@ -117,7 +117,7 @@ pub(super) fn command(
         every: arguments.every,
     })?;
     for warning in prepared.warnings() {
-        eprintln!("octant: {warning}");
+        note!("octant: {warning}");
     }
     let texts =
         prepared.texts().map_err(|error| Failure::bench(format!("failed to read {error}")))?;
@@ -177,8 +177,8 @@ pub(super) fn command(
     };
     if let Ended::Failed { reason, .. } = &summary.ended {
         // With --json stdout is for programs, and the folder of a job that failed may be gone.
-        eprintln!("octant: {reason}");
-        eprintln!("octant: the run broke off; what was recorded is in {}", place.display());
+        note!("octant: {reason}");
+        note!("octant: the run broke off; what was recorded is in {}", place.display());
     }
     if shared.json {
         print(&json)?;

@@ -70,7 +70,7 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
             bar.set_message(case.id);
             if case.verdict == Judged::Alarm {
                 let line = format!("ALARM: {}: {}", case.id, case.found);
-                if bar.is_hidden() { eprintln!("{line}") } else { bar.println(line) }
+                if bar.is_hidden() { note!("{line}") } else { bar.println(line) }
             }
         };
         let done = run(&program, &cases, jobs, &cancel, &tell);

@@ -55,7 +55,7 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     // thread of the samples asks for, a little below it.
     let mut granted = None;
     let mut notice = |notice: &Notice| {
-        eprintln!("octant: {notice}");
+        note!("octant: {notice}");
         match notice {
             Notice::Began { pacing: Pacing::RealTime, .. } => {
                 let wish = Wish { priority: Some(79), lock_memory: false, cpu: None };
@@ -68,7 +68,7 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     let facts = served.facts(silence_ms);
     serve(&uri, facts, &mut served, &mut notice, &stop)
         .map_err(|error| Failure::bench(format!("failed to {error}")))?;
-    eprintln!("octant: stopped");
+    note!("octant: stopped");
     Ok(Verdict::Pass)
 }
 

@@ -170,7 +170,7 @@ fn quantity(name: &str, text: &str, dimension: Dimension) -> Result<f64, Failure
 fn moved(plan: &Plan, moves: &[Move]) -> Result<Status, Failure> {
     let program = std::env::current_exe()
         .map_err(|error| Failure::bench(format!("the program doesn't find itself: {error}")))?;
-    let mut guard = std::process::Command::new(program);
+    let mut guard = crate::evidence::signature::command(program);
     move_by_hand(plan, moves, guard.args(["turntable", "guard"])).map_err(|error| failure(&error))
 }
 
@@ -266,7 +266,7 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         Action::Simulate { place, dialect } => {
             let dialect = Dialect::load(dialect).map_err(|error| failure(&error))?;
             let (server, name) = listen(place, dialect).map_err(|error| failure(&error))?;
-            eprintln!("octant: a table listens on {name}");
+            note!("octant: a table listens on {name}");
             server.wait();
         }
         Action::Guard => {

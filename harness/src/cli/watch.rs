@@ -83,7 +83,7 @@ fn once(mut follow: Follow) -> Result<Verdict, Failure> {
         return Err(Failure::input(format!("{folder}: nothing is recorded yet")));
     }
     print(&plain::page(&follow))?;
-    Ok(Verdict::Pass)
+    verdict(&follow)
 }
 
 fn lines(mut follow: Follow) -> Result<Verdict, Failure> {
@@ -107,7 +107,7 @@ fn lines(mut follow: Follow) -> Result<Verdict, Failure> {
     }
 }
 
-/// That of a run that was watched to its end.
+/// That of a run that has ended; one that was left while it went on has none yet.
 pub(super) fn verdict(follow: &Follow) -> Result<Verdict, Failure> {
     match &follow.stage {
         Stage::Ended(summary) => Ok(summary.verdict),
@@ -130,10 +130,7 @@ fn screen(mut follow: Follow) -> Result<Verdict, Failure> {
     shown?;
     // What was on the screen is gone with it.
     print(&(plain::line(&follow) + "\n" + &plain::end(&follow)))?;
-    match follow.stage {
-        Stage::BrokenOff => verdict(&follow),
-        _ => Ok(Verdict::Pass),
-    }
+    verdict(&follow)
 }
 
 fn show(terminal: &mut ratatui::DefaultTerminal, follow: &mut Follow) -> Result<(), Failure> {

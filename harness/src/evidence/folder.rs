@@ -3,6 +3,7 @@
 //! Who sees `RUN` sees a whole run. What a kill leaves is `RUN.partial`, readable and never taken
 //! for a finished run. A lock in it tells a run that is going on from one that was killed.
 
+use super::leftover::{self, Leftover};
 use std::fs::{self, File, TryLockError};
 use std::io;
 use std::path::{Path, PathBuf};
@@ -90,10 +91,11 @@ impl RunFolder {
         let mut partial_name = name.to_owned();
         partial_name.push(".partial");
         let partial = path.with_file_name(partial_name);
+        leftover::clean(path)?;
         // Said at the start, not after hours of simulation.
         check_finished(path, existing)?;
         if partial.exists() {
-            Self::clear_partial(&partial, existing)?;
+            Self::clear_partial(&partial, path, existing)?;
         }
         if let Some(parent) = path.parent() {
             system("create", parent, fs::create_dir_all(parent))?;
@@ -105,17 +107,16 @@ impl RunFolder {
         Ok(Self { partial, finished: path.into(), existing, lock })
     }
 
-    fn clear_partial(partial: &Path, existing: Existing) -> Result<(), FolderError> {
+    fn clear_partial(
+        partial: &Path,
+        finished: &Path,
+        existing: Existing,
+    ) -> Result<(), FolderError> {
         let lock_path = partial.join(LOCK);
         let lock = match File::open(&lock_path) {
             Ok(lock) => lock,
             Err(error) if error.kind() == io::ErrorKind::NotFound => {
-                return Err(match existing {
-                    Existing::Refuse => FolderError::Unfinished { path: partial.into() },
-                    Existing::Replace => {
-                        FolderError::NotARun { path: partial.into(), expected: LOCK }
-                    }
-                });
+                return Self::clear_unmarked(partial, finished, existing);
             }
             Err(source) => {
                 return Err(FolderError::System { action: "open", path: lock_path, source });
@@ -132,7 +133,29 @@ impl RunFolder {
         }
         match existing {
             Existing::Refuse => Err(FolderError::Unfinished { path: partial.into() }),
-            Existing::Replace => system("remove", partial, fs::remove_dir_all(partial)),
+            Existing::Replace => leftover::discard(partial),
+        }
+    }
+
+    /// What a kill left without the lock: nothing yet, a whole run that had not got its name, or a run of
+    /// which the lock was removed.
+    fn clear_unmarked(
+        partial: &Path,
+        finished: &Path,
+        existing: Existing,
+    ) -> Result<(), FolderError> {
+        match leftover::look(partial)? {
+            // A run that begins at this moment loses here, and says so when it makes its lock.
+            Leftover::Empty => system("remove", partial, fs::remove_dir(partial)),
+            Leftover::Whole if !finished.exists() => {
+                system("rename", partial, fs::rename(partial, finished))?;
+                check_finished(finished, existing)
+            }
+            Leftover::Whole | Leftover::Parts => match existing {
+                Existing::Refuse => Err(FolderError::Unfinished { path: partial.into() }),
+                Existing::Replace => leftover::discard(partial),
+            },
+            Leftover::Foreign => Err(FolderError::NotARun { path: partial.into(), expected: LOCK }),
         }
     }
 
@@ -164,15 +187,12 @@ impl RunFolder {
         // Closed first: Windows renames no folder with an open file in it.
         drop(lock);
         system("remove", &lock_path, fs::remove_file(&lock_path))?;
-        if finished.exists() {
-            let mut aside = finished.clone().into_os_string();
-            aside.push(".replaced");
-            let aside = PathBuf::from(aside);
-            system("rename", &finished, fs::rename(&finished, &aside))?;
-            system("rename", &partial, fs::rename(&partial, &finished))?;
-            system("remove", &aside, fs::remove_dir_all(&aside))?;
-        } else {
-            system("rename", &partial, fs::rename(&partial, &finished))?;
+        let aside = if finished.exists() { Some(leftover::put_aside(&finished)?) } else { None };
+        system("rename", &partial, fs::rename(&partial, &finished))?;
+        // The run is there under its name: what is left of the one before is no failure of this one, and the
+        // next run removes it.
+        if let Some(aside) = aside {
+            let _ = fs::remove_dir_all(aside);
         }
         Ok(finished)
     }
@@ -191,7 +211,11 @@ fn check_finished(path: &Path, existing: Existing) -> Result<(), FolderError> {
     }
 }
 
-fn system<T>(action: &'static str, path: &Path, result: io::Result<T>) -> Result<T, FolderError> {
+pub(super) fn system<T>(
+    action: &'static str,
+    path: &Path,
+    result: io::Result<T>,
+) -> Result<T, FolderError> {
     result.map_err(|source| FolderError::System { action, path: path.into(), source })
 }
 
@@ -244,6 +268,85 @@ mod tests {
         finished(&path, "one");
     }
 
+    /// Every state that a kill can leave, in which the next run goes on, and only it is there afterwards.
+    #[test]
+    fn what_kills_leave_is_cleaned_by_the_next_run() {
+        type Left = fn(&Path);
+        let make = |path: PathBuf, files: &[&str]| {
+            fs::create_dir(&path).unwrap();
+            files.iter().for_each(|name| fs::write(path.join(name), "old").unwrap());
+        };
+        let all: [(&str, Left); 7] = [
+            ("the folder alone", |here| fs::create_dir(here.join("RUN.partial")).unwrap()),
+            ("a run that is whole but for its name", |here| {
+                let run = RunFolder::create(&here.join("RUN"), Existing::Refuse).unwrap();
+                fs::write(run.path().join("manifest.json"), "old").unwrap();
+                fs::remove_file(run.path().join(LOCK)).unwrap();
+            }),
+            ("a removal that was broken off", |here| {
+                let path = here.join("RUN.partial");
+                fs::create_dir(&path).unwrap();
+                fs::write(path.join("recording.mcap"), "old").unwrap();
+                fs::write(path.join(".octant-x.new"), "old").unwrap();
+            }),
+            ("a run put aside by an older version", |here| {
+                let path = here.join("RUN.replaced");
+                fs::create_dir(&path).unwrap();
+                fs::write(path.join("manifest.json"), "old").unwrap();
+            }),
+            ("a run put aside, half removed", |here| {
+                let run = here.join("RUN");
+                fs::create_dir(&run).unwrap();
+                fs::write(run.join("manifest.json"), "old").unwrap();
+                let aside = super::leftover::put_aside(&run).unwrap();
+                fs::remove_file(aside.join("manifest.json")).unwrap();
+            }),
+            ("both names gone, the new run whole", |here| {
+                let run = RunFolder::create(&here.join("RUN"), Existing::Refuse).unwrap();
+                fs::write(run.path().join("manifest.json"), "new").unwrap();
+                fs::remove_file(run.path().join(LOCK)).unwrap();
+                let path = here.join("RUN.replaced");
+                fs::create_dir(&path).unwrap();
+                fs::write(path.join("manifest.json"), "old").unwrap();
+            }),
+            ("a file that was not whole", |here| {
+                let run = RunFolder::create(&here.join("RUN"), Existing::Refuse).unwrap();
+                fs::write(run.path().join(".octant-y.new"), "old").unwrap();
+            }),
+        ];
+        for (what, leave) in all {
+            let folder = tempfile::tempdir().unwrap();
+            leave(folder.path());
+            finished(&folder.path().join("RUN"), "next");
+            let names: Vec<_> =
+                fs::read_dir(folder.path()).unwrap().map(|e| e.unwrap().file_name()).collect();
+            assert_eq!(names, ["RUN"], "{what}");
+            assert_eq!(
+                fs::read_to_string(folder.path().join("RUN/manifest.json")).unwrap(),
+                "next",
+                "{what}"
+            );
+        }
+        // A folder of somebody else with such a name stays, and doesn't hold a run up at its end.
+        let folder = tempfile::tempdir().unwrap();
+        finished(&folder.path().join("RUN"), "one");
+        make(folder.path().join("RUN.replaced"), &["thesis.tex"]);
+        finished(&folder.path().join("RUN"), "two");
+        assert!(folder.path().join("RUN.replaced/thesis.tex").exists());
+        // Without --force a run that only lacked its name gets it, and stays.
+        let folder = tempfile::tempdir().unwrap();
+        make(folder.path().join("RUN.partial"), &["manifest.json"]);
+        let error = RunFolder::create(&folder.path().join("RUN"), Existing::Refuse).unwrap_err();
+        assert!(matches!(error, FolderError::Finished { .. }), "{error}");
+        assert!(folder.path().join("RUN/manifest.json").exists());
+        // One that was put aside while the new one never got its name comes back.
+        let folder = tempfile::tempdir().unwrap();
+        make(folder.path().join("RUN"), &["manifest.json"]);
+        super::leftover::put_aside(&folder.path().join("RUN")).unwrap();
+        let error = RunFolder::create(&folder.path().join("RUN"), Existing::Refuse).unwrap_err();
+        assert!(matches!(error, FolderError::Finished { .. }), "{error}");
+    }
+
     #[test]
     fn a_folder_that_is_no_run_is_never_removed() {
         let folder = tempfile::tempdir().unwrap();
@@ -253,6 +356,7 @@ mod tests {
         let error = RunFolder::create(&path, Existing::Replace).unwrap_err();
         assert!(matches!(error, FolderError::NotARun { .. }), "{error}");
         fs::create_dir(folder.path().join("x.partial")).unwrap();
+        fs::write(folder.path().join("x.partial/thesis.tex"), "more of it").unwrap();
         let error = RunFolder::create(&folder.path().join("x"), Existing::Replace).unwrap_err();
         assert!(matches!(error, FolderError::NotARun { .. }), "{error}");
         let error = RunFolder::create(Path::new("/"), Existing::Replace).unwrap_err();

@@ -448,7 +448,13 @@ impl Manifest {
             }
         }
         differences.extend(found.files.into_iter().map(Difference::Unknown));
-        differences.extend(found.empty.into_iter().map(Difference::EmptyFolder));
+        // A folder that had files is empty because they are missing, which is told.
+        let had = |empty: &String| {
+            let start = format!("{empty}/");
+            self.files.iter().any(|file| file.path.starts_with(&start))
+        };
+        let added = found.empty.into_iter().filter(|empty| !had(empty));
+        differences.extend(added.map(Difference::EmptyFolder));
         let others = found.others.into_iter();
         differences.extend(others.map(|(path, what)| Difference::NoFile(path, what)));
         if found.locked {

@@ -7,6 +7,7 @@ pub(crate) mod files;
 mod fmus;
 pub mod folder;
 pub mod inside;
+mod leftover;
 pub mod manifest;
 pub mod signature;
 

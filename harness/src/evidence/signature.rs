@@ -19,6 +19,34 @@ const UNTRUSTED: &str = "signature from octant";
 /// What is signed with the manifest.
 const TRUSTED: &str = "manifest of an octant evidence folder";
 
+/// A process to be started that hears nothing of the key: neither its file nor its password. Every process
+/// that the program starts is made here, those that hold the code of others above all.
+pub(crate) fn command(program: impl AsRef<std::ffi::OsStr>) -> std::process::Command {
+    let mut command = std::process::Command::new(program);
+    command.env_remove(KEY).env_remove(PASSWORD);
+    command
+}
+
+/// That nobody else of this host can read the file of a key.
+#[cfg(unix)]
+fn refuse_readable(path: &Path) -> Result<(), String> {
+    use std::os::unix::fs::PermissionsExt;
+    let metadata = std::fs::metadata(path).map_err(|error| error.to_string())?;
+    let mode = metadata.permissions().mode() & 0o777;
+    if mode & 0o077 == 0 {
+        return Ok(());
+    }
+    Err(format!(
+        "others can use it: its mode is {mode:03o}, expected 600 (chmod 600 {})",
+        path.display()
+    ))
+}
+
+#[cfg(not(unix))]
+fn refuse_readable(_: &Path) -> Result<(), String> {
+    Ok(())
+}
+
 /// A key that signs.
 pub struct Key {
     secret: SecretKey,
@@ -74,9 +102,10 @@ impl Key {
     /// Reads the secret key of a file that minisign made.
     ///
     /// # Errors
-    /// If there is none, or the password isn't its.
+    /// If there is none, others can read it, or the password isn't its.
     pub fn read(path: &Path, password: Option<String>) -> Result<Self, SignatureError> {
         let wrong = |reason: String| SignatureError::Key { path: path.to_owned(), reason };
+        refuse_readable(path).map_err(wrong)?;
         let text = std::fs::read_to_string(path).map_err(|error| wrong(error.to_string()))?;
         let parsed = || {
             SecretKeyBox::from_string(&text)
@@ -189,6 +218,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let pair = KeyPair::generate_unencrypted_keypair().unwrap();
         let path = folder.path().join("key");
+        make_private(&path);
         std::fs::write(&path, pair.sk.to_box(None).unwrap().to_string()).unwrap();
         let key = Key::read(&path, None).unwrap();
         let manifest = folder.path().join("manifest.json");
@@ -222,6 +252,7 @@ mod tests {
     fn a_key_of_the_stock_tool_without_a_password_signs() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("key");
+        make_private(&path);
         let secret = "untrusted comment: minisign encrypted secret key\nRWQAAEIyAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAGGJejVhEWMtXozaAVo8D+2wN2PE7YWyElsXM4PcvXS1lbGnvT2wBClem2MIozcVtChEQeclEDPNjZCh+b3hwAwE7eVEg1H7jAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAA=\n";
         std::fs::write(&path, secret).unwrap();
         let key = Key::read(&path, None).unwrap();
@@ -254,7 +285,78 @@ mod tests {
         assert!(error.contains("different from public key"), "{error}");
         let error = verify(&manifest, "no/such/file").unwrap_err().to_string();
         assert!(error.starts_with("read the key no/such/file"), "{error}");
-        let error = Key::read(&manifest, None).unwrap_err().to_string();
+        let none = folder.path().join("none");
+        make_private(&none);
+        let error = Key::read(&none, None).unwrap_err().to_string();
         assert!(error.contains("expected a secret key of minisign"), "{error}");
+    }
+
+    /// A file that only its owner can use.
+    fn make_private(path: &Path) {
+        let mut options = std::fs::File::options();
+        options.create(true).truncate(true).write(true);
+        #[cfg(unix)]
+        std::os::unix::fs::OpenOptionsExt::mode(&mut options, 0o600);
+        options.open(path).unwrap();
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_key_that_others_can_use_is_refused() {
+        use std::os::unix::fs::PermissionsExt;
+        let folder = tempfile::tempdir().unwrap();
+        let pair = KeyPair::generate_unencrypted_keypair().unwrap();
+        let path = folder.path().join("key");
+        std::fs::write(&path, pair.sk.to_box(None).unwrap().to_string()).unwrap();
+        for (mode, is_good) in [
+            (0o600, true),
+            (0o400, true),
+            (0o640, false),
+            (0o604, false),
+            (0o620, false),
+            (0o601, false),
+            (0o777, false),
+        ] {
+            std::fs::set_permissions(&path, std::fs::Permissions::from_mode(mode)).unwrap();
+            match Key::read(&path, None) {
+                Ok(_) => assert!(is_good, "{mode:o}"),
+                Err(error) => {
+                    let told = error.to_string();
+                    assert!(!is_good && told.contains(&format!("{mode:03o}")), "{told}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_process_hears_nothing_of_the_key() {
+        let command = command("program");
+        let removed: Vec<_> =
+            command.get_envs().filter(|(_, value)| value.is_none()).map(|(name, _)| name).collect();
+        assert_eq!(removed, [KEY, PASSWORD].map(std::ffi::OsStr::new));
+    }
+
+    /// No file of the program starts a process otherwise.
+    #[test]
+    fn every_process_is_started_without_the_key() {
+        let src = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
+        let (mut open, mut seen) = (vec![src], 0);
+        while let Some(folder) = open.pop() {
+            for entry in std::fs::read_dir(folder).unwrap() {
+                let path = entry.unwrap().path();
+                if path.is_dir() {
+                    open.push(path);
+                    continue;
+                }
+                let text = std::fs::read_to_string(&path).unwrap_or_default();
+                // Of the program, not of its tests.
+                let program = text.split("#[cfg(test)]").next().unwrap();
+                let own = path.ends_with("evidence/signature.rs");
+                let found = program.matches("Command::new(").count();
+                assert_eq!(found, usize::from(own), "{}", path.display());
+                seen += program.matches("signature::command(").count();
+            }
+        }
+        assert!(seen >= 5, "{seen} processes are started");
     }
 }

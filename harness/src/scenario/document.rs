@@ -116,13 +116,71 @@ impl Table {
 pub(crate) fn parse(text: &str) -> Result<Table, Vec<Problem>> {
     let lines = Lines::new(text);
     match DeTable::parse(text) {
-        Ok(table) => Ok(lines.table(table.into_inner())),
+        Ok(table) => {
+            let table = lines.table(table.into_inner());
+            let problems = controls(&table, "");
+            if problems.is_empty() { Ok(table) } else { Err(problems) }
+        }
         Err(error) => Err(vec![Problem {
             place: lines.place(error.span().map_or(text.len(), |span| span.start)),
             path: String::new(),
             message: format!("not TOML: {}", error.message().replace('\n', ", ")),
         }]),
     }
+}
+
+/// Keys whose texts are names: on one line.
+const NAMES: [&str; 4] = ["title", "id", "name", "label"];
+
+/// Control characters in texts and keys: what a terminal would obey, and no file of others can hold. A line
+/// break or a tab may be in what isn't a name.
+fn controls(table: &Table, path: &str) -> Vec<Problem> {
+    let mut found = Vec::new();
+    for entry in &table.entries {
+        let path =
+            if path.is_empty() { entry.key.clone() } else { format!("{path}.{}", entry.key) };
+        if let Some(c) = control(&entry.key, true) {
+            found.push(problem_of(c, &entry.place, path.escape_debug().to_string()));
+        } else {
+            controls_of(&entry.node, &path, NAMES.contains(&entry.key.as_str()), &mut found);
+        }
+    }
+    found
+}
+
+fn controls_of(node: &Node, path: &str, is_name: bool, found: &mut Vec<Problem>) {
+    match &node.value {
+        Value::Text(text) => {
+            let c = control(text, is_name);
+            found.extend(c.map(|c| problem_of(c, &node.place, path.to_owned())));
+        }
+        Value::Array(entries) => {
+            entries.iter().for_each(|entry| controls_of(entry, path, is_name, found));
+        }
+        Value::Table(table) => found.extend(controls(table, path)),
+        _ => {}
+    }
+}
+
+fn problem_of(c: char, place: &Place, path: String) -> Problem {
+    let message = format!("found the control character {:?}, expected text that can be printed", c);
+    Problem { place: place.clone(), path, message }
+}
+
+/// The first control character of a text.
+fn control(text: &str, is_name: bool) -> Option<char> {
+    // Those that turn the direction of text around them hide what stands there.
+    let turns = |c: char| matches!(c, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
+    let is_bad = |c: char| turns(c) || (c.is_control() && (is_name || !"\n\r\t".contains(c)));
+    text.chars().find(|c| is_bad(*c))
+}
+
+/// The control characters of what an argument sets.
+pub(crate) fn controls_of_argument(path: &str, node: &Node) -> Option<Problem> {
+    let mut found = Vec::new();
+    let name = path.rsplit('.').next().unwrap_or(path);
+    controls_of(node, &path.escape_debug().to_string(), NAMES.contains(&name), &mut found);
+    found.into_iter().next()
 }
 
 /// Parses the value of a `--set KEY=VALUE`: TOML, or a text without its quotes.

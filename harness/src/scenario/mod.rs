@@ -415,6 +415,10 @@ pub(crate) fn override_set(document: &mut document::Table, argument: &str) -> Re
         return Err(problem("", message));
     };
     let path = path.trim();
+    let node = document::parse_argument(value, argument);
+    if let Some(problem) = document::controls_of_argument(path, &node) {
+        return Err(problem);
+    }
     if let Some((id, key)) = path.strip_prefix("faults.").and_then(|rest| rest.split_once('.')) {
         // What keys a fault has depends on its kind: they are checked with those of the file.
         let fault = fault_of(document, id).map_err(|message| problem(path, message))?;

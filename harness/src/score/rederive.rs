@@ -22,7 +22,16 @@ pub fn results(summary: &Summary) -> Result<Vec<RequirementResult>, serde_json::
             comparison: result.comparison,
             limit: result.limit,
         };
-        as_far_as_done(summary, evaluate(&requirement, &document))
+        let found = evaluate(&requirement, &document);
+        // Where nobody knows how uncertain a reference is, there is no value, and nothing is decided.
+        let value = result.value.and(found.value);
+        let found = RequirementResult {
+            uncertainty: result.uncertainty,
+            value,
+            reason: result.reason.clone().or(found.reason),
+            ..found
+        };
+        as_far_as_done(summary, found.again())
     };
     Ok(summary.requirements.iter().map(again).collect())
 }

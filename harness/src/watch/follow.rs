@@ -5,7 +5,10 @@ use super::place::Place;
 use super::state::State;
 use super::tail::{Reached, Tail, TailError};
 use crate::recorder::reader::Item;
+use crate::score::judge::derive;
+use crate::score::rederive;
 use crate::score::summary::Summary;
+use crate::score::verdict::Verdict;
 use std::collections::VecDeque;
 use std::time::{Duration, Instant};
 
@@ -160,6 +163,15 @@ impl Follow {
     fn summary(&self) -> Option<Summary> {
         let path = self.place.file("summary.json")?;
         // A file that is being written is no JSON yet, and is looked at again.
-        serde_json::from_slice(&std::fs::read(path).ok()?).ok()
+        let mut summary: Summary = serde_json::from_slice(&std::fs::read(path).ok()?).ok()?;
+        // What it says of itself isn't shown where its numbers come to something else.
+        let found = rederive::contradictions(&summary);
+        if !found.is_empty() {
+            summary.verdict = derive(&summary).verdict.worst(Verdict::Error);
+            let told =
+                found.into_iter().map(|what| format!("summary.json contradicts itself: {what}"));
+            summary.reasons = told.collect();
+        }
+        Some(summary)
     }
 }

@@ -41,6 +41,11 @@ fn every_change_of_the_folder_is_found() {
         let pair = minisign::KeyPair::generate_unencrypted_keypair().unwrap();
         let path = bench.at(name);
         std::fs::write(&path, pair.sk.to_box(None).unwrap().to_string()).unwrap();
+        #[cfg(unix)]
+        {
+            let mode = std::os::unix::fs::PermissionsExt::from_mode(0o600);
+            std::fs::set_permissions(&path, mode).unwrap();
+        }
         (path, pair.pk.to_base64())
     };
     let ((secret, public), (_, other)) = (keys("mine"), keys("other"));

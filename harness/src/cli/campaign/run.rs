@@ -60,7 +60,7 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     }
     let told = |line: String| {
         // On a terminal above the bar, elsewhere by itself.
-        if bar.is_hidden() { eprintln!("{line}") } else { bar.println(line) }
+        if bar.is_hidden() { note!("{line}") } else { bar.println(line) }
     };
     let over = AtomicBool::new(false);
     let outcome = std::thread::scope(|scope| {

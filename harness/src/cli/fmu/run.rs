@@ -255,7 +255,7 @@ fn span(
 /// What the FMU said beside results.
 fn log(instance: &mut dyn Instance) {
     for message in instance.messages() {
-        eprintln!("octant: {}: {message}", instance.name());
+        note!("octant: {}: {message}", instance.name());
     }
 }
 

@@ -3,7 +3,7 @@
 use super::BuildError;
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
+use std::process::Stdio;
 
 /// Builds the library for a target such as `aarch64-unknown-linux-gnu`; where it is then.
 ///
@@ -26,7 +26,7 @@ pub(super) fn library(target: &str) -> Result<PathBuf, BuildError> {
         }
     };
     standard_library(triple, &source).map_err(failed)?;
-    let output = Command::new("cargo")
+    let output = crate::evidence::signature::command("cargo")
         .arg(if zig { "zigbuild" } else { "build" })
         .args(["--release", "--package", "octant-fmu", "--lib", "--target", target])
         .arg("--message-format=json-render-diagnostics")
@@ -53,13 +53,16 @@ fn source_tree() -> Result<PathBuf, BuildError> {
 }
 
 fn has_zigbuild(source: &Path) -> bool {
-    let asked = Command::new("cargo-zigbuild").arg("--version").current_dir(source).output();
+    let asked = crate::evidence::signature::command("cargo-zigbuild")
+        .arg("--version")
+        .current_dir(source)
+        .output();
     asked.is_ok_and(|output| output.status.success())
 }
 
 /// Whether the compiler has the standard library of a target.
 fn standard_library(triple: &str, source: &Path) -> Result<(), String> {
-    let output = Command::new("rustc")
+    let output = crate::evidence::signature::command("rustc")
         .args(["--print", "target-libdir", "--target", triple])
         .current_dir(source)
         .output()

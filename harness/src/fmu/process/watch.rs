@@ -9,7 +9,7 @@ use std::os::fd::OwnedFd;
 use std::os::unix::net::UnixStream;
 use std::os::unix::process::{CommandExt, ExitStatusExt};
 use std::path::PathBuf;
-use std::process::{Child, Command, ExitStatus, Stdio};
+use std::process::{Child, ExitStatus, Stdio};
 use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 
@@ -37,7 +37,7 @@ impl Watch {
             Some(program) => program.clone(),
             None => octant().map_err(|e| cannot(format!("can't be started: {e}")))?,
         };
-        let child = Command::new(&program)
+        let child = crate::evidence::signature::command(&program)
             .args(["fmu", "host"])
             .stdin(Stdio::from(OwnedFd::from(socket)))
             .stdout(Stdio::from(memory))

@@ -6,7 +6,6 @@ use octant_sample::{GimbalAngles, GimbalCommand};
 use octant_turntable::{Axis, Following};
 use serde_json::json;
 use std::path::Path;
-use std::process::Command;
 use std::time::{Duration, Instant};
 
 /// A table that goes where the core wants it.
@@ -46,7 +45,7 @@ impl Table {
             let reason = format!("the program doesn't find itself: {error}");
             SourceError::Table(octant_turntable::Error::Guard { reason })
         })?;
-        let mut guard = Command::new(program);
+        let mut guard = crate::evidence::signature::command(program);
         guard.args(["turntable", "guard"]);
         let following = Following::start(&plan, &mut guard).map_err(SourceError::Table)?;
         let language = plan.dialect.name().to_owned();
