@@ -52,6 +52,7 @@ impl Bench {
         for (run, case) in self.plan.cases.iter().enumerate() {
             let mut summary = self.summary(run as u64);
             change(run, &mut summary);
+            judge(&mut summary, &[], &[]).unwrap();
             let hash = case::hash_of(self.plan.planned(case).unwrap(), case);
             let result = CaseResult::of(&case.id, Some(hash), summary).unwrap();
             let json = result.to_json().unwrap();
@@ -183,7 +184,6 @@ fn too_few_runs_say_nothing_and_refused_ones_are_counted() {
     bench.keep(|run, summary| {
         if run < 3 {
             summary.calibration.as_mut().unwrap().refused = Some("it drifts".to_owned());
-            judge(summary, &[], &[]).unwrap();
         }
     });
     let one = &bench.against().compared[0];
