@@ -16,6 +16,7 @@ mod core_behaviour;
 mod core_consistency;
 mod core_faults;
 mod core_hardened;
+mod core_spikes;
 mod covariance_golden;
 mod ensemble_against;
 mod ensemble_prediction;

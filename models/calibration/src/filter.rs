@@ -52,6 +52,8 @@ pub struct Measured {
     pub rejected: bool,
     /// It started a recovery.
     pub recovery_started: bool,
+    /// Angle by which it turned the attitude, rad.
+    pub turned_rad: f64,
 }
 
 /// Counts over the whole calibration.
@@ -109,6 +111,8 @@ pub struct CalibrationFilter {
     elapsed_s: f64,
     force_sum: Vector3<f64>,
     time_s: f64,
+    /// Of closed sub-steps since the last account of them: see [`Self::take_turned`].
+    turned: Turned,
     rejected_in_a_row: u32,
     stage: Stage,
     tally: Tally,
@@ -120,7 +124,7 @@ pub struct CalibrationFilter {
 #[cfg(feature = "state")]
 octant_state::state! {
     CalibrationFilter {
-        values: elapsed_s, force_sum, time_s, rejected_in_a_row, stage, tally;
+        values: elapsed_s, force_sum, time_s, turned, rejected_in_a_row, stage, tally;
         parts: covariance, transition, sub_step, drift, checkpoints;
         kept: model, aiding, site, gate, gyro_variance_per_s, accel_variance_per_s;
         check: Self::check_counts
@@ -133,8 +137,32 @@ impl CalibrationFilter {
         let Tally { used, rejected, nis_sum: _, recoveries, held } = self.tally;
         octant_state::check_count("tally.used", used)?;
         octant_state::check_count("tally.rejected", rejected)?;
-        octant_state::check_below("tally.recoveries", recoveries.into(), used)?;
+        octant_state::check_count("tally.recoveries", recoveries.into())?;
         octant_state::check_below("tally.held", held, used)
+    }
+}
+
+/// What the sensors felt over a while: increments of the gyros (b, rad), change of velocity by specific
+/// force (n, m/s), and how long it was, s.
+#[derive(Clone, Copy, Debug, Default)]
+#[cfg_attr(feature = "state", derive(serde::Serialize, serde::Deserialize))]
+pub struct Turned {
+    /// Increments of the gyros, compensated, in b, rad.
+    pub delta_theta: Vector3<f64>,
+    /// Change of velocity by specific force in n, m/s.
+    pub delta_velocity_n: Vector3<f64>,
+    /// Duration, s.
+    pub elapsed_s: f64,
+    /// Channels that were bridged somewhere in it, as bits.
+    pub bridged: u8,
+}
+
+impl Turned {
+    fn add(&mut self, other: &Self) {
+        self.delta_theta += other.delta_theta;
+        self.delta_velocity_n += other.delta_velocity_n;
+        self.elapsed_s += other.elapsed_s;
+        self.bridged |= other.bridged;
     }
 }
 
@@ -171,6 +199,15 @@ impl SubStep {
 }
 
 impl SubStep {
+    fn turned(&self) -> Turned {
+        Turned {
+            delta_theta: self.delta_theta,
+            delta_velocity_n: self.delta_velocity_n,
+            elapsed_s: self.elapsed_s,
+            bridged: self.bridged,
+        }
+    }
+
     fn new(samples_max: u32) -> Self {
         Self {
             samples_max,
@@ -272,6 +309,7 @@ impl CalibrationFilter {
             elapsed_s: 0.0,
             force_sum: Vector3::zeros(),
             time_s: 0.0,
+            turned: Turned::default(),
             rejected_in_a_row: 0,
             stage: Stage::Normal,
             tally: Tally::default(),
@@ -363,6 +401,39 @@ impl CalibrationFilter {
         }
         self.elapsed_s += step.elapsed_s;
         self.force_sum += step.delta_velocity_n;
+        self.turned.add(&step.turned());
+    }
+
+    /// What was felt since this was last asked for.
+    pub fn take_turned(&mut self) -> Turned {
+        let open = self.sub_step.turned();
+        let mut turned = core::mem::take(&mut self.turned);
+        turned.add(&open);
+        // The next one gets the whole of the sub-step that is open.
+        self.turned.delta_theta = -open.delta_theta;
+        self.turned.delta_velocity_n = -open.delta_velocity_n;
+        self.turned.elapsed_s = -open.elapsed_s;
+        turned
+    }
+
+    /// Something is wrong with the increments of the last seconds: what was learned from them is
+    /// undone, and attitude and velocity are open again. `false`: the configuration has no such
+    /// recovery.
+    pub fn suspect(&mut self, strapdown: &mut Strapdown, parameters: &mut Parameters) -> bool {
+        let Some(gate @ Gate { recovery: Recovery::Widening, .. }) = self.gate else {
+            return false;
+        };
+        if self.checkpoints.is_none() {
+            return false;
+        }
+        self.propagate(strapdown);
+        if self.stage == Stage::Normal {
+            self.go_back(parameters);
+            self.tally.recoveries = self.tally.recoveries.saturating_add(1);
+        }
+        self.rejected_in_a_row = 0;
+        self.open_wide(&gate, &Vector3::zeros(), strapdown);
+        true
     }
 
     /// Brings the covariance to the present.
@@ -406,7 +477,7 @@ impl CalibrationFilter {
         {
             if gate.recovery == Recovery::Widening && !self.is_plausible(&error) {
                 self.tally.rejected += 1;
-                return Some(Measured { nis, rejected: true, recovery_started });
+                return Some(Measured { nis, rejected: true, recovery_started, turned_rad: 0.0 });
             }
             if matches!(self.stage, Stage::Capture(_)) {
                 // What started it still lasts, or one opening was not wide enough.
@@ -415,7 +486,12 @@ impl CalibrationFilter {
                 self.rejected_in_a_row = self.rejected_in_a_row.saturating_add(1);
                 if self.rejected_in_a_row < gate.rejections {
                     self.tally.rejected += 1;
-                    return Some(Measured { nis, rejected: true, recovery_started });
+                    return Some(Measured {
+                        nis,
+                        rejected: true,
+                        recovery_started,
+                        turned_rad: 0.0,
+                    });
                 }
                 self.go_back(parameters);
                 self.start_recovery(&gate, &error, strapdown);
@@ -434,7 +510,7 @@ impl CalibrationFilter {
                 self.covariance.update(first + axis, r, innovation, &mut x);
             }
         }
-        self.feed_back(&x, strapdown, parameters);
+        let turned_rad = self.feed_back(&x, strapdown, parameters);
         self.tally.used += 1;
         if held {
             self.tally.held += 1;
@@ -445,7 +521,7 @@ impl CalibrationFilter {
                 drift.watch(self.time_s, parameters, &self.covariance);
             }
         }
-        Some(Measured { nis, rejected: false, recovery_started })
+        Some(Measured { nis, rejected: false, recovery_started, turned_rad })
     }
 
     /// First state, standard deviation and error (computed − reference) of a measurement.
@@ -498,7 +574,7 @@ impl CalibrationFilter {
         x: &[f64; STATE_COUNT],
         strapdown: &mut Strapdown,
         parameters: &mut Parameters,
-    ) {
+    ) -> f64 {
         let at = |i: usize| Vector3::new(x[i], x[i + 1], x[i + 2]);
         let (mut phi, mut dv, dr) = (at(PHI), at(DV), at(DR));
         if self.model == ErrorModel::Psi {
@@ -512,6 +588,7 @@ impl CalibrationFilter {
             *value += change;
         }
         *parameters = Parameters::from_array(&all);
+        phi.norm()
     }
 
     /// Keeps the parameters of one to two minutes ago.

@@ -13,6 +13,7 @@
 //! | [`sequence`], [`positions`], [`schedule`] | the stops, the published ones, and when the gimbals turn |
 //! | [`monitor`] | what is wrong with a sample on its face: gaps, stuck channels, saturation |
 //! | [`screen`] | increments that jump as no motion makes them |
+//! | [`continuity`] | rates that break off, as those of a spike below what a single sample shows |
 //! | [`compensation`] | subtracting the estimated errors |
 //! | [`alignment`] | the first attitude, from gravity and Earth rate |
 //! | [`strapdown`] | attitude, velocity and position from increments |
@@ -29,6 +30,7 @@
 pub mod alignment;
 pub mod compensation;
 pub mod config;
+pub mod continuity;
 pub mod covariance;
 pub mod drift;
 pub mod error_model;

@@ -211,6 +211,17 @@ fn the_layout_is_the_stored_one() {
     assert_eq!(Writer::outline(&loaded), Writer::outline(core));
 }
 
+/// A core of an earlier version had less to remember: what it would be missing can't be made up.
+#[test]
+fn a_state_of_an_earlier_version_is_refused_in_words() {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/state");
+    let error = Core::load(&std::fs::read(format!("{folder}/core-1.bin")).unwrap()).unwrap_err();
+    assert_eq!(
+        error.to_string(),
+        "the state of a calibration core has version 1, this program reads version 2"
+    );
+}
+
 #[test]
 fn what_is_wrong_is_said() {
     let (_, core) = &cores()[1];

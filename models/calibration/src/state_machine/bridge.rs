@@ -20,15 +20,15 @@ use octant_sample::{GimbalAngles, Health, Mode, Parameters, Sample, Status};
 
 /// Beyond this an attitude jump that wasn't believed isn't followed, rad: 3°, as far as the linear
 /// error model bears.
-const OPEN_MAX_RAD: f64 = 0.052;
+pub(super) const OPEN_MAX_RAD: f64 = 0.052;
 /// The same for velocity, m/s.
-const OPEN_MAX_MPS: f64 = 1.0;
+pub(super) const OPEN_MAX_MPS: f64 = 1.0;
 /// Uncertainty of the attitude from which on the parameters are held, rad: 600″.
 const HOLD_RAD: f64 = 2.9e-3;
 /// Turn of a gimbal that is none, rad: 20″. Encoders of a standing gimbal flicker.
 const TURNED_RAD: f64 = 1e-4;
 /// Turn in one interval that is a motion and not the flicker of a reading, rad: 1″. Less than that is
-/// what the first sample of a move turns, and no loss if it isn't believed.
+/// what the first sample of a move turns: where it isn't believed, the encoders' turn stands in.
 const TURNS_RAD: f64 = 5e-6;
 
 /// What is remembered of the stretch that is being bridged.
@@ -45,6 +45,8 @@ pub(super) struct Bridge {
     open: u8,
     /// What jumps would have added, had they been believed: rad and m/s, in b.
     disbelieved: (Vector3<f64>, Vector3<f64>),
+    /// The last sample was bridged because it jumped.
+    jumps: bool,
     /// Encoder angles before the stretch, and whether their uncertainty is accounted for.
     start: GimbalAngles,
     encoders_counted: [bool; 2],
@@ -81,7 +83,7 @@ fn counts_of(sample: &Sample) -> Counts {
 }
 
 /// Rotation of the body in its own axes when the gimbals turn from one reading to another.
-fn gimbal_turn(from: GimbalAngles, to: GimbalAngles) -> Vector3<f64> {
+pub(super) fn gimbal_turn(from: GimbalAngles, to: GimbalAngles) -> Vector3<f64> {
     let azimuth = to.azimuth_rad() - from.azimuth_rad();
     let roll = to.roll_rad() - from.roll_rad();
     let (sin, cos) = libm::sincos(0.5 * (from.azimuth_rad() + to.azimuth_rad()));
@@ -147,10 +149,10 @@ impl Core {
                 || turned(sample.gimbal.roll, before.roll))
     }
 
-    /// Turn of the gimbals in this sample's interval; none where the encoders can't be used or say
-    /// what the turntable can't do.
-    fn gimbals_turned(&self, sample: &Sample, standing: bool) -> Vector3<f64> {
-        if standing || sample.status.contains(Status::GIMBAL_INVALID) {
+    /// Turn of the gimbals in this sample's interval; none where the encoders can't be used. Those of
+    /// standing gimbals flicker, which adds up to nothing, or begin to turn.
+    fn gimbals_turned(&self, sample: &Sample) -> Vector3<f64> {
+        if sample.status.contains(Status::GIMBAL_INVALID) {
             return Vector3::zeros();
         }
         gimbal_turn(self.bridge.gimbal, sample.gimbal)
@@ -163,7 +165,7 @@ impl Core {
         let counts = counts_of(sample);
         let standing = !self.gimbals_may_move() && !self.gimbals_turn(sample);
         let still = self.knows_its_motion();
-        let turn = self.gimbals_turned(sample, standing);
+        let turn = self.gimbals_turned(sample);
         let (theta, v) = self.known_motion(&turn, interval_s);
         let known = still.then(|| measured(&self.parameters, &theta, &v, interval_s));
         let known_counts = known.map(|known| known.counts());
@@ -184,6 +186,7 @@ impl Core {
             channels = self.channels_to_bridge(sample, &found);
         }
         if channels != 0 {
+            self.disturbed_tick = self.tick;
             self.begin_stretch();
             let bridged = match known {
                 Some(known) => known,
@@ -216,6 +219,13 @@ impl Core {
         if channels == 0 {
             self.end_stretch();
         }
+        // On a base that moves nothing says whether what is believed again is right: a spike that lasts
+        // is believed too, and the last increments stood in for it badly.
+        let jumps = found.jumped != 0;
+        if !still && !jumps && self.bridge.jumps {
+            self.mend();
+        }
+        self.bridge.jumps = jumps;
     }
 
     /// Out of line: the integration itself belongs to where good samples are.

@@ -48,6 +48,9 @@ impl Core {
             let expected = ticks * self.config.sample_period_ns / period;
             let (bridged, gimbal_slips) = (self.bridge.samples, self.slips.count);
             let quality = judge(filter, kalman, expected, (bridged, ticks))?;
+            if self.unrepaired != 0 {
+                return Err(Refusal::Disturbed { disturbances: self.unrepaired });
+            }
             return Ok(Quality { bridged, gimbal_slips, ..quality });
         }
         let Some(adjusted) = self.estimation.adjust() else { return Err(Refusal::Numeric) };

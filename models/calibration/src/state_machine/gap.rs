@@ -21,6 +21,7 @@ impl Core {
         }
         // The clock of the procedure goes on: the turntable does too.
         self.tick = self.tick.saturating_add(missing);
+        self.disturbed_tick = self.tick;
     }
 
     fn hold_last(&mut self, missing: u64) {

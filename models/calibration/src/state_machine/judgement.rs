@@ -73,6 +73,16 @@ pub enum Refusal {
         /// Samples of the calibration.
         total: u64,
     },
+    /// Something was wrong and could not be undone.
+    #[error(
+        "{disturbances} {} noticed and could not be undone: what was learned from {} can't be told",
+        if *disturbances == 1 { "disturbance was" } else { "disturbances were" },
+        if *disturbances == 1 { "it" } else { "them" }
+    )]
+    Disturbed {
+        /// Disturbances.
+        disturbances: u64,
+    },
     /// A parameter did not stand still while it was estimated.
     #[error(
         "{} drifted: between {:.0} s and {:.0} s it was corrected by {sigmas:.1} times what its \

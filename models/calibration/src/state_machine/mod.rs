@@ -2,6 +2,7 @@
 
 mod bridge;
 mod check;
+mod edges;
 mod ending;
 mod estimation;
 mod gap;
@@ -18,6 +19,7 @@ pub use state::FORMAT as STATE_FORMAT;
 use crate::alignment::CoarseAlignment;
 use crate::compensation::Compensation;
 use crate::config::{Alignment, Calibration, Config, Estimator, Kalman, Site};
+use crate::continuity::{Continuity, POINTS, block_ticks};
 use crate::drift::Drift;
 use crate::filter::CalibrationFilter;
 use crate::monitor::{Monitor, MonitorTally, Order};
@@ -26,6 +28,7 @@ use crate::screen::Screen;
 use crate::strapdown::{Strapdown, Vertical};
 use crate::table::{CalibrationTable, Quality};
 use bridge::Bridge;
+use edges::Disturbance;
 use estimation::{Estimation, Standstill};
 use gimbals::Slips;
 use judgement::quality_of;
@@ -81,6 +84,17 @@ pub struct Core {
     screen: Screen,
     bridge: Bridge,
     slips: Slips,
+    /// Where the filter runs and jumps are looked for; its next block is whole at this tick.
+    continuity: Option<Continuity>,
+    block_tick: u64,
+    block_ticks: u64,
+    /// Disturbances that were noticed and couldn't be undone.
+    unrepaired: u64,
+    /// Tick at which something was last noticed that explains a recovery of the filter.
+    disturbed_tick: u64,
+    disturbance: Option<Disturbance>,
+    /// What was felt beyond the known motion in the last blocks, the newest first.
+    recent: [(Vector3<f64>, Vector3<f64>); POINTS],
     alignment: Option<(CoarseAlignment, u64)>,
     estimation: Estimation,
     standstill: Standstill,
@@ -155,6 +169,13 @@ impl Core {
             screen: Screen::new(&config.screening, &config.noise, &config.turntable, sample_s),
             bridge: Bridge::default(),
             slips: Slips::default(),
+            continuity: None,
+            block_tick: u64::MAX,
+            block_ticks: block_ticks(sample_s),
+            unrepaired: 0,
+            disturbed_tick: 0,
+            disturbance: None,
+            recent: Default::default(),
             alignment,
             estimation: Estimation::Idle,
             standstill: Standstill::default(),
@@ -205,6 +226,7 @@ impl Core {
         self.estimation = Estimation::new(&self.config, calibration)?;
         if let Estimation::Kalman(filter) = &self.estimation {
             self.sigma = filter.parameter_sigmas();
+            self.start_edges();
         }
         Ok(())
     }
@@ -266,6 +288,9 @@ impl Core {
         self.take(sample, interval_s, &mut health);
         match self.mode {
             Mode::Calibrating => {
+                if self.tick >= self.block_tick {
+                    self.look_for_edges(sample, &mut health);
+                }
                 if aiding.is_some() || self.tick >= self.due_tick {
                     self.measure(sample, aiding, &mut health, &mut nis);
                 }
@@ -443,6 +468,8 @@ impl Core {
         else {
             return;
         };
+        let explains_ticks = self.explains_ticks();
+        let after_move = self.has_moved_within(explains_ticks);
         let period_ticks = kalman.aiding_period_ns / self.config.sample_period_ns;
         let due = self.tick.is_multiple_of(period_ticks);
         self.due_tick = self.tick.checked_next_multiple_of(period_ticks).unwrap_or(u64::MAX);
@@ -475,6 +502,18 @@ impl Core {
                 self.compensation = Compensation::new(&self.parameters);
                 self.sigma = filter.parameter_sigmas();
                 self.revision = self.revision.saturating_add(1);
+            }
+            if measured.turned_rad > edges::CORRECTION_RAD
+                && let Some(continuity) = &mut self.continuity
+            {
+                continuity.restart(sample.gimbal);
+            }
+            if measured.recovery_started
+                && self.tick - self.disturbed_tick > explains_ticks
+                && after_move
+            {
+                // What contradicts the measurements may have been learned long ago.
+                self.unrepaired = self.unrepaired.saturating_add(1);
             }
             self.nis_running += (measured.nis - self.nis_running) / NIS_MEMORY;
         } else if aiding.is_some() {

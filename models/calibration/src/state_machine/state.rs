@@ -17,7 +17,7 @@ extern crate alloc;
 /// What the state of a core looks like. The version has to be raised when the layout changes; a test
 /// compares it with the stored one.
 pub const FORMAT: Format =
-    Format { magic: "OCTANTCC", version: 1, what: "the state of a calibration core" };
+    Format { magic: "OCTANTCC", version: 2, what: "the state of a calibration core" };
 
 impl Core {
     /// Appends everything that the core needs to go on, bit for bit, as after this step: the same
@@ -81,6 +81,13 @@ impl State for Core {
             screen,
             bridge,
             slips,
+            continuity,
+            block_tick,
+            block_ticks: _,
+            unrepaired,
+            disturbed_tick,
+            disturbance,
+            recent,
             alignment,
             estimation,
             standstill,
@@ -111,6 +118,12 @@ impl State for Core {
         to.part("screen", screen);
         to.value("bridge", bridge);
         to.value("slips", slips);
+        to.part("continuity", continuity);
+        to.value("block_tick", block_tick);
+        to.value("unrepaired", unrepaired);
+        to.value("disturbed_tick", disturbed_tick);
+        to.value("disturbance", disturbance);
+        to.value("recent", recent);
         to.value("aligns", &alignment.is_some());
         if let Some((alignment, _)) = alignment {
             to.part("alignment", alignment);
@@ -152,6 +165,13 @@ impl State for Core {
         from.part("screen", &mut self.screen)?;
         self.bridge = from.value("bridge")?;
         self.slips = from.value("slips")?;
+        from.part("continuity", &mut self.continuity)?;
+        self.block_tick = from.value("block_tick")?;
+        self.unrepaired = from.value("unrepaired")?;
+        self.disturbed_tick = from.value("disturbed_tick")?;
+        check_below("disturbed_tick", self.disturbed_tick, self.tick)?;
+        self.disturbance = from.value("disturbance")?;
+        self.recent = from.value("recent")?;
         if from.value("aligns")? {
             let (alignment, _) = self.alignment.as_mut().ok_or_else(|| unexpected("alignment"))?;
             from.part("alignment", alignment)?;

@@ -1,0 +1,391 @@
+//! Rates that break off: what a spike leaves in the increments of a tenth of a second.
+//!
+//! Turntable and base turn smoothly: over two seconds the rate of a body is a polynomial of low
+//! degree, wherever a drive doesn't change its acceleration, and there the encoders show it. A spike
+//! has edges. So the increments of blocks of 0.1 s go through a step filter: twenty weights of norm
+//! one that are orthogonal to every polynomial up to a degree and otherwise as near to a step as
+//! can be. What comes out is white noise with the σ of a block, or a spike:
+//!
+//! | spike lasts | rotation that gives 6.5 σ, Table 1 |
+//! |---|---|
+//! | up to 0.1 s | 0.14″ |
+//! | 0.5 s | 0.9″ |
+//! | 2 s | 3.0″ |
+//! | 10 s | 15″ |
+//!
+//! Where the gimbals of a base that stands stand too, the rate itself is known, and a cumulative sum
+//! of what is beyond it (Page, 1954) finds 1″ of any length.
+//!
+//! The gyros are looked at in the case, with the encoders' turn taken off, so that neither a move nor a
+//! ship's sway through turning axes shows. An edge counts only if the gyros themselves have it, not the
+//! encoders alone, and if it is larger than what axes and encoders can make of what both have, as at
+//! every start of a move. Velocity is looked at in n, where a turn doesn't show.
+
+use crate::config::{Base, Kalman, Noise, Screening, TurntableRates};
+use nalgebra::{Matrix3, Vector3};
+use octant_sample::GimbalAngles;
+use octant_sample::counts::{DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS};
+use octant_sample::parameters::Group;
+
+/// Length of a block, s, and blocks of the filter.
+const BLOCK_S: f64 = 0.1;
+pub(crate) const POINTS: usize = 20;
+/// Turn of the case in c, and change of velocity in n: what is looked at always.
+const CHANNELS: usize = 6;
+/// Turn of the body in b, azimuth and roll: what is looked at when the case seems to break off.
+const OTHERS: usize = 5;
+/// Degrees that the filter is blind to.
+/// Turn of an encoder in a block that is none, rad: 20″.
+pub(crate) const TURNS_RAD: f64 = 1e-4;
+/// Degree up to which the filter is blind to polynomials: a ship's sway of 6 s leaves 1e-6 of its rate.
+const DEGREE: usize = 7;
+/// Standard deviations that noise is allowed. 8e-11 for a normal variable: 7e-5 in four hours of six
+/// channels.
+const NOISE_SIGMAS: f64 = 6.5;
+/// Standard deviations that axes and encoders are allowed.
+const AXES_SIGMAS: f64 = 6.0;
+/// Root mean square of an encoder's slope by its error: that of harmonics one to four of equal size.
+const SLOPE: f64 = 2.74;
+/// White noise of a sample below this many counts isn't what limits a real sensor.
+const TESTABLE_COUNTS: f64 = 20.0;
+/// Rate beyond the known one that the cumulative sum leaves to noise, in units of the angle random
+/// walk per √s, and the probability (as a natural logarithm) of reaching its limit by noise:
+/// a Brownian motion with drift −k reaches h with exp(−2kh/σ²).
+const SUM_RATE: f64 = 2.5;
+const SUM_LOG: f64 = 40.0;
+/// Share of a turn that begins or ends up to which an edge may be that of encoders that slipped, by 3°; two
+/// of these are.
+const ENCODERS_SHARE: f64 = 0.05;
+const ENCODERS_EDGES: u32 = 2;
+/// Alarms in a stretch, s, that spikes make. A stream with more of them is like this.
+const ALARMS_MAX: u32 = 6;
+const STRETCH_BLOCKS: u32 = 600;
+
+/// One block of increments.
+#[derive(Clone, Copy, Debug)]
+pub struct Block {
+    /// Turn by the gyros in b, rad: measured, as the sensors scale it.
+    pub turn: Vector3<f64>,
+    /// Change of velocity by specific force in n, m/s.
+    pub velocity: Vector3<f64>,
+    /// Encoder angles at its end.
+    pub gimbal: GimbalAngles,
+    /// Turn by the gyros beyond the Earth's, rad, where the gimbals stand and that is known.
+    pub beyond: Option<Vector3<f64>>,
+}
+
+/// Looks for rates that break off.
+#[derive(Clone, Debug)]
+pub struct Continuity {
+    weights: [f64; POINTS],
+    /// What noise and the base make of gyros (rad) and velocity (m/s).
+    limits: [f64; 2],
+    /// Share of a turn that axes and encoders may show otherwise.
+    axes: f64,
+    /// What the sway of a turning case makes of one block in which the drive changes its acceleration, rad.
+    corner: f64,
+    /// Of the cumulative sums: turn of a block that is left to noise, and limit, rad.
+    sum: (f64, f64),
+
+    ring: [[f64; CHANNELS]; POINTS],
+    others: [[f64; OTHERS]; POINTS],
+    next: usize,
+    filled: usize,
+    gimbal: GimbalAngles,
+    /// Turns of azimuth and roll in the last block, rad.
+    turned: [f64; 2],
+    /// `c_cb` where the gimbals have stood for a block, and where that was.
+    middle: (GimbalAngles, Matrix3<f64>),
+    sums: [[f64; 2]; 3],
+    widened: [f64; 2],
+    alarms: [u32; 2],
+    /// Edges that encoders which slipped would show as well.
+    encoder_edges: u32,
+    /// Blocks until the stretch is over.
+    stretch: u32,
+}
+
+#[cfg(feature = "state")]
+octant_state::state! {
+    Continuity {
+        values: ring, others, next, filled, gimbal, turned, middle, sums, widened, alarms, encoder_edges, stretch;
+        parts: ;
+        kept: weights, limits, axes, corner, sum;
+        check: Self::check_places
+    }
+}
+
+#[cfg(feature = "state")]
+impl Continuity {
+    fn check_places(&self) -> Result<(), octant_state::StateError> {
+        octant_state::check_below("next", self.next as u64, POINTS as u64 - 1)?;
+        octant_state::check_below("filled", self.filled as u64, POINTS as u64)?;
+        for alarms in self.alarms {
+            octant_state::check_below("alarms", alarms.into(), ALARMS_MAX.into())?;
+        }
+        Ok(())
+    }
+}
+
+/// Samples of a block.
+#[must_use]
+pub fn block_ticks(sample_s: f64) -> u64 {
+    ((BLOCK_S / sample_s + 1e-9) as u64).max(1)
+}
+
+/// A step with everything taken out that polynomials up to the degree have, of norm one.
+fn weights() -> [f64; POINTS] {
+    let at = |i: usize| (2.0 * i as f64 + 1.0) / POINTS as f64 - 1.0;
+    let dot =
+        |a: &[f64; POINTS], b: &[f64; POINTS]| -> f64 { a.iter().zip(b).map(|(a, b)| a * b).sum() };
+    let mut bases = [[0.0; POINTS]; DEGREE + 1];
+    let mut step: [f64; POINTS] = core::array::from_fn(|i| if 2 * i < POINTS { -1.0 } else { 1.0 });
+    for power in 0..=DEGREE {
+        // From the last one, not from the power: twice is enough (Giraud and others, 2005).
+        let mut basis: [f64; POINTS] = match power {
+            0 => [1.0; POINTS],
+            _ => core::array::from_fn(|i| bases[power - 1][i] * at(i)),
+        };
+        for _ in 0..2 {
+            for other in &bases[..power] {
+                let share = dot(&basis, other);
+                basis.iter_mut().zip(other).for_each(|(value, other)| *value -= share * other);
+            }
+        }
+        let norm = libm::sqrt(dot(&basis, &basis));
+        bases[power] = basis.map(|value| value / norm);
+        let share = dot(&step, &bases[power]);
+        step.iter_mut().zip(&bases[power]).for_each(|(value, basis)| *value -= share * basis);
+    }
+    let norm = libm::sqrt(dot(&step, &step));
+    step.map(|value| value / norm)
+}
+
+/// Mean of an angle over a block that ends at `end`, in which it turned by `turn`, and by `before` in the
+/// block before: to second order in time.
+fn mean(end: f64, turn: f64, before: f64) -> f64 {
+    end - 0.5 * turn - (turn - before) / 12.0
+}
+
+/// `Rx(roll) · Rz(azimuth)`.
+fn c_cb(azimuth_rad: f64, roll_rad: f64) -> Matrix3<f64> {
+    let ((sa, ca), (sr, cr)) = (libm::sincos(azimuth_rad), libm::sincos(roll_rad));
+    Matrix3::new(ca, -sa, 0.0, cr * sa, cr * ca, -sr, sr * sa, sr * ca, cr)
+}
+
+impl Continuity {
+    /// For samples of this period; `None` where the noise is too small for the counts to tell.
+    #[must_use]
+    pub fn new(
+        screening: &Screening,
+        kalman: &Kalman,
+        noise: &Noise,
+        turntable: &TurntableRates,
+        sample_s: f64,
+    ) -> Option<Self> {
+        let sqrt_s = libm::sqrt(sample_s);
+        let testable = |walk: f64, lsb: f64| walk * sqrt_s / lsb >= TESTABLE_COUNTS;
+        if !testable(noise.angle_random_walk, DELTA_THETA_LSB_RAD)
+            || !testable(noise.velocity_random_walk, DELTA_VELOCITY_LSB_MPS)
+        {
+            return None;
+        }
+        let block_s = block_ticks(sample_s) as f64 * sample_s;
+        let window_s = block_s * POINTS as f64;
+        let base = match screening.base {
+            Base::Still => (0.0, 0.0),
+            // What is left of a sine of angular frequency ω beside its best polynomial of degree d
+            // over a window T: (ωT/2)^(d+1) / (2^d (d+1)!) of its amplitude (Chebyshev). Frequencies
+            // from the bounds of rate and acceleration, of force and jerk.
+            Base::Moving(motion) => {
+                let left = |omega: f64| {
+                    (0..=DEGREE).fold(2.0, |left, power| {
+                        left * omega * 0.25 * window_s / (power + 1) as f64
+                    })
+                };
+                let frequency = |of: f64, by: f64| if by > 0.0 { of / by } else { 0.0 };
+                let turning = frequency(motion.acceleration_radps2, motion.rate_radps);
+                let pushing = frequency(motion.jerk_mps3, motion.force_mps2);
+                (motion.rate_radps * left(turning), motion.force_mps2 * left(pushing))
+            }
+        };
+        let sqrt_block = libm::sqrt(block_s);
+        let norm = libm::sqrt(POINTS as f64);
+        let limit = |walk: f64, base: f64, resolution: f64, vibration: f64| {
+            NOISE_SIGMAS * walk * sqrt_block + norm * (base * block_s + resolution + vibration)
+        };
+        let prior = |group| kalman.prior.of(group);
+        let encoder = SLOPE * screening.encoder_sigma_rad;
+        let (scale, across) = (prior(Group::GyroScale), prior(Group::GyroMisalignment));
+        let walk = noise.angle_random_walk;
+        // Biases and Earth rate through the attitude handed over, rad/s.
+        let known = AXES_SIGMAS
+            * (prior(Group::GyroBias)
+                + 10.0 * prior(Group::GDependent)
+                + 7.3e-5 * kalman.prior.attitude_rad[2].min(0.05));
+        Some(Self {
+            weights: weights(),
+            limits: [
+                limit(walk, base.0, screening.resolution.0, screening.vibration.0),
+                limit(
+                    noise.velocity_random_walk,
+                    base.1,
+                    screening.resolution.1,
+                    screening.vibration.1,
+                ),
+            ],
+            axes: AXES_SIGMAS * libm::sqrt(scale * scale + across * across + encoder * encoder),
+            corner: match screening.base {
+                Base::Still => 0.0,
+                // Of the mean angle of a block a twelfth of what the acceleration turns in it is corrected,
+                // by the wrong half where it changes.
+                Base::Moving(motion) => {
+                    let angle = turntable.acceleration_radps2 * block_s * block_s / 24.0;
+                    let weight = weights().iter().fold(0.0f64, |most, one| most.max(one.abs()));
+                    weight * motion.rate_radps * block_s * angle
+                }
+            },
+            sum: (
+                (SUM_RATE * walk + known) * block_s,
+                0.5 * SUM_LOG * walk / SUM_RATE
+                    + 2.0 * (screening.resolution.0 + screening.vibration.0),
+            ),
+            ring: [[0.0; CHANNELS]; POINTS],
+            others: [[0.0; OTHERS]; POINTS],
+            turned: [0.0; 2],
+            middle: (GimbalAngles::default(), Matrix3::identity()),
+            next: 0,
+            filled: 0,
+            gimbal: GimbalAngles::default(),
+            sums: [[0.0; 2]; 3],
+            widened: [1.0; 2],
+            alarms: [0; 2],
+            encoder_edges: 0,
+            stretch: 0,
+        })
+    }
+
+    /// What came before doesn't count: the stream broke off, or was mended.
+    pub fn restart(&mut self, gimbal: GimbalAngles) {
+        self.filled = 0;
+        self.sums = [[0.0; 2]; 3];
+        self.gimbal = gimbal;
+    }
+
+    /// Encoder angles at the end of the last block.
+    #[must_use]
+    pub fn gimbal(&self) -> GimbalAngles {
+        self.gimbal
+    }
+
+    /// Edges at starts and ends of turns were such that it will be the encoders that are off.
+    #[must_use]
+    pub fn distrusts_encoders(&self) -> bool {
+        self.encoder_edges >= ENCODERS_EDGES
+    }
+
+    /// Takes a block; `true`: a rate broke off.
+    pub fn add(&mut self, block: &Block) -> bool {
+        let azimuth = block.gimbal.azimuth_rad() - self.gimbal.azimuth_rad();
+        let roll = block.gimbal.roll_rad() - self.gimbal.roll_rad();
+        if self.gimbal != block.gimbal || self.middle.0 != block.gimbal {
+            self.middle = (
+                // Where they were before, if they turn: no match for the next block.
+                self.gimbal,
+                c_cb(
+                    mean(block.gimbal.azimuth_rad(), azimuth, self.turned[0]),
+                    mean(block.gimbal.roll_rad(), roll, self.turned[1]),
+                ),
+            );
+        }
+        self.gimbal = block.gimbal;
+        self.turned = [azimuth, roll];
+        let c_cb = &self.middle.1;
+        let (turn, velocity) = (&block.turn, &block.velocity);
+        // Azimuth turns about body z, roll about case x.
+        let case = c_cb * (turn - Vector3::new(0.0, 0.0, azimuth)) - Vector3::new(roll, 0.0, 0.0);
+        self.ring[self.next] = [case.x, case.y, case.z, velocity.x, velocity.y, velocity.z];
+        self.others[self.next] = [turn.x, turn.y, turn.z, azimuth, roll];
+        self.next = (self.next + 1) % POINTS;
+        self.filled = (self.filled + 1).min(POINTS);
+        self.stretch = self.stretch.saturating_sub(1);
+        if self.stretch == 0 {
+            self.alarms = [0; 2];
+        }
+        let mut found = self.sums_reach(block).then_some(0);
+        if found.is_none() && self.filled == POINTS {
+            let [x, y, z, n, e, d] = self.filtered(&self.ring);
+            let largest = |a: f64, b: f64, c: f64| a.abs().max(b.abs()).max(c.abs());
+            if largest(x, y, z) > self.limit(0) && self.breaks(largest(x, y, z)) {
+                found = Some(0);
+            } else if largest(n, e, d) > self.limit(1) {
+                found = Some(1);
+            }
+        }
+        let Some(triad) = found else { return false };
+        self.alarm(triad, block.gimbal)
+    }
+
+    fn alarm(&mut self, triad: usize, gimbal: GimbalAngles) -> bool {
+        self.restart(gimbal);
+        self.stretch = STRETCH_BLOCKS;
+        self.alarms[triad] += 1;
+        if self.alarms[triad] >= ALARMS_MAX {
+            self.alarms[triad] = 0;
+            self.widened[triad] *= 2.0;
+        }
+        true
+    }
+
+    fn limit(&self, triad: usize) -> f64 {
+        self.limits[triad] * self.widened[triad]
+    }
+
+    /// Answers of the step filter, channel by channel.
+    #[inline]
+    fn filtered<const N: usize>(&self, ring: &[[f64; N]; POINTS]) -> [f64; N] {
+        let mut sums = [0.0; N];
+        let (newer, older) = ring.split_at(self.next);
+        for (row, weight) in older.iter().chain(newer).zip(&self.weights) {
+            for (sum, value) in sums.iter_mut().zip(row) {
+                *sum += weight * value;
+            }
+        }
+        sums
+    }
+
+    /// The turn of the case breaks off by so much, and it isn't the encoders that do.
+    #[cold]
+    fn breaks(&mut self, case: f64) -> bool {
+        let [x, y, z, azimuth, roll] = self.filtered(&self.others);
+        let (limit, body) = (self.limit(0), x.abs().max(y.abs()).max(z.abs()));
+        let turns =
+            self.others.iter().any(|[.., azimuth, roll]| azimuth.abs() + roll.abs() > TURNS_RAD);
+        let corner = if turns { self.corner } else { 0.0 };
+        let found =
+            body > limit && case > limit + corner + self.axes * (body + azimuth.abs() + roll.abs());
+        if found && turns && case < ENCODERS_SHARE * body {
+            self.encoder_edges = self.encoder_edges.saturating_add(1);
+        }
+        found
+    }
+
+    /// Cumulative sums to both sides of what turns beyond the Earth.
+    fn sums_reach(&mut self, block: &Block) -> bool {
+        let Some(beyond) = block.beyond else {
+            self.sums = [[0.0; 2]; 3];
+            return false;
+        };
+        let (allowed, limit) = (self.sum.0, self.sum.1 * self.widened[0]);
+        let mut reached = false;
+        for (sums, beyond) in self.sums.iter_mut().zip(beyond.iter()) {
+            sums[0] = (sums[0] + beyond - allowed).max(0.0);
+            sums[1] = (sums[1] - beyond - allowed).max(0.0);
+            reached |= sums[0].max(sums[1]) > limit;
+        }
+        reached
+    }
+}
+
+#[cfg(test)]
+mod tests;

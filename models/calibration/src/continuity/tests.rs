@@ -1,0 +1,114 @@
+//! Edges of spikes in blocks without noise.
+
+use super::*;
+use crate::config::{AidingMode, BaseMotion, ErrorModel, Prior};
+use core::f64::consts::PI;
+
+const SAMPLE_S: f64 = 0.005;
+/// Table 1, rad/√s: 0.0132″ in a block.
+const WALK: f64 = 2.036e-7;
+const ARCSEC: f64 = PI / 648_000.0;
+
+fn continuity(base: Base) -> Continuity {
+    let deg_per_hour = PI / 648_000.0;
+    let kalman = Kalman {
+        error_model: ErrorModel::Phi,
+        estimated: [true; 7],
+        prior: Prior {
+            attitude_rad: [3e-4, 3e-4, 1.7e-3],
+            velocity_mps: 0.02,
+            position_m: 1.0,
+            parameters: [0.005 * deg_per_hour, 3e-5, 2e-4, 5e-5 * deg_per_hour, 1e-3, 3e-5, 2e-4],
+        },
+        aiding: AidingMode::Velocity { sigma_mps: 1e-3 },
+        aiding_period_ns: 1_000_000_000,
+        refuse_above_mean_nis: 9.0,
+    };
+    let noise = Noise { angle_random_walk: WALK, velocity_random_walk: 4.9e-4 };
+    let table = TurntableRates { rate_radps: 0.1745, acceleration_radps2: 0.1745 };
+    Continuity::new(&Screening::hardened(base), &kalman, &noise, &table, SAMPLE_S).unwrap()
+}
+
+fn ship() -> Base {
+    Base::Moving(BaseMotion {
+        angle_rad: 0.2,
+        rate_radps: 0.16,
+        acceleration_radps2: 0.14,
+        force_mps2: 1.0,
+        jerk_mps3: 0.9,
+    })
+}
+
+fn block(turn: Vector3<f64>, beyond: Option<Vector3<f64>>) -> Block {
+    let gimbal = GimbalAngles::default();
+    Block { turn, velocity: Vector3::new(0.0, 0.0, -0.98), gimbal, beyond }
+}
+
+/// The block in which a rotation about x, rad, is found that is added over `blocks` blocks.
+fn found_after(
+    base: Base,
+    rotation: f64,
+    blocks: usize,
+    sway: impl Fn(usize) -> f64,
+) -> Option<usize> {
+    let mut continuity = continuity(base);
+    for k in 0..200 {
+        let spike = if (100..100 + blocks).contains(&k) { rotation / blocks as f64 } else { 0.0 };
+        if continuity.add(&block(Vector3::new(sway(k) + spike, 0.0, 0.0), None)) {
+            return Some(k);
+        }
+    }
+    None
+}
+
+/// Turn about the roll axis in block k of a ship that rolls by 3° in 8 s.
+fn rolling(k: usize) -> f64 {
+    let angle = |t: f64| 3.0 * PI / 180.0 * libm::sin(2.0 * PI / 8.0 * t);
+    angle(0.1 * (k + 1) as f64) - angle(0.1 * k as f64)
+}
+
+#[test]
+fn the_filter_is_blind_to_polynomials_and_of_norm_one() {
+    let weights = weights();
+    for power in 0..=DEGREE {
+        let sum: f64 = weights
+            .iter()
+            .enumerate()
+            .map(|(i, weight)| weight * libm::pow(i as f64 / 10.0 - 0.95, power as f64))
+            .sum();
+        assert!(sum.abs() < 1e-13, "degree {power}: {sum}");
+    }
+    let norm: f64 = weights.iter().map(|weight| weight * weight).sum();
+    assert!((norm - 1.0).abs() < 1e-14);
+}
+
+/// Without noise: what is found is what gives 6.5 σ by the table above, within a fifth.
+#[test]
+fn edges_are_found_from_the_size_that_the_table_says() {
+    for (blocks, arcsec) in [(1, 0.14), (5, 0.9), (20, 3.0), (99, 15.0)] {
+        for (base, sway) in [(Base::Still, 0.0), (ship(), 1.0)] {
+            let sway = |k: usize| sway * rolling(k);
+            let found = found_after(base, 1.2 * arcsec * ARCSEC, blocks, sway);
+            assert!(found.is_some_and(|k| (100..112).contains(&k)), "{blocks}: {found:?}");
+            assert_eq!(found_after(base, 0.8 * arcsec * ARCSEC, blocks, sway), None);
+        }
+    }
+}
+
+#[test]
+fn a_rate_that_is_known_needs_no_edges() {
+    let mut continuity = continuity(Base::Still);
+    // 1 °/h beyond the known rate, from the first block on.
+    let beyond = Vector3::new(0.0, -0.1 * ARCSEC, 0.0);
+    let found = (0..20).position(|_| continuity.add(&block(beyond, Some(beyond))));
+    assert!(found.is_some_and(|block| block < 8), "{found:?}");
+}
+
+#[test]
+fn a_stream_that_breaks_off_again_and_again_is_like_this() {
+    let mut continuity = continuity(Base::Still);
+    let rough = |k: usize| ARCSEC * if k % 23 == 0 { 1.0 } else { 0.0 };
+    let alarms = (0..3000).filter(|k| continuity.add(&block(Vector3::repeat(rough(*k)), None)));
+    let alarms = alarms.count();
+    assert!((6..40).contains(&alarms), "{alarms}");
+}

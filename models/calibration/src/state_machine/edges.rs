@@ -1,0 +1,238 @@
+//! Rates that break off, and what is done about them.
+
+use super::bridge::{OPEN_MAX_MPS, OPEN_MAX_RAD, gimbal_turn};
+use super::estimation::Estimation;
+use super::{Core, kalman_of};
+use crate::config::Base;
+use crate::continuity::{Block, Continuity, TURNS_RAD};
+use crate::filter::Turned;
+use nalgebra::{Matrix3, Vector3};
+use octant_sample::parameters::Group;
+use octant_sample::{GimbalAngles, Health, Mode, Sample, Status};
+
+/// A block is as long as it should be within this share; after a gap it isn't.
+const LENGTH_SHARE: f64 = 0.02;
+
+/// Correction of the attitude after which velocity in n breaks off by itself, rad: 50″ of gravity are
+/// half of what noise is allowed.
+pub(super) const CORRECTION_RAD: f64 = 2.4e-4;
+
+/// Time within which something that was noticed explains a recovery, s: a recovery goes back by one to two
+/// minutes.
+const EXPLAINS_S: f64 = 60.0;
+
+/// A disturbance of a base that stands is over after so long without a sign of it, s: longer than the
+/// filter of steps is blind after one.
+const QUIET_S: f64 = 2.5;
+/// Standard gravity, for a bound.
+const GRAVITY_MPS2: f64 = 9.81;
+
+/// The gimbals have turned by more than encoders flicker.
+fn turned(from: GimbalAngles, to: GimbalAngles) -> bool {
+    (to.azimuth_rad() - from.azimuth_rad()).abs().max((to.roll_rad() - from.roll_rad()).abs())
+        > TURNS_RAD
+}
+
+/// Something that disturbed the sensors on a base that stands, and what the filter was opened by for it.
+#[derive(Clone, Copy, Debug, Default)]
+#[cfg_attr(feature = "state", derive(serde::Serialize, serde::Deserialize))]
+pub(super) struct Disturbance {
+    /// What was felt beyond the known motion, in n, rad and m/s.
+    turned: Vector3<f64>,
+    moved: Vector3<f64>,
+    /// Variances that have been added for the turn, the velocity, and the velocity by the turn.
+    opened: [Matrix3<f64>; 3],
+    /// Variance that has been added for encoders and axes, rad².
+    axes: f64,
+}
+
+impl Disturbance {
+    /// What is missing of the variance along a vector.
+    fn open(&mut self, which: usize, along: Vector3<f64>) -> Matrix3<f64> {
+        let square = along.norm_squared();
+        if square == 0.0 {
+            return Matrix3::zeros();
+        }
+        let there = along.dot(&(self.opened[which] * along)) / square;
+        let missing = along * along.transpose() * ((square - there).max(0.0) / square);
+        self.opened[which] += missing;
+        missing
+    }
+}
+
+impl Core {
+    /// From the first sample of a calibration by a filter on.
+    pub(super) fn start_edges(&mut self) {
+        let screening = &self.config.screening;
+        let Some(kalman) = kalman_of(&self.config) else { return };
+        if screening.jumps {
+            self.continuity = Continuity::new(
+                screening,
+                kalman,
+                &self.config.noise,
+                &self.config.turntable,
+                self.sample_s,
+            );
+        }
+        if self.continuity.is_some() {
+            self.block_tick = 0;
+        }
+    }
+
+    /// Samples for which something that was noticed explains a recovery of the filter.
+    pub(super) fn explains_ticks(&self) -> u64 {
+        super::ticks(EXPLAINS_S, self.sample_s)
+    }
+
+    /// The gimbals move, or did so within these samples.
+    pub(super) fn has_moved_within(&self, ticks: u64) -> bool {
+        self.cursor.as_ref().is_some_and(|cursor| {
+            self.phase_tick() < cursor.arrival_tick().saturating_add(ticks)
+                && cursor.arrival_tick() > 0
+        })
+    }
+
+    /// Hands a block of increments over, and does something about a rate that broke off.
+    #[inline(never)]
+    pub(super) fn look_for_edges(&mut self, sample: &Sample, health: &mut Health) {
+        self.block_tick = (self.tick / self.block_ticks + 1) * self.block_ticks;
+        let Some(continuity) = &self.continuity else { return };
+        let before = continuity.gimbal();
+        // Encoders that slipped say nothing of moves any more.
+        let invalid = sample.status.contains(Status::GIMBAL_INVALID);
+        let blind = invalid || self.slips.count != 0 || continuity.distrusts_encoders();
+        let moves = self.gimbals_may_move() || (!invalid && turned(before, sample.gimbal));
+        let errors = self.parameters.gyro_matrix();
+        let errors = Matrix3::from_fn(|i, j| errors[i][j]);
+        let still = self.config.screening.base == Base::Still;
+        let Some(filter) = self.filter_mut() else { return };
+        let felt = filter.take_turned();
+        let settled = !filter.is_recovering();
+        let whole_s = self.block_ticks as f64 * self.sample_s;
+        // Where gimbals that stand are doesn't matter.
+        let gimbal = if blind { before } else { sample.gimbal };
+        let beyond = if still { self.beyond(&felt, before, gimbal) } else { Default::default() };
+        let Some(continuity) = &mut self.continuity else { return };
+        if (felt.elapsed_s - whole_s).abs() > LENGTH_SHARE * whole_s
+            || (!still && felt.bridged != 0)
+            || (blind && moves)
+        {
+            continuity.restart(sample.gimbal);
+            return;
+        }
+        let block = Block {
+            // The estimate changes with every measurement, what the sensors show doesn't.
+            turn: felt.delta_theta + errors * felt.delta_theta,
+            velocity: felt.delta_velocity_n,
+            gimbal,
+            beyond: (still && settled && !moves).then_some(beyond.0),
+        };
+        let broke_off = continuity.add(&block);
+        if broke_off {
+            *health |= Health::JUMP;
+        }
+        if still {
+            self.follow_disturbance(broke_off, moves, beyond);
+        } else if broke_off {
+            self.mend();
+        }
+    }
+
+    /// What was felt beyond what is known of the motion of a base that stands, in n: rad and m/s.
+    fn beyond(
+        &self,
+        felt: &Turned,
+        from: GimbalAngles,
+        to: GimbalAngles,
+    ) -> (Vector3<f64>, Vector3<f64>) {
+        let (c, earth) = (self.strapdown.c_nb(), self.strapdown.earth());
+        let turn = c * (felt.delta_theta - gimbal_turn(from, to));
+        let weight = Vector3::new(0.0, 0.0, earth.gravity_mps2 * felt.elapsed_s);
+        (turn - earth.earth_rate() * felt.elapsed_s, felt.delta_velocity_n + weight)
+    }
+
+    /// A base that stands: what the sensors felt beyond the known motion since two seconds before a rate
+    /// broke off is what the attitude and the velocity may be off by. They are opened along it, and the
+    /// measurements decide. It goes on until the gimbals stand and two and a half seconds have been quiet.
+    fn follow_disturbance(
+        &mut self,
+        broke_off: bool,
+        moves: bool,
+        beyond: (Vector3<f64>, Vector3<f64>),
+    ) {
+        self.recent.rotate_right(1);
+        self.recent[0] = beyond;
+        if let Some(disturbance) = &mut self.disturbance {
+            disturbance.turned += beyond.0;
+            disturbance.moved += beyond.1;
+        } else if broke_off {
+            let mut disturbance = Disturbance::default();
+            for (turned, moved) in &self.recent {
+                disturbance.turned += turned;
+                disturbance.moved += moved;
+            }
+            self.disturbance = Some(disturbance);
+        }
+        if broke_off {
+            self.disturbed_tick = self.tick;
+        }
+        let Some(mut disturbance) = self.disturbance else { return };
+        if disturbance.turned.norm() > OPEN_MAX_RAD || disturbance.moved.norm() > OPEN_MAX_MPS {
+            self.disturbance = None;
+            self.mend();
+            return;
+        }
+        let quiet_s = (self.tick - self.disturbed_tick) as f64 * self.sample_s;
+        if !moves && quiet_s > QUIET_S {
+            self.disturbance = None;
+            return;
+        }
+        let axes = if moves { self.encoders_and_axes() } else { 0.0 };
+        let mut attitude = disturbance.open(0, disturbance.turned);
+        let more = (axes - disturbance.axes).max(0.0);
+        disturbance.axes += more;
+        attitude += Matrix3::identity() * more;
+        // Velocity by a tilt that has grown over half a second.
+        let tilt = disturbance.turned * (0.5 * GRAVITY_MPS2);
+        let velocity = disturbance.open(1, disturbance.moved) + disturbance.open(2, tilt);
+        self.disturbance = Some(disturbance);
+        let Estimation::Kalman(filter) = &mut self.estimation else { return };
+        filter.disturb(&self.strapdown, &attitude, &velocity);
+    }
+
+    /// Variance of what gyros and encoders may show differently over a move, rad².
+    fn encoders_and_axes(&self) -> f64 {
+        let sigma = self.config.screening.encoder_sigma_rad;
+        let parameters = |group: Group| {
+            self.sigma[group.range()].iter().fold(0.0f64, |largest, sigma| largest.max(*sigma))
+        };
+        let axes = parameters(Group::GyroScale).max(parameters(Group::GyroMisalignment));
+        2.0 * sigma * sigma + axes * axes
+    }
+
+    /// What the filter learned in the last minute is undone; where it can't be, the calibration will
+    /// be refused.
+    #[cold]
+    #[inline(never)]
+    pub(super) fn mend(&mut self) {
+        if self.mode != Mode::Calibrating {
+            return;
+        }
+        self.disturbed_tick = self.tick;
+        let mut parameters = self.parameters;
+        let mut strapdown = self.strapdown.clone();
+        let mended =
+            self.filter_mut().is_some_and(|filter| filter.suspect(&mut strapdown, &mut parameters));
+        if !mended {
+            self.unrepaired = self.unrepaired.saturating_add(1);
+            return;
+        }
+        self.strapdown = strapdown;
+        self.parameters = parameters;
+        self.compensation = crate::compensation::Compensation::new(&self.parameters);
+        self.revision = self.revision.saturating_add(1);
+        if let Some(filter) = self.filter() {
+            self.sigma = filter.parameter_sigmas();
+        }
+    }
+}
