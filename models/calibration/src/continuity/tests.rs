@@ -107,7 +107,7 @@ fn a_rate_that_is_known_needs_no_edges() {
 #[test]
 fn a_stream_that_breaks_off_again_and_again_is_like_this() {
     let mut continuity = continuity(Base::Still);
-    let rough = |k: usize| ARCSEC * if k % 23 == 0 { 1.0 } else { 0.0 };
+    let rough = |k: usize| ARCSEC * if k.is_multiple_of(23) { 1.0 } else { 0.0 };
     let alarms = (0..3000).filter(|k| continuity.add(&block(Vector3::repeat(rough(*k)), None)));
     let alarms = alarms.count();
     assert!((6..40).contains(&alarms), "{alarms}");
