@@ -433,3 +433,76 @@ fn what_a_terminal_obeys_is_refused_in_files_and_escaped_in_words() {
     let said = String::from_utf8(output.stderr).unwrap();
     assert!(said.contains("a\\u001b[2Jb\\u202e") && !said.contains('\u{1b}'), "{said:?}");
 }
+
+#[test]
+fn a_run_and_a_campaign_are_run_again_from_their_folders_alone() {
+    let folder = run(TOO_NEAR);
+    let run = folder.path().join("run");
+    std::fs::remove_file(folder.path().join("s.toml")).unwrap();
+    let statement = folder.path().join("statement.json");
+    let more = ["--reexecute", "--attest", statement.to_str().unwrap()];
+    let (status, found) = verified(&run, &more);
+    assert_eq!((status, &found["reexecuted"]["matches"]), (0, &json!(true)), "{found}");
+    // The statement: of a run that fails it says so.
+    let statement: Value = serde_json::from_slice(&std::fs::read(statement).unwrap()).unwrap();
+    assert_eq!(statement["_type"], "https://in-toto.io/Statement/v1");
+    assert_eq!(statement["predicateType"], "https://in-toto.io/attestation/test-result/v0.1");
+    let predicate = &statement["predicate"];
+    assert_eq!(
+        (&predicate["result"], &predicate["failedTests"]),
+        (&json!("FAILED"), &json!(["NAV-1"]))
+    );
+    assert_eq!(predicate["configuration"][0]["name"], "scenario.toml");
+    let subjects = statement["subject"].as_array().unwrap();
+    let names: Vec<&str> = subjects.iter().map(|s| s["name"].as_str().unwrap()).collect();
+    assert!(names[0] == "manifest.json" && names.contains(&"summary.json"), "{names:?}");
+
+    // Another program: never a match.
+    let path = run.join("manifest.json");
+    let whole = std::fs::read_to_string(&path).unwrap();
+    let manifest: Value = serde_json::from_str(&whole).unwrap();
+    let program = manifest["program_sha256"].as_str().unwrap();
+    std::fs::write(&path, whole.replace(program, &"ab".repeat(32))).unwrap();
+    let (status, found) = verified(&run, &["--reexecute"]);
+    assert_eq!((status, &found["reexecuted"]["matches"]), (3, &json!(false)));
+    assert!(found["reexecuted"]["told"].to_string().contains("another program"), "{found}");
+    std::fs::write(&path, whole).unwrap();
+
+    // A campaign whose results somebody altered, with everything around them made anew.
+    let campaign = CAMPAIGN.replace("replicates = 40", "replicates = 2");
+    let bench = Bench::new(&campaign);
+    let plan = bench.plan();
+    let out = bench.at("out");
+    plan.write(&out, false).unwrap();
+    let octant = |arguments: &[&str]| {
+        let output = bench.octant(arguments);
+        let said = String::from_utf8_lossy(&output.stdout).into_owned();
+        (output.status.code().unwrap(), said, output)
+    };
+    octant(&["campaign", "run", "out"]);
+    octant(&["campaign", "merge", "out"]);
+    octant(&["campaign", "report", "out"]);
+    for file in ["short.toml", "requirements.toml", "campaign.toml"] {
+        std::fs::remove_file(bench.at(file)).unwrap();
+    }
+    let (status, said, output) = octant(&["verify", "out", "--reexecute", "all"]);
+    assert_eq!(status, 0, "{said}{output:?}");
+    assert!(said.contains("at most 0 of 4 results are altered"), "{said}");
+    let (status, said, _) = octant(&["verify", "out", "--reexecute", "2", "--sample-seed", "7"]);
+    assert!(status == 0 && said.contains("2 of 4 cases, drawn with --sample-seed 7"), "{said}");
+    let case = &plan.cases[0];
+    let file = case::file(&out, &case.id);
+    let mut result: Value = serde_json::from_slice(&std::fs::read(&file).unwrap()).unwrap();
+    result["summary"]["navigation"]["latitude_error_arcmin"]["rms"] = 0.001.into();
+    result["summary_blake3"] = case::hash_of_summary(&result["summary"]).into();
+    std::fs::write(&file, format!("{result}\n")).unwrap();
+    parts(&plan, &out);
+    octant(&["campaign", "merge", "out"]);
+    octant(&["campaign", "report", "out"]);
+    assert_eq!(octant(&["verify", "out"]).0, 0, "nothing contradicts it");
+    let (status, said, _) = octant(&["verify", "out", "--reexecute", "all"]);
+    assert!(
+        status == 1 && said.contains(&case.id) && said.contains("latitude_error_arcmin.rms"),
+        "{said}"
+    );
+}

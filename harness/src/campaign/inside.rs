@@ -37,6 +37,8 @@ fn derive(folder: &Path, facts: &CampaignFacts, inside: &mut Inside) -> Result<(
     }
     let status = status::of(&plan, folder, Shard::WHOLE)?;
     inside.verdict = Some(status.verdict());
+    let checks = status.requirements.iter().map(|(id, found)| (id.clone(), found.verdict));
+    inside.checks = checks.collect();
     inside.reasons = status
         .requirements
         .iter()

@@ -16,6 +16,7 @@ mod make;
 pub mod merge;
 pub mod plan;
 pub(crate) mod process;
+pub mod reexecute;
 pub mod report;
 pub mod requirements;
 pub mod results;

@@ -19,6 +19,7 @@ mod minimise;
 mod nightly;
 mod observe;
 mod progress;
+mod reexecute;
 mod replay;
 mod report;
 mod requirements;

@@ -321,7 +321,7 @@ fn methods(scenario: &Scenario) -> Vec<Method> {
 
 /// Runs the methods of a scenario, and their twins without faults, each on a thread of its own; by
 /// the clock one method after the other, so that none makes another one late.
-fn execute(
+pub(super) fn execute(
     scenario: &Scenario,
     seed: u64,
     twins: bool,

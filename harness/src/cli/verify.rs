@@ -1,13 +1,17 @@
 //! `octant verify`: whether a folder of evidence is what was written, and, apart from that, what it says.
 
+use super::reexecute::{Count, Reexecuted};
 use super::{Failure, print, print_json};
 use crate::campaign;
+use crate::evidence::attestation;
+use crate::evidence::files;
 use crate::evidence::inside::{self, Inside};
 use crate::evidence::manifest::{self, Difference, Manifest};
 use crate::evidence::signature::{self, Key};
 use crate::score::verdict::Verdict;
 use clap::Args;
 use serde::Serialize;
+use sha2::Digest;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -24,6 +28,17 @@ pub(super) struct Arguments {
     /// of a campaign, 12 digits or more).
     #[arg(long, value_name = "NAME=VALUE", value_delimiter = ',', value_parser = Expected::parse)]
     expect: Vec<Expected>,
+    /// Run it again from the folder alone, and compare the stream hash and every measure: a run, or so many
+    /// cases of a campaign, or all of them.
+    #[arg(long, value_name = "N|all", num_args = 0..=1, default_missing_value = "all",
+          value_parser = Count::parse)]
+    reexecute: Option<Count>,
+    /// Seed by which the cases are drawn that are run again; by default one that nobody knows before.
+    #[arg(long, value_name = "N", requires = "reexecute")]
+    sample_seed: Option<u64>,
+    /// Write an in-toto attestation (test-result) of a folder that is whole.
+    #[arg(long, value_name = "FILE")]
+    attest: Option<PathBuf>,
     /// Print one JSON object.
     #[arg(long)]
     json: bool,
@@ -109,6 +124,8 @@ struct Found {
     scenario: Option<String>,
     seed: Option<u64>,
     run: Option<String>,
+    /// What came of running it again; null: it wasn't.
+    reexecuted: Option<Reexecuted>,
     /// Who signed the manifest; null: nobody whose key was given.
     signed_by: Option<String>,
     /// The key that the manifest names; null: it isn't signed.
@@ -157,6 +174,23 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     differences.extend(inside.contradictions.iter().cloned());
     differences.extend(arguments.expect.iter().filter_map(|expected| expected.missed(&inside)));
     let whole = differences.is_empty();
+    // What isn't whole is no input of a run, and attests nothing.
+    let reexecuted = match arguments.reexecute.filter(|_| whole) {
+        Some(count) => {
+            Some(super::reexecute::command(folder, &manifest, count, arguments.sample_seed)?)
+        }
+        None => None,
+    };
+    let again = reexecuted.as_ref().map_or(Verdict::Pass, |found| found.verdict);
+    if let Some(out) = arguments.attest.as_ref().filter(|_| whole && again == Verdict::Pass) {
+        let bytes = files::read(&path).map_err(|error| {
+            Failure::bench(format!("failed to read {}: {error}", path.display()))
+        })?;
+        let sha256: String =
+            sha2::Sha256::digest(bytes).iter().map(|b| format!("{b:02x}")).collect();
+        let statement = attestation::statement(&manifest, &sha256, &inside);
+        super::write(out, format!("{statement:#}\n"))?;
+    }
     let found = Found {
         folder: folder.display().to_string(),
         whole,
@@ -167,6 +201,7 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         scenario: inside.title,
         seed: inside.seed,
         run: inside.run,
+        reexecuted,
         signed_by,
         signature: manifest.signature,
     };
@@ -176,7 +211,7 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         print(&text(&found))?
     }
     // The status tells integrity alone: 0 of a whole folder, whatever the run in it came to.
-    Ok(if whole { Verdict::Pass } else { Verdict::Fail })
+    Ok(if whole { again } else { Verdict::Fail })
 }
 
 /// Whether a folder has the name of one that isn't finished, by whatever path it is named.
@@ -205,6 +240,9 @@ fn text(found: &Found) -> String {
         text += "integrity: not whole\n";
     }
     found.differences.iter().for_each(|difference| text += &format!("  {difference}\n"));
+    if let Some(again) = &found.reexecuted {
+        text += &again.text();
+    }
     match found.verdict {
         // Of a folder that isn't whole nothing is believed.
         _ if !found.whole => text += "verdict: none to be relied on\n",

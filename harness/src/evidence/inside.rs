@@ -30,6 +30,8 @@ pub struct Inside {
     pub verdict: Option<Verdict>,
     /// Why, as it is told.
     pub reasons: Vec<String>,
+    /// Its requirements with what each comes to.
+    pub checks: Vec<(String, Verdict)>,
     /// Where its parts contradict each other, with the file's name in front.
     pub contradictions: Vec<String>,
 }
@@ -96,6 +98,8 @@ fn of_summary(folder: &Path, summary: Summary, inside: &mut Inside) {
             Ok(_) => {}
         }
     }
+    let checks = summary.requirements.iter().map(|result| (result.id.clone(), result.verdict));
+    inside.checks = checks.collect();
     inside.seed = Some(summary.seed);
     inside.title = Some(summary.scenario);
     inside.run = Some(summary.stream_hash);

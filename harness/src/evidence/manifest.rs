@@ -66,6 +66,9 @@ pub struct Manifest {
     /// SHA-256 of the lock file that octant was built by, hexadecimal.
     #[serde(default)]
     pub lock_file: Option<String>,
+    /// SHA-256 of the program, hexadecimal; `null` where it can't be read, and in older manifests.
+    #[serde(default)]
+    pub program_sha256: Option<String>,
     /// The key whose signature of this file is beside it, in `manifest.json.minisig`; `null` of one
     /// that isn't signed.
     pub signature: Option<String>,
@@ -307,6 +310,7 @@ impl Manifest {
             empty_folders: Vec::new(),
             operator: operator(),
             lock_file: some(env!("OCTANT_LOCK_FILE")),
+            program_sha256: program_sha256(),
             signature: facts.key.as_ref().map(|key| format!("minisign key {}", key.id())),
         }
     }
@@ -516,6 +520,14 @@ fn cpu_model() -> Option<String> {
     let text = std::fs::read_to_string("/proc/cpuinfo").ok()?;
     let line = text.lines().find(|line| line.starts_with("model name"))?;
     line.split_once(':').map(|(_, model)| model.trim().to_owned())
+}
+
+/// SHA-256 of the program that runs, hexadecimal; `None` where it can't be read.
+pub(crate) fn program_sha256() -> Option<String> {
+    // A large file, and the same for as long as the program runs.
+    static HASH: std::sync::OnceLock<Option<String>> = std::sync::OnceLock::new();
+    let hash = || super::sha256(&std::env::current_exe().ok()?).ok();
+    HASH.get_or_init(hash).clone()
 }
 
 /// The name that a run is made under.

@@ -1,6 +1,7 @@
 //! What a run leaves behind as evidence: its folder, written in one piece, the manifest, its
 //! signature, and what isn't a pass with what people say of it.
 
+pub mod attestation;
 pub mod discrepancy;
 pub mod disposition;
 pub(crate) mod files;

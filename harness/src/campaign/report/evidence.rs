@@ -2,9 +2,9 @@
 //! hash of every file, signed as that of a run.
 
 use super::{Report, ReportError, junit::junit};
-use crate::evidence::manifest::{CampaignFacts, shell_line};
+use crate::evidence::manifest::{CampaignFacts, program_sha256, shell_line};
 use crate::evidence::signature::{self, Key};
-use crate::evidence::{Manifest, RunFacts, disposition, sha256};
+use crate::evidence::{Manifest, RunFacts, disposition};
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -64,7 +64,7 @@ pub fn write(
         }
         _ => {}
     }
-    let program = std::env::current_exe().and_then(|program| sha256(&program)).ok();
+    let program = program_sha256();
     let (first, last) = times(report, folder);
     let facts = RunFacts {
         command_line: report.again().pop().unwrap_or_default(),

@@ -1,0 +1,174 @@
+//! `octant verify --reexecute`: what is in a folder of evidence, run again from that folder alone.
+
+use super::Failure;
+use super::run::execute;
+use crate::campaign::plan::{FILE_NAME, Plan};
+use crate::campaign::reexecute::{self, CONFIDENCE, altered_at_most};
+use crate::evidence::inside::SUMMARY;
+use crate::evidence::manifest::{Manifest, program_sha256};
+use crate::run::assemble;
+use crate::scenario::{Endpoint, Scenario, Source};
+use crate::score::verdict::Verdict;
+use serde::Serialize;
+use serde_json::Value;
+use std::hash::{BuildHasher, RandomState};
+use std::path::Path;
+
+/// How many cases of a campaign.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Count(Option<usize>);
+
+impl Count {
+    pub(super) fn parse(text: &str) -> Result<Self, String> {
+        match (text, text.parse()) {
+            ("all", _) => Ok(Self(None)),
+            (_, Ok(count)) if count > 0 => Ok(Self(Some(count))),
+            _ => Err(format!("found {text:?}, expected a number of cases or all")),
+        }
+    }
+}
+
+/// What came of it.
+#[derive(Clone, Debug, Serialize)]
+pub(super) struct Reexecuted {
+    /// `pass`: the same; `fail`: something else; `inconclusive`: nothing is shown.
+    #[serde(skip)]
+    pub verdict: Verdict,
+    /// The same program, and everything came to the same, to the last bit.
+    matches: bool,
+    /// What was done and found, in words.
+    told: Vec<String>,
+    /// Seed of the sample of a campaign's cases; null of a run.
+    sample_seed: Option<u64>,
+    /// Altered results of a campaign at most, with a confidence of 95 %; null of a run.
+    altered_at_most: Option<usize>,
+}
+
+impl Reexecuted {
+    fn of(verdict: Verdict, told: Vec<String>) -> Self {
+        Self { verdict, matches: false, told, sample_seed: None, altered_at_most: None }
+    }
+
+    /// For people.
+    pub(super) fn text(&self) -> String {
+        self.told.iter().map(|line| format!("re-executed: {line}\n")).collect()
+    }
+}
+
+/// Runs it again. The folder is whole.
+pub(super) fn command(
+    folder: &Path,
+    manifest: &Manifest,
+    count: Count,
+    seed: Option<u64>,
+) -> Result<Reexecuted, Failure> {
+    let then = match &manifest.campaign {
+        Some(facts) => facts.program_sha256.as_deref(),
+        None => manifest.program_sha256.as_deref(),
+    };
+    let now = program_sha256();
+    let same_program = then.is_some() && then == now.as_deref();
+    let mut found = match &manifest.campaign {
+        Some(_) => campaign(folder, count, seed)?,
+        None => run(folder, manifest)?,
+    };
+    if found.verdict == Verdict::Pass && !same_program {
+        let name = |hash: Option<&str>| hash.map_or("unknown".to_owned(), |hash| hash.to_owned());
+        found.verdict = Verdict::Inconclusive;
+        found.told.push(format!(
+            "this is another program (SHA-256 {}, the evidence is of {}): the same numbers are no match",
+            name(now.as_deref()),
+            name(then)
+        ));
+    }
+    found.matches = found.verdict == Verdict::Pass;
+    Ok(found)
+}
+
+/// A run again, with its twin where it had one.
+fn run(folder: &Path, manifest: &Manifest) -> Result<Reexecuted, Failure> {
+    let cannot = |reason: String| Reexecuted::of(Verdict::Inconclusive, vec![reason]);
+    let bytes = manifest.read_file(folder, SUMMARY).map_err(|e| Failure::input(e).failed())?;
+    let then: Value = serde_json::from_slice(&bytes).map_err(Failure::input)?;
+    let Some(seed) = manifest.seed.filter(|_| then.get("system").is_none()) else {
+        return Ok(cannot("not possible: only runs of a scenario are run again".to_owned()));
+    };
+    let mut scenario = match Scenario::load(&folder.join("scenario.toml"), &[]) {
+        Ok(scenario) => scenario,
+        Err(error) => return Ok(cannot(format!("not possible: {error}"))),
+    };
+    if matches!(scenario.source, Source::Live(_)) || matches!(scenario.endpoint, Endpoint::Live(_))
+    {
+        return Ok(cannot(
+            "not possible: a device took part, which nobody can run again".to_owned(),
+        ));
+    }
+    // The clock changes no number.
+    scenario.realtime.by_clock = false;
+    let fmus = match crate::evidence::fmus(&scenario) {
+        Ok(fmus) => fmus,
+        Err(error) => return Ok(cannot(format!("not possible: failed to {error}"))),
+    };
+    for (then, now) in manifest.fmus.iter().zip(&fmus) {
+        if then.sha256 != now.sha256 {
+            return Ok(cannot(format!("not possible: {} is another file than it was", now.file)));
+        }
+    }
+    let twins = !manifest.command_line.iter().any(|word| word == "--no-twin");
+    let place = tempfile::tempdir()
+        .map_err(|error| Failure::bench(format!("failed to create a folder: {error}")))?;
+    let mut runs = execute(&scenario, seed, twins, place.path())?.into_iter();
+    let (Some(primary), baseline) = (runs.next(), runs.next()) else {
+        return Err(Failure::bench("failed to run the scenario: no method ran"));
+    };
+    let now = assemble(&scenario, seed, primary, baseline)
+        .map_err(|error| Failure::bench(format!("failed to write the summary: {error}")))?;
+    let json = now.summary.to_json().map_err(Failure::bench)?;
+    let mut now: Value = serde_json::from_str(&json).map_err(Failure::bench)?;
+    let mut then = then;
+    // How a run kept time is the host's.
+    for summary in [&mut now, &mut then] {
+        summary["pacing"] = Value::Null;
+    }
+    Ok(match reexecute::difference(&then, &now) {
+        None => Reexecuted::of(
+            Verdict::Pass,
+            vec!["the stream hash and every measure are the same".to_owned()],
+        ),
+        Some(difference) => Reexecuted::of(Verdict::Fail, vec![difference]),
+    })
+}
+
+/// A sample of a campaign's cases again.
+fn campaign(folder: &Path, count: Count, seed: Option<u64>) -> Result<Reexecuted, Failure> {
+    let plan = Plan::read(&folder.join(FILE_NAME))?;
+    // Nobody who altered something may know which cases are looked at.
+    let drawn = || RandomState::new().hash_one(std::process::id());
+    let seed = seed.unwrap_or_else(drawn);
+    let tell = |done: usize, of: usize| note!("octant: re-executing case {} of {of}", done + 1);
+    let again = reexecute::run(&plan, folder, count.0, seed, tell)
+        .map_err(|reason| Failure::bench(format!("failed to {reason}")))?;
+    let ran = again.same + again.differing.len();
+    let mut told = vec![format!(
+        "{ran} of {} cases, drawn with --sample-seed {seed}: {} the same",
+        again.of, again.same
+    )];
+    told.extend(again.differing.iter().cloned());
+    told.extend(again.not_run.iter().map(|reason| format!("not possible: {reason}")));
+    let bound = altered_at_most(again.of, again.same, CONFIDENCE);
+    let verdict = if !again.differing.is_empty() {
+        Verdict::Fail
+    } else if !again.not_run.is_empty() || ran == 0 {
+        Verdict::Inconclusive
+    } else {
+        told.push(format!(
+            "with a confidence of {:.0} %, at most {bound} of {} results are altered",
+            100.0 * CONFIDENCE,
+            again.of
+        ));
+        Verdict::Pass
+    };
+    let shown = (verdict == Verdict::Pass).then_some(bound);
+    let found = Reexecuted::of(verdict, told);
+    Ok(Reexecuted { sample_seed: Some(seed), altered_at_most: shown, ..found })
+}

@@ -1,0 +1,67 @@
+//! A verified folder as an in-toto attestation: Statement v1 with the predicate test-result v0.1.
+//!
+//! <https://github.com/in-toto/attestation/blob/main/spec/predicates/test-result.md>. The statement isn't signed
+//! here: whoever hands it on wraps it in the envelope of their tool.
+
+use super::inside::Inside;
+use super::manifest::{FILE_NAME, Manifest};
+use crate::score::verdict::Verdict;
+use serde_json::{Value, json};
+
+/// The result of a test as the predicate has it. What shows nothing never passes.
+#[must_use]
+pub const fn result(verdict: Option<Verdict>) -> &'static str {
+    match verdict {
+        Some(Verdict::Pass) => "PASSED",
+        None | Some(Verdict::None | Verdict::Inconclusive) => "WARNED",
+        Some(Verdict::Fail | Verdict::Error) => "FAILED",
+    }
+}
+
+/// The statement about a folder that is whole, whose manifest has the SHA-256 `manifest_sha256`.
+#[must_use]
+pub fn statement(manifest: &Manifest, manifest_sha256: &str, inside: &Inside) -> Value {
+    let described = |name: &str, sha256: &str| json!({"name": name, "digest": {"sha256": sha256}});
+    let own = described(FILE_NAME, manifest_sha256);
+    let files = manifest.files.iter().map(|file| described(&file.path, &file.sha256));
+    // What the test was: the scenario with every value, the plan, the inputs.
+    let configures =
+        |path: &str| ["scenario.toml", "plan.json"].contains(&path) || path.starts_with("inputs/");
+    let configuration: Vec<Value> = manifest
+        .files
+        .iter()
+        .filter(|file| configures(&file.path))
+        .map(|file| described(&file.path, &file.sha256))
+        .collect();
+    let tests = |wanted: &str| -> Vec<&str> {
+        let found = inside.checks.iter().filter(|(_, verdict)| result(Some(*verdict)) == wanted);
+        found.map(|(id, _)| id.as_str()).collect()
+    };
+    json!({
+        "_type": "https://in-toto.io/Statement/v1",
+        "subject": std::iter::once(own).chain(files).collect::<Vec<_>>(),
+        "predicateType": "https://in-toto.io/attestation/test-result/v0.1",
+        "predicate": {
+            "result": result(inside.verdict),
+            "configuration": configuration,
+            "passedTests": tests("PASSED"),
+            "warnedTests": tests("WARNED"),
+            "failedTests": tests("FAILED"),
+        },
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_pass_alone_passes() {
+        let passed = |verdict| result(verdict) == "PASSED";
+        assert!(!passed(None) && result(None) == "WARNED");
+        for verdict in Verdict::ALL {
+            assert_eq!(passed(Some(verdict)), verdict == Verdict::Pass, "{}", verdict.name());
+        }
+        assert_eq!(result(Some(Verdict::Error)), "FAILED");
+    }
+}
