@@ -70,6 +70,22 @@ impl<'a> Bench<'a> {
             .map_err(|error| format!("write {}: {error}", path.display()))
     }
 
+    /// Lets nobody else read a file, as a key has to be kept.
+    ///
+    /// # Errors
+    /// In words.
+    pub fn keep_private(&self, name: &str) -> Result<(), String> {
+        #[cfg(unix)]
+        {
+            use std::os::unix::fs::PermissionsExt;
+            let path = self.at(name);
+            std::fs::set_permissions(&path, std::fs::Permissions::from_mode(0o600))
+                .map_err(|error| format!("keep {}: {error}", path.display()))?;
+        }
+        let _ = name;
+        Ok(())
+    }
+
     /// Reads a file.
     ///
     /// # Errors

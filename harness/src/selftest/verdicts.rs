@@ -331,7 +331,9 @@ fn key_pair(bench: &Bench<'_>, name: &str) -> Result<String, String> {
     let failed = |error| format!("make a key: {error}");
     let pair = KeyPair::generate_unencrypted_keypair().map_err(failed)?;
     let secret = pair.sk.to_box(None).map_err(failed)?.to_string();
-    bench.write(&format!("{name}.key"), secret)?;
+    let file = format!("{name}.key");
+    bench.write(&file, secret)?;
+    bench.keep_private(&file)?;
     Ok(pair.pk.to_base64())
 }
 
