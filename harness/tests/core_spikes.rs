@@ -7,7 +7,7 @@
 use crate::common::instrument::closed_loop::{ClosedLoop, on_two_threads};
 use crate::common::instrument::{Case, dockside};
 use octant_calibration::config::TurntableRates;
-use octant_calibration::positions::{EIGHT, from_degrees};
+use octant_calibration::positions::{SEQUENCES, from_degrees, named};
 use octant_calibration::schedule::{Cursor, dwell_s};
 use octant_earth::units::*;
 use octant_faults::disturbance::{Disturbance, Disturbed, Gimbal, GimbalAction};
@@ -22,6 +22,9 @@ use std::collections::BTreeMap;
 const SHIFT_SIGMAS_MAX: f64 = 3.0;
 /// Copies of a run without a fault that are kept on its way: a point starts from the last one before it.
 const SNAPSHOTS: u64 = 24;
+const EIGHT: &str = "eight";
+/// Its moves turn both gimbals at once.
+const BOTH_GIMBALS: &str = "eight-same-plane";
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 struct Setup {
@@ -29,6 +32,8 @@ struct Setup {
     hz: u64,
     hours: u64,
     moored: bool,
+    /// A name of `octant_calibration::positions::SEQUENCES`.
+    sequence: &'static str,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -64,7 +69,10 @@ struct Outcome {
 }
 
 fn start(setup: &Setup) -> ClosedLoop {
-    let case = Case { calibration_h: setup.hours as f64, ..Case::table_1(setup.seed, EIGHT) };
+    let case = Case {
+        calibration_h: setup.hours as f64,
+        ..Case::table_1(setup.seed, named(setup.sequence).unwrap())
+    };
     let (mut plant, mut core) =
         if setup.moored { dockside(&case) } else { (case.plant(), case.core()) };
     plant.sample_period_ns = 1_000_000_000 / setup.hz;
@@ -131,8 +139,8 @@ fn shift(faulted: &Outcome, clean: &Outcome) -> (f64, &'static str) {
 }
 
 /// Starts and ends of all moves, s.
-fn moves(hours: u64) -> Vec<(f64, f64)> {
-    let (sequence, period_s) = (from_degrees(EIGHT, 1).unwrap(), 0.01);
+fn moves(sequence: &str, hours: u64) -> Vec<(f64, f64)> {
+    let (sequence, period_s) = (from_degrees(named(sequence).unwrap(), 1).unwrap(), 0.01);
     let rates = TurntableRates { rate_radps: 10.0 * DEG, acceleration_radps2: 10.0 * DEG };
     let duration_s = hours as f64 * 3600.0;
     let dwell = dwell_s(&sequence, duration_s, &rates).unwrap();
@@ -150,7 +158,7 @@ fn moves(hours: u64) -> Vec<(f64, f64)> {
 
 /// Point `n`: rates, lengths, bases and seeds in turn, every move in turn for every second point, the
 /// others at any time. Heights and lengths are spread evenly over their decades.
-fn draw(n: u64, slip: bool) -> Point {
+fn draw(n: u64, slip: bool, sequence: &'static str) -> Point {
     let key = key(77, if slip { "slips" } else { "spikes" }, Phase::Draw);
     let u = |i: u64| uniform(words(key, n * 8 + i / 4)[(i % 4) as usize]);
     let setup = Setup {
@@ -158,8 +166,9 @@ fn draw(n: u64, slip: bool) -> Point {
         hz: [50, 100, 200][(n % 3) as usize],
         hours: [1, 4][(n / 3 % 2) as usize],
         moored: n / 6 % 2 == 1,
+        sequence,
     };
-    let moves = moves(setup.hours);
+    let moves = moves(sequence, setup.hours);
     let at_s = if u(0) < 0.5 {
         let (from, to) = moves[((n / 2) % moves.len() as u64) as usize];
         from - 1.0 + u(1) * (to - from + 2.0)
@@ -231,16 +240,37 @@ fn try_all(points: &[Point]) -> Vec<String> {
 
 #[test]
 fn spikes_and_slips_at_random() {
-    let spikes = (0..36).map(|n| draw(n, false));
-    let points: Vec<Point> = spikes.chain((0..24).map(|n| draw(n, true))).collect();
+    let spikes = (0..36).map(|n| draw(n, false, EIGHT));
+    let points: Vec<Point> = spikes.chain((0..24).map(|n| draw(n, true, EIGHT))).collect();
     let failures = try_all(&points);
     assert!(failures.is_empty(), "{}", failures.join("\n"));
+}
+
+#[test]
+fn spikes_where_both_gimbals_turn() {
+    let spikes = (0..12).map(|n| draw(n, false, BOTH_GIMBALS));
+    let points: Vec<Point> = spikes.chain((0..6).map(|n| draw(n, true, BOTH_GIMBALS))).collect();
+    let failures = try_all(&points);
+    assert!(failures.is_empty(), "{}", failures.join("\n"));
+}
+
+#[test]
+fn no_sequence_raises_an_alarm_by_itself() {
+    let setups: Vec<Setup> = SEQUENCES
+        .iter()
+        .enumerate()
+        .flat_map(|(n, &(sequence, ..))| {
+            let (seed, moored) = (7 + n as u64, n % 2 == 1);
+            [20, 50, 200].map(|hz| Setup { seed, hz, hours: 1, moored, sequence })
+        })
+        .collect();
+    assert_clean(&setups);
 }
 
 /// Half a second of 200 °/h in a turn moved a scale factor by a hundred σ before edges were looked for.
 #[test]
 fn spikes_in_a_turn_are_taken_back() {
-    let setup = Setup { seed: 1, hz: 200, hours: 4, moored: false };
+    let setup = Setup { seed: 1, hz: 200, hours: 4, moored: false, sequence: EIGHT };
     let points: Vec<Point> = [20, 100, 400]
         .into_iter()
         .flat_map(|samples| [20.0, 50.0, 100.0, 200.0].map(|height| (samples, height)))
@@ -258,8 +288,8 @@ fn spikes_in_a_turn_are_taken_back() {
 #[test]
 #[ignore = "a study: docs/testing.md"]
 fn study_of_three_thousand_points() {
-    let spikes = (0..2400).map(|n| draw(n, false));
-    let points: Vec<Point> = spikes.chain((0..600).map(|n| draw(n, true))).collect();
+    let spikes = (0..2400).map(|n| draw(n, false, EIGHT));
+    let points: Vec<Point> = spikes.chain((0..600).map(|n| draw(n, true, EIGHT))).collect();
     for failure in try_all(&points) {
         println!("{failure}");
     }
@@ -270,8 +300,12 @@ fn study_of_three_thousand_points() {
 #[ignore = "minutes: run by tests/run"]
 fn eighty_clean_calibrations_raise_no_alarm() {
     let setups: Vec<Setup> =
-        (0..80).map(|n| Setup { seed: 1 + n / 12, ..draw(n, false).setup }).collect();
-    let outcomes = on_two_threads(&setups, |setup| {
+        (0..80).map(|n| Setup { seed: 1 + n / 12, ..draw(n, false, EIGHT).setup }).collect();
+    assert_clean(&setups);
+}
+
+fn assert_clean(setups: &[Setup]) {
+    let outcomes = on_two_threads(setups, |setup| {
         finish(start(setup), &Point { setup: *setup, what: What::Nothing, at_s: 0.0 })
     });
     let alarms: Vec<String> = setups

@@ -24,7 +24,7 @@
 use crate::config::{Base, Kalman, Noise, Screening, TurntableRates};
 use nalgebra::{Matrix3, Vector3};
 use octant_sample::GimbalAngles;
-use octant_sample::counts::{DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS};
+use octant_sample::counts::{DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS, GIMBAL_LSB_RAD};
 use octant_sample::parameters::Group;
 
 /// Length of a block, s, and blocks of the filter.
@@ -34,9 +34,10 @@ pub(crate) const POINTS: usize = 20;
 const CHANNELS: usize = 6;
 /// Turn of the body in b, azimuth and roll: what is looked at when the case seems to break off.
 const OTHERS: usize = 5;
-/// Degrees that the filter is blind to.
 /// Turn of an encoder in a block that is none, rad: 20″.
 pub(crate) const TURNS_RAD: f64 = 1e-4;
+/// Turns of both gimbals from which the way matters, counts of an encoder: 1″.
+const FOLLOWED_COUNTS: u32 = (5e-6 / GIMBAL_LSB_RAD) as u32;
 /// Degree up to which the filter is blind to polynomials: a ship's sway of 6 s leaves 1e-6 of its rate.
 const DEGREE: usize = 7;
 /// Standard deviations that noise is allowed. 8e-11 for a normal variable: 7e-5 in four hours of six
@@ -84,14 +85,20 @@ pub struct Continuity {
     axes: f64,
     /// What the sway of a turning case makes of one block in which the drive changes its acceleration, rad.
     corner: f64,
+    /// What encoders at the samples' times make of both gimbals at once, by what they turn in a block.
+    both: f64,
     /// Of the cumulative sums: turn of a block that is left to noise, and limit, rad.
     sum: (f64, f64),
 
     ring: [[f64; CHANNELS]; POINTS],
     others: [[f64; OTHERS]; POINTS],
     next: usize,
-    filled: usize,
+    /// Blocks that count, of gyros and of velocity.
+    filled: [usize; 2],
     gimbal: GimbalAngles,
+    /// Turn of the body by the encoders since then, in b, rad, and up to where that is.
+    swept: Vector3<f64>,
+    swept_to: GimbalAngles,
     /// Turns of azimuth and roll in the last block, rad.
     turned: [f64; 2],
     /// `c_cb` where the gimbals have stood for a block, and where that was.
@@ -108,9 +115,9 @@ pub struct Continuity {
 #[cfg(feature = "state")]
 octant_state::state! {
     Continuity {
-        values: ring, others, next, filled, gimbal, turned, middle, sums, widened, alarms, encoder_edges, stretch;
+        values: ring, others, next, filled, gimbal, swept, swept_to, turned, middle, sums, widened, alarms, encoder_edges, stretch;
         parts: ;
-        kept: weights, limits, axes, corner, sum;
+        kept: weights, limits, axes, corner, both, sum;
         check: Self::check_places
     }
 }
@@ -119,7 +126,9 @@ octant_state::state! {
 impl Continuity {
     fn check_places(&self) -> Result<(), octant_state::StateError> {
         octant_state::check_below("next", self.next as u64, POINTS as u64 - 1)?;
-        octant_state::check_below("filled", self.filled as u64, POINTS as u64)?;
+        for filled in self.filled {
+            octant_state::check_below("filled", filled as u64, POINTS as u64)?;
+        }
         for alarms in self.alarms {
             octant_state::check_below("alarms", alarms.into(), ALARMS_MAX.into())?;
         }
@@ -165,6 +174,14 @@ fn weights() -> [f64; POINTS] {
 /// block before: to second order in time.
 fn mean(end: f64, turn: f64, before: f64) -> f64 {
     end - 0.5 * turn - (turn - before) / 12.0
+}
+
+/// Rotation of the body in its own axes when the gimbals turn from one reading to another.
+pub(crate) fn gimbal_turn(from: GimbalAngles, to: GimbalAngles) -> Vector3<f64> {
+    let azimuth = to.azimuth_rad() - from.azimuth_rad();
+    let roll = to.roll_rad() - from.roll_rad();
+    let (sin, cos) = libm::sincos(0.5 * (from.azimuth_rad() + to.azimuth_rad()));
+    Vector3::new(roll * cos, -roll * sin, azimuth)
 }
 
 /// `Rx(roll) · Rz(azimuth)`.
@@ -223,8 +240,22 @@ impl Continuity {
             * (prior(Group::GyroBias)
                 + 10.0 * prior(Group::GDependent)
                 + 7.3e-5 * kalman.prior.attitude_rad[2].min(0.05));
+        let weights = weights();
+        let largest =
+            |of: fn(f64, f64) -> f64| weights.iter().fold(0.0f64, |sum, one| of(sum, one.abs()));
+        // Of the mean angle of a block a twelfth of what the acceleration turns in it is corrected, by the
+        // wrong half where it changes.
+        let corner = largest(f64::max) * turntable.acceleration_radps2 * block_s * block_s / 24.0;
+        // The mean of two encoder angles is off by a twelfth of what the acceleration turns from one sample
+        // to the next, as long as it lasts.
+        let both = 0.5
+            * largest(|sum, one| sum + one)
+            * turntable.acceleration_radps2
+            * sample_s
+            * sample_s
+            / 12.0;
         Some(Self {
-            weights: weights(),
+            weights,
             limits: [
                 limit(walk, base.0, screening.resolution.0, screening.vibration.0),
                 limit(
@@ -237,14 +268,9 @@ impl Continuity {
             axes: AXES_SIGMAS * libm::sqrt(scale * scale + across * across + encoder * encoder),
             corner: match screening.base {
                 Base::Still => 0.0,
-                // Of the mean angle of a block a twelfth of what the acceleration turns in it is corrected,
-                // by the wrong half where it changes.
-                Base::Moving(motion) => {
-                    let angle = turntable.acceleration_radps2 * block_s * block_s / 24.0;
-                    let weight = weights().iter().fold(0.0f64, |most, one| most.max(one.abs()));
-                    weight * motion.rate_radps * block_s * angle
-                }
+                Base::Moving(motion) => corner * motion.rate_radps * block_s,
             },
+            both,
             sum: (
                 (SUM_RATE * walk + known) * block_s,
                 0.5 * SUM_LOG * walk / SUM_RATE
@@ -255,8 +281,10 @@ impl Continuity {
             turned: [0.0; 2],
             middle: (GimbalAngles::default(), Matrix3::identity()),
             next: 0,
-            filled: 0,
+            filled: [0; 2],
             gimbal: GimbalAngles::default(),
+            swept: Vector3::zeros(),
+            swept_to: GimbalAngles::default(),
             sums: [[0.0; 2]; 3],
             widened: [1.0; 2],
             alarms: [0; 2],
@@ -267,9 +295,33 @@ impl Continuity {
 
     /// What came before doesn't count: the stream broke off, or was mended.
     pub fn restart(&mut self, gimbal: GimbalAngles) {
-        self.filled = 0;
+        self.filled = [0; 2];
         self.sums = [[0.0; 2]; 3];
         self.gimbal = gimbal;
+        self.swept = Vector3::zeros();
+        self.swept_to = gimbal;
+    }
+
+    /// Takes the encoders of a sample: where both gimbals turn, what they turn the body by depends on the
+    /// way.
+    #[inline]
+    pub fn follow(&mut self, gimbal: GimbalAngles) {
+        let apart = |now: i32, then: i32| now.abs_diff(then) > FOLLOWED_COUNTS;
+        if apart(gimbal.azimuth, self.swept_to.azimuth) && apart(gimbal.roll, self.swept_to.roll) {
+            self.follow_to(gimbal);
+        }
+    }
+
+    fn follow_to(&mut self, gimbal: GimbalAngles) {
+        self.swept += gimbal_turn(self.swept_to, gimbal);
+        self.swept_to = gimbal;
+    }
+
+    /// The attitude was corrected by so much that velocity in n breaks off by itself. What the gyros
+    /// show in the case doesn't.
+    pub fn attitude_corrected(&mut self) {
+        self.filled[1] = 0;
+        self.sums = [[0.0; 2]; 3];
     }
 
     /// Encoder angles at the end of the last block.
@@ -298,27 +350,31 @@ impl Continuity {
                 ),
             );
         }
+        let c_cb = self.middle.1;
+        let (turn, velocity) = (&block.turn, &block.velocity);
+        self.follow_to(block.gimbal);
+        // Out and back is what encoders do that aren't to be believed.
+        let stands = azimuth == 0.0 && roll == 0.0;
+        let swept = if stands { Vector3::zeros() } else { self.swept };
+        self.swept = Vector3::zeros();
+        let case = c_cb * (turn - swept);
         self.gimbal = block.gimbal;
         self.turned = [azimuth, roll];
-        let c_cb = &self.middle.1;
-        let (turn, velocity) = (&block.turn, &block.velocity);
-        // Azimuth turns about body z, roll about case x.
-        let case = c_cb * (turn - Vector3::new(0.0, 0.0, azimuth)) - Vector3::new(roll, 0.0, 0.0);
         self.ring[self.next] = [case.x, case.y, case.z, velocity.x, velocity.y, velocity.z];
         self.others[self.next] = [turn.x, turn.y, turn.z, azimuth, roll];
         self.next = (self.next + 1) % POINTS;
-        self.filled = (self.filled + 1).min(POINTS);
+        self.filled = self.filled.map(|filled| (filled + 1).min(POINTS));
         self.stretch = self.stretch.saturating_sub(1);
         if self.stretch == 0 {
             self.alarms = [0; 2];
         }
         let mut found = self.sums_reach(block).then_some(0);
-        if found.is_none() && self.filled == POINTS {
+        if found.is_none() && self.filled[0] == POINTS {
             let [x, y, z, n, e, d] = self.filtered(&self.ring);
             let largest = |a: f64, b: f64, c: f64| a.abs().max(b.abs()).max(c.abs());
             if largest(x, y, z) > self.limit(0) && self.breaks(largest(x, y, z)) {
                 found = Some(0);
-            } else if largest(n, e, d) > self.limit(1) {
+            } else if self.filled[1] == POINTS && largest(n, e, d) > self.limit(1) {
                 found = Some(1);
             }
         }
@@ -359,9 +415,15 @@ impl Continuity {
     fn breaks(&mut self, case: f64) -> bool {
         let [x, y, z, azimuth, roll] = self.filtered(&self.others);
         let (limit, body) = (self.limit(0), x.abs().max(y.abs()).max(z.abs()));
-        let turns =
-            self.others.iter().any(|[.., azimuth, roll]| azimuth.abs() + roll.abs() > TURNS_RAD);
-        let corner = if turns { self.corner } else { 0.0 };
+        let fastest = |gimbal: usize| {
+            self.others.iter().fold(0.0f64, |most, turns| most.max(turns[gimbal].abs()))
+        };
+        let (fastest_azimuth, fastest_roll) = (fastest(3), fastest(4));
+        let turns = fastest_azimuth + fastest_roll > TURNS_RAD;
+        let mut corner = if turns { self.corner } else { 0.0 };
+        if fastest_azimuth.min(fastest_roll) > TURNS_RAD {
+            corner += self.both * (fastest_azimuth + fastest_roll);
+        }
         let found =
             body > limit && case > limit + corner + self.axes * (body + azimuth.abs() + roll.abs());
         if found && turns && case < ENCODERS_SHARE * body {

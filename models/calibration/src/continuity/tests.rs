@@ -9,7 +9,7 @@ const SAMPLE_S: f64 = 0.005;
 const WALK: f64 = 2.036e-7;
 const ARCSEC: f64 = PI / 648_000.0;
 
-fn continuity(base: Base) -> Continuity {
+fn continuity(base: Base, sample_s: f64) -> Continuity {
     let deg_per_hour = PI / 648_000.0;
     let kalman = Kalman {
         error_model: ErrorModel::Phi,
@@ -26,7 +26,7 @@ fn continuity(base: Base) -> Continuity {
     };
     let noise = Noise { angle_random_walk: WALK, velocity_random_walk: 4.9e-4 };
     let table = TurntableRates { rate_radps: 0.1745, acceleration_radps2: 0.1745 };
-    Continuity::new(&Screening::hardened(base), &kalman, &noise, &table, SAMPLE_S).unwrap()
+    Continuity::new(&Screening::hardened(base), &kalman, &noise, &table, sample_s).unwrap()
 }
 
 fn ship() -> Base {
@@ -51,7 +51,7 @@ fn found_after(
     blocks: usize,
     sway: impl Fn(usize) -> f64,
 ) -> Option<usize> {
-    let mut continuity = continuity(base);
+    let mut continuity = continuity(base, SAMPLE_S);
     for k in 0..200 {
         let spike = if (100..100 + blocks).contains(&k) { rotation / blocks as f64 } else { 0.0 };
         if continuity.add(&block(Vector3::new(sway(k) + spike, 0.0, 0.0), None)) {
@@ -97,7 +97,7 @@ fn edges_are_found_from_the_size_that_the_table_says() {
 
 #[test]
 fn a_rate_that_is_known_needs_no_edges() {
-    let mut continuity = continuity(Base::Still);
+    let mut continuity = continuity(Base::Still, SAMPLE_S);
     // 1 °/h beyond the known rate, from the first block on.
     let beyond = Vector3::new(0.0, -0.1 * ARCSEC, 0.0);
     let found = (0..20).position(|_| continuity.add(&block(beyond, Some(beyond))));
@@ -106,9 +106,80 @@ fn a_rate_that_is_known_needs_no_edges() {
 
 #[test]
 fn a_stream_that_breaks_off_again_and_again_is_like_this() {
-    let mut continuity = continuity(Base::Still);
+    let mut continuity = continuity(Base::Still, SAMPLE_S);
     let rough = |k: usize| ARCSEC * if k.is_multiple_of(23) { 1.0 } else { 0.0 };
     let alarms = (0..3000).filter(|k| continuity.add(&block(Vector3::repeat(rough(*k)), None)));
     let alarms = alarms.count();
     assert!((6..40).contains(&alarms), "{alarms}");
+}
+
+/// A drive at 10 °/s and 10 °/s² from `start` on by `angle`, both in rad and s: angle at a time.
+fn drive(start: f64, angle: f64, t: f64) -> f64 {
+    let (rate, acceleration) = (10.0 * PI / 180.0, 10.0 * PI / 180.0);
+    let ramp = (rate / acceleration).min(libm::sqrt(angle / acceleration));
+    let top = acceleration * ramp;
+    let end = angle / top + ramp;
+    let t = (t - start).clamp(0.0, end);
+    if t < ramp {
+        0.5 * acceleration * t * t
+    } else if t < end - ramp {
+        top * (t - 0.5 * ramp)
+    } else {
+        angle - 0.5 * acceleration * (end - t) * (end - t)
+    }
+}
+
+/// What the gyros of a case that stands seem to break off by beyond what two gimbals are allowed, as a share
+/// of what noise is. The body's turn is integrated in a hundred steps a block.
+fn two_gimbals(starts: [f64; 2], angles: [f64; 2], sample_ms: usize) -> f64 {
+    let mut continuity = continuity(Base::Still, 1e-3 * sample_ms as f64);
+    let at = |k: usize| {
+        let t = 1e-3 * k as f64;
+        [0, 1].map(|i| drive(starts[i], angles[i].abs(), t) * angles[i].signum())
+    };
+    let (mut largest, mut turn) = (0.0f64, Vector3::zeros());
+    for k in 0..20_000 {
+        let (from, to) = (at(k), at(k + 1));
+        let (azimuth, roll) = (0.5 * (from[0] + to[0]), to[1] - from[1]);
+        let (sin, cos) = libm::sincos(azimuth);
+        turn += Vector3::new(roll * cos, -roll * sin, to[0] - from[0]);
+        let gimbal = GimbalAngles::from_rad(to[0], to[1]);
+        if (k + 1).is_multiple_of(sample_ms) {
+            continuity.follow(gimbal);
+        }
+        if (k + 1).is_multiple_of(100) {
+            let velocity = Vector3::zeros();
+            let _ = continuity.add(&Block { turn, velocity, gimbal, beyond: None });
+            turn = Vector3::zeros();
+            let [x, y, z, ..] = continuity.filtered(&continuity.ring);
+            let fastest =
+                |i: usize| continuity.others.iter().fold(0.0f64, |a, b| a.max(b[i].abs()));
+            let allowed = continuity.both * (fastest(3) + fastest(4));
+            let beyond = x.abs().max(y.abs()).max(z.abs()) - allowed;
+            largest = largest.max(beyond / continuity.limits[0]);
+        }
+    }
+    largest
+}
+
+#[test]
+fn two_gimbals_that_turn_at_once_break_nothing_off() {
+    let degrees = PI / 180.0;
+    let mut worst = 0.0f64;
+    for (azimuth, roll) in
+        [(90.0, 90.0), (180.0, -90.0), (-45.0, 180.0), (17.0, 5.0), (3.0, -140.0)]
+    {
+        for phase in 0..10 {
+            for later in [0.0, 0.03, 0.5, 1.0, 1.97] {
+                let start = 5.0 + 0.01 * f64::from(phase);
+                let angles = [azimuth * degrees, roll * degrees];
+                for sample_ms in [5, 20, 50] {
+                    for starts in [[start, start + later], [start + later, start]] {
+                        worst = worst.max(two_gimbals(starts, angles, sample_ms));
+                    }
+                }
+            }
+        }
+    }
+    assert!(worst < 0.1, "{worst}");
 }

@@ -12,6 +12,7 @@
 use super::estimation::Estimation;
 use super::{Core, increments, kalman_of};
 use crate::config::{Base, BaseMotion};
+use crate::continuity::gimbal_turn;
 use crate::screen::{ACCELEROMETERS, Counts, Examined, GYROS};
 use nalgebra::{Matrix3, Vector3};
 use octant_sample::counts::{DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS, GIMBAL_LSB_RAD};
@@ -80,14 +81,6 @@ impl Increments {
 fn counts_of(sample: &Sample) -> Counts {
     let ([x, y, z], [u, v, w]) = (sample.delta_theta, sample.delta_velocity);
     [x, y, z, u, v, w]
-}
-
-/// Rotation of the body in its own axes when the gimbals turn from one reading to another.
-pub(super) fn gimbal_turn(from: GimbalAngles, to: GimbalAngles) -> Vector3<f64> {
-    let azimuth = to.azimuth_rad() - from.azimuth_rad();
-    let roll = to.roll_rad() - from.roll_rad();
-    let (sin, cos) = libm::sincos(0.5 * (from.azimuth_rad() + to.azimuth_rad()));
-    Vector3::new(roll * cos, -roll * sin, azimuth)
 }
 
 /// What the sensors make of true increments: their error model, forwards.

@@ -1,10 +1,10 @@
 //! Rates that break off, and what is done about them.
 
-use super::bridge::{OPEN_MAX_MPS, OPEN_MAX_RAD, gimbal_turn};
+use super::bridge::{OPEN_MAX_MPS, OPEN_MAX_RAD};
 use super::estimation::Estimation;
 use super::{Core, kalman_of};
 use crate::config::Base;
-use crate::continuity::{Block, Continuity, TURNS_RAD};
+use crate::continuity::{Block, Continuity, TURNS_RAD, gimbal_turn};
 use crate::filter::Turned;
 use nalgebra::{Matrix3, Vector3};
 use octant_sample::parameters::Group;

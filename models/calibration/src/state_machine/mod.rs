@@ -288,6 +288,9 @@ impl Core {
         self.take(sample, interval_s, &mut health);
         match self.mode {
             Mode::Calibrating => {
+                if let Some(continuity) = &mut self.continuity {
+                    continuity.follow(sample.gimbal);
+                }
                 if self.tick >= self.block_tick {
                     self.look_for_edges(sample, &mut health);
                 }
@@ -506,7 +509,7 @@ impl Core {
             if measured.turned_rad > edges::CORRECTION_RAD
                 && let Some(continuity) = &mut self.continuity
             {
-                continuity.restart(sample.gimbal);
+                continuity.attitude_corrected();
             }
             if measured.recovery_started
                 && self.tick - self.disturbed_tick > explains_ticks
