@@ -123,7 +123,7 @@ impl Bench {
             baseline: None,
             reference: None,
             pacing: None,
-            stream_hash: "00".to_owned(),
+            stream_hash: format!("{run:064x}"),
         }
     }
 
@@ -201,6 +201,28 @@ fn too_few_runs_say_nothing_and_refused_ones_are_counted() {
     let one = &bench.against().compared[0];
     assert_eq!((one.runs, one.without, one.stands), (RUNS_MIN + 9, 1, None));
     assert!(one.words[0].contains("it can't stand for them"), "{:?}", one.words);
+}
+
+#[test]
+fn a_run_that_is_told_again_is_no_second_draw() {
+    let bench = Bench::new(RUNS_MIN + 10, SCENARIO);
+    let first = bench.summary(0);
+    bench.keep(|run, summary| {
+        if run < 20 {
+            *summary = first.clone();
+        }
+    });
+    let one = &bench.against().compared[0];
+    assert_eq!((one.runs, one.repeated, one.without, one.stands), (RUNS_MIN - 9, 19, 0, None));
+    assert!(
+        one.words.iter().any(|w| w.starts_with("19 cases are the same runs")),
+        "{:?}",
+        one.words
+    );
+    let bench = Bench::new(12, SCENARIO);
+    bench.keep(|_, summary| *summary = first.clone());
+    let found = bench.against();
+    assert!(found.compared.is_empty() && found.left_out[0].contains("11 more"));
 }
 
 #[test]

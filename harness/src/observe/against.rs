@@ -13,6 +13,7 @@ use octant_sample::parameters::NAMES;
 use octant_statistics::sample::{Interval, mean};
 use octant_statistics::{deviation, paired, power};
 use serde::{Deserialize, Serialize};
+use std::collections::HashSet;
 use std::path::Path;
 
 /// Version of the form of a comparison.
@@ -57,6 +58,9 @@ pub struct Comparison {
     pub open: usize,
     /// Cases that came to no summary, or whose calibration was refused: they are not in the sample.
     pub without: usize,
+    /// Cases that are the same run as another one of the sample, by their stream: told twice, it is one draw.
+    #[serde(default)]
+    pub repeated: usize,
     /// That all intervals hold the truth.
     pub confidence: f64,
     /// How well the sample knows a σ: half of its interval, as a part of it.
@@ -205,15 +209,18 @@ fn named(case: &Case) -> String {
 }
 
 /// Results of the cases of an ensemble.
+#[derive(Default)]
 struct Sample {
     summaries: Vec<Summary>,
     open: usize,
     broken: usize,
+    repeated: usize,
 }
 
 impl Sample {
     fn read(folder: &Path, cases: &[&Case]) -> Result<Self, String> {
-        let mut sample = Self { summaries: Vec::new(), open: 0, broken: 0 };
+        let mut sample = Self::default();
+        let mut streams = HashSet::new();
         for case in cases {
             let path = case::file(folder, &case.id);
             if !path.exists() {
@@ -221,6 +228,9 @@ impl Sample {
                 continue;
             }
             match CaseResult::read(&path)?.summary {
+                Some(summary) if !streams.insert(summary.stream_hash.clone()) => {
+                    sample.repeated += 1;
+                }
                 Some(summary) => sample.summaries.push(summary),
                 None => sample.broken += 1,
             }
@@ -264,7 +274,13 @@ fn compare(
     let runs = sample.of(method);
     let count = runs.len();
     if count < 2 {
-        return Err(format!("{count} of its cases have a calibration to compare"));
+        return Err(match sample.repeated {
+            0 => format!("{count} of its cases have a calibration to compare"),
+            repeated => format!(
+                "{count} of its cases have a calibration to compare: {repeated} more are the same runs \
+                 again, by their streams"
+            ),
+        });
     }
     let every = ensemble.drift.len().div_ceil(DRIFT_TIMES).max(1);
     let times: Vec<_> = ensemble.drift.iter().skip(every - 1).step_by(every).collect();
@@ -326,6 +342,7 @@ fn compare(
         runs: count,
         open: sample.open,
         without: sample.broken + sample.summaries.len() - count,
+        repeated: sample.repeated,
         confidence: CONFIDENCE,
         known_to: 0.5 * (high - low),
         detects: detects(count as u64, each),
@@ -432,6 +449,12 @@ fn conclude(comparison: &mut Comparison) {
     }
     if comparison.open > 0 {
         words.push(format!("{} more cases have not been run", comparison.open));
+    }
+    if comparison.repeated > 0 {
+        words.push(format!(
+            "{} cases are the same runs as others, by their streams, and don't count again",
+            comparison.repeated
+        ));
     }
     if comparison.without > 0 {
         words.push(format!(
