@@ -5,7 +5,7 @@ use crate::campaign::keep;
 use crate::evidence::discrepancy::counted;
 use crate::evidence::disposition::Dispositions;
 use crate::evidence::inside::SUMMARY;
-use crate::evidence::manifest::shell_line;
+use crate::evidence::manifest::{FILE_NAME as MANIFEST, shell_line};
 use crate::evidence::{Manifest, ManifestError, discrepancy};
 use crate::recorder::Event;
 use crate::recorder::reader::{Epochs, Recording};
@@ -39,6 +39,12 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
+    if !arguments.run.join(MANIFEST).exists() {
+        let run = arguments.run.display();
+        return Err(Failure::input(format!(
+            "{run} is not the folder of a run: it has no {MANIFEST}"
+        )));
+    }
     // What the manifest contradicts isn't shown: the summary, the scenario and the recording are those of
     // the run.
     let manifest = Manifest::read(&arguments.run)
