@@ -83,10 +83,10 @@ pub struct Continuity {
     limits: [f64; 2],
     /// Share of a turn that axes and encoders may show otherwise.
     axes: f64,
-    /// What the sway of a turning case makes of one block in which the drive changes its acceleration, rad.
+    /// Where a drive changes its acceleration, by how much encoders at the samples' times seem to be off, rad;
+    /// and what the base turns in a block, rad: the product of both is what seems to break off.
     corner: f64,
-    /// What encoders at the samples' times make of both gimbals at once, by what they turn in a block.
-    both: f64,
+    sway: f64,
     /// Of the cumulative sums: turn of a block that is left to noise, and limit, rad.
     sum: (f64, f64),
 
@@ -99,8 +99,9 @@ pub struct Continuity {
     /// Turn of the body by the encoders since then, in b, rad, and up to where that is.
     swept: Vector3<f64>,
     swept_to: GimbalAngles,
-    /// Turns of azimuth and roll in the last block, rad.
-    turned: [f64; 2],
+    /// Sums of azimuth and roll beyond that, counts, and of how many samples.
+    way: [i64; 2],
+    samples: u32,
     /// `c_cb` where the gimbals have stood for a block, and where that was.
     middle: (GimbalAngles, Matrix3<f64>),
     sums: [[f64; 2]; 3],
@@ -115,9 +116,9 @@ pub struct Continuity {
 #[cfg(feature = "state")]
 octant_state::state! {
     Continuity {
-        values: ring, others, next, filled, gimbal, swept, swept_to, turned, middle, sums, widened, alarms, encoder_edges, stretch;
+        values: ring, others, next, filled, gimbal, swept, swept_to, way, samples, middle, sums, widened, alarms, encoder_edges, stretch;
         parts: ;
-        kept: weights, limits, axes, corner, both, sum;
+        kept: weights, limits, axes, corner, sway, sum;
         check: Self::check_places
     }
 }
@@ -168,12 +169,6 @@ fn weights() -> [f64; POINTS] {
     }
     let norm = libm::sqrt(dot(&step, &step));
     step.map(|value| value / norm)
-}
-
-/// Mean of an angle over a block that ends at `end`, in which it turned by `turn`, and by `before` in the
-/// block before: to second order in time.
-fn mean(end: f64, turn: f64, before: f64) -> f64 {
-    end - 0.5 * turn - (turn - before) / 12.0
 }
 
 /// Rotation of the body in its own axes when the gimbals turn from one reading to another.
@@ -241,19 +236,10 @@ impl Continuity {
                 + 10.0 * prior(Group::GDependent)
                 + 7.3e-5 * kalman.prior.attitude_rad[2].min(0.05));
         let weights = weights();
-        let largest =
-            |of: fn(f64, f64) -> f64| weights.iter().fold(0.0f64, |sum, one| of(sum, one.abs()));
-        // Of the mean angle of a block a twelfth of what the acceleration turns in it is corrected, by the
-        // wrong half where it changes.
-        let corner = largest(f64::max) * turntable.acceleration_radps2 * block_s * block_s / 24.0;
         // The mean of two encoder angles is off by a twelfth of what the acceleration turns from one sample
         // to the next, as long as it lasts.
-        let both = 0.5
-            * largest(|sum, one| sum + one)
-            * turntable.acceleration_radps2
-            * sample_s
-            * sample_s
-            / 12.0;
+        let step = 0.5 * weights.iter().map(|one| one.abs()).sum::<f64>();
+        let corner = step * turntable.acceleration_radps2 * sample_s * sample_s / 12.0;
         Some(Self {
             weights,
             limits: [
@@ -266,11 +252,11 @@ impl Continuity {
                 ),
             ],
             axes: AXES_SIGMAS * libm::sqrt(scale * scale + across * across + encoder * encoder),
-            corner: match screening.base {
+            corner,
+            sway: match screening.base {
                 Base::Still => 0.0,
-                Base::Moving(motion) => corner * motion.rate_radps * block_s,
+                Base::Moving(motion) => motion.rate_radps * block_s,
             },
-            both,
             sum: (
                 (SUM_RATE * walk + known) * block_s,
                 0.5 * SUM_LOG * walk / SUM_RATE
@@ -278,7 +264,8 @@ impl Continuity {
             ),
             ring: [[0.0; CHANNELS]; POINTS],
             others: [[0.0; OTHERS]; POINTS],
-            turned: [0.0; 2],
+            way: [0; 2],
+            samples: 0,
             middle: (GimbalAngles::default(), Matrix3::identity()),
             next: 0,
             filled: [0; 2],
@@ -297,15 +284,32 @@ impl Continuity {
     pub fn restart(&mut self, gimbal: GimbalAngles) {
         self.filled = [0; 2];
         self.sums = [[0.0; 2]; 3];
+        self.start_block(gimbal);
+    }
+
+    fn start_block(&mut self, gimbal: GimbalAngles) {
         self.gimbal = gimbal;
         self.swept = Vector3::zeros();
         self.swept_to = gimbal;
+        self.way = [0; 2];
+        self.samples = 0;
     }
 
-    /// Takes the encoders of a sample: where both gimbals turn, what they turn the body by depends on the
-    /// way.
+    /// Mean of azimuth and roll over a block beyond where they were at its start, rad, by the trapezoids
+    /// between its samples; they turned by `azimuth` and `roll`.
+    fn beyond_start(&self, azimuth: f64, roll: f64) -> [f64; 2] {
+        let samples = f64::from(self.samples.max(1));
+        let mean = |way: i64, turn: f64| (way as f64 * GIMBAL_LSB_RAD - 0.5 * turn) / samples;
+        [mean(self.way[0], azimuth), mean(self.way[1], roll)]
+    }
+
+    /// Takes the encoders of a sample: where the body is in the mean of a block depends on their way, and, if
+    /// both gimbals turn, what they turn it by.
     #[inline]
     pub fn follow(&mut self, gimbal: GimbalAngles) {
+        self.way[0] += i64::from(gimbal.azimuth) - i64::from(self.gimbal.azimuth);
+        self.way[1] += i64::from(gimbal.roll) - i64::from(self.gimbal.roll);
+        self.samples = self.samples.saturating_add(1);
         let apart = |now: i32, then: i32| now.abs_diff(then) > FOLLOWED_COUNTS;
         if apart(gimbal.azimuth, self.swept_to.azimuth) && apart(gimbal.roll, self.swept_to.roll) {
             self.follow_to(gimbal);
@@ -340,26 +344,23 @@ impl Continuity {
     pub fn add(&mut self, block: &Block) -> bool {
         let azimuth = block.gimbal.azimuth_rad() - self.gimbal.azimuth_rad();
         let roll = block.gimbal.roll_rad() - self.gimbal.roll_rad();
-        if self.gimbal != block.gimbal || self.middle.0 != block.gimbal {
+        let stands = self.gimbal == block.gimbal;
+        if !stands || self.middle.0 != block.gimbal {
+            let [mean_azimuth, mean_roll] =
+                if stands { [0.0; 2] } else { self.beyond_start(azimuth, roll) };
             self.middle = (
                 // Where they were before, if they turn: no match for the next block.
                 self.gimbal,
-                c_cb(
-                    mean(block.gimbal.azimuth_rad(), azimuth, self.turned[0]),
-                    mean(block.gimbal.roll_rad(), roll, self.turned[1]),
-                ),
+                c_cb(self.gimbal.azimuth_rad() + mean_azimuth, self.gimbal.roll_rad() + mean_roll),
             );
         }
         let c_cb = self.middle.1;
         let (turn, velocity) = (&block.turn, &block.velocity);
         self.follow_to(block.gimbal);
         // Out and back is what encoders do that aren't to be believed.
-        let stands = azimuth == 0.0 && roll == 0.0;
         let swept = if stands { Vector3::zeros() } else { self.swept };
-        self.swept = Vector3::zeros();
         let case = c_cb * (turn - swept);
-        self.gimbal = block.gimbal;
-        self.turned = [azimuth, roll];
+        self.start_block(block.gimbal);
         self.ring[self.next] = [case.x, case.y, case.z, velocity.x, velocity.y, velocity.z];
         self.others[self.next] = [turn.x, turn.y, turn.z, azimuth, roll];
         self.next = (self.next + 1) % POINTS;
@@ -415,21 +416,31 @@ impl Continuity {
     fn breaks(&mut self, case: f64) -> bool {
         let [x, y, z, azimuth, roll] = self.filtered(&self.others);
         let (limit, body) = (self.limit(0), x.abs().max(y.abs()).max(z.abs()));
-        let fastest = |gimbal: usize| {
-            self.others.iter().fold(0.0f64, |most, turns| most.max(turns[gimbal].abs()))
-        };
-        let (fastest_azimuth, fastest_roll) = (fastest(3), fastest(4));
-        let turns = fastest_azimuth + fastest_roll > TURNS_RAD;
-        let mut corner = if turns { self.corner } else { 0.0 };
-        if fastest_azimuth.min(fastest_roll) > TURNS_RAD {
-            corner += self.both * (fastest_azimuth + fastest_roll);
-        }
-        let found =
-            body > limit && case > limit + corner + self.axes * (body + azimuth.abs() + roll.abs());
+        let turns = self.fastest().iter().sum::<f64>() > TURNS_RAD;
+        let corners = self.corners();
+        let found = body > limit
+            && case > limit + corners + self.axes * (body + azimuth.abs() + roll.abs());
         if found && turns && case < ENCODERS_SHARE * body {
             self.encoder_edges = self.encoder_edges.saturating_add(1);
         }
         found
+    }
+
+    /// What changes of the drives' acceleration may seem to break off by, rad.
+    fn corners(&self) -> f64 {
+        let [azimuth, roll] = self.fastest();
+        let mut turned = if azimuth + roll > TURNS_RAD { self.sway } else { 0.0 };
+        if azimuth.min(roll) > TURNS_RAD {
+            turned += azimuth + roll;
+        }
+        self.corner * turned
+    }
+
+    /// Largest turns of azimuth and roll in a block, rad.
+    fn fastest(&self) -> [f64; 2] {
+        self.others.iter().fold([0.0f64; 2], |[azimuth, roll], [.., one, other]| {
+            [azimuth.max(one.abs()), roll.max(other.abs())]
+        })
     }
 
     /// Cumulative sums to both sides of what turns beyond the Earth.

@@ -116,6 +116,9 @@ fn a_stream_that_breaks_off_again_and_again_is_like_this() {
 /// A drive at 10 °/s and 10 °/s² from `start` on by `angle`, both in rad and s: angle at a time.
 fn drive(start: f64, angle: f64, t: f64) -> f64 {
     let (rate, acceleration) = (10.0 * PI / 180.0, 10.0 * PI / 180.0);
+    if angle == 0.0 {
+        return 0.0;
+    }
     let ramp = (rate / acceleration).min(libm::sqrt(angle / acceleration));
     let top = acceleration * ramp;
     let end = angle / top + ramp;
@@ -129,13 +132,20 @@ fn drive(start: f64, angle: f64, t: f64) -> f64 {
     }
 }
 
-/// What the gyros of a case that stands seem to break off by beyond what two gimbals are allowed, as a share
-/// of what noise is. The body's turn is integrated in a hundred steps a block.
-fn two_gimbals(starts: [f64; 2], angles: [f64; 2], sample_ms: usize) -> f64 {
-    let mut continuity = continuity(Base::Still, 1e-3 * sample_ms as f64);
+/// What the gyros of a case seem to break off by beyond what turning gimbals are allowed, as a share of what
+/// noise is. The body's turn is integrated in a hundred steps a block.
+fn gimbals(base: Base, starts: [f64; 2], angles: [f64; 2], sample_ms: usize) -> f64 {
+    let mut continuity = continuity(base, 1e-3 * sample_ms as f64);
     let at = |k: usize| {
         let t = 1e-3 * k as f64;
         [0, 1].map(|i| drive(starts[i], angles[i].abs(), t) * angles[i].signum())
+    };
+    // As fast as the ship may, about all axes, in 7, 8 and 9 s.
+    let rate = if let Base::Moving(motion) = base { motion.rate_radps } else { 0.0 };
+    let sway = |k: usize| {
+        let phase = 2.0 * PI * 1e-3 * (k as f64 + 0.5);
+        Vector3::new(libm::sin(phase / 8.0), libm::sin(phase / 7.0), libm::cos(phase / 9.0))
+            * (0.57 * rate * 1e-3)
     };
     let (mut largest, mut turn) = (0.0f64, Vector3::zeros());
     for k in 0..20_000 {
@@ -143,6 +153,7 @@ fn two_gimbals(starts: [f64; 2], angles: [f64; 2], sample_ms: usize) -> f64 {
         let (azimuth, roll) = (0.5 * (from[0] + to[0]), to[1] - from[1]);
         let (sin, cos) = libm::sincos(azimuth);
         turn += Vector3::new(roll * cos, -roll * sin, to[0] - from[0]);
+        turn += c_cb(azimuth, 0.5 * (from[1] + to[1])).transpose() * sway(k);
         let gimbal = GimbalAngles::from_rad(to[0], to[1]);
         if (k + 1).is_multiple_of(sample_ms) {
             continuity.follow(gimbal);
@@ -151,35 +162,43 @@ fn two_gimbals(starts: [f64; 2], angles: [f64; 2], sample_ms: usize) -> f64 {
             let velocity = Vector3::zeros();
             let _ = continuity.add(&Block { turn, velocity, gimbal, beyond: None });
             turn = Vector3::zeros();
-            let [x, y, z, ..] = continuity.filtered(&continuity.ring);
-            let fastest =
-                |i: usize| continuity.others.iter().fold(0.0f64, |a, b| a.max(b[i].abs()));
-            let allowed = continuity.both * (fastest(3) + fastest(4));
-            let beyond = x.abs().max(y.abs()).max(z.abs()) - allowed;
-            largest = largest.max(beyond / continuity.limits[0]);
+            if k > 3000 {
+                let [x, y, z, ..] = continuity.filtered(&continuity.ring);
+                let beyond = x.abs().max(y.abs()).max(z.abs()) - continuity.corners();
+                largest = largest.max(beyond / continuity.limits[0]);
+            }
         }
     }
     largest
 }
 
 #[test]
-fn two_gimbals_that_turn_at_once_break_nothing_off() {
+fn gimbals_that_turn_break_nothing_off() {
     let degrees = PI / 180.0;
-    let mut worst = 0.0f64;
-    for (azimuth, roll) in
-        [(90.0, 90.0), (180.0, -90.0), (-45.0, 180.0), (17.0, 5.0), (3.0, -140.0)]
-    {
-        for phase in 0..10 {
-            for later in [0.0, 0.03, 0.5, 1.0, 1.97] {
-                let start = 5.0 + 0.01 * f64::from(phase);
-                let angles = [azimuth * degrees, roll * degrees];
-                for sample_ms in [5, 20, 50] {
-                    for starts in [[start, start + later], [start + later, start]] {
-                        worst = worst.max(two_gimbals(starts, angles, sample_ms));
+    let turns = [
+        (90.0, 90.0),
+        (180.0, -90.0),
+        (-45.0, 180.0),
+        (17.0, 5.0),
+        (3.0, -140.0),
+        (0.0, 90.0),
+        (90.0, 0.0),
+    ];
+    for base in [Base::Still, ship()] {
+        let mut worst = 0.0f64;
+        for (azimuth, roll) in turns {
+            for phase in 0..10 {
+                for later in [0.0, 0.03, 0.5, 1.0, 1.97] {
+                    let start = 5.0 + 0.01 * f64::from(phase);
+                    let angles = [azimuth * degrees, roll * degrees];
+                    for sample_ms in [5, 20, 50] {
+                        for starts in [[start, start + later], [start + later, start]] {
+                            worst = worst.max(gimbals(base, starts, angles, sample_ms));
+                        }
                     }
                 }
             }
         }
+        assert!(worst < 0.2, "{base:?}: {worst}");
     }
-    assert!(worst < 0.1, "{worst}");
 }
