@@ -75,6 +75,15 @@ pub struct Block {
     pub beyond: Option<Vector3<f64>>,
 }
 
+/// What broke off.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Edge {
+    /// The turn by the gyros.
+    Turn,
+    /// The velocity by the accelerometers, and not the turn.
+    Velocity,
+}
+
 /// Looks for rates that break off.
 #[derive(Clone, Debug)]
 pub struct Continuity {
@@ -340,8 +349,8 @@ impl Continuity {
         self.encoder_edges >= ENCODERS_EDGES
     }
 
-    /// Takes a block; `true`: a rate broke off.
-    pub fn add(&mut self, block: &Block) -> bool {
+    /// Takes a block; `Some`: a rate broke off.
+    pub fn add(&mut self, block: &Block) -> Option<Edge> {
         let azimuth = block.gimbal.azimuth_rad() - self.gimbal.azimuth_rad();
         let roll = block.gimbal.roll_rad() - self.gimbal.roll_rad();
         let stands = self.gimbal == block.gimbal;
@@ -379,11 +388,12 @@ impl Continuity {
                 found = Some(1);
             }
         }
-        let Some(triad) = found else { return false };
-        self.alarm(triad, block.gimbal)
+        let triad = found?;
+        self.alarm(triad, block.gimbal);
+        Some(if triad == 0 { Edge::Turn } else { Edge::Velocity })
     }
 
-    fn alarm(&mut self, triad: usize, gimbal: GimbalAngles) -> bool {
+    fn alarm(&mut self, triad: usize, gimbal: GimbalAngles) {
         self.restart(gimbal);
         self.stretch = STRETCH_BLOCKS;
         self.alarms[triad] += 1;
@@ -391,7 +401,6 @@ impl Continuity {
             self.alarms[triad] = 0;
             self.widened[triad] *= 2.0;
         }
-        true
     }
 
     fn limit(&self, triad: usize) -> f64 {

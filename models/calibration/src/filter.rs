@@ -5,6 +5,7 @@
 //! between measurements.
 
 use crate::config::{AidingMode, ErrorModel, Gate, Kalman, Noise, Recovery, Screening, Site};
+use crate::continuity::Edge;
 use crate::covariance::{Covariance, DR, DV, PARAMETERS, PHI, STATE_COUNT, Transition};
 use crate::drift::Drift;
 use crate::error_model::{Interval, computer_frame_error};
@@ -32,6 +33,9 @@ const CAPTURE_ATTITUDE_RAD: f64 = 2.9e-3;
 /// Smallest σ of azimuth there, rad: 3°. An azimuth error shows only through Earth rate: by the time
 /// that it opens the gate it may be of any size, and the innovation doesn't say.
 const CAPTURE_AZIMUTH_RAD: f64 = 0.052;
+/// σ of an attitude that a disturbance of the accelerometers left as it was, rad: 50″, more than what one
+/// measurement that the gate lets through makes of it.
+const KEPT_ATTITUDE_RAD: f64 = 2.4e-4;
 
 /// Largest σ of velocity, m/s, and position, m, in the first stage: a reference that is farther off
 /// is not followed.
@@ -115,6 +119,8 @@ pub struct CalibrationFilter {
     turned: Turned,
     rejected_in_a_row: u32,
     stage: Stage,
+    /// The recovery is of velocity and position alone: the gyros' turn never broke off.
+    keeps_attitude: bool,
     tally: Tally,
     drift: Option<Drift>,
     /// The older one and the newer one.
@@ -124,7 +130,7 @@ pub struct CalibrationFilter {
 #[cfg(feature = "state")]
 octant_state::state! {
     CalibrationFilter {
-        values: elapsed_s, force_sum, time_s, turned, rejected_in_a_row, stage, tally;
+        values: elapsed_s, force_sum, time_s, turned, rejected_in_a_row, stage, keeps_attitude, tally;
         parts: covariance, transition, sub_step, drift, checkpoints;
         kept: model, aiding, site, gate, gyro_variance_per_s, accel_variance_per_s;
         check: Self::check_counts
@@ -312,6 +318,7 @@ impl CalibrationFilter {
             turned: Turned::default(),
             rejected_in_a_row: 0,
             stage: Stage::Normal,
+            keeps_attitude: false,
             tally: Tally::default(),
             drift,
             checkpoints: screening.checkpoints.then(|| [start.clone(), start]),
@@ -365,6 +372,7 @@ impl CalibrationFilter {
     /// The attitude may be off by more than its linear error model bears: until it has settled, the
     /// parameters are held.
     pub fn hold(&mut self) {
+        self.keeps_attitude = false;
         self.stage = Stage::Capture(self.time_s + CAPTURE_S);
     }
 
@@ -419,7 +427,15 @@ impl CalibrationFilter {
     /// Something is wrong with the increments of the last seconds: what was learned from them is
     /// undone, and attitude and velocity are open again. `false`: the configuration has no such
     /// recovery.
-    pub fn suspect(&mut self, strapdown: &mut Strapdown, parameters: &mut Parameters) -> bool {
+    ///
+    /// Where the gyros' turn didn't break off the attitude stays within a minute of arc of what it is: taken
+    /// for a tilt, an acceleration that isn't there would carry the azimuth off by degrees.
+    pub fn suspect(
+        &mut self,
+        edge: Edge,
+        strapdown: &mut Strapdown,
+        parameters: &mut Parameters,
+    ) -> bool {
         let Some(gate @ Gate { recovery: Recovery::Widening, .. }) = self.gate else {
             return false;
         };
@@ -430,7 +446,9 @@ impl CalibrationFilter {
         if self.stage == Stage::Normal {
             self.go_back(parameters);
             self.tally.recoveries = self.tally.recoveries.saturating_add(1);
+            self.keeps_attitude = true;
         }
+        self.keeps_attitude &= edge == Edge::Velocity;
         self.rejected_in_a_row = 0;
         self.open_wide(&gate, &Vector3::zeros(), strapdown);
         true
@@ -615,6 +633,7 @@ impl CalibrationFilter {
 
     fn start_recovery(&mut self, gate: &Gate, error: &Vector3<f64>, strapdown: &mut Strapdown) {
         self.tally.recoveries += 1;
+        self.keeps_attitude = false;
         match gate.recovery {
             Recovery::Reset { attitude_rad, velocity_mps, position_m } => {
                 self.reopen([attitude_rad; 3], velocity_mps, position_m);
@@ -646,7 +665,12 @@ impl CalibrationFilter {
             }
         };
         let azimuth = attitude.max(CAPTURE_AZIMUTH_RAD);
-        self.reopen([attitude, attitude, azimuth], velocity, position);
+        let attitude = if self.keeps_attitude {
+            self.attitude_at_least([KEPT_ATTITUDE_RAD; 3])
+        } else {
+            [attitude, attitude, azimuth]
+        };
+        self.reopen(attitude, velocity, position);
         self.stage = Stage::Capture(self.time_s + CAPTURE_S);
     }
 
@@ -654,8 +678,10 @@ impl CalibrationFilter {
         match self.stage {
             Stage::Capture(until) if self.time_s >= until => {
                 // Azimuth hardly shows in 10 s: what was opened wide for it has to stay open.
-                let attitude = core::array::from_fn(|axis| {
-                    SETTLE_ATTITUDE_RAD[axis].max(self.covariance.sigma(PHI + axis))
+                let attitude = self.attitude_at_least(if self.keeps_attitude {
+                    [KEPT_ATTITUDE_RAD; 3]
+                } else {
+                    SETTLE_ATTITUDE_RAD
                 });
                 self.reopen(attitude, SETTLE_VELOCITY_MPS, RECOVERY_POSITION_M);
                 self.stage = Stage::Settle(self.time_s + SETTLE_S);
@@ -663,6 +689,11 @@ impl CalibrationFilter {
             Stage::Settle(until) if self.time_s >= until => self.stage = Stage::Normal,
             _ => {}
         }
+    }
+
+    /// σ of the attitude, no less than this, rad.
+    fn attitude_at_least(&self, least_rad: [f64; 3]) -> [f64; 3] {
+        core::array::from_fn(|axis| least_rad[axis].max(self.covariance.sigma(PHI + axis)))
     }
 
     fn reopen(&mut self, attitude_rad: [f64; 3], velocity_mps: f64, position_m: f64) {

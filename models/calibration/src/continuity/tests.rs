@@ -54,7 +54,7 @@ fn found_after(
     let mut continuity = continuity(base, SAMPLE_S);
     for k in 0..200 {
         let spike = if (100..100 + blocks).contains(&k) { rotation / blocks as f64 } else { 0.0 };
-        if continuity.add(&block(Vector3::new(sway(k) + spike, 0.0, 0.0), None)) {
+        if continuity.add(&block(Vector3::new(sway(k) + spike, 0.0, 0.0), None)).is_some() {
             return Some(k);
         }
     }
@@ -100,7 +100,7 @@ fn a_rate_that_is_known_needs_no_edges() {
     let mut continuity = continuity(Base::Still, SAMPLE_S);
     // 1 °/h beyond the known rate, from the first block on.
     let beyond = Vector3::new(0.0, -0.1 * ARCSEC, 0.0);
-    let found = (0..20).position(|_| continuity.add(&block(beyond, Some(beyond))));
+    let found = (0..20).position(|_| continuity.add(&block(beyond, Some(beyond))).is_some());
     assert!(found.is_some_and(|block| block < 8), "{found:?}");
 }
 
@@ -108,7 +108,8 @@ fn a_rate_that_is_known_needs_no_edges() {
 fn a_stream_that_breaks_off_again_and_again_is_like_this() {
     let mut continuity = continuity(Base::Still, SAMPLE_S);
     let rough = |k: usize| ARCSEC * if k.is_multiple_of(23) { 1.0 } else { 0.0 };
-    let alarms = (0..3000).filter(|k| continuity.add(&block(Vector3::repeat(rough(*k)), None)));
+    let alarms =
+        (0..3000).filter(|k| continuity.add(&block(Vector3::repeat(rough(*k)), None)).is_some());
     let alarms = alarms.count();
     assert!((6..40).contains(&alarms), "{alarms}");
 }

@@ -12,7 +12,7 @@
 use super::estimation::Estimation;
 use super::{Core, increments, kalman_of};
 use crate::config::{Base, BaseMotion};
-use crate::continuity::gimbal_turn;
+use crate::continuity::{Edge, gimbal_turn};
 use crate::screen::{ACCELEROMETERS, Counts, Examined, GYROS};
 use nalgebra::{Matrix3, Vector3};
 use octant_sample::counts::{DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS, GIMBAL_LSB_RAD};
@@ -46,8 +46,8 @@ pub(super) struct Bridge {
     open: u8,
     /// What jumps would have added, had they been believed: rad and m/s, in b.
     disbelieved: (Vector3<f64>, Vector3<f64>),
-    /// The last sample was bridged because it jumped.
-    jumps: bool,
+    /// Channels that were bridged because they jumped, up to the last sample.
+    jumps: u8,
     /// Encoder angles before the stretch, and whether their uncertainty is accounted for.
     start: GimbalAngles,
     encoders_counted: [bool; 2],
@@ -214,11 +214,15 @@ impl Core {
         }
         // On a base that moves nothing says whether what is believed again is right: a spike that lasts
         // is believed too, and the last increments stood in for it badly.
-        let jumps = found.jumped != 0;
-        if !still && !jumps && self.bridge.jumps {
-            self.mend();
+        if found.jumped != 0 {
+            self.bridge.jumps |= found.jumped;
+        } else if self.bridge.jumps != 0 {
+            let gyros = self.bridge.jumps & GYROS != 0;
+            self.bridge.jumps = 0;
+            if !still {
+                self.mend(if gyros { Edge::Turn } else { Edge::Velocity });
+            }
         }
-        self.bridge.jumps = jumps;
     }
 
     /// Out of line: the integration itself belongs to where good samples are.

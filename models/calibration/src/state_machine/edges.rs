@@ -4,7 +4,7 @@ use super::bridge::{OPEN_MAX_MPS, OPEN_MAX_RAD};
 use super::estimation::Estimation;
 use super::{Core, kalman_of};
 use crate::config::Base;
-use crate::continuity::{Block, Continuity, TURNS_RAD, gimbal_turn};
+use crate::continuity::{Block, Continuity, Edge, TURNS_RAD, gimbal_turn};
 use crate::filter::Turned;
 use nalgebra::{Matrix3, Vector3};
 use octant_sample::parameters::Group;
@@ -127,14 +127,14 @@ impl Core {
             gimbal,
             beyond: (still && settled && !moves).then_some(beyond.0),
         };
-        let broke_off = continuity.add(&block);
-        if broke_off {
+        let edge = continuity.add(&block);
+        if edge.is_some() {
             *health |= Health::JUMP;
         }
         if still {
-            self.follow_disturbance(broke_off, moves, beyond);
-        } else if broke_off {
-            self.mend();
+            self.follow_disturbance(edge.is_some(), moves, beyond);
+        } else if let Some(edge) = edge {
+            self.mend(edge);
         }
     }
 
@@ -179,7 +179,7 @@ impl Core {
         let Some(mut disturbance) = self.disturbance else { return };
         if disturbance.turned.norm() > OPEN_MAX_RAD || disturbance.moved.norm() > OPEN_MAX_MPS {
             self.disturbance = None;
-            self.mend();
+            self.mend(Edge::Turn);
             return;
         }
         let quiet_s = (self.tick - self.disturbed_tick) as f64 * self.sample_s;
@@ -210,19 +210,20 @@ impl Core {
         2.0 * sigma * sigma + axes * axes
     }
 
-    /// What the filter learned in the last minute is undone; where it can't be, the calibration will
-    /// be refused.
+    /// What the filter learned in the last minute is undone, after something that the edge shows, or that
+    /// may be of the gyros too; where it can't be, the calibration will be refused.
     #[cold]
     #[inline(never)]
-    pub(super) fn mend(&mut self) {
+    pub(super) fn mend(&mut self, edge: Edge) {
         if self.mode != Mode::Calibrating {
             return;
         }
         self.disturbed_tick = self.tick;
         let mut parameters = self.parameters;
         let mut strapdown = self.strapdown.clone();
-        let mended =
-            self.filter_mut().is_some_and(|filter| filter.suspect(&mut strapdown, &mut parameters));
+        let mended = self
+            .filter_mut()
+            .is_some_and(|filter| filter.suspect(edge, &mut strapdown, &mut parameters));
         if !mended {
             self.unrepaired = self.unrepaired.saturating_add(1);
             return;
