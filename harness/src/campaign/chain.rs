@@ -69,7 +69,7 @@ impl Read {
     }
 }
 
-/// Holds the tables at `paths`, named as in [`TABLES`], against the results in a folder, or against
+/// Holds the tables at `paths`, named as a merge names them, against the results in a folder, or against
 /// themselves where it has none.
 ///
 /// # Errors
