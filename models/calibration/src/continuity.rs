@@ -21,11 +21,18 @@
 //! encoders alone, and if it is larger than what axes and encoders can make of what both have, as at
 //! every start of a move. Velocity is looked at in n, where a turn doesn't show.
 
+mod step;
+mod way;
+
+pub(crate) use way::gimbal_turn;
+
 use crate::config::{Base, Kalman, Noise, Screening, TurntableRates};
 use nalgebra::{Matrix3, Vector3};
 use octant_sample::GimbalAngles;
-use octant_sample::counts::{DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS, GIMBAL_LSB_RAD};
+use octant_sample::counts::{DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS};
 use octant_sample::parameters::Group;
+use step::DEGREE;
+use way::Way;
 
 /// Length of a block, s, and blocks of the filter.
 const BLOCK_S: f64 = 0.1;
@@ -36,10 +43,6 @@ const CHANNELS: usize = 6;
 const OTHERS: usize = 5;
 /// Turn of an encoder in a block that is none, rad: 20″.
 pub(crate) const TURNS_RAD: f64 = 1e-4;
-/// Turns of both gimbals from which the way matters, counts of an encoder: 1″.
-const FOLLOWED_COUNTS: u32 = (5e-6 / GIMBAL_LSB_RAD) as u32;
-/// Degree up to which the filter is blind to polynomials: a ship's sway of 6 s leaves 1e-6 of its rate.
-const DEGREE: usize = 7;
 /// Standard deviations that noise is allowed. 8e-11 for a normal variable: 7e-5 in four hours of six
 /// channels.
 const NOISE_SIGMAS: f64 = 6.5;
@@ -104,13 +107,8 @@ pub struct Continuity {
     next: usize,
     /// Blocks that count, of gyros and of velocity.
     filled: [usize; 2],
-    gimbal: GimbalAngles,
-    /// Turn of the body by the encoders since then, in b, rad, and up to where that is.
-    swept: Vector3<f64>,
-    swept_to: GimbalAngles,
-    /// Sums of azimuth and roll beyond that, counts, and of how many samples.
-    way: [i64; 2],
-    samples: u32,
+    /// Of the encoders since the last block.
+    way: Way,
     /// `c_cb` where the gimbals have stood for a block, and where that was.
     middle: (GimbalAngles, Matrix3<f64>),
     sums: [[f64; 2]; 3],
@@ -125,7 +123,7 @@ pub struct Continuity {
 #[cfg(feature = "state")]
 octant_state::state! {
     Continuity {
-        values: ring, others, next, filled, gimbal, swept, swept_to, way, samples, middle, sums, widened, alarms, encoder_edges, stretch;
+        values: ring, others, next, filled, way, middle, sums, widened, alarms, encoder_edges, stretch;
         parts: ;
         kept: weights, limits, axes, corner, sway, sum;
         check: Self::check_places
@@ -150,48 +148,6 @@ impl Continuity {
 #[must_use]
 pub fn block_ticks(sample_s: f64) -> u64 {
     ((BLOCK_S / sample_s + 1e-9) as u64).max(1)
-}
-
-/// A step with everything taken out that polynomials up to the degree have, of norm one.
-fn weights() -> [f64; POINTS] {
-    let at = |i: usize| (2.0 * i as f64 + 1.0) / POINTS as f64 - 1.0;
-    let dot =
-        |a: &[f64; POINTS], b: &[f64; POINTS]| -> f64 { a.iter().zip(b).map(|(a, b)| a * b).sum() };
-    let mut bases = [[0.0; POINTS]; DEGREE + 1];
-    let mut step: [f64; POINTS] = core::array::from_fn(|i| if 2 * i < POINTS { -1.0 } else { 1.0 });
-    for power in 0..=DEGREE {
-        // From the last one, not from the power: twice is enough (Giraud and others, 2005).
-        let mut basis: [f64; POINTS] = match power {
-            0 => [1.0; POINTS],
-            _ => core::array::from_fn(|i| bases[power - 1][i] * at(i)),
-        };
-        for _ in 0..2 {
-            for other in &bases[..power] {
-                let share = dot(&basis, other);
-                basis.iter_mut().zip(other).for_each(|(value, other)| *value -= share * other);
-            }
-        }
-        let norm = libm::sqrt(dot(&basis, &basis));
-        bases[power] = basis.map(|value| value / norm);
-        let share = dot(&step, &bases[power]);
-        step.iter_mut().zip(&bases[power]).for_each(|(value, basis)| *value -= share * basis);
-    }
-    let norm = libm::sqrt(dot(&step, &step));
-    step.map(|value| value / norm)
-}
-
-/// Rotation of the body in its own axes when the gimbals turn from one reading to another.
-pub(crate) fn gimbal_turn(from: GimbalAngles, to: GimbalAngles) -> Vector3<f64> {
-    let azimuth = to.azimuth_rad() - from.azimuth_rad();
-    let roll = to.roll_rad() - from.roll_rad();
-    let (sin, cos) = libm::sincos(0.5 * (from.azimuth_rad() + to.azimuth_rad()));
-    Vector3::new(roll * cos, -roll * sin, azimuth)
-}
-
-/// `Rx(roll) · Rz(azimuth)`.
-fn c_cb(azimuth_rad: f64, roll_rad: f64) -> Matrix3<f64> {
-    let ((sa, ca), (sr, cr)) = (libm::sincos(azimuth_rad), libm::sincos(roll_rad));
-    Matrix3::new(ca, -sa, 0.0, cr * sa, cr * ca, -sr, sr * sa, sr * ca, cr)
 }
 
 impl Continuity {
@@ -244,7 +200,7 @@ impl Continuity {
             * (prior(Group::GyroBias)
                 + 10.0 * prior(Group::GDependent)
                 + 7.3e-5 * kalman.prior.attitude_rad[2].min(0.05));
-        let weights = weights();
+        let weights = step::weights();
         // The mean of two encoder angles is off by a twelfth of what the acceleration turns from one sample
         // to the next, as long as it lasts.
         let step = 0.5 * weights.iter().map(|one| one.abs()).sum::<f64>();
@@ -273,14 +229,10 @@ impl Continuity {
             ),
             ring: [[0.0; CHANNELS]; POINTS],
             others: [[0.0; OTHERS]; POINTS],
-            way: [0; 2],
-            samples: 0,
+            way: Way::default(),
             middle: (GimbalAngles::default(), Matrix3::identity()),
             next: 0,
             filled: [0; 2],
-            gimbal: GimbalAngles::default(),
-            swept: Vector3::zeros(),
-            swept_to: GimbalAngles::default(),
             sums: [[0.0; 2]; 3],
             widened: [1.0; 2],
             alarms: [0; 2],
@@ -293,41 +245,13 @@ impl Continuity {
     pub fn restart(&mut self, gimbal: GimbalAngles) {
         self.filled = [0; 2];
         self.sums = [[0.0; 2]; 3];
-        self.start_block(gimbal);
+        self.way = Way::from(gimbal);
     }
 
-    fn start_block(&mut self, gimbal: GimbalAngles) {
-        self.gimbal = gimbal;
-        self.swept = Vector3::zeros();
-        self.swept_to = gimbal;
-        self.way = [0; 2];
-        self.samples = 0;
-    }
-
-    /// Mean of azimuth and roll over a block beyond where they were at its start, rad, by the trapezoids
-    /// between its samples; they turned by `azimuth` and `roll`.
-    fn beyond_start(&self, azimuth: f64, roll: f64) -> [f64; 2] {
-        let samples = f64::from(self.samples.max(1));
-        let mean = |way: i64, turn: f64| (way as f64 * GIMBAL_LSB_RAD - 0.5 * turn) / samples;
-        [mean(self.way[0], azimuth), mean(self.way[1], roll)]
-    }
-
-    /// Takes the encoders of a sample: where the body is in the mean of a block depends on their way, and, if
-    /// both gimbals turn, what they turn it by.
+    /// Takes the encoders of a sample.
     #[inline]
     pub fn follow(&mut self, gimbal: GimbalAngles) {
-        self.way[0] += i64::from(gimbal.azimuth) - i64::from(self.gimbal.azimuth);
-        self.way[1] += i64::from(gimbal.roll) - i64::from(self.gimbal.roll);
-        self.samples = self.samples.saturating_add(1);
-        let apart = |now: i32, then: i32| now.abs_diff(then) > FOLLOWED_COUNTS;
-        if apart(gimbal.azimuth, self.swept_to.azimuth) && apart(gimbal.roll, self.swept_to.roll) {
-            self.follow_to(gimbal);
-        }
-    }
-
-    fn follow_to(&mut self, gimbal: GimbalAngles) {
-        self.swept += gimbal_turn(self.swept_to, gimbal);
-        self.swept_to = gimbal;
+        self.way.follow(gimbal);
     }
 
     /// The attitude was corrected by so much that velocity in n breaks off by itself. What the gyros
@@ -340,7 +264,7 @@ impl Continuity {
     /// Encoder angles at the end of the last block.
     #[must_use]
     pub fn gimbal(&self) -> GimbalAngles {
-        self.gimbal
+        self.way.start()
     }
 
     /// Edges at starts and ends of turns were such that it will be the encoders that are off.
@@ -351,25 +275,20 @@ impl Continuity {
 
     /// Takes a block; `Some`: a rate broke off.
     pub fn add(&mut self, block: &Block) -> Option<Edge> {
-        let azimuth = block.gimbal.azimuth_rad() - self.gimbal.azimuth_rad();
-        let roll = block.gimbal.roll_rad() - self.gimbal.roll_rad();
-        let stands = self.gimbal == block.gimbal;
-        if !stands || self.middle.0 != block.gimbal {
-            let [mean_azimuth, mean_roll] =
-                if stands { [0.0; 2] } else { self.beyond_start(azimuth, roll) };
-            self.middle = (
-                // Where they were before, if they turn: no match for the next block.
-                self.gimbal,
-                c_cb(self.gimbal.azimuth_rad() + mean_azimuth, self.gimbal.roll_rad() + mean_roll),
-            );
-        }
-        let c_cb = self.middle.1;
+        let before = self.way.start();
+        let azimuth = block.gimbal.azimuth_rad() - before.azimuth_rad();
+        let roll = block.gimbal.roll_rad() - before.roll_rad();
         let (turn, velocity) = (&block.turn, &block.velocity);
-        self.follow_to(block.gimbal);
-        // Out and back is what encoders do that aren't to be believed.
-        let swept = if stands { Vector3::zeros() } else { self.swept };
-        let case = c_cb * (turn - swept);
-        self.start_block(block.gimbal);
+        // Sines and cosines of gimbals that stand are known from the block before.
+        let case = if block.gimbal == before && self.middle.0 == before {
+            self.middle.1 * turn
+        } else {
+            let swept = self.way.until(block.gimbal);
+            // Where they were before, if they turn: no match for the next block.
+            self.middle = (before, swept.c_cb);
+            swept.c_cb * (turn - swept.turn)
+        };
+        self.way = Way::from(block.gimbal);
         self.ring[self.next] = [case.x, case.y, case.z, velocity.x, velocity.y, velocity.z];
         self.others[self.next] = [turn.x, turn.y, turn.z, azimuth, roll];
         self.next = (self.next + 1) % POINTS;

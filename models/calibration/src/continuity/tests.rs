@@ -1,5 +1,7 @@
 //! Edges of spikes in blocks without noise.
 
+use super::step::weights;
+use super::way::c_cb;
 use super::*;
 use crate::config::{AidingMode, BaseMotion, ErrorModel, Prior};
 use core::f64::consts::PI;

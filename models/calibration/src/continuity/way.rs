@@ -1,0 +1,96 @@
+//! The encoders' way through a block of samples.
+//!
+//! Where the body is in the mean of a block, and, if both gimbals turn, what they turn it by, depends on how
+//! they went and not only on where they came to.
+
+use nalgebra::{Matrix3, Vector3};
+use octant_sample::GimbalAngles;
+use octant_sample::counts::GIMBAL_LSB_RAD;
+
+/// Turns of both gimbals from which the way matters, counts of an encoder: 1″.
+const FOLLOWED_COUNTS: u32 = (5e-6 / GIMBAL_LSB_RAD) as u32;
+
+/// From the start of a block to the last sample that was taken.
+#[derive(Clone, Copy, Debug, Default)]
+#[cfg_attr(feature = "state", derive(serde::Serialize, serde::Deserialize))]
+pub(super) struct Way {
+    start: GimbalAngles,
+    /// Turn of the body so far, in b, rad, and up to where that is.
+    swept: Vector3<f64>,
+    swept_to: GimbalAngles,
+    /// Sums of azimuth and roll beyond the start, counts, and of how many samples.
+    beyond: [i64; 2],
+    samples: u32,
+}
+
+/// A whole one.
+pub(super) struct Swept {
+    /// Turn of the body in b, rad.
+    pub(super) turn: Vector3<f64>,
+    /// `c_cb` at the mean of azimuth and roll.
+    pub(super) c_cb: Matrix3<f64>,
+}
+
+impl Way {
+    pub(super) fn from(start: GimbalAngles) -> Self {
+        Self { start, swept_to: start, ..Self::default() }
+    }
+
+    pub(super) fn start(&self) -> GimbalAngles {
+        self.start
+    }
+
+    /// Takes the encoders of a sample.
+    #[inline]
+    pub(super) fn follow(&mut self, gimbal: GimbalAngles) {
+        let further =
+            |sum: i64, now: i32, then: i32| sum.saturating_add(i64::from(now) - i64::from(then));
+        self.beyond = [
+            further(self.beyond[0], gimbal.azimuth, self.start.azimuth),
+            further(self.beyond[1], gimbal.roll, self.start.roll),
+        ];
+        self.samples = self.samples.saturating_add(1);
+        let apart = |now: i32, then: i32| now.abs_diff(then) > FOLLOWED_COUNTS;
+        if apart(gimbal.azimuth, self.swept_to.azimuth) && apart(gimbal.roll, self.swept_to.roll) {
+            self.sweep(gimbal);
+        }
+    }
+
+    fn sweep(&mut self, gimbal: GimbalAngles) {
+        self.swept += gimbal_turn(self.swept_to, gimbal);
+        self.swept_to = gimbal;
+    }
+
+    /// The way that ends here, with the mean angles by the trapezoids between its samples. Out and back is
+    /// what encoders do that aren't to be believed: it is no way.
+    pub(super) fn until(mut self, end: GimbalAngles) -> Swept {
+        if end == self.start {
+            let c_cb = c_cb(end.azimuth_rad(), end.roll_rad());
+            return Swept { turn: Vector3::zeros(), c_cb };
+        }
+        self.sweep(end);
+        let samples = f64::from(self.samples.max(1));
+        let mean = |start_rad: f64, end_rad: f64, beyond: i64| {
+            start_rad + (beyond as f64 * GIMBAL_LSB_RAD - 0.5 * (end_rad - start_rad)) / samples
+        };
+        let c_cb = c_cb(
+            mean(self.start.azimuth_rad(), end.azimuth_rad(), self.beyond[0]),
+            mean(self.start.roll_rad(), end.roll_rad(), self.beyond[1]),
+        );
+        Swept { turn: self.swept, c_cb }
+    }
+}
+
+/// Rotation of the body in its own axes when the gimbals turn from one reading to another.
+pub(crate) fn gimbal_turn(from: GimbalAngles, to: GimbalAngles) -> Vector3<f64> {
+    let azimuth = to.azimuth_rad() - from.azimuth_rad();
+    let roll = to.roll_rad() - from.roll_rad();
+    let (sin, cos) = libm::sincos(0.5 * (from.azimuth_rad() + to.azimuth_rad()));
+    Vector3::new(roll * cos, -roll * sin, azimuth)
+}
+
+/// `Rx(roll) · Rz(azimuth)`.
+pub(super) fn c_cb(azimuth_rad: f64, roll_rad: f64) -> Matrix3<f64> {
+    let ((sa, ca), (sr, cr)) = (libm::sincos(azimuth_rad), libm::sincos(roll_rad));
+    Matrix3::new(ca, -sa, 0.0, cr * sa, cr * ca, -sr, sr * sa, sr * ca, cr)
+}
