@@ -10,13 +10,15 @@ pub(crate) const LIMIT: &str = "LIMIT";
 pub(crate) const PASS: &str = "PASS";
 pub(crate) const CONFIDENCE: &str = "CONFIDENCE";
 pub(crate) const VERIFICATION: &str = "VERIFICATION";
+/// Names of tests, with `; ` between them.
+pub(crate) const TESTS: &str = "TESTS";
 pub(crate) const CLAUSE: &str = "CLAUSE";
 pub(crate) const RATIONALE: &str = "RATIONALE";
 /// Those that every format names in its own way.
 pub(crate) const OF_FORMATS: [&str; 4] = ["MID", "UID", "TITLE", "STATEMENT"];
 /// All, in the order in which they are written.
-pub(crate) const ALL: [&str; 8] =
-    [MEASURE, COMPARISON, LIMIT, PASS, CONFIDENCE, VERIFICATION, CLAUSE, RATIONALE];
+pub(crate) const ALL: [&str; 9] =
+    [MEASURE, COMPARISON, LIMIT, PASS, CONFIDENCE, VERIFICATION, TESTS, CLAUSE, RATIONALE];
 
 /// The fields of a requirement beside id, title and text, as names and values.
 pub(crate) fn own_fields(requirement: &Requirement) -> Vec<(&'static str, String)> {
@@ -31,6 +33,10 @@ pub(crate) fn own_fields(requirement: &Requirement) -> Vec<(&'static str, String
                 fields.push((CONFIDENCE, percent(ensemble.confidence)));
             }
         }
+        tested @ Verification::Tests(tests) => {
+            fields.push((VERIFICATION, tested.name().to_owned()));
+            fields.push((TESTS, tests.join("; ")));
+        }
         other @ (Verification::Analysis | Verification::Inspection) => {
             fields.push((VERIFICATION, other.name().to_owned()));
         }
@@ -39,6 +45,17 @@ pub(crate) fn own_fields(requirement: &Requirement) -> Vec<(&'static str, String
     fields.extend(requirement.clause.iter().map(|text| (CLAUSE, text.clone())));
     fields.extend(requirement.rationale.iter().map(|text| (RATIONALE, text.clone())));
     fields
+}
+
+/// Why these can't be the names of tests.
+pub(crate) fn misnamed(tests: &[String]) -> Option<String> {
+    if tests.is_empty() {
+        return Some("found no test, expected at least one".to_owned());
+    }
+    let bad = tests.iter().find(|name| {
+        name.is_empty() || name.trim() != name.as_str() || name.contains([';', '\n'])
+    })?;
+    Some(format!("found {bad:?}, expected the name of a test: one line without \";\""))
 }
 
 /// Line and value of a field, if it is there.
@@ -93,7 +110,16 @@ pub(crate) fn verification(of: &Lookup<'_>) -> Result<Option<Said>, (usize, Stri
         "analysis" => Verification::Analysis,
         "inspection" => Verification::Inspection,
         "test" => {
-            return Err((line, format!("{VERIFICATION} is by test, and there is no {MEASURE}")));
+            let Some((line, names)) = of(TESTS) else {
+                let reason =
+                    format!("{VERIFICATION} is by test, and there is no {MEASURE} and no {TESTS}");
+                return Err((line, reason));
+            };
+            let tests: Vec<String> = names.split(';').map(|name| name.trim().to_owned()).collect();
+            if let Some(reason) = misnamed(&tests) {
+                return Err((line, format!("{TESTS}: {reason}")));
+            }
+            return Ok(Some((Verification::Tests(tests), vec![VERIFICATION, TESTS])));
         }
         _ => return Err((line, format!("{VERIFICATION} is {how:?}"))),
     };

@@ -141,6 +141,8 @@ pub struct Check {
 pub enum Verification {
     /// By runs.
     Test(Check),
+    /// By tests outside of this program's runs, by their names: at least one, none with `;` in it.
+    Tests(Vec<String>),
     /// By reasoning outside of this program.
     Analysis,
     /// By looking at it.
@@ -154,7 +156,7 @@ impl Verification {
     #[must_use]
     pub const fn name(&self) -> &'static str {
         match self {
-            Self::Test(_) => "test",
+            Self::Test(_) | Self::Tests(_) => "test",
             Self::Analysis => "analysis",
             Self::Inspection => "inspection",
             Self::Open => "open",

@@ -118,7 +118,7 @@ pub struct Row {
     pub counts: Counts,
     /// How many of its independent draws came to what.
     pub draws: Draws,
-    /// What it comes to; none where a run can't tell: it is verified by analysis or inspection.
+    /// What it comes to; none where a run can't tell: it is verified by other tests, analysis or inspection.
     pub verdict: Option<Verdict>,
     /// Why, in plain words.
     pub reason: String,
@@ -230,6 +230,9 @@ fn row(requirement: &Requirement, cases: Vec<Link>) -> Row {
         }
         Verification::Open => {
             (Some(Verdict::Inconclusive), "nobody has said how it is verified".to_owned())
+        }
+        Verification::Tests(tests) => {
+            (None, format!("verified by tests of which no run can tell: {}", tests.join("; ")))
         }
         other => (None, format!("verified by {}, of which no run can tell", other.name())),
     };

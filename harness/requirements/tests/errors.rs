@@ -70,10 +70,10 @@ fn every_problem_is_told_with_its_place() {
         problems(text),
         [
             "r.toml:2:1: requirements.N-1.measure: missing: a requirement has a measure, or says how \
-             else it is verified (verification = \"analysis\" or \"inspection\")",
+             else it is verified (verification = \"analysis\" or \"inspection\", or the names of tests in tests)",
             "r.toml:5:1: requirements.N-1.mesure: unknown key, did you mean \"measure\"? known: id, \
-             title, text, measure, comparison, limit, pass, confidence, verification, clause, \
-             rationale, parents, section, kind, identifier, attributes",
+             title, text, measure, comparison, limit, pass, confidence, verification, tests, \
+             clause, rationale, parents, section, kind, identifier, attributes",
             "r.toml:7:6: requirements.N-1.id: found \"N-1\" a second time, the first is in line 2; \
              expected unique ids",
             "r.toml:8:8: requirements.N-1.text: found an empty text",
@@ -125,6 +125,22 @@ fn each_key_says_what_it_expects() {
             "6:9: requirements.N-1.limit: a requirement that is verified by analysis has none",
         ),
         ("verification = \"test\"\n", "requirements.N-1.measure: missing"),
+        (
+            "verification = \"test\"\ntests = []\n",
+            "requirements.N-1.tests: found no test, expected at least one",
+        ),
+        (
+            "tests = [\"a.rs::b\", \"a; b\"]\n",
+            "requirements.N-1.tests: found \"a; b\", expected the name of a test",
+        ),
+        (
+            "tests = [\"a.rs::b\"]\nmeasure = \"a\"\n",
+            "requirements.N-1.measure: a requirement that other tests verify has none",
+        ),
+        (
+            "verification = \"analysis\"\ntests = [\"a.rs::b\"]\n",
+            "requirements.N-1.tests: a requirement that is verified by analysis has none",
+        ),
         (
             "verification = \"analysis\"\nattributes = { UID = \"x\" }\n",
             "requirements.N-1.attributes.UID: stands for a key",

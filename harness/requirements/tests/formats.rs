@@ -49,7 +49,14 @@ fn verification() -> impl Strategy<Value = Verification> {
             Verification::Test(Check { measure, comparison, limit, ensemble })
         },
     );
-    prop_oneof![3 => test, 1 => Just(Verification::Analysis), 1 => Just(Verification::Inspection)]
+    let name = "[a-z/_]{1,12}(\\.rs)?::[a-zµ, :]{0,12}[a-z]";
+    let tests = vec(name, 1..4).prop_map(Verification::Tests);
+    prop_oneof![
+        3 => test,
+        1 => tests,
+        1 => Just(Verification::Analysis),
+        1 => Just(Verification::Inspection)
+    ]
 }
 
 /// Attributes of other tools, and their values.

@@ -82,11 +82,19 @@ fn nothing_shows_nothing() {
     assert_eq!(Trace::new(&document(vec![]), &[]).verdict(), Verdict::Inconclusive);
     let analysed = document(vec![Requirement::new("D", "x", Verification::Analysis)]);
     assert_eq!(Trace::new(&analysed, &[]).verdict(), Verdict::Inconclusive);
+    // Nor does a run tell of tests outside of it.
+    let tests = Verification::Tests(vec!["a.rs::b".to_owned(), "c".to_owned()]);
+    let trace = Trace::new(&document(vec![Requirement::new("T", "x", tests)]), &[]);
+    assert_eq!((trace.verdict(), trace.requirements[0].verdict), (Verdict::Inconclusive, None));
+    assert!(trace.requirements[0].reason.ends_with("no run can tell: a.rs::b; c"));
+    assert_eq!(trace.requirements[0].verification, "test");
     // A requirement that isn't there was meant to be verified by something.
     let one = document(vec![tested("A", None)]);
     let cases = [case("c1", &[("A", Verdict::Pass), ("B", Verdict::Pass)])];
     assert_eq!(Trace::new(&one, &cases).verdict(), Verdict::Inconclusive);
     assert_eq!(Trace::new(&one, &[case("c1", &[("A", Verdict::Pass)])]).verdict(), Verdict::Pass);
+    assert_eq!(one.get("A").map(|found| found.id.as_str()), Some("A"));
+    assert_eq!(one.get("B"), None);
     // Said to verify, and not checked.
     let mut unchecked = case("c1", &[]);
     unchecked.verifies.push("A".to_owned());

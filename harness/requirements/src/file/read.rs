@@ -3,7 +3,7 @@
 use super::{Checker, SCHEMA};
 use crate::document::{Lines, Problems, Reader, describe};
 use crate::error::{Problem, RequirementsError};
-use crate::fields::{self, own_fields};
+use crate::fields::{self, misnamed, own_fields};
 use crate::requirement::{
     Attribute, Check, Comparison, Definition, Ensemble, Kind, Limit, Parent, Requirement,
     Requirements, Verification, probability,
@@ -14,7 +14,7 @@ use toml::de::{DeTable, DeValue};
 
 const ROOT: [&str; 5] = ["schema", "title", "document", "attributes", "requirements"];
 const DEFINITION: [&str; 4] = ["name", "type", "options", "field"];
-const REQUIREMENT: [&str; 16] = [
+const REQUIREMENT: [&str; 17] = [
     "id",
     "title",
     "text",
@@ -24,6 +24,7 @@ const REQUIREMENT: [&str; 16] = [
     "pass",
     "confidence",
     "verification",
+    "tests",
     "clause",
     "rationale",
     "parents",
@@ -298,13 +299,28 @@ fn verification(table: &Reader<'_>, checker: &dyn Checker) -> Option<Verificatio
             let how = verification.name();
             table.problem(key, format!("a requirement that is verified by {how} has none"));
         }
+        if table.has("tests") {
+            let how = verification.name();
+            table.problem("tests", format!("a requirement that is verified by {how} has none"));
+        }
         return Some(verification);
+    }
+    if let Some(names) = table.get("tests") {
+        for key in tested.into_iter().filter(|key| table.has(key)) {
+            table.problem(key, "a requirement that other tests verify has none".to_owned());
+        }
+        let tests = table.texts_of("tests", names);
+        if let Some(message) = misnamed(&tests) {
+            table.problem("tests", message);
+            return None;
+        }
+        return Some(Verification::Tests(tests));
     }
     if !table.has("measure") {
         table.problem(
             "measure",
             "missing: a requirement has a measure, or says how else it is verified \
-             (verification = \"analysis\" or \"inspection\")",
+             (verification = \"analysis\" or \"inspection\", or the names of tests in tests)",
         );
         return None;
     }

@@ -50,6 +50,10 @@ fn one(out: &mut String, requirement: &Requirement) {
                 entry(out, "confidence", &percent(ensemble.confidence));
             }
         }
+        Verification::Tests(tests) => {
+            entry(out, "verification", requirement.verification.name());
+            array(out, "tests", tests);
+        }
         Verification::Open => {}
         other => entry(out, "verification", other.name()),
     }

@@ -1,7 +1,7 @@
 //! Documents of StrictDoc, `.sdoc`: read and written as its version 0.30 does.
 //!
 //! A node's UID, TITLE, STATEMENT, RATIONALE and MID are ours by other names; measure, limit and the
-//! rest are fields MEASURE, COMPARISON, LIMIT, PASS, CONFIDENCE, VERIFICATION and CLAUSE, declared in
+//! rest are fields MEASURE, COMPARISON, LIMIT, PASS, CONFIDENCE, VERIFICATION, TESTS and CLAUSE, declared in
 //! the document's grammar. Every other field is an attribute, and comes out again as it went in.
 
 mod grammar;
