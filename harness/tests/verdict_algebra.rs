@@ -389,7 +389,7 @@ proptest! {
         let (plan, requirements) = campaign(folder.path(), &outcomes, ensemble);
         // A result that isn't its case's is an error, and nothing is judged.
         let status = status::of(&plan, folder.path(), Shard::WHOLE);
-        let trace = trace::trace(&plan, &requirements, folder.path());
+        let trace = trace::trace(&plan, &requirements, folder.path(), plan.cases.len());
         let foreign = outcomes.iter().any(|outcome| matches!(outcome, Came::Foreign(_)));
         prop_assert_eq!((status.is_err(), trace.is_err()), (foreign, foreign));
         let (Ok(status), Ok(trace)) = (status, trace) else { return Ok(()) };

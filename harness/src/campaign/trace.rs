@@ -14,16 +14,18 @@ use octant_requirements::requirement::{
 use octant_requirements::trace::{Case, CaseResult as Traced, Trace, Verdict};
 use std::path::Path;
 
-/// The requirements of the campaign that a plan was made of.
+/// The requirements of the campaign that a plan was made of; none where it names no file of them.
 ///
 /// # Errors
-/// If it names no file of them, or the file was changed after the campaign was planned.
+/// If the campaign or its file can't be read, or the file was changed after the campaign was planned.
 pub fn requirements_of(plan: &Plan) -> Result<Requirements, PlanError> {
-    let contradiction =
-        |reason: String| PlanError::Contradiction { campaign: plan.campaign.clone(), reason };
     let campaign = Campaign::load(&plan.campaign)?;
     let Some(path) = campaign.requirements else {
-        return Err(contradiction("it names no file of requirements".to_owned()));
+        if plan.requirements.is_empty() && plan.not_by_test.is_empty() {
+            return Ok(Requirements { title: plan.title.clone(), ..Requirements::default() });
+        }
+        let reason = "it names no file of requirements, and was planned with one".to_owned();
+        return Err(PlanError::Contradiction { campaign: plan.campaign.clone(), reason });
     };
     let requirements = requirements::load(&path)?;
     if requirements::planned(&requirements) != plan.requirements {
@@ -74,11 +76,17 @@ const fn comparison(comparison: verdict::Comparison) -> Comparison {
 }
 
 /// Traces a campaign by the results in its folder: all that its cases check, of the file of requirements or of
-/// the scenarios themselves.
+/// the scenarios themselves. Of the plan the cases before `end` count, as in [`status::of`]: a rule may have
+/// said that no more are needed.
 ///
 /// # Errors
 /// In words, if a result is there and can't be read.
-pub fn trace(plan: &Plan, requirements: &Requirements, folder: &Path) -> Result<Trace, String> {
+pub fn trace(
+    plan: &Plan,
+    requirements: &Requirements,
+    folder: &Path,
+    end: usize,
+) -> Result<Trace, String> {
     let requirements = &with_those_of_scenarios(plan, requirements);
     let mut streams: Vec<Option<String>> = Vec::with_capacity(plan.cases.len());
     let mut of = |case: &super::plan::Case| -> Result<Case, String> {
@@ -124,7 +132,7 @@ pub fn trace(plan: &Plan, requirements: &Requirements, folder: &Path) -> Result<
         };
         Ok(Case { id: case.id.clone(), verifies, draw: 0, result })
     };
-    let mut cases = plan.cases.iter().map(&mut of).collect::<Result<Vec<_>, _>>()?;
+    let mut cases = plan.cases.iter().take(end).map(&mut of).collect::<Result<Vec<_>, _>>()?;
     let rows = plan.cases.iter().zip(streams.iter().map(Option::as_deref));
     for (case, draw) in cases.iter_mut().zip(independence::draws(rows)) {
         case.draw = draw;

@@ -192,7 +192,7 @@ impl<'a> Report<'a> {
         let (rows, results_blake3) = rows::read(plan, folder, end)?;
         let (combinations, grid) = figures::combinations(plan, end);
         let (about, notes) = about::requirements(plan);
-        let trace = trace(plan, &about, folder).map_err(words)?;
+        let trace = trace(plan, &about, folder, end).map_err(words)?;
         let run = rows.iter().filter(|row| row.outcome.is_some()).count();
         let (tables, mut wrong) = tables::look(plan, folder, run)?;
         let selftest = selftest::read(folder).unwrap_or_else(|reason| {

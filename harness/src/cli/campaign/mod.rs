@@ -14,6 +14,7 @@ use crate::campaign::{emit, status};
 use crate::run::Control;
 use crate::score::verdict::Verdict;
 use clap::{Args, Subcommand, ValueEnum};
+use octant_requirements::trace::{Row, Unknown};
 use std::path::{Path, PathBuf};
 
 #[derive(Debug, Args)]
@@ -56,7 +57,7 @@ enum Command {
         #[arg(value_name = "OTHER")]
         others: Vec<PathBuf>,
     },
-    /// Trace the requirements of the campaign's file to cases and results, and back.
+    /// Trace the requirements of the campaign and of its scenarios to cases and results, and back.
     Trace {
         /// Folder of the campaign.
         #[arg(value_name = "DIR")]
@@ -224,7 +225,9 @@ fn merge_parts(folder: &Path, others: &[PathBuf]) -> Result<Verdict, Failure> {
 fn trace(folder: &Path, strictdoc: Option<&Path>, json: bool) -> Result<Verdict, Failure> {
     let plan = read(folder)?;
     let requirements = with_those_of_scenarios(&plan, &requirements_of(&plan)?);
-    let trace = crate::campaign::trace::trace(&plan, &requirements, folder)
+    // One place says what a campaign comes to: a case may be bad beside all that it checks.
+    let status = status::of(&plan, folder, Shard::WHOLE).map_err(Failure::bench)?;
+    let trace = crate::campaign::trace::trace(&plan, &requirements, folder, status.cases)
         .map_err(|reason| Failure::bench(format!("failed to {reason}")))?;
     if let Some(out) = strictdoc {
         if out.exists() {
@@ -242,11 +245,25 @@ fn trace(folder: &Path, strictdoc: Option<&Path>, json: bool) -> Result<Verdict,
             write(&path, text)?;
         }
     }
-    let verdict = Verdict::ALL.into_iter().find(|known| known.name() == trace.verdict().name());
+    let verdict = status.verdict();
     if json {
-        print_json(&trace)?;
+        print_json(&Traced {
+            verdict,
+            besides: status.besides,
+            open: status.open,
+            requirements: &trace.requirements,
+            without_case: &trace.without_case,
+            without_requirement: &trace.without_requirement,
+            unknown: &trace.unknown,
+        })?;
     } else {
-        let mut text = String::new();
+        let mut text = format!("{}: {}\n", plan.title, verdict.name());
+        if status.besides != Verdict::Pass {
+            text += &format!("besides all requirements: {}\n", status.besides.name());
+        }
+        if status.open > 0 {
+            text += &format!("{} of {} cases have no result yet\n", status.open, status.cases);
+        }
         for row in &trace.requirements {
             let verdict = row.verdict.map_or("not by a run", |verdict| verdict.name());
             let cases = row.cases.len();
@@ -268,7 +285,22 @@ fn trace(folder: &Path, strictdoc: Option<&Path>, json: bool) -> Result<Verdict,
         }
         print(&text)?;
     }
-    Ok(verdict.unwrap_or(Verdict::Error))
+    Ok(verdict)
+}
+
+/// What `octant campaign trace --json` prints.
+#[derive(serde::Serialize)]
+struct Traced<'a> {
+    /// What the campaign comes to, as its report has it.
+    verdict: Verdict,
+    /// The worst of its cases but for their requirements.
+    besides: Verdict,
+    /// Cases without a result.
+    open: usize,
+    requirements: &'a [Row],
+    without_case: &'a [String],
+    without_requirement: &'a [String],
+    unknown: &'a [Unknown],
 }
 
 /// Runs one case as `octant run` would.
