@@ -175,7 +175,7 @@ fn the_same_bytes_on_one_processor_in_parts_and_after_interruptions() {
 }
 
 #[test]
-fn a_case_that_takes_too_long_or_too_much_is_one_error() {
+fn errors_of_cases_stay_until_they_are_run_again() {
     let bench = Bench::new(&format!("{CAMPAIGN}[limits]\ntime = \"20 ms\"\n"));
     let (plan, folder) = (bench.plan(), bench.at("out"));
     assert_eq!(run(&plan, &folder, Shard::WHOLE, 2).run, 6);
@@ -186,15 +186,53 @@ fn a_case_that_takes_too_long_or_too_much_is_one_error() {
     let never = AtomicBool::new(false);
     let again = |again| begin(&plan, &folder, Shard::WHOLE, 2, &never, again).unwrap();
     assert_eq!((again(false).run, again(true).run), (0, 6));
+}
 
-    let bench = Bench::new(&format!("{CAMPAIGN}[limits]\nmemory_mib = 64\n"));
-    let (plan, folder) = (bench.plan(), bench.at("out"));
-    run(&plan, &folder, Shard::WHOLE, 2);
-    let state = status::of(&plan, &folder, Shard::WHOLE).unwrap();
-    if cfg!(target_os = "linux") && state.verdict() == Verdict::Error {
-        assert!(state.bad[0].reason.contains("64 MiB of memory"), "{}", state.text());
-    }
-    merged(&plan, &folder);
+/// Two scenarios, of which the second does what a case must not, and the limits.
+fn one_of_two(other: &str, limits: &str) -> (Bench, Plan, Outcome) {
+    let campaign = CAMPAIGN.split("[[factors]]").next().unwrap();
+    let second = "[[scenarios]]\nid = \"other\"\nfile = \"other.toml\"\n";
+    let campaign = campaign.replace("replicates = 3", "replicates = 1");
+    let bench = Bench::new(&format!("{campaign}{second}[limits]\n{limits}\n"));
+    std::fs::write(bench.at("other.toml"), other).unwrap();
+    let plan = bench.plan();
+    let outcome = run(&plan, &bench.at("out"), Shard::WHOLE, 2);
+    (bench, plan, outcome)
+}
+
+/// One of two cases is an error for this reason, and the other passes.
+fn assert_one_error(bench: &Bench, plan: &Plan, reason: &str) {
+    let state = status::of(plan, &bench.at("out"), Shard::WHOLE).unwrap();
+    assert_eq!(state.verdict(), Verdict::Error, "{}", state.text());
+    let counts = [("pass", 1), ("error", 1)];
+    assert!(state.verdicts == counts.into_iter().collect(), "{}", state.text());
+    assert_eq!(plan.case(&state.bad[0].case).unwrap().scenario, "other");
+    assert_eq!(state.bad[0].reason, reason);
+    merged(plan, &bench.at("out"));
+}
+
+/// A year of samples: nobody sees its end.
+#[test]
+fn a_case_that_hangs_is_one_error_and_the_others_pass() {
+    let endless = SCENARIO.replace("\"10 min\"", "\"365 day\"");
+    assert_ne!(endless, SCENARIO);
+    let (bench, plan, outcome) = one_of_two(&endless, "time = \"30 s\"");
+    assert_eq!(outcome.run, 2);
+    assert_one_error(&bench, &plan, "it took more than its 30 s");
+}
+
+/// Millions of lines, which take room to read.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_case_that_wants_too_much_memory_is_one_error_and_the_others_pass() {
+    let large = SCENARIO.to_owned() + &"#\n".repeat(4_000_000);
+    let (bench, plan, outcome) = one_of_two(&large, "memory_mib = 256");
+    assert_eq!(outcome.run, 2);
+    assert_one_error(&bench, &plan, "it wanted more than its 256 MiB of memory");
+    // With room for it, it is a case like any other.
+    let (bench, plan, _) = one_of_two(&large, "memory_mib = 8000");
+    let state = status::of(&plan, &bench.at("out"), Shard::WHOLE).unwrap();
+    assert_eq!(state.verdict(), Verdict::Pass, "{}", state.text());
 }
 
 #[test]
@@ -624,6 +662,22 @@ mod interrupted {
         assert_eq!(output.status.code(), Some(0), "{output:?}");
         assert_eq!(whole_results(&plan, &bench.at("torn")), 6);
         assert!(merged(&plan, &bench.at("torn")) == merged(&plan, &bench.at("whole")));
+    }
+
+    /// The process of a case aborts, as it does where an FMU or an assertion of a library ends it.
+    #[test]
+    fn a_case_that_crashes_is_one_error_and_the_others_pass() {
+        let (bench, plan) = slow(2);
+        let mut running = start(&bench, "1");
+        assert!(!running.children().is_empty());
+        running.signal(Target::Child, Signal::ABORT);
+        let output = running.end();
+        assert_eq!(output.status.code(), Some(4), "{output:?}");
+        let state = status::of(&plan, &bench.at("torn"), Shard::WHOLE).unwrap();
+        assert_eq!(state.verdict(), Verdict::Error, "{}", state.text());
+        let counts = [("pass", 5), ("error", 1)];
+        assert!(state.verdicts == counts.into_iter().collect(), "{}", state.text());
+        assert!(state.bad[0].reason.starts_with("it crashed: signal: 6"), "{}", state.text());
     }
 
     #[test]

@@ -1,7 +1,8 @@
-//! A recorder that is killed at any moment leaves all but the last second of wall time.
+//! A recorder that is killed at any moment leaves all but the last second of wall time, and the program a part
+//! of its run that is the same to the bit.
 
 use crate::common::epochs::{push, stream};
-use crate::common::program::test_as_process;
+use crate::common::program::{ended, octant, program, test_as_process};
 use octant::recorder::reader::{Epochs, Recording, contents};
 use octant::recorder::{Policy, Recorder, RecorderOptions, Samples};
 use std::io::{BufRead, BufReader, Write};
@@ -78,5 +79,72 @@ fn a_kill_costs_less_than_a_second() {
         for step in steps.iter().take(whole.messages["/imu"] as usize) {
             assert_eq!(epochs.next_epoch().unwrap().unwrap().sample, Some(step.faulted.sample));
         }
+    }
+}
+
+/// Epochs of a recording that can be read, each as text.
+fn epochs(path: &Path) -> Vec<String> {
+    let mut epochs = Epochs::new(Recording::open(path).unwrap());
+    let mut all = Vec::new();
+    while let Some(epoch) = epochs.next_epoch().unwrap() {
+        all.push(format!("{epoch:?}"));
+    }
+    all
+}
+
+#[test]
+fn the_program_killed_at_any_moment_leaves_the_beginning_of_its_run() {
+    let folder = tempfile::tempdir().unwrap();
+    let scenario = folder.path().join("scenario.toml");
+    let text = include_str!("../../fixtures/scenarios/lockstep.toml");
+    // So much that it is met long before its end.
+    let text = text.replace("duration = \"2 min\"", "duration = \"100 h\"");
+    std::fs::write(&scenario, &text).unwrap();
+    let scenario = scenario.to_str().unwrap();
+    let short = folder.path().join("short.toml");
+    let text = include_str!("../../fixtures/scenarios/lockstep.toml");
+    std::fs::write(&short, text).unwrap();
+    let whole = folder.path().join("whole");
+    ended(octant(&["run", short.to_str().unwrap(), "--out", whole.to_str().unwrap()]), 0);
+    let expected = epochs(&whole.join("recording.mcap"));
+    assert_eq!(expected.len(), 120_000);
+
+    // Moments by what is in the file then: in its head, in the first chunk, later; the first few differ with
+    // each run.
+    for (round, bytes) in
+        [1, 1_000, 300_000, 1_500_000, 4_000_000, 9_000_000].into_iter().enumerate()
+    {
+        let out = folder.path().join(format!("killed-{round}"));
+        let recording = folder.path().join(format!("killed-{round}.partial/recording.mcap"));
+        let mut child = program(&["run", scenario, "--out", out.to_str().unwrap()])
+            .stdout(Stdio::null())
+            .stderr(Stdio::null())
+            .spawn()
+            .unwrap();
+        while std::fs::metadata(&recording).map_or(0, |file| file.len()) < bytes {
+            assert!(child.try_wait().unwrap().is_none(), "it ended by itself");
+            std::thread::sleep(Duration::from_millis(1));
+        }
+        // What somebody else can read of it while it is written.
+        let before =
+            Recording::open(&recording).map(|file| contents(file).unwrap().messages["/imu"]);
+        child.kill().unwrap();
+        child.wait().unwrap();
+        assert!(!out.exists(), "a part of a run has no name of a whole one");
+        let Ok(file) = Recording::open(&recording) else {
+            // Killed within its head: there was nothing to read before either.
+            assert!(before.is_err() && bytes < 1_000, "round {round}");
+            continue;
+        };
+        let left = contents(file).unwrap();
+        assert!(left.truncated);
+        assert!(left.messages["/imu"] >= before.unwrap_or(0), "round {round}");
+        // A chunk has 512 KiB before it is compressed, and is in the file when it is full.
+        assert!(bytes < 1_000_000 || left.messages["/imu"] > 0, "round {round}");
+        let found = epochs(&recording);
+        let both = found.len().min(expected.len());
+        // The last epoch may have lost its end: a chunk ends between two messages.
+        let same = found.iter().zip(&expected).take(both.saturating_sub(1)).all(|(a, b)| a == b);
+        assert!(same, "round {round}: {} epochs", found.len());
     }
 }
