@@ -175,6 +175,8 @@ fn improvement_is_paired() {
     );
     assert_eq!(paired::improvement(&first, &other[1..], 0.9), None);
     assert_eq!(paired::improvement(&[0.0, 0.0], &[1.0, 1.0], 0.9), None);
+    assert_eq!(paired::improvement(&[0.0, 0.0], &[0.0, 0.0], 0.9), None);
+    assert_eq!(paired::improvement(&[1.0, f64::INFINITY], &[1.0, 1.0], 0.9), None);
 }
 
 #[test]

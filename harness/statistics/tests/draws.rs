@@ -1,7 +1,7 @@
 //! Draws of factors: what they depend on, and how they are distributed.
 
 use octant_statistics::draw::{
-    Correlation, Distribution, DrawError, Factor, Value, latin_hypercube, monte_carlo,
+    Correlation, Correlations, Distribution, DrawError, Factor, Value, latin_hypercube, monte_carlo,
 };
 use octant_statistics::{normal, rank, sample};
 
@@ -121,6 +121,22 @@ fn correlations_are_those_asked_for() {
         let found = scores(&column(&cube, a), &column(&cube, b));
         let within = if r == 0.0 { chance } else { 0.01 };
         assert!((found - r).abs() < within, "{a} {b} {r} {found}");
+    }
+}
+
+/// A distribution has no value at 0 and 1, and correlated draws reach neither.
+#[test]
+fn correlated_draws_stay_inside() {
+    let all = factors();
+    let together = Correlations::new(&all, &[pair("bias", "walk", 0.6)]).unwrap();
+    let near_one = 1.0 - f64::EPSILON / 2.0;
+    for extreme in [f64::MIN_POSITIVE, near_one] {
+        let mut units = vec![extreme; all.len()];
+        together.apply(&mut units);
+        assert!(
+            units.iter().all(|unit| (f64::MIN_POSITIVE..=near_one).contains(unit)),
+            "{units:?}"
+        );
     }
 }
 

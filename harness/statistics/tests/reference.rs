@@ -43,6 +43,20 @@ fn bounds_of_a_pass_probability() {
     assert!(success_lower_bound(0, 58, 0.95) < 0.95);
 }
 
+/// Where no run passes the upper bound is 1 − (1 − confidence)^(1/n).
+#[test]
+fn what_is_refuted() {
+    let half = Demand { pass: 0.5, confidence: 0.95 };
+    assert!(!half.is_refuted(4, 4), "52.7 %");
+    assert!(half.is_refuted(5, 5), "45.1 %");
+    assert!(!half.is_refuted(0, 5));
+    assert!(!half.is_refuted(0, 0), "nothing is refuted by nothing");
+    assert!(!half.is_shown(0, 0));
+    for (pass, confidence) in [(0.0, 0.95), (1.0, 0.95), (0.5, 0.0), (0.5, 1.0), (f64::NAN, 0.5)] {
+        assert!(!Demand { pass, confidence }.is_refuted(1000, 1000));
+    }
+}
+
 #[test]
 fn runs_that_are_still_needed() {
     for row in rows("further") {
