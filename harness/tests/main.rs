@@ -18,6 +18,7 @@ mod core_faults;
 mod core_hardened;
 mod core_spikes;
 mod covariance_golden;
+mod document_links;
 mod ensemble_against;
 mod ensemble_prediction;
 mod ensembles;
@@ -65,6 +66,7 @@ mod state_core;
 mod system;
 mod system_foreign;
 mod text_source;
+mod trace_verdicts;
 #[cfg(unix)]
 mod turntable;
 #[cfg(unix)]

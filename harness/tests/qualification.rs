@@ -2,7 +2,7 @@
 //! self-test verifies one, and the trace is up to date.
 
 use octant::campaign::requirements::load;
-use octant_requirements::requirement::{Requirement, Requirements};
+use octant_requirements::requirement::{Requirement, Requirements, Verification};
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -16,14 +16,19 @@ fn kit() -> Requirements {
 }
 
 fn tests(requirement: &Requirement) -> Vec<(String, String)> {
-    let named = requirement.attributes.iter().find(|attribute| attribute.name == "Tests");
-    let named = named.unwrap_or_else(|| panic!("{} names no tests", requirement.id));
-    let all = named.values.iter().flat_map(|value| value.split("; "));
-    all.map(|test| {
-        let (file, name) = test.split_once("::").unwrap_or_else(|| panic!("{test}: no ::"));
-        (file.to_owned(), name.to_owned())
-    })
-    .collect()
+    let Verification::Tests(all) = &requirement.verification else {
+        panic!(
+            "{} is verified by {}, and not by tests",
+            requirement.id,
+            requirement.verification.name()
+        )
+    };
+    all.iter()
+        .map(|test| {
+            let (file, name) = test.split_once("::").unwrap_or_else(|| panic!("{test}: no ::"));
+            (file.to_owned(), name.to_owned())
+        })
+        .collect()
 }
 
 /// Whether a test is there: a case of the self-test, a function that is a test, or a check of a rig.
@@ -32,6 +37,10 @@ fn is_there(file: &str, name: &str) -> bool {
         return octant::selftest::cases().iter().any(|case| case.id == name);
     }
     let Ok(text) = std::fs::read_to_string(root().join(file)) else { return false };
+    // A rig as a whole.
+    if name == "all" && step(file) == file.strip_prefix("tests/rigs/") {
+        return step(file).is_some();
+    }
     if Path::new(file).extension().is_some_and(|ending| ending == "rs") {
         // A test, or a property inside of `proptest!`, and not what is left out.
         let Some(at) = text.find(&format!("fn {name}(")) else { return false };
@@ -39,19 +48,33 @@ fn is_there(file: &str, name: &str) -> bool {
         let attributes = &before[before.rfind(['}', ';']).map_or(0, |end| end + 1)..];
         return attributes.contains("#[test]");
     }
+    if Path::new(file).extension().is_some_and(|ending| ending == "py") {
+        let part = |kind: &str| text.contains(&format!("\n{kind} {name}("));
+        return part("def") || part("class") || text.contains(&format!("\"{name}\""));
+    }
     text.contains(&format!("\"{name}\""))
+}
+
+/// The step of `tests/run` that a file of a rig belongs to.
+fn step(file: &str) -> Option<&str> {
+    let name = file.strip_prefix("tests/rigs/")?;
+    Some(name.strip_suffix(".py").unwrap_or(name))
 }
 
 #[test]
 fn every_requirement_names_tests_that_there_are() {
     let kit = kit();
-    assert!(kit.requirements.len() >= 30);
+    let run = std::fs::read_to_string(root().join("tests/run")).unwrap();
+    assert!(kit.requirements.len() >= 40);
     let mut missing = Vec::new();
     for requirement in &kit.requirements {
         let tests = tests(requirement);
         assert!(!tests.is_empty(), "{} has no test", requirement.id);
         for (file, name) in tests {
-            if !is_there(&file, &name) {
+            // A rig that `tests/run` doesn't know is one that nobody runs.
+            let is_run =
+                step(&file).is_none_or(|name| run.contains(&format!("tests/rigs/{name}\n")));
+            if !is_there(&file, &name) || !is_run {
                 missing.push(format!("{}: {file}::{name}", requirement.id));
             }
         }
@@ -62,6 +85,9 @@ fn every_requirement_names_tests_that_there_are() {
     assert!(!is_there("harness/tests/campaign.rs", "nothing"));
     assert!(!is_there("harness/tests/campaign.rs", "begin"), "a function that is no test");
     assert!(!is_there("harness/tests/gone.rs", "nothing"));
+    assert!(!is_there("tests/rigs/survival.py", "Gone"));
+    assert!(!is_there("harness/tests/campaign.rs", "all"));
+    assert!(!is_there("tests/rigs/gone", "all"));
 }
 
 #[test]

@@ -11,6 +11,7 @@ mod honest;
 mod page;
 mod program;
 mod sessions;
+mod studies;
 mod unit;
 
 use octant::score::verdict::Verdict;

@@ -64,7 +64,8 @@ fn page() -> String {
         }
         text.push('\n');
     }
-    text += "## What raises nothing\n\nHonest units, written in other ways; each is a test and passes.\n\n";
+    text += &super::studies::section();
+    text += "\n## What raises nothing\n\nHonest units, written in other ways; each is a test and passes.\n\n";
     for about in honest::list() {
         let _ = writeln!(text, "- {about}");
     }
