@@ -5,7 +5,7 @@ use octant_statistics::outlier::{LIMIT, Scale, outliers};
 use octant_statistics::radius::Plane;
 use octant_statistics::rate::{RadialSample, radial_rate_nmi_per_h, time_rms_nmi};
 use octant_statistics::{
-    convergence, deviation, normal, paired, position, quantile, rank, rate, sample,
+    convergence, deviation, normal, paired, position, power, quantile, rank, rate, sample,
 };
 
 /// Standard normals of a stream, for samples.
@@ -221,6 +221,26 @@ fn the_radius_of_any_normal_error_is_that_of_a_sample() {
         // Standard errors of these quantiles are below 0.3 %.
         assert!((found / expected - 1.0).abs() < 0.01, "{p}: {found} {expected}");
         assert!((plane.within(found) - p).abs() < 1e-9);
+    }
+}
+
+#[test]
+fn power_where_it_is_known_and_where_there_is_none() {
+    // Six signs alike are the first that 5 % finds: 2 · 2^−6, and five are 6.25 %.
+    assert_eq!(power::signed_rank_shift(5, 0.05, 0.9), None);
+    assert!(power::signed_rank_shift(6, 0.05, 0.9).is_some());
+    assert_eq!(power::turning(5, 0.05, 0.9), None);
+    let turning = power::turning(6, 0.05, 0.9).unwrap();
+    assert!((turning - 0.9f64.powf(1.0 / 6.0)).abs() < 1e-9, "{turning}");
+    for pairs in [0, 20, 200] {
+        for (level, power) in
+            [(0.0, 0.9), (1.0, 0.9), (1.5, 0.9), (0.05, 0.0), (0.05, 1.0), (f64::NAN, 0.9)]
+        {
+            assert_eq!(power::signed_rank_shift(pairs, level, power), None, "{pairs}");
+            assert_eq!(power::turning(pairs, level, power), None, "{pairs}");
+            assert_eq!(power::mean_shift(pairs, 1.0 - level, power), None, "{pairs}");
+            assert_eq!(power::sigma_ratios(pairs, 1.0 - level, power), None, "{pairs}");
+        }
     }
 }
 

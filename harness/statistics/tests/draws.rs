@@ -124,6 +124,22 @@ fn correlations_are_those_asked_for() {
     }
 }
 
+/// However weights are rounded, what has none is never drawn.
+#[test]
+fn a_choice_without_weight_is_never_drawn() {
+    for count in 1..50 {
+        for weight in [0.1, 0.3, 0.7, 1.0 / 3.0] {
+            let mut weights = vec![weight; count];
+            weights.push(0.0);
+            let factor = Factor::new("choice", Distribution::Choice { weights });
+            for u in [f64::MIN_POSITIVE, 0.5, 1.0 - f64::EPSILON / 2.0] {
+                let Value::Choice(drawn) = factor.at(u).unwrap() else { panic!("no choice") };
+                assert!(drawn < count, "{count} of {weight}");
+            }
+        }
+    }
+}
+
 /// A distribution has no value at 0 and 1, and correlated draws reach neither.
 #[test]
 fn correlated_draws_stay_inside() {
