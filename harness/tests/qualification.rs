@@ -90,6 +90,35 @@ fn every_requirement_names_tests_that_there_are() {
     assert!(!is_there("tests/rigs/gone", "all"));
 }
 
+/// Mutants that no test notices are told with a reason, by names that edits of the file don't change.
+#[test]
+fn missed_mutants_are_of_files_that_there_are_and_have_reasons() {
+    #[derive(serde::Deserialize)]
+    #[serde(deny_unknown_fields)]
+    struct Missed {
+        mutant: String,
+        reason: String,
+    }
+    #[derive(serde::Deserialize)]
+    #[serde(deny_unknown_fields)]
+    struct File {
+        missed: Vec<Missed>,
+    }
+    let text = std::fs::read_to_string(root().join("docs/qualification/mutants.toml")).unwrap();
+    let all = toml::from_str::<File>(&text).unwrap().missed;
+    for Missed { mutant, reason } in &all {
+        let (file, change) =
+            mutant.split_once(": ").unwrap_or_else(|| panic!("{mutant}: no change"));
+        assert!(
+            root().join(file).is_file(),
+            "{mutant}: there is no such file, or a line stands in it"
+        );
+        assert!(change.starts_with("replace ") || change.starts_with("delete "), "{mutant}");
+        assert!(!reason.trim().is_empty(), "{mutant}: no reason");
+        assert_eq!(all.iter().filter(|other| other.mutant == *mutant).count(), 1, "{mutant}");
+    }
+}
+
 #[test]
 fn every_case_of_the_self_test_verifies_a_requirement() {
     let named: Vec<String> = kit()
