@@ -506,3 +506,77 @@ fn a_run_and_a_campaign_are_run_again_from_their_folders_alone() {
         "{said}"
     );
 }
+
+/// The limits of the requirements' file stand in the plan; those of a scenario itself in its copy.
+#[test]
+fn a_limit_that_differs_from_the_scenario_is_found_by_verify() {
+    let (bench, plan, out) = campaign();
+    bench.octant(&["campaign", "report", "out"]);
+    assert_eq!(bench.octant(&["verify", "out"]).status.code(), Some(0));
+    let path = case::file(&out, &plan.cases[0].id);
+    let whole: Value = serde_json::from_slice(&std::fs::read(&path).unwrap()).unwrap();
+    type Edit = fn(&mut Vec<Value>);
+    let edits: [(Edit, &str); 2] = [
+        (
+            |checks| {
+                // The case is over 50, and passes by 100: all that follows is right.
+                let check = checks.iter_mut().find(|check| check["id"] == "CAL-1").unwrap();
+                check["limit"] = 100.0.into();
+                check["margin"] = (100.0 - check["value"].as_f64().unwrap()).into();
+                check["verdict"] = "pass".into();
+            },
+            "CAL-1 is calibration.worst_normalized_error <= 100, its scenario has",
+        ),
+        (|checks| checks.retain(|check| check["id"] != "CAL-1"), "it didn't check CAL-1"),
+    ];
+    for (edit, told) in edits {
+        let mut result = whole.clone();
+        edit(result["summary"]["requirements"].as_array_mut().unwrap());
+        result["summary"]["reasons"] = json!([]);
+        result["summary"]["verdict"] = "pass".into();
+        result["verdict"] = "pass".into();
+        result["summary_blake3"] = case::hash_of_summary(&result["summary"]).into();
+        std::fs::write(&path, format!("{result}\n")).unwrap();
+        bench.octant(&["campaign", "report", "out"]);
+        let output = bench.octant(&["verify", "out"]);
+        let said = String::from_utf8(output.stdout).unwrap();
+        assert!(output.status.code() == Some(1) && said.contains(told), "{told}: {said}");
+    }
+}
+
+/// A recording is an input: it is hashed, and another one in its place is no input of this run.
+#[test]
+fn the_recording_of_a_run_is_in_its_manifest() {
+    let folder = run("");
+    let at = |name: &str| folder.path().join(name);
+    let full = ["run", "s.toml", "--set", "record.samples=\"full\"", "--out", "full"];
+    assert!(octant_in(folder.path(), &full).status.success());
+    std::fs::copy(at("full/recording.mcap"), at("input.mcap")).unwrap();
+    let output = octant_in(
+        folder.path(),
+        &["run", "s.toml", "--source", "replay:input.mcap", "--out", "again"],
+    );
+    assert!(output.status.success(), "{output:?}");
+    let manifest: Value =
+        serde_json::from_slice(&std::fs::read(at("again/manifest.json")).unwrap()).unwrap();
+    let first: Value =
+        serde_json::from_slice(&std::fs::read(at("full/manifest.json")).unwrap()).unwrap();
+    let files = first["files"].as_array().unwrap();
+    let recording = files.iter().find(|file| file["path"] == "recording.mcap").unwrap();
+    assert_eq!(manifest["inputs"][0]["sha256"], recording["sha256"]);
+    assert_eq!(first.get("inputs"), None, "a run without a recording");
+    let (status, found) = verified(&at("again"), &["--reexecute"]);
+    assert_eq!(status, 0, "{found}");
+    let mut bytes = std::fs::read(at("input.mcap")).unwrap();
+    bytes.push(0);
+    std::fs::write(at("input.mcap"), bytes).unwrap();
+    let (status, found) = verified(&at("again"), &["--reexecute"]);
+    let told = found["reexecuted"]["told"].to_string();
+    assert!(status == 3 && told.contains("input.mcap is another file than it was"), "{found}");
+    std::fs::remove_file(at("input.mcap")).unwrap();
+    let (status, found) = verified(&at("again"), &["--reexecute"]);
+    assert!(
+        status == 3 && found["reexecuted"]["told"].to_string().contains("input.mcap"),
+        "{found}"
+    );
+}

@@ -86,6 +86,7 @@ impl Bench {
         Summary {
             schema: SCHEMA,
             octant: "0.1.0".to_owned(),
+            numerics: None,
             scenario: "short".to_owned(),
             seed: run,
             verdict: Verdict::None,

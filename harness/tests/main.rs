@@ -22,6 +22,7 @@ mod document_links;
 mod ensemble_against;
 mod ensemble_prediction;
 mod ensembles;
+mod equipment;
 mod faults_any;
 mod faults_host;
 mod faults_run;
@@ -55,6 +56,7 @@ mod recording;
 #[cfg(unix)]
 mod recording_killed;
 mod recording_other_readers;
+mod rejudge;
 mod replay;
 mod report;
 mod scenario_errors;

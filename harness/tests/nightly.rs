@@ -313,6 +313,50 @@ fn the_same_program_and_another_result_is_an_error() {
     assert!(found["comparison"]["flaky"][0].as_str().unwrap().starts_with("suite: "));
 }
 
+/// A program with other numerics comes to other bits. Neither is it non-deterministic then, nor did the unit get worse.
+#[test]
+fn other_numerics_are_no_regression_and_no_non_determinism() {
+    let bench = Bench::new();
+    bench.edit("night.toml", "replicates = 16", "replicates = 2");
+    assert_eq!(bench.night(&["--suite", "suite.toml", "--first"]).0, Some(0));
+    let path = bench.at("h/baselines");
+    let night =
+        std::fs::read_dir(&path).unwrap().next().unwrap().unwrap().path().join("night.json");
+    let text = std::fs::read_to_string(&night).unwrap();
+    let value: Value = serde_json::from_str(&text).unwrap();
+    let hash = value["suite"][0]["stream_hash"].as_str().unwrap().to_owned();
+    let numerics = octant::score::numerics::NUMERICS;
+    let written = format!("\"numerics\": {numerics}");
+    assert!(text.contains(&written), "{text}");
+    let other = text.replace(&hash, &"0".repeat(64));
+    // Another version, and one of before there were versions.
+    for (found, told) in [
+        (other.replace(&written, "\"numerics\": 4711"), "numerics version 4711"),
+        (other.replace(&format!("{written},"), ""), "from before there was one"),
+    ] {
+        std::fs::write(&night, found).unwrap();
+        // And the unit would be worse, if anything could be told.
+        bench.edit("short.toml", "limit = \"10 nmi\"", "limit = \"1e-9 nmi\"");
+        let (status, now) = bench.night(&["--suite", "suite.toml"]);
+        bench.edit("short.toml", "limit = \"1e-9 nmi\"", "limit = \"10 nmi\"");
+        assert_eq!((status, &now["verdict"]), (Some(3), &Value::from("inconclusive")), "{now}");
+        let comparison = &now["comparison"];
+        assert_eq!(
+            (&comparison["same_program"], &comparison["flaky"]),
+            (&false.into(), &serde_json::json!([]))
+        );
+        let reasons = now["reasons"].to_string();
+        assert!(reasons.contains("the numerics changed") && reasons.contains(told), "{reasons}");
+        assert!(
+            reasons.contains("octant nightly accept") && !reasons.contains("worse"),
+            "{reasons}"
+        );
+    }
+    // What is wrong with this night itself is told all the same.
+    bench.edit("spike.toml", "limit = 3", "limit = 0");
+    assert_eq!(bench.night(&["--suite", "suite.toml"]).0, Some(1));
+}
+
 #[test]
 fn a_night_that_was_broken_off_goes_on() {
     let bench = Bench::new();

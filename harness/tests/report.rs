@@ -123,6 +123,7 @@ fn data() -> ReportData {
     let mut summary = Summary {
         schema: SCHEMA,
         octant: "0.1.0".to_owned(),
+        numerics: None,
         scenario: "Table 1 instrument, static, G 2e-3 <deg/h/g> & 24 h".to_owned(),
         seed: 42,
         verdict: Verdict::Pass,

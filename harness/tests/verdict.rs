@@ -20,6 +20,7 @@ fn summary() -> Summary {
     Summary {
         schema: SCHEMA,
         octant: "0.1.0".to_owned(),
+        numerics: None,
         scenario: "dock <&> quay".to_owned(),
         seed: 7,
         verdict: Verdict::Pass,
@@ -446,7 +447,11 @@ fn every_number_of_a_run_can_be_required() {
     let mut all = Vec::new();
     numbers("", &serde_json::to_value(&run.summary).unwrap(), &mut all);
     let refused: Vec<&String> = all.iter().filter(|path| measures::check(path).is_err()).collect();
-    assert_eq!(refused, ["schema", "seed"], "the form and what was put in are no results");
+    assert_eq!(
+        refused,
+        ["numerics", "schema", "seed"],
+        "the form and what was put in are no results"
+    );
     assert!(all.len() > 300, "{}", all.len());
 }
 

@@ -159,6 +159,7 @@ impl Parts {
         let mut summary = Summary {
             schema: octant::score::summary::SCHEMA,
             octant: "0.1.0".to_owned(),
+            numerics: None,
             scenario: "s".to_owned(),
             seed: 1,
             verdict: Verdict::Pass,

@@ -102,6 +102,20 @@ pub enum SessionError {
         /// Why.
         reason: Refusal,
     },
+    /// A name that a terminal would obey, or that no file may hold.
+    #[error(
+        "{port}: the device's {field} {found:?} has the control character {character:?}, expected text that can be printed"
+    )]
+    Control {
+        /// The port.
+        port: String,
+        /// `name` or `firmware`.
+        field: &'static str,
+        /// What it said.
+        found: String,
+        /// The first of them.
+        character: char,
+    },
     /// The other end speaks a newer version.
     #[error("{port}: {reason}")]
     Newer {
@@ -293,6 +307,20 @@ impl Harness {
         };
         let mut stale = None;
         let theirs = say_hello(&mut wire, &ours, &options.patience, &mut stale)?;
+        for (field, text) in
+            [("name", theirs.name.as_str()), ("firmware", theirs.firmware.as_str())]
+        {
+            let Some(character) = text.chars().find(|c| is_control(*c)) else { continue };
+            let bye =
+                Bye { reason: Reason::FAILED, text: Text::fitting("control characters in a name") };
+            let _ = wire.send(&Message::Bye(bye), options.patience.repeat);
+            return Err(SessionError::Control {
+                port: wire.name().to_owned(),
+                field,
+                found: text.to_owned(),
+                character,
+            });
+        }
         let agreement = agree(&ours, &theirs).map_err(|reason| {
             // It may be gone before it hears it.
             let _ = wire.send(&Message::Bye(reason.bye()), options.patience.repeat);
@@ -761,6 +789,11 @@ fn refuses(reason: Reason) -> bool {
             | Reason::CONFIGURATION
             | Reason::UNSUPPORTED
     )
+}
+
+/// Whether a terminal obeys a character, or writes the line in another order for it.
+fn is_control(c: char) -> bool {
+    c.is_control() || matches!(c, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
 }
 
 fn say_hello(

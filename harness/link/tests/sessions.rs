@@ -5,6 +5,7 @@ use octant_link::device::Facts;
 use octant_link::harness::{Event, Harness, Sending, SessionError};
 use octant_link::{Uri, Wire};
 use octant_sample::Output;
+use octant_wire::Text;
 use octant_wire::message::{Capabilities, Pacing, Reason, Refusal, Role};
 use std::time::{Duration, Instant};
 
@@ -26,6 +27,29 @@ fn a_session_in_lock_step_is_the_core_itself() {
         assert!(said.contains("a session in lock-step began with octant"), "{said}");
         assert!(said.contains("the session is over"), "{said}");
     }
+}
+
+/// Names go to terminals and into files.
+#[test]
+fn a_name_that_a_terminal_would_obey_is_refused() {
+    for (name, firmware, field) in
+        [("a\u{1b}[2Jb", "1", "name"), ("a", "1\u{9b}31m", "firmware"), ("a\u{202e}b", "1", "name")]
+    {
+        let bad = Facts { name: Text::fitting(name), firmware: Text::fitting(firmware), ..facts() };
+        let (_served, uri) = Served::on("pty:", bad);
+        let error = match Harness::open(Wire::open(&uri, Role::Harness).unwrap(), options()) {
+            Ok(_) => panic!("{name:?} {firmware:?} was taken"),
+            Err(error) => error,
+        };
+        assert!(matches!(error, SessionError::Control { .. }), "{error}");
+        let told = error.to_string();
+        assert!(told.contains(field) && told.contains("control character"), "{told}");
+        assert!(!told.chars().any(char::is_control), "{told:?}");
+    }
+    // Any other text is a name.
+    let good = Facts { name: Text::fitting("Gerät 7/β"), ..facts() };
+    let (_served, uri) = Served::on("pty:", good);
+    assert_eq!(harness(&uri).theirs().name.as_str(), "Gerät 7/β");
 }
 
 #[test]

@@ -1,15 +1,18 @@
 //! Whether the folder of a campaign agrees with itself: plan, results, tables, statistics and manifest.
 
+use super::case::{self, CaseResult};
 use super::chain;
 use super::execute::Shard;
 use super::merge::merged;
-use super::plan::{FILE_NAME, Plan};
+use super::plan::{FILE_NAME, Plan, PlannedScenario};
+use super::reexecute::copy_of;
 use super::report::{evidence::STATISTICS, rows};
 use super::results::TABLES;
 use super::status;
 use crate::evidence::files;
 use crate::evidence::inside::Inside;
 use crate::evidence::manifest::CampaignFacts;
+use crate::score::verdict::Comparison;
 use serde_json::Value;
 use std::path::Path;
 
@@ -37,6 +40,7 @@ fn derive(folder: &Path, facts: &CampaignFacts, inside: &mut Inside) -> Result<(
     }
     let status = status::of(&plan, folder, Shard::WHOLE)?;
     inside.verdict = Some(status.verdict());
+    inside.numerics = (!status.numerics.is_empty()).then(|| status.numerics.join("; "));
     let checks = status.requirements.iter().map(|(id, found)| (id.clone(), found.verdict));
     inside.checks = checks.collect();
     inside.reasons = status
@@ -70,9 +74,47 @@ fn derive(folder: &Path, facts: &CampaignFacts, inside: &mut Inside) -> Result<(
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => {}
         Err(error) => return Err(format!("{STATISTICS}: {error}")),
     }
+    limits(&plan, folder, inside)?;
     if TABLES.iter().all(|(name, _)| merged(folder, name).is_file()) {
         let table = |name: &str| merged(folder, name);
         chain::check(&plan, folder, table).map_err(|error| error.to_string())?;
+    }
+    Ok(())
+}
+
+/// Holds the limits that each case was checked against against those of its scenario, where the folder has it: those
+/// of the requirements' file stand in the plan, and every reader looks at them.
+fn limits(plan: &Plan, folder: &Path, inside: &mut Inside) -> Result<(), String> {
+    for case in &plan.cases {
+        let Ok(planned) = plan.planned(case) else { continue };
+        let planned = PlannedScenario { file: copy_of(planned, folder), ..planned.clone() };
+        // Where the copy is gone, nothing says what the limits were.
+        let Ok(scenario) = planned.scenario(case) else { continue };
+        let Some((result, _)) = CaseResult::of_plan(plan, folder, case)? else { continue };
+        let Some(summary) = result.summary else { continue };
+        let name = case::file(Path::new(""), &case.id);
+        let mut tell = |what: String| {
+            inside.contradictions.push(format!("{}: {what}", name.display()));
+        };
+        for requirement in &scenario.requirements {
+            let check = &requirement.check;
+            let words = |measure: &str, comparison: Comparison, limit: f64| {
+                format!("{measure} {} {limit}", comparison.sign())
+            };
+            let expected = words(&check.measure, check.comparison, check.limit);
+            let found = summary.requirements.iter().filter(|result| result.id == check.id);
+            let found: Vec<String> =
+                found.map(|r| words(&r.measure, r.comparison, r.limit)).collect();
+            if found.is_empty() {
+                tell(format!("it didn't check {}, which its scenario requires", check.id));
+            } else if !found.contains(&expected) {
+                tell(format!(
+                    "{} is {}, its scenario has {expected}",
+                    check.id,
+                    found.join(" and ")
+                ));
+            }
+        }
     }
     Ok(())
 }

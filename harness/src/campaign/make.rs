@@ -184,6 +184,14 @@ fn planned(
         |reason: String| PlanError::Contradiction { campaign: campaign.to_owned(), reason };
     let bytes = system("read", &member.file, std::fs::read(&member.file))?;
     let base = Scenario::load(&member.file, &member.set)?;
+    if let Some(piece) = base.equipment.first() {
+        return Err(contradiction(format!(
+            "scenario {:?} has equipment of a bench ({}), whose certificates are held against the day of a run; \
+             cases of a campaign have none: expected no [[equipment]]",
+            member.id,
+            piece.named()
+        )));
+    }
     let named = member.verifies.iter().flatten();
     if let Some(unknown) = named.clone().find(|id| !of_file.iter().any(|p| p.check.id == **id)) {
         let known = of_file.iter().map(|planned| planned.check.id.as_str());

@@ -4,7 +4,7 @@ use super::chain;
 use super::execute::Shard;
 use super::independence::Shown;
 use super::plan::{Plan, short};
-use super::results::{Columns, TABLES, ordered};
+use super::results::{Columns, NUMERICS, TABLES, ordered};
 use super::stop;
 use super::table::{Kind, Table, TableError, Values, write};
 use crate::score::verdict::Verdict;
@@ -47,6 +47,19 @@ pub enum MergeError {
         found: String,
         /// This plan.
         expected: String,
+    },
+    /// A case came to two results, by programs of which that was to be expected.
+    #[error(
+        "merge {second}: case {case} is of another numerics version than in {first}, so that its numbers differ: \
+         run one of the two parts again with the program of the other"
+    )]
+    Numerics {
+        /// The case.
+        case: String,
+        /// A part that has it.
+        first: PathBuf,
+        /// Another one.
+        second: PathBuf,
     },
     /// A case came to two results.
     #[error(
@@ -296,7 +309,10 @@ fn refuse_differing(
     if !rows.values().any(|rows| several(&rows)) {
         return Ok(());
     }
-    for (column, _) in columns {
+    // The numerics version first: where it differs the rest says nothing.
+    let (before, after): (Vec<_>, Vec<_>) =
+        columns.iter().map(|(name, _)| name).partition(|name| *name == NUMERICS);
+    for column in before.into_iter().chain(after) {
         let values =
             tables.iter().map(|table| table.column(column)).collect::<Result<Vec<_>, _>>()?;
         let value = |row: &Row| values[row.part].as_ref().and_then(|values| values.at(row.row));
@@ -306,6 +322,13 @@ fn refuse_differing(
             let first = rows[0].part;
             for part in rows.iter().map(|row| row.part).filter(|part| *part != first) {
                 let same = of(first).map(value).eq(of(part).map(value));
+                if !same && column == NUMERICS {
+                    return Err(MergeError::Numerics {
+                        case: plan.cases[*index].id.clone(),
+                        first: paths[first].clone(),
+                        second: paths[part].clone(),
+                    });
+                }
                 if !same {
                     return Err(MergeError::Differs {
                         case: plan.cases[*index].id.clone(),

@@ -4,8 +4,9 @@ use super::case::{self, CaseResult, file};
 use super::plan::{Case, Plan, PlannedScenario};
 use super::report::evidence::INPUTS;
 use crate::run::Control;
+use crate::score::numerics::differs;
 use serde_json::Value;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Confidence of what a sample says of all results.
 pub const CONFIDENCE: f64 = 0.95;
@@ -19,6 +20,8 @@ pub struct Again {
     pub same: usize,
     /// Cases that came to something else, with the first difference.
     pub differing: Vec<String>,
+    /// Cases of another numerics version that came to something else, as is to be expected.
+    pub other_numerics: Vec<String>,
     /// Cases that could not be run again, with the reason.
     pub not_run: Vec<String>,
 }
@@ -81,37 +84,47 @@ pub fn run(
         tell(done, drawn.len());
         match one(plan, folder, there[*index]) {
             Ok(None) => again.same += 1,
-            Ok(Some(difference)) => again.differing.push(difference),
+            Ok(Some((difference, None))) => again.differing.push(difference),
+            Ok(Some((difference, Some(told)))) => {
+                again.other_numerics.push(format!("{difference}: {told}"));
+            }
             Err(reason) => again.not_run.push(reason),
         }
     }
     Ok(again)
 }
 
-/// Runs one case again; `None`: it came to the same result.
-fn one(plan: &Plan, folder: &Path, case: &Case) -> Result<Option<String>, String> {
-    let told = |error: &dyn std::fmt::Display| format!("case {}: {error}", case.id);
-    let planned = plan.planned(case).map_err(|error| told(&error))?;
+/// The copy of a scenario in the folder of its campaign.
+pub(super) fn copy_of(planned: &PlannedScenario, folder: &Path) -> PathBuf {
     let name = planned.file.file_name().unwrap_or_default().to_string_lossy();
     let start = planned.blake3.get(..12).unwrap_or(&planned.blake3);
-    let planned = PlannedScenario {
-        file: folder.join(INPUTS).join(format!("{start}-{name}")),
-        ..planned.clone()
-    };
+    folder.join(INPUTS).join(format!("{start}-{name}"))
+}
+
+/// The first difference, and what another numerics version means where the stored result has one.
+type Differs = (String, Option<String>);
+
+/// Runs one case again; `None`: it came to the same result.
+fn one(plan: &Plan, folder: &Path, case: &Case) -> Result<Option<Differs>, String> {
+    let told = |error: &dyn std::fmt::Display| format!("case {}: {error}", case.id);
+    let planned = plan.planned(case).map_err(|error| told(&error))?;
+    let planned = PlannedScenario { file: copy_of(planned, folder), ..planned.clone() };
     let result = case::run(&planned, case, &Control::default()).map_err(|error| told(&error))?;
     let now = serde_json::to_value(&result).map_err(|error| told(&error))?;
     let path = file(folder, &case.id);
     let bytes = std::fs::read(&path).map_err(|error| told(&error))?;
     let then: Value = serde_json::from_slice(&bytes).map_err(|error| told(&error))?;
-    Ok(difference(&then["summary"], &now["summary"]).map(|what| told(&what)))
+    let numerics = then["summary"]["numerics"].as_u64().and_then(|version| version.try_into().ok());
+    let found = difference(&then["summary"], &now["summary"]);
+    Ok(found.map(|what| (told(&what), differs(numerics))))
 }
 
 /// The first number or text in which two summaries differ, but for the program that wrote them and what
 /// follows from the numbers.
 #[must_use]
 pub fn difference(then: &Value, now: &Value) -> Option<String> {
-    const NOT_MEASURED: [&str; 6] =
-        ["octant", "schema", "verdict", "reasons", "requirements", "findings"];
+    const NOT_MEASURED: [&str; 7] =
+        ["octant", "numerics", "schema", "verdict", "reasons", "requirements", "findings"];
     let (Value::Object(then), Value::Object(now)) = (then, now) else {
         return Some("there is no summary".to_owned());
     };

@@ -10,6 +10,9 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 use std::sync::Arc;
 
+/// The column with the numerics version of a case's result.
+pub(super) const NUMERICS: &str = "numerics";
+
 /// Columns with their kinds.
 pub(crate) type Columns = &'static [(&'static str, Kind)];
 
@@ -31,6 +34,7 @@ pub(crate) const TABLES: [(&str, Columns); 3] = [
             ("reasons", Kind::Text),
             ("error", Kind::Text),
             ("stream_hash", Kind::Text),
+            (NUMERICS, Kind::Integer),
             (RESULT, Kind::Text),
             ("set", Kind::Text),
         ],
@@ -180,6 +184,7 @@ fn case_row(
         ("reasons", summary.map(|summary| text(summary.reasons.join("; ")))),
         ("error", result.error.as_deref().map(text)),
         ("stream_hash", summary.map(|summary| text(summary.stream_hash.as_str()))),
+        (NUMERICS, summary.and_then(|summary| Some(Value::Integer(i64::from(summary.numerics?))))),
         (RESULT, Some(text(hash))),
         ("set", Some(text(case.set.join("; ")))),
     ]);
@@ -200,8 +205,17 @@ fn case_row(
 }
 
 /// What of a summary stands in columns of its own, or isn't of the case.
-const NOT_MEASURES: [&str; 8] =
-    ["schema", "octant", "seed", "scenario", "verdict", "reasons", "requirements", "stream_hash"];
+const NOT_MEASURES: [&str; 9] = [
+    "schema",
+    "octant",
+    "numerics",
+    "seed",
+    "scenario",
+    "verdict",
+    "reasons",
+    "requirements",
+    "stream_hash",
+];
 
 /// Every value of a summary under its dotted path; of a fault, under its id.
 fn measures(document: &serde_json::Value, all: &mut BTreeMap<String, Value>) {

@@ -8,6 +8,7 @@ use super::requirements;
 use super::stop::{self, Decision};
 use crate::report::number::plain;
 use crate::score::judge;
+use crate::score::numerics::differs;
 use crate::score::verdict::Verdict;
 use octant_requirements::requirement::Ensemble;
 use octant_requirements::trace::{Counts, judge};
@@ -52,6 +53,8 @@ pub struct Status {
     pub bad: Vec<Bad>,
     /// Cases that came to two results.
     pub differing: Vec<String>,
+    /// Cases that another numerics version made, counted, with what that means.
+    pub numerics: Vec<String>,
     /// Why no more cases are run; null: all are.
     pub stopped: Option<String>,
 }
@@ -104,6 +107,7 @@ pub fn of(plan: &Plan, folder: &Path, shard: Shard) -> Result<Status, String> {
         not_by_test: plan.not_by_test.clone(),
         bad: Vec::new(),
         differing: Vec::new(),
+        numerics: Vec::new(),
         stopped: None,
     };
     let end = match &plan.stop {
@@ -122,6 +126,7 @@ pub fn of(plan: &Plan, folder: &Path, shard: Shard) -> Result<Status, String> {
         counts.entry(id).or_default();
     }
     let mut looked: Vec<Looked<'_>> = Vec::new();
+    let mut numerics: BTreeMap<Option<u32>, usize> = BTreeMap::new();
     status.cases = mine().filter(|(index, _)| *index < end).count();
     for (_, case) in mine().filter(|(index, _)| *index < end) {
         let path = case::file(folder, &case.id);
@@ -146,6 +151,9 @@ pub fn of(plan: &Plan, folder: &Path, shard: Shard) -> Result<Status, String> {
             checked.clone().map(|id| (id.as_str(), Some(independence::passes(&result, id))));
         let passed = passed.collect();
         let stream = result.summary.as_ref().map(|summary| summary.stream_hash.clone());
+        if let Some(summary) = &result.summary {
+            *numerics.entry(summary.numerics).or_default() += 1;
+        }
         looked.push(Looked { case, stream, passed });
         for id in checked {
             let counts = counts.entry(id).or_default();
@@ -165,6 +173,10 @@ pub fn of(plan: &Plan, folder: &Path, shard: Shard) -> Result<Status, String> {
             status.bad.push(Bad { case: case.id.clone(), verdict: result.verdict, reason });
         }
     }
+    let others = numerics.into_iter().filter_map(|(version, cases)| {
+        Some(format!("{cases} of {} cases: {}", status.cases, differs(version)?))
+    });
+    status.numerics = others.collect();
     let draws = independence::draws(looked.iter().map(|l| (l.case, l.stream.as_deref())));
     status.draws = draws.iter().max().map_or(0, |last| last + 1);
     let idle = independence::idle(plan, looked.iter().map(|l| (l.case, l.stream.as_deref())));
@@ -329,6 +341,9 @@ impl Status {
         }
         if self.requirements.is_empty() {
             text += "  no requirement checked\n";
+        }
+        for told in &self.numerics {
+            _ = writeln!(text, "  {told}");
         }
         if let Some(stopped) = &self.stopped {
             _ = writeln!(text, "  {stopped}");

@@ -20,6 +20,7 @@ mod nightly;
 mod observe;
 mod progress;
 mod reexecute;
+mod rejudge;
 mod replay;
 mod report;
 mod requirements;
@@ -77,6 +78,8 @@ enum Command {
     Report(report::Arguments),
     /// Tell whether a folder of evidence is what was written, to the last bit.
     Verify(verify::Arguments),
+    /// Derive the verdicts of a stored folder anew, beside those that it holds.
+    Rejudge(rejudge::Arguments),
     /// Watch a run: how far it is, its drift, parameters, faults and lateness.
     Watch(watch::Arguments),
     /// Tell what kinds of faults there are, and what each does.
@@ -225,6 +228,7 @@ pub fn main() -> ExitCode {
         Command::Observe(arguments) => observe::command(&arguments),
         Command::Report(arguments) => report::command(&arguments),
         Command::Verify(arguments) => verify::command(&arguments),
+        Command::Rejudge(arguments) => rejudge::command(&arguments),
         Command::Watch(arguments) => watch::command(&arguments),
         Command::Faults(arguments) => faults::command(&arguments),
         Command::Doctor(arguments) => doctor::command(&arguments),

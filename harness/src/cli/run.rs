@@ -12,6 +12,7 @@ use crate::run::method::{MethodError, SetupError, configurations, run_as_far_as_
 use crate::run::raw_counts;
 use crate::run::{Control, Ended, MethodRun, Recording, Run};
 use crate::scenario::{Endpoint, Method, Scenario, Source};
+use crate::score::equipment::Day;
 use crate::score::junit::junit;
 use crate::score::verdict::Verdict;
 use crate::source::LiveSource;
@@ -121,6 +122,8 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         set_up(&scenario, method, seed)?;
     }
     let fmus = fmus(&scenario, tasks)?;
+    let inputs = evidence::inputs(&scenario)
+        .map_err(|error| Failure::input(format!("failed to {error}")))?;
     let key = super::verify::signing_key()?;
     let mut live = arguments.live.as_deref().map(Live::start).transpose()?;
     let (path, existing) = match &arguments.out {
@@ -165,7 +168,9 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     let realtime = primary.kept.as_ref().map(|kept| kept.granted.clone());
     let refused = primary.calibration.as_ref().is_some_and(|c| c.refused.is_some());
     let estimate = primary.watcher.last_parameters.map(|e| e.parameters).filter(|_| !refused);
-    let choice = Choice { require: arguments.require, left_out };
+    // Certificates are held against the day that stands in the manifest.
+    let ended = SystemTime::now();
+    let choice = Choice { require: arguments.require, left_out, day: Some(Day::of(ended)) };
     let run = assemble_with(&scenario, seed, primary, baseline, &choice)
         .map_err(|error| Failure::bench(format!("failed to write the summary: {error}")))?;
     for (name, table) in tables {
@@ -182,7 +187,9 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         bench,
         realtime,
         key,
-        ..RunFacts::between(started, SystemTime::now())
+        inputs,
+        equipment: scenario.equipment.clone(),
+        ..RunFacts::between(started, ended)
     };
     let raw = estimate.map_or(String::new(), |e| raw_counts::text(&scenario.source, &e));
     let (verdict, json) = write_results(folder.path(), run, &facts).map_err(failed)?;

@@ -4,6 +4,7 @@ use super::reexecute::{Count, Reexecuted};
 use super::{Failure, print, print_json};
 use crate::campaign;
 use crate::evidence::attestation;
+use crate::evidence::disposition;
 use crate::evidence::files;
 use crate::evidence::inside::{self, Inside};
 use crate::evidence::manifest::{self, Difference, Manifest};
@@ -24,6 +25,9 @@ pub(super) struct Arguments {
     /// the files are held against the manifest.
     #[arg(long, value_name = "KEY")]
     key: Option<String>,
+    /// The public key of a second person, who has to have signed the dispositions of a campaign: not the first.
+    #[arg(long, value_name = "KEY", requires = "key")]
+    second_key: Option<String>,
     /// What the folder has to be of: scenario=TITLE, seed=N, run=HASH (the stream hash of a run or the plan
     /// of a campaign, 12 digits or more).
     #[arg(long, value_name = "NAME=VALUE", value_delimiter = ',', value_parser = Expected::parse)]
@@ -121,6 +125,8 @@ struct Found {
     verdict: Option<Verdict>,
     /// Why, as the run or the campaign tells it.
     reasons: Vec<String>,
+    /// Where it has another numerics version than this program, what that means.
+    numerics: Option<String>,
     scenario: Option<String>,
     seed: Option<u64>,
     run: Option<String>,
@@ -128,6 +134,11 @@ struct Found {
     reexecuted: Option<Reexecuted>,
     /// Who signed the manifest; null: nobody whose key was given.
     signed_by: Option<String>,
+    /// Who signed the dispositions as second person; null: nobody whose key was given.
+    second_signed_by: Option<String>,
+    /// A second signature is there.
+    #[serde(skip)]
+    second_there: bool,
     /// The key that the manifest names; null: it isn't signed.
     signature: Option<String>,
 }
@@ -164,6 +175,7 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         let named = manifest.signature.as_deref().unwrap_or("none");
         differences.push(format!("the manifest names another key: {named}"));
     }
+    let second = second(arguments, &manifest, &mut differences)?;
     // A folder with a FIFO in it is told, and its contents are left alone.
     let opened = !found.iter().any(|difference| matches!(difference, Difference::NoFile(..)));
     let inside = match &manifest.campaign {
@@ -198,11 +210,14 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         differences,
         verdict: inside.verdict,
         reasons: inside.reasons,
+        numerics: inside.numerics,
         scenario: inside.title,
         seed: inside.seed,
         run: inside.run,
         reexecuted,
         signed_by,
+        second_signed_by: second.signed_by,
+        second_there: second.there,
         signature: manifest.signature,
     };
     if arguments.json {
@@ -212,6 +227,60 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     }
     // The status tells integrity alone: 0 of a whole folder, whatever the run in it came to.
     Ok(if whole { again } else { Verdict::Fail })
+}
+
+/// The second person's signature.
+struct Second {
+    there: bool,
+    signed_by: Option<String>,
+}
+
+/// Looks at the second signature: where one is asked for, and where it belongs to nothing.
+fn second(
+    arguments: &Arguments,
+    manifest: &Manifest,
+    differences: &mut Vec<String>,
+) -> Result<Second, Failure> {
+    let folder = &arguments.folder;
+    let there = std::fs::symlink_metadata(folder.join(signature::SECOND)).is_ok();
+    let mut found = Second { there, signed_by: None };
+    let is_named = manifest.files.iter().any(|file| file.path == disposition::FILE_NAME);
+    let facts = manifest.campaign.as_ref().filter(|_| is_named);
+    let Some(facts) = facts else {
+        if there {
+            differences.push(format!(
+                "{} was added: the manifest names no {}",
+                signature::SECOND,
+                disposition::FILE_NAME
+            ));
+        }
+        if arguments.second_key.is_some() && manifest.campaign.is_none() {
+            differences.push(
+                "a second person signs the dispositions of a campaign: this is a run, which has none in its folder"
+                    .to_owned(),
+            );
+        }
+        return Ok(found);
+    };
+    let (Some(first), Some(second)) = (&arguments.key, &arguments.second_key) else {
+        return Ok(found);
+    };
+    let path = folder.join(disposition::FILE_NAME);
+    let of = (facts.plan.as_str(), facts.results_blake3.as_str());
+    match signature::verify_dispositions(&path, of, first, second) {
+        Ok(id) => found.signed_by = Some(format!("minisign key {id}")),
+        Err(error @ signature::SignatureError::Key { .. }) => {
+            return Err(Failure::input(error).failed());
+        }
+        Err(error) => differences.push(format!("failed to {error}")),
+    }
+    if facts.open_discrepancies > 0 {
+        differences.push(format!(
+            "{} of {} discrepancies have no disposition that two persons could sign",
+            facts.open_discrepancies, facts.discrepancies
+        ));
+    }
+    Ok(found)
 }
 
 /// Whether a folder has the name of one that isn't finished, by whatever path it is named.
@@ -240,6 +309,16 @@ fn text(found: &Found) -> String {
         text += "integrity: not whole\n";
     }
     found.differences.iter().for_each(|difference| text += &format!("  {difference}\n"));
+    match (&found.second_signed_by, found.second_there) {
+        (Some(key), _) => text += &format!("dispositions: signed by a second person, {key}\n"),
+        (None, true) => {
+            text += "dispositions: a second signature was not looked at: --second-key has its public part\n"
+        }
+        (None, false) => {}
+    }
+    if let Some(told) = &found.numerics {
+        text += &format!("{told} (octant rejudge derives the verdict anew)\n");
+    }
     if let Some(again) = &found.reexecuted {
         text += &again.text();
     }

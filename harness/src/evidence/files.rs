@@ -12,7 +12,7 @@ use std::fs::{File, FileType};
 use std::io::{self, Read};
 use std::path::Path;
 
-/// Entries of a folder, by path with `/`; the manifest, its signature and the lock of a run that goes on are
+/// Entries of a folder, by path with `/`; the manifest, its signature, that of a second person and the lock of a run that goes on are
 /// not among them.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Entries {
@@ -51,7 +51,9 @@ impl Entries {
                     found.others.insert(name, what(kind));
                 } else if name == LOCK {
                     found.locked = true;
-                } else if ![FILE_NAME, signature::FILE_NAME].contains(&name.as_str()) {
+                } else if ![FILE_NAME, signature::FILE_NAME, signature::SECOND]
+                    .contains(&name.as_str())
+                {
                     found.files.insert(name);
                 }
             }

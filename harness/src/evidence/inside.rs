@@ -7,7 +7,10 @@
 use super::files;
 use super::manifest::Manifest;
 use crate::recorder::reader::{Recording, stream_hash};
-use crate::score::judge::derive;
+use crate::scenario::Scenario;
+use crate::score::equipment::{self, Day};
+use crate::score::judge::{Finding, derive};
+use crate::score::numerics::differs;
 use crate::score::rederive;
 use crate::score::summary::Summary;
 use crate::score::verdict::Verdict;
@@ -26,6 +29,8 @@ pub struct Inside {
     pub seed: Option<u64>,
     /// Stream hash of a run, id of the plan of a campaign.
     pub run: Option<String>,
+    /// Where its results have another numerics version than this program, what that means.
+    pub numerics: Option<String>,
     /// What its contents come to, derived again where they can be.
     pub verdict: Option<Verdict>,
     /// Why, as it is told.
@@ -63,7 +68,10 @@ pub fn of_run(folder: &Path, manifest: &Manifest) -> Inside {
         of_system(&document, &mut inside);
     } else {
         match Summary::from_json(&text) {
-            Ok(summary) => of_summary(folder, summary, &mut inside),
+            Ok(summary) => {
+                of_equipment(folder, manifest, &summary, &mut inside);
+                of_summary(folder, summary, &mut inside);
+            }
             Err(error) => inside.contradictions.push(format!("{SUMMARY}: {error}")),
         }
     }
@@ -76,6 +84,41 @@ pub fn of_run(folder: &Path, manifest: &Manifest) -> Inside {
         ));
     }
     inside
+}
+
+/// Holds the certificates in a manifest against its own date: what they come to has to be in the summary.
+fn of_equipment(folder: &Path, manifest: &Manifest, summary: &Summary, inside: &mut Inside) {
+    let scenario = Scenario::load(&folder.join("scenario.toml"), &[]);
+    // A scenario of an older form has no equipment; one that can't be read is told elsewhere.
+    if let Ok(scenario) = scenario
+        && scenario.equipment != manifest.equipment
+    {
+        inside
+            .contradictions
+            .push("manifest.json: its equipment isn't that of scenario.toml".to_owned());
+    }
+    match certified(manifest) {
+        Ok(expected) => {
+            let silent = expected.iter().filter(|finding| !summary.findings.contains(finding));
+            inside.contradictions.extend(
+                silent.map(|finding| format!("{SUMMARY}: it doesn't tell that {}", finding.reason)),
+            );
+        }
+        Err(reason) => inside.contradictions.push(reason),
+    }
+}
+
+/// What the equipment of a run comes to on the day on which it ended.
+///
+/// # Errors
+/// In words, if the manifest has no such day.
+pub(crate) fn certified(manifest: &Manifest) -> Result<Vec<Finding>, String> {
+    if manifest.equipment.is_empty() {
+        return Ok(Vec::new());
+    }
+    let ended = Day::of_text(&manifest.ended)
+        .map_err(|reason| format!("manifest.json: ended: {reason}"))?;
+    Ok(equipment::findings(&manifest.equipment, Some(&ended)))
 }
 
 fn of_summary(folder: &Path, summary: Summary, inside: &mut Inside) {
@@ -100,6 +143,7 @@ fn of_summary(folder: &Path, summary: Summary, inside: &mut Inside) {
     }
     let checks = summary.requirements.iter().map(|result| (result.id.clone(), result.verdict));
     inside.checks = checks.collect();
+    inside.numerics = differs(summary.numerics);
     inside.seed = Some(summary.seed);
     inside.title = Some(summary.scenario);
     inside.run = Some(summary.stream_hash);

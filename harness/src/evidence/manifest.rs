@@ -1,8 +1,11 @@
 //! `manifest.json`: who made a run, with what, and the hashes of everything in its folder.
 
+use super::InputFacts;
 use super::files::{self, Entries, system};
 use super::folder::LOCK;
 use super::signature::{Key, SignatureError};
+use crate::score::equipment::Equipment;
+use crate::score::numerics::NUMERICS;
 use crate::score::verdict::Verdict;
 use octant_realtime::schedule::Granted;
 use serde::{Deserialize, Serialize};
@@ -23,6 +26,9 @@ pub struct Manifest {
     pub schema: u32,
     /// Version of octant.
     pub octant: String,
+    /// Numerics version of octant; `null` in manifests from before there was one.
+    #[serde(default)]
+    pub numerics: Option<u32>,
     /// State of the repository that octant was built from; `null` outside of one.
     pub git: Option<Git>,
     /// Compiler that octant was built with; `null` if it did not tell.
@@ -43,6 +49,12 @@ pub struct Manifest {
     /// FMUs that took part; left out where none did.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub fmus: Vec<FmuFacts>,
+    /// Recordings that its samples came from; left out where there were none.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub inputs: Vec<InputFacts>,
+    /// Equipment of the bench; left out where the scenario names none.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub equipment: Vec<Equipment>,
     /// The device of a run over a wire, and what went over it; left out of others.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub link: Option<serde_json::Value>,
@@ -180,6 +192,10 @@ pub struct RunFacts {
     pub command_line: Vec<String>,
     /// FMUs that took part.
     pub fmus: Vec<FmuFacts>,
+    /// Recordings that its samples came from.
+    pub inputs: Vec<InputFacts>,
+    /// Equipment of the bench.
+    pub equipment: Vec<Equipment>,
     /// The device of a run over a wire, and what went over it.
     pub link: Option<serde_json::Value>,
     /// Clocks and counts of a real instrument and the table under it.
@@ -202,6 +218,8 @@ impl RunFacts {
             ended,
             command_line: Vec::new(),
             fmus: Vec::new(),
+            inputs: Vec::new(),
+            equipment: Vec::new(),
             link: None,
             bench: None,
             realtime: None,
@@ -289,6 +307,7 @@ impl Manifest {
         Self {
             schema: SCHEMA,
             octant: env!("CARGO_PKG_VERSION").into(),
+            numerics: Some(NUMERICS),
             git: some(env!("OCTANT_GIT_COMMIT"))
                 .map(|commit| Git { commit, dirty: env!("OCTANT_GIT_DIRTY") == "true" }),
             rustc: some(env!("OCTANT_RUSTC")),
@@ -302,6 +321,8 @@ impl Manifest {
             },
             command_line: facts.command_line.clone(),
             fmus: facts.fmus.clone(),
+            inputs: facts.inputs.clone(),
+            equipment: facts.equipment.clone(),
             link: facts.link.clone(),
             bench: facts.bench.clone(),
             realtime: facts.realtime.clone(),
@@ -338,6 +359,13 @@ impl Manifest {
             );
             (format!("FMU as {}", fmu.role), text)
         });
+        let inputs = self.inputs.iter().map(|input| {
+            ("recording".to_owned(), format!("{} (SHA-256 {})", input.file, input.sha256))
+        });
+        let equipment = self.equipment.iter().map(|piece| {
+            let holds = format!("certificate {}, until {}", piece.certificate, piece.expires);
+            (piece.named(), holds)
+        });
         let link = self.link.iter().flat_map(|link| {
             ["device", "firmware", "port", "pacing"]
                 .into_iter()
@@ -359,6 +387,7 @@ impl Manifest {
         });
         [
             ("octant", self.octant.clone()),
+            ("numerics version", self.numerics.map_or("not known".to_owned(), |v| v.to_string())),
             ("source revision", git),
             ("compiler", self.rustc.clone().unwrap_or_else(|| "not known".to_owned())),
             ("host", format!("{}, {}, {cpu}, {} processors", host.name, host.os, host.cpus)),
@@ -370,6 +399,8 @@ impl Manifest {
         .map(|(name, value)| (name.to_owned(), value))
         .into_iter()
         .chain(fmus)
+        .chain(inputs)
+        .chain(equipment)
         .chain(link)
         .chain(bench)
         .chain(realtime)
@@ -520,6 +551,14 @@ fn cpu_model() -> Option<String> {
     let text = std::fs::read_to_string("/proc/cpuinfo").ok()?;
     let line = text.lines().find(|line| line.starts_with("model name"))?;
     line.split_once(':').map(|(_, model)| model.trim().to_owned())
+}
+
+/// SHA-256 of the manifest of a folder, hexadecimal.
+///
+/// # Errors
+/// If it can't be read.
+pub(crate) fn sha256_of(folder: &Path) -> Result<String, ManifestError> {
+    Ok(files::hash(folder, FILE_NAME)?.sha256)
 }
 
 /// SHA-256 of the program that runs, hexadecimal; `None` where it can't be read.

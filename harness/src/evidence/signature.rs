@@ -19,6 +19,15 @@ const UNTRUSTED: &str = "signature from octant";
 /// What is signed with the manifest.
 const TRUSTED: &str = "manifest of an octant evidence folder";
 
+/// Name of the second person's signature beside the dispositions of a campaign.
+pub const SECOND: &str = "dispositions.toml.minisig";
+
+/// What the second person signs beside the dispositions: whose they are, so that they say nothing of another
+/// campaign, or of other results.
+fn disposed(plan: &str, results_blake3: &str) -> String {
+    format!("dispositions of octant campaign {plan} with results {results_blake3}")
+}
+
 /// A process to be started that hears nothing of the key: neither its file nor its password. Every process
 /// that the program starts is made here, those that hold the code of others above all.
 pub(crate) fn command(program: impl AsRef<std::ffi::OsStr>) -> std::process::Command {
@@ -142,8 +151,36 @@ impl Key {
     /// # Errors
     /// If the manifest can't be read, or the signature not written.
     pub fn sign(&self, manifest: &Path) -> Result<(), SignatureError> {
-        let failed = |reason: String| SignatureError::Sign { path: manifest.to_owned(), reason };
-        let bytes = super::files::read(manifest).map_err(|error| failed(error.to_string()))?;
+        self.sign_as(manifest, FILE_NAME, TRUSTED)
+    }
+
+    /// Signs the dispositions of a campaign, as the second person.
+    ///
+    /// # Errors
+    /// If this key signed the manifest too, the dispositions can't be read, or the signature not written.
+    pub fn sign_dispositions(
+        &self,
+        dispositions: &Path,
+        plan: &str,
+        results_blake3: &str,
+    ) -> Result<(), SignatureError> {
+        let failed =
+            |reason: String| SignatureError::Sign { path: dispositions.to_owned(), reason };
+        let own = PublicKey::from_secret_key(&self.secret).map_err(|e| failed(e.to_string()))?;
+        let manifest = dispositions.with_file_name(super::manifest::FILE_NAME);
+        // By what it is, not by its id, which its owner can choose.
+        if verify(&manifest, &own.to_base64()).is_ok() {
+            return Err(failed(format!(
+                "key {} signed the manifest too: two persons are two keys",
+                self.id()
+            )));
+        }
+        self.sign_as(dispositions, SECOND, &disposed(plan, results_blake3))
+    }
+
+    fn sign_as(&self, path: &Path, name: &str, trusted: &str) -> Result<(), SignatureError> {
+        let failed = |reason: String| SignatureError::Sign { path: path.to_owned(), reason };
+        let bytes = super::files::read(path).map_err(|error| failed(error.to_string()))?;
         // Verified at once: a damaged key would make signatures that nobody can verify.
         let public =
             PublicKey::from_secret_key(&self.secret).map_err(|error| failed(error.to_string()))?;
@@ -151,11 +188,11 @@ impl Key {
             Some(&public),
             &self.secret,
             bytes.as_slice(),
-            Some(TRUSTED),
+            Some(trusted),
             Some(UNTRUSTED),
         )
         .map_err(|error| failed(error.to_string()))?;
-        std::fs::write(manifest.with_file_name(FILE_NAME), signature.to_string())
+        std::fs::write(path.with_file_name(name), signature.to_string())
             .map_err(|error| failed(error.to_string()))
     }
 }
@@ -166,14 +203,56 @@ impl Key {
 /// # Errors
 /// If the key is none, or the signature isn't one of this key on this manifest, to the last bit.
 pub fn verify(manifest: &Path, key: &str) -> Result<String, SignatureError> {
-    let public = match PublicKey::from_base64(key) {
-        Ok(public) => public,
+    verify_as(manifest, FILE_NAME, &public(key)?, TRUSTED)
+}
+
+/// Verifies the second person's signature of the dispositions of a campaign, as [`verify`] does that of a
+/// manifest.
+///
+/// # Errors
+/// If the key is none or that of the first person, or the signature isn't one of it on these dispositions of
+/// this campaign.
+pub fn verify_dispositions(
+    dispositions: &Path,
+    (plan, results_blake3): (&str, &str),
+    first: &str,
+    second: &str,
+) -> Result<String, SignatureError> {
+    let (first, second) = (public(first)?, public(second)?);
+    // Behind the algorithm and the id, which its owner can choose.
+    let itself = |key: &PublicKey| key.to_bytes().split_off(ID_END);
+    if itself(&first) == itself(&second) {
+        return Err(SignatureError::Signature {
+            path: dispositions.with_file_name(SECOND),
+            reason: format!(
+                "key {} is that of the manifest too: two persons are two keys",
+                id_of(second.keynum())
+            ),
+        });
+    }
+    verify_as(dispositions, SECOND, &second, &disposed(plan, results_blake3))
+}
+
+/// Bytes of a public key before the key itself: two of the algorithm, eight of the id.
+const ID_END: usize = 10;
+
+fn public(key: &str) -> Result<PublicKey, SignatureError> {
+    match PublicKey::from_base64(key) {
+        Ok(public) => Ok(public),
         Err(_) => PublicKey::from_file(key).map_err(|error| SignatureError::Key {
             path: key.into(),
             reason: format!("{error}; expected a public key of minisign, or its file"),
-        })?,
-    };
-    let path = manifest.with_file_name(FILE_NAME);
+        }),
+    }
+}
+
+fn verify_as(
+    signed: &Path,
+    name: &str,
+    public: &PublicKey,
+    trusted: &str,
+) -> Result<String, SignatureError> {
+    let path = signed.with_file_name(name);
     let wrong = |reason: String| SignatureError::Signature { path: path.clone(), reason };
     let text = super::files::read(&path).map_err(|error| wrong(error.to_string()))?;
     let text = String::from_utf8(text).map_err(|_| wrong("it is no text".to_owned()))?;
@@ -184,11 +263,14 @@ pub fn verify(manifest: &Path, key: &str) -> Result<String, SignatureError> {
     if signature.to_string() != text || text.lines().next() != Some(known.as_str()) {
         return Err(wrong("it was changed: this is not how octant writes it".to_owned()));
     }
-    let bytes = super::files::read(manifest).map_err(|error| wrong(error.to_string()))?;
-    minisign::verify(&public, &signature, std::io::Cursor::new(bytes), true, false, false)
+    let bytes = super::files::read(signed).map_err(|error| wrong(error.to_string()))?;
+    minisign::verify(public, &signature, std::io::Cursor::new(bytes), true, false, false)
         .map_err(|error| wrong(error.to_string()))?;
-    if signature.trusted_comment().ok().as_deref() != Some(TRUSTED) {
-        return Err(wrong("it was made for something else than a manifest of octant".to_owned()));
+    let comment = signature.trusted_comment().unwrap_or_default();
+    if comment != trusted {
+        return Err(wrong(format!(
+            "it was made for something else: found {comment:?}, expected {trusted:?}"
+        )));
     }
     Ok(id_of(public.keynum()))
 }

@@ -9,9 +9,10 @@
 //! A measure that a case had in one night and hasn't in the other, because its calibration was refused or it
 //! ended as an error, is beyond every number there, and counts in the test with the highest rank.
 
-use super::night::{CampaignNight, Night};
+use super::night::{CampaignNight, Night, Program};
 use super::results::CaseRow;
 use super::suite::SuiteResult;
+use crate::score::numerics::in_words;
 use crate::score::verdict::Verdict;
 use octant_statistics::multiple::holm;
 use octant_statistics::paired::{PassPairs, difference};
@@ -150,6 +151,8 @@ pub struct Comparison {
     pub baseline: String,
     /// The same program ran both.
     pub same_program: bool,
+    /// The programs have other numerics versions, in words: what differs isn't the unit's doing; null: they have the same.
+    pub numerics_changed: Option<String>,
     /// What counts as a change.
     pub limits: Limits,
     /// Campaigns of both nights.
@@ -193,6 +196,7 @@ pub fn compare(
     let mut all = Comparison {
         baseline: before.night.id.clone(),
         same_program,
+        numerics_changed: numerics_changed(&before.night.program, &now.night.program),
         limits,
         pairings: Vec::new(),
         missing: Vec::new(),
@@ -229,6 +233,19 @@ pub fn compare(
     }
     all.state_power();
     all
+}
+
+/// That two programs give other bits from the same inputs.
+fn numerics_changed(before: &Program, now: &Program) -> Option<String> {
+    (before.numerics != now.numerics).then(|| {
+        format!(
+            "the numerics changed: the baseline is of octant {} with {}, this night of octant {} with {}",
+            before.octant,
+            in_words(before.numerics),
+            now.octant,
+            in_words(now.numerics)
+        )
+    })
 }
 
 impl Comparison {

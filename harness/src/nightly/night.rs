@@ -3,6 +3,7 @@
 use super::suite::SuiteResult;
 use crate::evidence::manifest::{Git, Host, Manifest};
 use crate::evidence::{RunFacts, sha256};
+use crate::score::numerics::in_words;
 use crate::score::verdict::Verdict;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -43,6 +44,9 @@ pub struct Night {
 pub struct Program {
     /// Version of octant.
     pub octant: String,
+    /// Its numerics version; null: from before there was one.
+    #[serde(default)]
+    pub numerics: Option<u32>,
     /// State of the repository that it was built from; null outside of one.
     pub git: Option<Git>,
     /// Compiler.
@@ -79,12 +83,12 @@ impl Program {
     /// In words, if it can't be read.
     pub fn of(path: &Path) -> Result<Self, String> {
         let now = SystemTime::now();
-        let Manifest { octant, git, rustc, lock_file, host, .. } =
+        let Manifest { octant, numerics, git, rustc, lock_file, host, .. } =
             Manifest::of(&RunFacts::between(now, now));
         let sha256 =
             sha256(path).map_err(|error| format!("failed to read {}: {error}", path.display()))?;
         let target = format!("{} {}", host.os, host.arch);
-        Ok(Self { octant, git, rustc, lock_file, sha256, target })
+        Ok(Self { octant, numerics, git, rustc, lock_file, sha256, target })
     }
 
     /// Whether the same inputs have to give the same bytes: the same file, or one that was built from
@@ -96,7 +100,7 @@ impl Program {
             && self.lock_file.is_some()
             && Self { sha256: String::new(), ..self.clone() }
                 == Self { sha256: String::new(), ..other.clone() };
-        self.sha256 == other.sha256 || built
+        self.numerics == other.numerics && (self.sha256 == other.sha256 || built)
     }
 
     /// For people.
@@ -107,7 +111,8 @@ impl Program {
             format!("{}{changed}", git.commit.get(..12).unwrap_or(&git.commit))
         });
         let hash = self.sha256.get(..12).unwrap_or(&self.sha256);
-        format!("octant {}, {commit}, program {hash}", self.octant)
+        let numerics = in_words(self.numerics);
+        format!("octant {}, {numerics}, {commit}, program {hash}", self.octant)
     }
 }
 

@@ -108,6 +108,18 @@ impl Report {
                 self.because(Verdict::Inconclusive, reason);
             }
         }
+        if let Some(words) = &comparison.numerics_changed {
+            // What this night says of itself stands. What differs from the baseline is the program's doing, or
+            // can't be told from it.
+            self.judge_itself();
+            let reason = format!(
+                "{words}; what differs from the baseline is no regression of the unit and no \
+                 non-determinism. Look at this night by itself, and accept it as the baseline: octant \
+                 nightly accept {} --history DIR",
+                self.night
+            );
+            return self.because(Verdict::Inconclusive, reason);
+        }
         for words in &comparison.requirements_worse {
             self.because(Verdict::Fail, words.clone());
         }
@@ -142,6 +154,18 @@ impl Report {
 
     /// Without a baseline a night is only as good as what it says itself.
     fn judge_alone(&mut self, is_first: bool) {
+        self.judge_itself();
+        if is_first {
+            self.reasons.push("the first night: nothing to compare with".to_owned());
+        } else {
+            let reason = "there is no baseline to compare with: it was lost, or none was accepted yet \
+                          (--first starts one)";
+            self.because(Verdict::Inconclusive, reason.to_owned());
+        }
+    }
+
+    /// What a night says, whatever stands beside it.
+    fn judge_itself(&mut self) {
         let broken = self.suite_broken.len();
         if broken > 0 {
             let reason = format!("{broken} cases of the suite don't end as they have to");
@@ -152,13 +176,6 @@ impl Report {
                 let reason = format!("campaign {}: error", campaign.name);
                 self.because(Verdict::Error, reason);
             }
-        }
-        if is_first {
-            self.reasons.push("the first night: nothing to compare with".to_owned());
-        } else {
-            let reason = "there is no baseline to compare with: it was lost, or none was accepted yet \
-                          (--first starts one)";
-            self.because(Verdict::Inconclusive, reason.to_owned());
         }
     }
 

@@ -8,7 +8,9 @@ use crate::report::counterfactual::in_words;
 use crate::report::{Provenance, ReportData, number};
 use crate::scenario::{Endpoint, Motion, Scenario, Source};
 use crate::score::decision::{Against, Rule};
+use crate::score::equipment::{self, Day};
 use crate::score::judge::{Finding, judge_by};
+use crate::score::numerics::NUMERICS;
 use crate::score::reference::{ReferenceInput, reference};
 use crate::score::summary::{
     AlteredStreams, Baseline, FaultResult, ParameterScore, SCHEMA, Summary,
@@ -35,6 +37,9 @@ pub struct Choice {
     pub require: bool,
     /// Faults of the scenario that were left out.
     pub left_out: Vec<String>,
+    /// The day on which the run ended, against which certificates are held; nobody asks where the scenario has
+    /// no equipment.
+    pub day: Option<Day>,
 }
 
 impl Choice {
@@ -98,6 +103,7 @@ pub fn assemble_with(
         baseline_estimated_g_zz: baseline.as_ref().and_then(g_zz),
     });
     let mut findings = findings(scenario, &primary, baseline.as_ref());
+    findings.extend(equipment::findings(&scenario.equipment, choice.day.as_ref()));
     findings.extend(choice.findings(!scenario.requirements.is_empty()));
     let (planned, done) = primary.watcher.work();
     let against = Against {
@@ -116,6 +122,7 @@ pub fn assemble_with(
     let mut summary = Summary {
         schema: SCHEMA,
         octant: env!("CARGO_PKG_VERSION").to_owned(),
+        numerics: Some(NUMERICS),
         scenario: scenario.title.clone(),
         seed,
         verdict: Verdict::Pass,

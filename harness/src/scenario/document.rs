@@ -130,7 +130,7 @@ pub(crate) fn parse(text: &str) -> Result<Table, Vec<Problem>> {
 }
 
 /// Keys whose texts are names: on one line.
-const NAMES: [&str; 4] = ["title", "id", "name", "label"];
+const NAMES: [&str; 6] = ["title", "id", "name", "label", "serial", "certificate"];
 
 /// Control characters in texts and keys: what a terminal would obey, and no file of others can hold. A line
 /// break or a tab may be in what isn't a name.

@@ -85,6 +85,8 @@ pub struct Scenario {
     pub requirements: Vec<Requirement>,
     /// What a value near a limit comes to.
     pub decision: crate::score::decision::Decision,
+    /// What the bench measures with.
+    pub equipment: Vec<crate::score::equipment::Equipment>,
     /// What is recorded.
     pub record: Record,
     /// Where samples come from.

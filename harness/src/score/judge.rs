@@ -16,6 +16,8 @@ pub enum About {
     Unit,
     /// The bench: the unit isn't judged by what follows.
     Bench,
+    /// Equipment of the bench whose certificate doesn't hold: nothing that was measured with it is shown.
+    Equipment,
     /// The run: somebody ended it, or left out what it needs.
     Run,
 }
@@ -176,7 +178,9 @@ fn sides(
     let (mut unit, mut bench) = (Vec::new(), Vec::new());
     for finding in &summary.findings {
         match finding.about {
-            About::Bench => bench.push((finding.verdict, finding.reason.clone())),
+            About::Bench | About::Equipment => {
+                bench.push((finding.verdict, finding.reason.clone()));
+            }
             About::Unit | About::Run => unit.push((finding.verdict, Some(finding.reason.clone()))),
         }
     }
@@ -185,7 +189,7 @@ fn sides(
         let told = refusal(method, reason);
         // The baseline is there to be compared with: its refusal is told, the run stands. After the bench
         // failed a refusal is what it should be.
-        let verdict = match (primary, bench_broke(summary)) {
+        let verdict = match (primary, bench_broke(summary) || is_uncertified(summary)) {
             (true, false) => Verdict::Fail,
             (true, true) => Verdict::Inconclusive,
             (false, _) => Verdict::None,
@@ -237,9 +241,18 @@ fn bench_broke(summary: &Summary) -> bool {
     summary.findings.iter().any(|finding| finding.about == About::Bench)
 }
 
+/// It was measured with equipment whose certificate didn't hold.
+fn is_uncertified(summary: &Summary) -> bool {
+    summary.findings.iter().any(|finding| finding.about == About::Equipment)
+}
+
 /// What a result comes to where its part of the run was not done as planned: no pass; and where the unit
 /// could not be judged to the end, no fail of what might have become better.
 pub(super) fn as_far_as_done(summary: &Summary, result: RequirementResult) -> RequirementResult {
+    if is_uncertified(summary) && matches!(result.verdict, Verdict::Pass | Verdict::Fail) {
+        let reason = Some("measured with equipment whose certificate didn't hold".to_owned());
+        return RequirementResult { verdict: Verdict::Inconclusive, reason, ..result };
+    }
     let part = Part::of(&result.measure);
     let baseline = result.measure.trim_start_matches('|').starts_with("baseline.");
     let short = shortfalls(summary)

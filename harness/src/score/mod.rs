@@ -7,18 +7,20 @@
 //! - [`health`] counts what the core reported on the way
 //! - [`summary`] is `summary.json`, [`measures`] are the numbers in it, [`work`] is what was planned and done
 //! - [`verdict`] holds a measure against its limit, [`decision`] what a value near its limit comes to, [`signed`] which measures have a sign, [`judge`] derives the verdict of a summary, [`junit`] tells CI
-//! - [`rederive`] holds a stored summary against itself
+//! - [`rederive`] holds a stored summary against itself, [`numerics`] says whose bits can be compared, [`equipment`] until when certificates hold
 
 pub mod compare;
 pub mod counterfactual;
 pub mod decision;
 pub mod drift;
 pub mod ensemble;
+pub mod equipment;
 pub mod floor;
 pub mod health;
 pub mod judge;
 pub mod junit;
 pub mod measures;
+pub mod numerics;
 pub mod parameters;
 pub mod rederive;
 pub mod reference;

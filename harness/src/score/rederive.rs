@@ -4,7 +4,7 @@
 //! what befell it, all of which are in the summary too. Every reader derives the verdict again; one that differs
 //! is a contradiction, and its file is evidence of nothing.
 
-use super::judge::{as_far_as_done, derive};
+use super::judge::{About, Finding, as_far_as_done, derive};
 use super::summary::{Summary, WITH_FINDINGS};
 use super::verdict::{Comparison, Requirement, RequirementResult, Verdict, evaluate};
 
@@ -95,4 +95,80 @@ pub fn contradictions(summary: &Summary) -> Vec<String> {
         ));
     }
     found
+}
+
+/// What a run comes to by the rules of this program, from what is stored of it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Rejudged {
+    /// The summary with its requirements, findings, verdict and reasons derived anew.
+    pub summary: Summary,
+    /// What could not be derived, since it was never stored.
+    pub not_stored: Vec<String>,
+}
+
+impl Rejudged {
+    /// Nothing that is stored speaks against a pass, and too little is stored for one.
+    #[must_use]
+    pub fn is_unknown(&self) -> bool {
+        let mut without = self.summary.clone();
+        without.findings.retain(|finding| !finding.reason.starts_with(NOT_HELD));
+        without.findings.len() < self.summary.findings.len()
+            && self.summary.verdict == Verdict::Inconclusive
+            && derive(&without).verdict <= Verdict::Pass
+    }
+}
+
+/// The beginning of what is told of a summary that holds too little.
+const NOT_HELD: &str = "its summary doesn't hold what a pass rests on";
+
+/// Derives the verdict of a stored summary anew, with findings about the bench that stand outside of it.
+///
+/// A summary of schema 1 has neither plan nor findings. What it says of itself then stays as the least; it can't
+/// come to a pass, since nobody knows whether the plan was done and the answers were right.
+///
+/// # Errors
+/// If the summary can't be written as JSON.
+pub fn rejudge(stored: &Summary, outside: &[Finding]) -> Result<Rejudged, serde_json::Error> {
+    let mut summary = stored.clone();
+    let mut not_stored = Vec::new();
+    if stored.schema < WITH_FINDINGS {
+        if stored.planned.is_none() || stored.done.is_none() {
+            not_stored.push("what the run was to do and what it did".to_owned());
+        }
+        not_stored.push("what unit and bench did wrong".to_owned());
+        if stored.decision.is_none() {
+            not_stored.push(
+                "how uncertain the references are: values are held against their limits as they are"
+                    .to_owned(),
+            );
+        }
+        summary.findings.push(Finding::of_run(format!(
+            "{NOT_HELD} (schema {}): {}",
+            stored.schema,
+            not_stored[..not_stored.len().min(2)].join(", ")
+        )));
+        // The requirements first: what follows from them again isn't told twice.
+        summary.requirements = results(&summary)?;
+        summary.schema = WITH_FINDINGS;
+        if derive(&summary).verdict < stored.verdict {
+            summary.findings.push(Finding {
+                verdict: stored.verdict,
+                about: About::Run,
+                reason: format!(
+                    "it was judged {} then: {}",
+                    stored.verdict.name(),
+                    stored.reasons.join("; ")
+                ),
+            });
+        }
+    }
+    for finding in outside {
+        if !summary.findings.contains(finding) {
+            summary.findings.push(finding.clone());
+        }
+    }
+    summary.requirements = results(&summary)?;
+    let derived = derive(&summary);
+    (summary.verdict, summary.reasons) = (derived.verdict, derived.reasons);
+    Ok(Rejudged { summary, not_stored })
 }

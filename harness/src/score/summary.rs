@@ -24,6 +24,9 @@ pub struct Summary {
     pub schema: u32,
     /// Version of the program that made the run.
     pub octant: String,
+    /// Numerics version of that program; null: it was made before there was one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub numerics: Option<u32>,
     /// Name of the scenario.
     pub scenario: String,
     /// Seed of every random stream.

@@ -86,6 +86,18 @@ pub enum TextFiles {
     },
 }
 
+impl TextFiles {
+    /// Each file.
+    pub fn all(&self) -> impl Iterator<Item = &PathBuf> {
+        match self {
+            Self::One(file) => [Some(file), None],
+            Self::Split { gyro, accelerometer } => [Some(gyro), Some(accelerometer)],
+        }
+        .into_iter()
+        .flatten()
+    }
+}
+
 /// Gimbal angles, where the file has them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GimbalColumns {

@@ -8,3 +8,4 @@ mod draws;
 mod evidence;
 mod findings;
 mod numbers;
+mod two_persons;

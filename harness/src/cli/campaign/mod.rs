@@ -1,5 +1,6 @@
 //! `octant campaign`: many cases of scenarios, planned, run anywhere, merged.
 
+mod countersign;
 mod report;
 pub(super) mod run;
 
@@ -71,6 +72,12 @@ enum Command {
     },
     /// Write what the cases show: report, statistics, discrepancies, JUnit, and the manifest of the folder.
     Report(report::Arguments),
+    /// Sign the dispositions of a reported campaign as the second person, with the key of OCTANT_SIGNING_KEY.
+    Countersign {
+        /// Folder of the campaign.
+        #[arg(value_name = "DIR")]
+        folder: PathBuf,
+    },
     /// Run one case again, with all the evidence of a run.
     Case {
         /// Folder of the campaign.
@@ -134,6 +141,7 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         Command::Merge { folder, others } => merge_parts(folder, others),
         Command::Trace { folder, strictdoc, json } => trace(folder, strictdoc.as_deref(), *json),
         Command::Report(arguments) => report::command(arguments),
+        Command::Countersign { folder } => countersign::command(folder),
         Command::Case { folder, case, out } => again(folder, case, out.as_deref()),
         Command::Emit { scheduler, folder, shards, jobs, image, claim } => {
             let plan = read(folder)?;
@@ -179,9 +187,10 @@ impl From<MergeError> for Failure {
                 TableError::System { action: "write", .. } | TableError::Write { .. },
             )
             | MergeError::Differs { .. } => Self::bench(error).failed(),
-            MergeError::Table(_) | MergeError::Nothing { .. } | MergeError::Foreign { .. } => {
-                Self::input(error).failed()
-            }
+            MergeError::Table(_)
+            | MergeError::Nothing { .. }
+            | MergeError::Numerics { .. }
+            | MergeError::Foreign { .. } => Self::input(error).failed(),
         }
     }
 }

@@ -53,6 +53,12 @@ pub(crate) static SCENARIO: Section = section(&[
         "Limits that the results have to keep.",
     ),
     key(
+        "equipment",
+        Kind::Tables(&EQUIPMENT, 0, 100),
+        Default::Absent("nothing is told of the bench"),
+        "Equipment of the bench with its certificates. One that has expired makes a run inconclusive.",
+    ),
+    key(
         "decision",
         Kind::Table(&DECISION),
         Default::Section,
@@ -295,6 +301,18 @@ static DECISION: Section = section(&[
         Kind::Tables(&UNCERTAINTY, 0, 1000),
         Default::Absent("none is stated"),
         "Expanded uncertainties (95 %) of what single measures are held against, such as a turntable.",
+    ),
+]);
+
+static EQUIPMENT: Section = section(&[
+    key("name", Kind::Text, Default::Required, "What it is: a turntable, a reference, a counter."),
+    key("serial", Kind::Text, Default::Absent("not told"), "Its serial number."),
+    key("certificate", Kind::Text, Default::Required, "Number of its certificate of calibration."),
+    key(
+        "expires",
+        Kind::Text,
+        Default::Required,
+        "The last day on which the certificate holds, UTC, such as 2027-03-31.",
     ),
 ]);
 

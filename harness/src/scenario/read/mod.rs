@@ -222,6 +222,7 @@ pub(crate) fn scenario(document: Table, folder: &Path) -> Result<Scenario, Probl
         faults: Vec::new(),
         requirements: requirement::read(&root)?,
         decision: requirement::decision(&root.table("decision")?)?,
+        equipment: requirement::equipment(&root)?,
         record: record(&root.table("record")?, sample_period_ns)?,
         source,
         endpoint,

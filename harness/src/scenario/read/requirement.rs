@@ -6,6 +6,7 @@ use crate::scenario::document::Value;
 use crate::scenario::error::{Problem, suggestion};
 use crate::scenario::quantity::{self, Quantity};
 use crate::score::decision::{Decision, Rule, Uncertainty};
+use crate::score::equipment::{Day, Equipment};
 use crate::score::verdict::{self, Comparison};
 use crate::score::{measures, signed};
 use octant_sample::parameters::{Group, NAMES};
@@ -88,6 +89,34 @@ pub(super) fn decision(table: &Reader<'_>) -> Result<Decision, Problem> {
         uncertainties.push(Uncertainty { measure: bare.to_owned(), uncertainty });
     }
     Ok(Decision { rule, position_m: table.optional_si("position"), uncertainties })
+}
+
+/// Equipment of the bench.
+pub(super) fn equipment(root: &Reader<'_>) -> Result<Vec<Equipment>, Problem> {
+    let mut all: Vec<Equipment> = Vec::new();
+    for table in root.tables("equipment") {
+        let filled = |key: &str| {
+            let text = table.text(key)?;
+            if text.trim().is_empty() {
+                return Err(table.problem(key, "found an empty text, expected one that names it"));
+            }
+            Ok(text.to_owned())
+        };
+        let expires = Day::parse(table.text("expires")?)
+            .map_err(|message| table.problem("expires", message))?;
+        let one = Equipment {
+            name: filled("name")?,
+            serial: table.optional_text("serial").map(str::to_owned),
+            certificate: filled("certificate")?,
+            expires,
+        };
+        if all.iter().any(|other| other.name == one.name && other.serial == one.serial) {
+            let message = format!("found {:?} a second time, expected each piece once", one.name);
+            return Err(table.problem("name", message));
+        }
+        all.push(one);
+    }
+    Ok(all)
 }
 
 fn limit(table: &Reader<'_>, measure: &str) -> Result<(f64, String), Problem> {

@@ -1,0 +1,47 @@
+//! The numerics version: which programs give the same bits from the same scenario and seed.
+//!
+//! The version of the program says what it can do; this one says whether its numbers can be compared to the last bit.
+//! It stands in `summary.json` and with it in the results of cases, in merged tables, in manifests and in nights.
+
+/// The numerics version of this program.
+///
+/// Raised by one, once in a release, by this rule: for some scenario that the last release runs, this release gives
+/// another stream hash or another published number (of `summary.json`, a table or a report). The changelog of that
+/// release says so. A change of words, files or verdicts alone doesn't raise it. Between releases it stays:
+/// there the hash of the program tells builds apart.
+pub const NUMERICS: u32 = 1;
+
+/// Where results have another numerics version than this program, what that means; `None`: they have the same.
+#[must_use]
+pub fn differs(found: Option<u32>) -> Option<String> {
+    (found != Some(NUMERICS)).then(|| {
+        format!(
+            "made with {}, this program has numerics version {NUMERICS}: verdicts can be compared, bits can't",
+            in_words(found)
+        )
+    })
+}
+
+/// `numerics version 1`.
+#[must_use]
+pub fn in_words(version: Option<u32>) -> String {
+    version.map_or_else(
+        || "no numerics version (an Octant from before there was one)".to_owned(),
+        |version| format!("numerics version {version}"),
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn another_version_is_told_and_the_own_is_not() {
+        assert_eq!(differs(Some(NUMERICS)), None);
+        let told = differs(Some(NUMERICS + 6)).unwrap();
+        assert!(told.contains(&format!("version {}", NUMERICS + 6)), "{told}");
+        assert!(told.contains(&format!("has numerics version {NUMERICS}")), "{told}");
+        assert!(told.contains("verdicts can be compared, bits can't"), "{told}");
+        assert!(differs(None).unwrap().contains("from before there was one"));
+    }
+}
