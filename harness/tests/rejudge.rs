@@ -159,6 +159,42 @@ fn the_numerics_version_is_wherever_a_number_is() {
     for name in ["summary.json", "manifest.json"] {
         assert_eq!(read(folder.path().join("run").join(name))["numerics"], NUMERICS, "{name}");
     }
+    // Nobody makes other bits expected by a number: neither in one of the two files, nor in both.
+    let run_folder = folder.path().join("run");
+    let verify = |more: &[&str]| {
+        let output =
+            program(&[&["verify", run_folder.to_str().unwrap()], more].concat()).output().unwrap();
+        (output.status.code().unwrap(), String::from_utf8(output.stdout).unwrap())
+    };
+    let anew = |numerics: u32, in_manifest: u32| {
+        let path = run_folder.join("summary.json");
+        let mut summary = read(path.clone());
+        summary["numerics"] = numerics.into();
+        summary["calibration"]["nis_mean"] = 3.0.into();
+        let bytes = summary.to_string();
+        std::fs::write(path, &bytes).unwrap();
+        let path = run_folder.join("manifest.json");
+        let mut manifest = read(path.clone());
+        manifest["numerics"] = in_manifest.into();
+        for file in manifest["files"].as_array_mut().unwrap() {
+            if file["path"] == "summary.json" {
+                use sha2::{Digest, Sha256};
+                let sha256: String =
+                    Sha256::digest(&bytes).iter().map(|byte| format!("{byte:02x}")).collect();
+                file["blake3"] = blake3::hash(bytes.as_bytes()).to_hex().as_str().into();
+                file["sha256"] = sha256.into();
+                file["bytes"] = bytes.len().into();
+            }
+        }
+        std::fs::write(path, manifest.to_string()).unwrap();
+    };
+    anew(NUMERICS + 1, NUMERICS);
+    let (status, said) = verify(&[]);
+    assert!(status == 1 && said.contains("manifest.json has numerics version"), "{said}");
+    anew(NUMERICS + 1, NUMERICS + 1);
+    let (status, said) = verify(&["--reexecute"]);
+    assert!(status == 1 && said.contains("nis_mean"), "{said}");
+
     let small = CAMPAIGN.replace("replicates = 40", "replicates = 2");
     let bench = Bench::new(&small);
     let plan = bench.plan();

@@ -13,6 +13,7 @@ use crate::report::{Provenance, ReportData};
 use crate::run::done::Plan;
 use crate::run::{Watcher, unit};
 use crate::scenario::Scenario;
+use crate::score::numerics::differs;
 use crate::score::rederive;
 use crate::score::summary::Summary;
 use crate::score::verdict::Verdict;
@@ -60,6 +61,9 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     let found = rederive::contradictions(&summary);
     if !found.is_empty() {
         return Err(wrong(format!("it contradicts itself: {}", found.join("; "))));
+    }
+    if let Some(told) = differs(summary.numerics) {
+        note!("octant: {}: {told}; octant rejudge derives the verdict anew", path.display());
     }
     for name in ["scenario.toml", "recording.mcap"] {
         manifest.check_file(&arguments.run, name).map_err(failed)?;

@@ -10,7 +10,7 @@ use crate::recorder::reader::{Recording, stream_hash};
 use crate::scenario::Scenario;
 use crate::score::equipment::{self, Day};
 use crate::score::judge::{Finding, derive};
-use crate::score::numerics::differs;
+use crate::score::numerics::{differs, in_words};
 use crate::score::rederive;
 use crate::score::summary::Summary;
 use crate::score::verdict::Verdict;
@@ -69,6 +69,13 @@ pub fn of_run(folder: &Path, manifest: &Manifest) -> Inside {
     } else {
         match Summary::from_json(&text) {
             Ok(summary) => {
+                if summary.numerics != manifest.numerics {
+                    inside.contradictions.push(format!(
+                        "{SUMMARY}: it has {}, manifest.json has {}",
+                        in_words(summary.numerics),
+                        in_words(manifest.numerics)
+                    ));
+                }
                 of_equipment(folder, manifest, &summary, &mut inside);
                 of_summary(folder, summary, &mut inside);
             }
