@@ -136,9 +136,9 @@ struct Found {
     signed_by: Option<String>,
     /// Who signed the dispositions as second person; null: nobody whose key was given.
     second_signed_by: Option<String>,
-    /// A second signature is there.
+    /// A second signature is there that nobody asked for.
     #[serde(skip)]
-    second_there: bool,
+    second_ignored: bool,
     /// The key that the manifest names; null: it isn't signed.
     signature: Option<String>,
 }
@@ -217,7 +217,7 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         reexecuted,
         signed_by,
         second_signed_by: second.signed_by,
-        second_there: second.there,
+        second_ignored: second.ignored,
         signature: manifest.signature,
     };
     if arguments.json {
@@ -231,7 +231,8 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
 
 /// The second person's signature.
 struct Second {
-    there: bool,
+    /// It is there, and nobody asked for it.
+    ignored: bool,
     signed_by: Option<String>,
 }
 
@@ -243,7 +244,9 @@ fn second(
 ) -> Result<Second, Failure> {
     let folder = &arguments.folder;
     let there = std::fs::symlink_metadata(folder.join(signature::SECOND)).is_ok();
-    let mut found = Second { there, signed_by: None };
+    // One that is looked at is told by what came of it.
+    let ignored = there && arguments.second_key.is_none();
+    let mut found = Second { ignored, signed_by: None };
     let is_named = manifest.files.iter().any(|file| file.path == disposition::FILE_NAME);
     let facts = manifest.campaign.as_ref().filter(|_| is_named);
     let Some(facts) = facts else {
@@ -309,7 +312,7 @@ fn text(found: &Found) -> String {
         text += "integrity: not whole\n";
     }
     found.differences.iter().for_each(|difference| text += &format!("  {difference}\n"));
-    match (&found.second_signed_by, found.second_there) {
+    match (&found.second_signed_by, found.second_ignored) {
         (Some(key), _) => text += &format!("dispositions: signed by a second person, {key}\n"),
         (None, true) => {
             text += "dispositions: a second signature was not looked at: --second-key has its public part\n"
