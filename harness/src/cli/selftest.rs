@@ -6,7 +6,7 @@ use crate::campaign::plan;
 use crate::score::verdict::Verdict;
 use crate::selftest::judge::Judged;
 use crate::selftest::record::{CaseRecord, FILE_NAME, Record, write};
-use crate::selftest::{cases, run};
+use crate::selftest::{answers, cases, run};
 use clap::Args;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::path::PathBuf;
@@ -21,6 +21,9 @@ pub(super) struct Arguments {
     /// Write selftest.json into the folder of this campaign, as a part of its evidence.
     #[arg(long = "for", value_name = "DIR")]
     campaign: Option<PathBuf>,
+    /// Run the known answers alone: numbers of every part against arithmetic of others.
+    #[arg(long)]
+    answers: bool,
     /// Cases at a time; by default as many as there are processors.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     jobs: Option<u16>,
@@ -44,7 +47,7 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     let program = std::env::current_exe()
         .map_err(|error| Failure::bench(format!("failed to find this program: {error}")))?;
     let started = SystemTime::now();
-    let cases = cases();
+    let cases = if arguments.answers { answers::cases() } else { cases() };
     let processors = || std::thread::available_parallelism().map_or(1, usize::from);
     let jobs = arguments.jobs.map_or_else(processors, usize::from);
     let bar = ProgressBar::with_draw_target(

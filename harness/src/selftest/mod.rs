@@ -1,12 +1,13 @@
 //! Known-answer self-test: cases whose ends are known, through the program as users have it.
 //!
 //! [`judge`](mod@judge) holds what came of a case against what has to come, [`bench`](mod@bench) starts the program
-//! for it, [`golden`] has the numbers that are known from elsewhere, [`verdicts`] the cases that have to
-//! pass and those that must not, [`same`] those that have to give the same bytes, [`record`] what is
+//! for it, [`golden`] has the numbers of whole runs that are known from elsewhere, [`answers`] those of every
+//! part, [`verdicts`] the cases that have to pass and those that must not, [`same`] those that have to give the same bytes, [`record`] what is
 //! left of it.
 //!
 //! Nothing is taken from the repository: scenarios and numbers are in the program.
 
+pub mod answers;
 pub mod bench;
 pub mod golden;
 pub mod judge;
@@ -38,6 +39,7 @@ pub struct Case {
 #[must_use]
 pub fn cases() -> Vec<Case> {
     let mut all = golden::cases();
+    all.extend(answers::cases());
     all.extend(verdicts::must_pass());
     all.extend(verdicts::must_fail());
     all.extend(same::cases());

@@ -1,0 +1,130 @@
+//! Known answers: numbers of every part that a report's figures come from, against arithmetic that isn't
+//! this program's own.
+//!
+//! Each group computes its numbers here, in this process; what they have to be is in `fixtures/golden`, with
+//! the script that made it. `tests/mutate-constants` changes a constant of the program and looks whether
+//! one of these notices.
+
+mod draws;
+mod earth;
+mod scores;
+mod statistics;
+mod units;
+
+use super::Case;
+use super::bench::Bench;
+use super::judge::{Expectation, Known, Outcome};
+use serde_json::Value;
+use std::collections::BTreeMap;
+
+const GOLDEN: &str = include_str!("../../../../fixtures/golden/answers.json");
+
+/// Numbers that a group found, by name.
+type Found = BTreeMap<String, f64>;
+
+/// The numbers of a group, as `answers.py` has them.
+fn known(group: &str) -> Vec<Known> {
+    let golden: Value = serde_json::from_str(GOLDEN).unwrap_or_default();
+    let all = golden[group].as_object().into_iter().flatten();
+    all.filter_map(|(name, of)| {
+        let of = |at: usize| of[at].as_f64();
+        Some(tight(name, of(0)?, of(1)?, of(2)?))
+    })
+    .collect()
+}
+
+/// What a group is computed from, where `answers.py` has chosen it.
+fn input(name: &str) -> Option<f64> {
+    let golden: Value = serde_json::from_str(GOLDEN).ok()?;
+    golden["inputs"][name].as_f64()
+}
+
+/// A number with what its relative and absolute tolerance allow together; never quite nothing.
+fn tight(name: &str, value: f64, relative: f64, absolute: f64) -> Known {
+    let tolerance = (relative * value.abs() + absolute).max(f64::MIN_POSITIVE);
+    Known { name: name.to_owned(), value, tolerance }
+}
+
+fn outcome(numbers: Found) -> Outcome {
+    Outcome { status: Some(0), numbers, ..Outcome::default() }
+}
+
+fn case(
+    id: &'static str,
+    about: &'static str,
+    known: Vec<Known>,
+    source: &'static str,
+    run: fn(&Bench<'_>) -> Result<Outcome, String>,
+) -> Case {
+    Case { id, about, expectation: Expectation::Numbers { known, source }, run }
+}
+
+/// The cases that `octant selftest --answers` runs.
+#[must_use]
+pub fn cases() -> Vec<Case> {
+    vec![
+        case(
+            "answers-earth",
+            "Radii, gravity, rates, rotations and closed forms of drift, at four latitudes.",
+            known("earth"),
+            "NIMA TR8350.2 and closed forms, in 40 digits by mpmath (golden/answers.py)",
+            |_| Ok(outcome(earth::found())),
+        ),
+        case(
+            "answers-units",
+            "Every unit that a scenario can name, and those of the parameters.",
+            known("units"),
+            "what the units are defined as (golden/answers.py)",
+            |_| units::found().map(outcome),
+        ),
+        case(
+            "answers-draws",
+            "Random words, normal numbers, an instrument, its alignment and a sea, drawn from seeds.",
+            known("draws"),
+            "vectors of Random123; ziggurat and spectra in 40 digits by mpmath (golden/answers.py)",
+            |_| Ok(outcome(draws::found())),
+        ),
+        case(
+            "answers-scores",
+            "Maximum, rms, final value, slope and rate of known drifts, and the floor of the noise.",
+            known("scores"),
+            "sums over the same points, and matrix exponentials by mpmath (golden/answers.py)",
+            |_| scores::found().map(outcome),
+        ),
+        case(
+            "answers-statistics",
+            "Bounds, quantiles, percentiles, tests, powers, radii and truncated distributions.",
+            statistics::known(),
+            "scipy and numpy (golden/statistics.py)",
+            |_| statistics::found().map(outcome),
+        ),
+    ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_number_that_is_known_is_found_and_the_other_way_round() {
+        let folder = tempfile::tempdir().unwrap();
+        let cancel = std::sync::atomic::AtomicBool::new(false);
+        let mut all_wrong = Vec::new();
+        for case in cases() {
+            let Expectation::Numbers { known, .. } = &case.expectation else { panic!() };
+            let bench = Bench::new(std::path::Path::new("octant"), folder.path(), &cancel).unwrap();
+            let found = (case.run)(&bench).unwrap().numbers;
+            let mut names: Vec<&str> = known.iter().map(|k| k.name.as_str()).collect();
+            names.sort_unstable();
+            let ours: Vec<&str> = found.keys().map(String::as_str).collect();
+            assert_eq!(names, ours, "{}", case.id);
+            assert!(names.len() >= 20, "{}", case.id);
+            let wrong = known
+                .iter()
+                .filter(|k| !((found[&k.name] - k.value).abs() <= k.tolerance))
+                .map(|k| format!("{}: {:e} of {:e} ± {:e}", k.name, found[&k.name], k.value, k.tolerance));
+            all_wrong.extend(wrong.map(|words| format!("{}: {words}", case.id)));
+        }
+        assert!(all_wrong.is_empty(), "{}", all_wrong.join("\n"));
+    }
+}
