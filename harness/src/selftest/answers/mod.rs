@@ -7,6 +7,7 @@
 
 mod draws;
 mod earth;
+mod plant;
 mod scores;
 mod statistics;
 mod units;
@@ -83,6 +84,13 @@ pub fn cases() -> Vec<Case> {
             known("draws"),
             "vectors of Random123; ziggurat and spectra in 40 digits by mpmath (golden/answers.py)",
             |_| Ok(outcome(draws::found())),
+        ),
+        case(
+            "answers-plant",
+            "Counts, truth and reference of seven instruments that turn, sway, shake, warm up and lag.",
+            known("plant"),
+            "integrals of the derivatives of an Earth-fixed motion (golden/motion.py, golden/answers.py)",
+            |_| plant::found().map(outcome),
         ),
         case(
             "answers-scores",
