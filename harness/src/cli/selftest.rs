@@ -47,7 +47,7 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     let program = std::env::current_exe()
         .map_err(|error| Failure::bench(format!("failed to find this program: {error}")))?;
     let started = SystemTime::now();
-    let cases = if arguments.answers { answers::cases() } else { cases() };
+    let cases = if arguments.answers { answers::with_runs() } else { cases() };
     let processors = || std::thread::available_parallelism().map_or(1, usize::from);
     let jobs = arguments.jobs.map_or_else(processors, usize::from);
     let bar = ProgressBar::with_draw_target(

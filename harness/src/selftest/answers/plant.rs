@@ -100,11 +100,8 @@ fn instruments() -> Vec<(&'static str, Config, bool, bool)> {
     lagging.imu.extensions.accel_quantization_mps = 1024.0 / (1u64 << 30) as f64;
 
     let mean = CaseAttitude { heading_rad: 0.7, pitch_rad: 0.02, roll_rad: -0.01 };
-    let sway = Dockside {
-        mean,
-        mooring_offset_m: [120.0, -80.0, 1.5],
-        ..motion::dockside_default(7)
-    };
+    let sway =
+        Dockside { mean, mooring_offset_m: [120.0, -80.0, 1.5], ..motion::dockside_default(7) };
     let mut swaying = perfect(7, north, Motion::Dockside(sway));
     swaying.turntable.non_orthogonality_rad = 1e-3;
     swaying.turntable.backlash_rad = 2e-4;
