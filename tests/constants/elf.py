@@ -13,7 +13,7 @@ OURS = re.compile(
     r"|\boctant::(score|observe|campaign|calibrate|scenario|run)::|\boctant::nightly::compare"
 )
 # What a conversion between integers and floating point needs on this processor: no number of ours.
-IDIOMS = {2.0**52, 2.0**84, 2.0**63, 2.0**64, 2.0**31, 2.0**32, 2.0**53, 2.0**63 - 1024, 2.0**64 - 2048,
+IDIOMS = {2.0**51, 2.0**52, 2.0**84, 2.0**63, 2.0**64, 2.0**31, 2.0**32, 2.0**53, 2.0**63 - 1024, 2.0**64 - 2048,
           2.0**32 - 1, 2.0**31 - 1}
 SCALAR = re.compile(r"^(v?)(mov|mul|add|sub|div|max|min|ucomi|comi|cmp\w*|movh|movl)(sd|pd)$")
 PACKED = re.compile(r"^(mul|add|sub|div|max|min|mova|movu|cmp\w*)pd$")
@@ -87,8 +87,6 @@ def constants(program):
                 halves = [target, target + 8]
             else:
                 continue
-            if operation == "lea":
-                continue
             pairs = [plausible(data[h - address + offset:h - address + offset + 8]) for h in halves]
             integers = not (SCALAR.match(operation) or PACKED.match(operation))
             zero = [data[h - address + offset:h - address + offset + 8] in (bytes(8), bytes(7) + b"\x80") for h in halves]
@@ -110,6 +108,7 @@ def constants(program):
             value = plausible(struct.pack("<Q", bits))
             if value is not None:
                 immediates.append((site, bits, function, value))
+    listing.stdout.close()
     if listing.wait() != 0:
         raise SystemExit("objdump could not read the program")
     for site, bits, function, value in immediates:

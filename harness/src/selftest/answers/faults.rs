@@ -29,7 +29,7 @@ impl World for Behind<'_> {
     }
 }
 
-fn setup(config: &Config) -> Setup {
+pub(super) fn setup(config: &Config) -> Setup {
     Setup {
         seed: config.seed,
         sample_period_ns: config.sample_period_ns,
@@ -41,14 +41,35 @@ fn setup(config: &Config) -> Setup {
     }
 }
 
-type Named = (&'static str, Value);
+pub(super) type Named = (&'static str, Value);
 
 fn vector(name: &'static str, of: [f64; 3], dimension: Dimension) -> Named {
     (name, Value::Vector(of, dimension))
 }
 
-fn size(name: &'static str, of: f64, dimension: Dimension) -> Named {
+pub(super) fn size(name: &'static str, of: f64, dimension: Dimension) -> Named {
     (name, Value::Quantity(of, dimension))
+}
+
+/// A fault of a kind from a sample on, for so many.
+pub(super) fn spec(
+    name: &'static str,
+    values: Vec<Named>,
+    first: u64,
+    samples: u64,
+) -> Result<Spec, String> {
+    let kind = kinds::named(name).ok_or_else(|| format!("find the fault {name}"))?;
+    let mut all = Values::default();
+    for (name, value) in values {
+        all.set(name, value);
+    }
+    let schedule = Schedule {
+        trigger: Trigger::Epoch(first),
+        duration: Some(samples),
+        recovery: 0,
+        repeat: Repeat::Once,
+    };
+    Ok(Spec { id: "f".to_owned(), kind, values: all, schedule })
 }
 
 /// Every fault with its values, and the set point of the gimbals.
@@ -150,20 +171,9 @@ fn suffer(
     values: Vec<Named>,
     (azimuth, roll): (f64, f64),
 ) -> Result<(), String> {
-    let kind = kinds::named(name).ok_or_else(|| format!("find the fault {name}"))?;
-    let mut all = Values::default();
-    for (name, value) in values {
-        all.set(name, value);
-    }
     // Ringing follows a move that begins under it; everything else sets in during rest or a move.
     let (first, samples) = if name == "short-settle" { (1, 700) } else { (FIRST, SAMPLES) };
-    let schedule = Schedule {
-        trigger: Trigger::Epoch(first),
-        duration: Some(samples),
-        recovery: 0,
-        repeat: Repeat::Once,
-    };
-    let spec = Spec { id: "f".to_owned(), kind, values: all, schedule };
+    let spec = spec(name, values, first, samples)?;
     let wrong = |what: String| format!("set up the fault {name}: {what}");
     let mut station =
         Station::new(&[spec], &setup(config)).map_err(|(_, error)| wrong(error.to_string()))?;

@@ -9,6 +9,7 @@ mod core;
 mod defaults;
 mod draws;
 mod earth;
+mod errors;
 mod faults;
 mod more;
 mod navigation;
@@ -112,10 +113,11 @@ pub fn cases() -> Vec<Case> {
         ),
         case(
             "answers-faults",
-            "Counts under shock, vibration, jerk, sway, slip and ringing of known sizes.",
+            "Counts under shock, vibration, jerk, sway, slip and ringing of known sizes; biases that wander \
+             and references that are disturbed.",
             known("faults"),
             "integrals of the motions that the pages of the faults give (golden/harm.py)",
-            |_| faults::found().map(outcome),
+            |_| Ok(outcome(faults::found()?.into_iter().chain(errors::found()?).collect())),
         ),
         case(
             "answers-scores",
