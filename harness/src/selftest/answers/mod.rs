@@ -14,6 +14,7 @@ mod faults;
 mod more;
 mod navigation;
 mod plant;
+mod recovery;
 mod scores;
 mod statistics;
 mod units;
@@ -154,6 +155,13 @@ pub fn cases() -> Vec<Case> {
             "there is no error; half a step of the output's position (2^-27 rad) on each axis, and what \
              two samples leave of a ship's coning and sculling",
             navigation::found,
+        ),
+        case(
+            "answers-recovery",
+            "How wide a recovery of the filter opens what, for how long, and how far it goes back.",
+            known("recovery"),
+            "the table of docs/method.md (golden/answers.py)",
+            |_| recovery::found().map(outcome),
         ),
         case(
             "answers-statistics",
