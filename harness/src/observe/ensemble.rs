@@ -190,7 +190,8 @@ pub fn state_unit(state: usize) -> (&'static str, f64) {
     }
 }
 
-fn band(at: &PositionError, earth: &Ellipsoid) -> DriftBand {
+/// A position error in the units in which it is shown.
+pub(crate) fn band(at: &PositionError, earth: &Ellipsoid) -> DriftBand {
     let one = |axis: usize| {
         let unit_m = arcmin_m(earth)[axis];
         let mean = at.mean_m[axis] / unit_m;

@@ -1,7 +1,8 @@
 //! What the core's screens allow, how it corrects an attitude, and the units and references beside it.
 
 use super::Found;
-use crate::observe::ensemble::state_unit;
+use crate::observe::covariance::PositionError;
+use crate::observe::ensemble::{band, state_unit};
 use crate::score::reference::{ReferenceInput, reference};
 use octant_calibration::config::{
     AidingMode, Base, BaseMotion, ErrorModel, Kalman, Noise, Prior, Screening, TurntableRates,
@@ -9,6 +10,7 @@ use octant_calibration::config::{
 use octant_calibration::continuity::Continuity;
 use octant_calibration::screen::Screen;
 use octant_calibration::strapdown::{Strapdown, Vertical};
+use octant_earth::ellipsoid::Ellipsoid;
 use octant_earth::units::{DEG, DEG_PER_HOUR_PER_G, DEG_PER_SQRT_HOUR, MICRO_G};
 use octant_earth::{UnitQuaternion, Vector3};
 use std::hint::black_box;
@@ -22,7 +24,35 @@ pub(super) fn found() -> Result<Found, String> {
         all.insert(format!("unit of state {state}"), state_unit(black_box(state)).1);
     }
     references(&mut all)?;
+    bands(&mut all);
     Ok(all)
+}
+
+/// A predicted position error in the units of its page.
+fn bands(all: &mut Found) {
+    let at = black_box(PositionError {
+        hours: 1.0,
+        mean_m: [555.6, -370.4],
+        variances_m2: [4_115_884.8, 1_371_961.6],
+        covariance_m2: 1_028_971.2,
+    });
+    for (name, degrees) in black_box([("30.5 deg", 30.5), ("-60 deg", -60.0)]) {
+        let band = band(&at, &Ellipsoid::at(degrees * DEG, 0.0));
+        for (axis, of) in [("latitude", band.latitude_arcmin), ("longitude", band.longitude_arcmin)]
+        {
+            for (what, value) in [
+                ("mean", of.mean),
+                ("sigma", of.sigma),
+                ("5 %", of.p5),
+                ("50 %", of.p50),
+                ("95 %", of.p95),
+            ] {
+                all.insert(format!("band of {axis}, {what}, {name}"), value);
+            }
+        }
+        all.insert(format!("band of radius, 50 %, {name}"), band.radial_nmi.p50);
+        all.insert(format!("band of radius, 95 %, {name}"), band.radial_nmi.p95);
+    }
 }
 
 /// The numbers of a field as `Debug` writes it: limits have no other way out, and need none.
