@@ -6,12 +6,12 @@ is noted, gets the instruction back, and goes on; so do its threads and the prog
 
 import ctypes
 import os
-import shlex
 import signal
 import struct
 import subprocess
 
 import elf
+import shown
 
 libc = ctypes.CDLL(None, use_errno=True)
 libc.ptrace.restype = ctypes.c_long
@@ -118,20 +118,13 @@ def executed(program, constants, root, folder):
     """The instructions that one of the runs and reports executes."""
     sites = {site for constant in constants for site in constant["sites"]}
     tracer = Tracer(program, sites, folder)
-    for line in (root / "tests" / "constants" / "runs.txt").read_text().splitlines():
-        words = shlex.split(line, comments=True)
-        if not words:
-            continue
-        expected = {0}
-        if words[0].startswith("status="):
-            expected = {int(s) for s in words.pop(0)[len("status="):].split(",")}
-        place = folder / "runs"
-        place.mkdir(exist_ok=True)
-        words = [word.replace("@", str(root)) for word in words]
+    place = folder / "runs"
+    place.mkdir(exist_ok=True)
+    for line, words, expected in shown.lines(root):
         before = len(tracer.hits)
         status = tracer.run(words, place)
-        print(f"  {len(tracer.hits) - before:5} more of {len(sites)} instructions by octant {line.strip()}: {status}", flush=True)
+        print(f"  {len(tracer.hits) - before:5} more of {len(sites)} instructions by octant {line}: {status}", flush=True)
         if status not in expected:
             said = (place / "said.txt").read_text(errors="replace")[-1500:]
-            raise SystemExit(f"octant {line.strip()} ended with {status}, not {expected}:\n{said}")
+            raise SystemExit(f"octant {line} ended with {status}, not {expected}:\n{said}")
     return tracer.hits

@@ -1,0 +1,114 @@
+"""What the runs and reports of `runs.txt` show, and whether a changed program shows something else.
+
+What differs between two runs of the unchanged program doesn't count: times, the program's own hash, and all hashes that
+hang on these. The second of the two has a byte more at its end, which changes its hash and nothing else.
+"""
+
+import re
+import shlex
+import shutil
+import subprocess
+
+# Recordings and tables are known by hashes and by the results that they are made of.
+TEXTS = {".json", ".html", ".xml", ".csv", ".txt", ".toml", ".md", ".svg", ".jsonl"}
+WORD = re.compile(r"[^\s,:;\"'<>(){}\[\]=&/]+")
+DATE = re.compile(r"\d{4}-\d\d-\d\d[T_ ]?[-0-9:.]*Z?")
+# The slowest takes a tenth of it.
+LIMIT_S = 600
+
+
+def lines(root):
+    """The commands: their words, and the exit statuses that they may have."""
+    for line in (root / "tests" / "constants" / "runs.txt").read_text().splitlines():
+        words = shlex.split(line, comments=True)
+        if not words:
+            continue
+        expected = {0}
+        if words[0].startswith("status="):
+            expected = {int(s) for s in words.pop(0)[len("status="):].split(",")}
+        yield line.strip(), [word.replace("@", str(root)) for word in words], expected
+
+
+def texts(folder, seen):
+    """Files that are new or have changed since they were seen, by their name without a date: their words."""
+    found = {}
+    for path in sorted(folder.rglob("*")):
+        if path.suffix not in TEXTS or not path.is_file():
+            continue
+        stamp = path.stat().st_mtime_ns
+        if seen.get(path) == stamp:
+            continue
+        seen[path] = stamp
+        found[DATE.sub("DATE", str(path.relative_to(folder)))] = WORD.findall(path.read_text(errors="replace"))
+    return found
+
+
+def told(program, words, folder):
+    """Exit status and what was said; None and nothing of a command that didn't end."""
+    child = subprocess.Popen([program, *words], cwd=folder, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                             stderr=subprocess.STDOUT, start_new_session=True)
+    try:
+        out, _ = child.communicate(timeout=LIMIT_S)
+    except subprocess.TimeoutExpired:
+        child.kill()
+        child.communicate()
+        return None, []
+    return child.returncode, WORD.findall(out.decode(errors="replace"))
+
+
+def step(program, words, folder, seen):
+    """One command: its status, and all that it shows."""
+    status, said = told(program, words, folder)
+    return status, {"said": said, **texts(folder, seen)}
+
+
+class Baseline:
+    """What the unchanged program shows, without what is never the same twice."""
+
+    def __init__(self, program, root, folder):
+        self.root = root
+        other = folder / "octant-longer"
+        shutil.copy2(program, other)
+        with open(other, "ab") as file:
+            file.write(b"\0")
+        self.steps = []
+        homes = folder / "shown-1", folder / "shown-2"
+        seen = {}, {}
+        for home in homes:
+            home.mkdir()
+        for line, words, expected in lines(root):
+            status, first = step(program, words, homes[0], seen[0])
+            _, second = step(other, words, homes[1], seen[1])
+            if status not in expected:
+                raise SystemExit(f"octant {line} ended with {status}, not {expected}: {' '.join(first['said'])[-1500:]}")
+            steady = {}
+            for name, of in first.items():
+                again = second.get(name, [])
+                if len(of) == len(again):
+                    steady[name] = [word if word == same else None for word, same in zip(of, again)]
+            self.steps.append((words, status, steady))
+        for home in homes:
+            shutil.rmtree(home)
+
+    def words(self):
+        """How many words are compared."""
+        return sum(word is not None for _, _, steady in self.steps for of in steady.values() for word in of)
+
+    def differs(self, program, folder):
+        """The first command that shows something else, or None."""
+        shutil.rmtree(folder, ignore_errors=True)
+        folder.mkdir()
+        seen = {}
+        try:
+            for words, status, steady in self.steps:
+                now, found = step(program, words, folder, seen)
+                if now != status or any(differ(of, found.get(name)) for name, of in steady.items()):
+                    return " ".join(words)
+            return None
+        finally:
+            shutil.rmtree(folder, ignore_errors=True)
+
+
+def differ(of, found):
+    return found is None or len(of) != len(found) or any(
+        word is not None and word != now for word, now in zip(of, found))
