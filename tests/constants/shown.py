@@ -17,6 +17,10 @@ DATE = re.compile(r"\d{4}-\d\d-\d\d[T_ ]?[-0-9:.]*Z?")
 LIMIT_S = 600
 
 
+def words_of(text):
+    return WORD.findall(DATE.sub("DATE", text))
+
+
 def lines(root):
     """The commands: their words, and the exit statuses that they may have."""
     for line in (root / "tests" / "constants" / "runs.txt").read_text().splitlines():
@@ -39,7 +43,7 @@ def texts(folder, seen):
         if seen.get(path) == stamp:
             continue
         seen[path] = stamp
-        found[DATE.sub("DATE", str(path.relative_to(folder)))] = WORD.findall(path.read_text(errors="replace"))
+        found[DATE.sub("DATE", str(path.relative_to(folder)))] = words_of(path.read_text(errors="replace"))
     return found
 
 
@@ -53,7 +57,7 @@ def told(program, words, folder):
         child.kill()
         child.communicate()
         return None, []
-    return child.returncode, WORD.findall(out.decode(errors="replace"))
+    return child.returncode, words_of(out.decode(errors="replace"))
 
 
 def step(program, words, folder, seen):
