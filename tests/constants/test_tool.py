@@ -14,6 +14,7 @@ sys.path.insert(0, str(HERE))
 import clopper_pearson  # noqa: E402
 import elf  # noqa: E402
 import reach  # noqa: E402
+import shown  # noqa: E402
 
 PROGRAM = r"""
 #include <math.h>
@@ -70,6 +71,13 @@ class Tool(unittest.TestCase):
         self.assertEqual(done.returncode, 1, done.stderr)
         found = {row["value"]: row["found"] for row in json.loads(out.read_text())["rows"]}
         self.assertEqual(found, {6378137.25: True, 9.780325: False, 1852.75: False})
+
+    def test_what_only_rounds_otherwise_shows_nothing_else(self):
+        words = shown.words_of('{"max": 0.25, "at": "2026-11-23T07:00:00Z", "hash": "0123456789abcdef01"}')
+        self.assertEqual(words, ["max", "0.25", "at", "DATE", "hash", "0123456789abcdef01"])
+        self.assertFalse(shown.differ(["max", "0.25", None], ["max", "0.25000000001", "other"]))
+        for other in (["max", "0.2500001", ""], ["min", "0.25", ""], ["max", "0.25"], None):
+            self.assertTrue(shown.differ(["max", "0.25", None], other))
 
     def test_the_bound_is_that_of_clopper_and_pearson(self):
         # scipy 1.17.1: beta.ppf(0.05, 285, 16).
