@@ -115,16 +115,21 @@ class Tracer:
 
 
 def executed(program, constants, root, folder):
-    """The instructions that one of the runs and reports executes."""
+    """The instructions that the runs and reports execute, with the groups of commands that do."""
     sites = {site for constant in constants for site in constant["sites"]}
     tracer = Tracer(program, sites, folder)
     place = folder / "runs"
     place.mkdir(exist_ok=True)
-    for line, words, expected in shown.lines(root):
-        before = len(tracer.hits)
-        status = tracer.run(words, place)
-        print(f"  {len(tracer.hits) - before:5} more of {len(sites)} instructions by octant {line}: {status}", flush=True)
-        if status not in expected:
-            said = (place / "said.txt").read_text(errors="replace")[-1500:]
-            raise SystemExit(f"octant {line} ended with {status}, not {expected}:\n{said}")
-    return tracer.hits
+    found = {}
+    for group, commands in enumerate(shown.groups(root)):
+        for line, words, expected in commands:
+            before = len(found)
+            tracer.hits = set()
+            status = tracer.run(words, place)
+            for site in tracer.hits:
+                found.setdefault(site, set()).add(group)
+            print(f"  {len(found) - before:5} more of {len(sites)} instructions by octant {line}: {status}", flush=True)
+            if status not in expected:
+                said = (place / "said.txt").read_text(errors="replace")[-1500:]
+                raise SystemExit(f"octant {line} ended with {status}, not {expected}:\n{said}")
+    return found

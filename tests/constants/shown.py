@@ -6,6 +6,7 @@ runs of the unchanged program: times, its own hash. The second of the two has a 
 and nothing else.
 """
 
+import glob
 import math
 import re
 import shlex
@@ -28,16 +29,28 @@ def words_of(text):
     return WORD.findall(DATE.sub("DATE", text))
 
 
-def lines(root):
-    """The commands: their words, and the exit statuses that they may have."""
-    for line in (root / "tests" / "constants" / "runs.txt").read_text().splitlines():
-        words = shlex.split(line, comments=True)
-        if not words:
-            continue
-        expected = {0}
-        if words[0].startswith("status="):
-            expected = {int(s) for s in words.pop(0)[len("status="):].split(",")}
-        yield line.strip(), [word.replace("@", str(root)) for word in words], expected
+def groups(root):
+    """The commands of each paragraph: their line, their words, and the exit statuses that they may have. A line with an
+    asterisk is a paragraph for each file that it matches."""
+    text = (root / "tests" / "constants" / "runs.txt").read_text()
+    for paragraph in re.split(r"\n\s*\n", text):
+        commands = []
+        for line in paragraph.splitlines():
+            words = shlex.split(line, comments=True)
+            if not words:
+                continue
+            expected = {0}
+            if words[0].startswith("status="):
+                expected = {int(s) for s in words.pop(0)[len("status="):].split(",")}
+            words = [word.replace("@", str(root)) for word in words]
+            star = next((at for at, word in enumerate(words) if "*" in word), None)
+            if star is None:
+                commands.append((line.strip(), words, expected))
+                continue
+            for file in sorted(glob.glob(words[star])):
+                yield [(line.strip(), [*words[:star], file, *words[star + 1:]], expected)]
+        if commands:
+            yield commands
 
 
 def texts(folder, seen):
@@ -77,45 +90,49 @@ class Baseline:
     """What the unchanged program shows, without what is never the same twice."""
 
     def __init__(self, program, root, folder):
-        self.root = root
         other = folder / "octant-longer"
         shutil.copy2(program, other)
         with open(other, "ab") as file:
             file.write(b"\0")
-        self.steps = []
+        self.groups = []
         homes = folder / "shown-1", folder / "shown-2"
         seen = {}, {}
         for home in homes:
             home.mkdir()
-        for line, words, expected in lines(root):
-            status, first = step(program, words, homes[0], seen[0])
-            _, second = step(other, words, homes[1], seen[1])
-            if status not in expected:
-                raise SystemExit(f"octant {line} ended with {status}, not {expected}: {' '.join(first['said'])[-1500:]}")
-            steady = {}
-            for name, of in first.items():
-                again = second.get(name, [])
-                if len(of) == len(again):
-                    steady[name] = [
-                        word if word == same and not HASH.match(word) else None for word, same in zip(of, again)]
-            self.steps.append((words, status, steady))
+        for commands in groups(root):
+            steps = []
+            for line, words, expected in commands:
+                status, first = step(program, words, homes[0], seen[0])
+                _, second = step(other, words, homes[1], seen[1])
+                if status not in expected:
+                    raise SystemExit(f"octant {line} ended with {status}, not {expected}: {' '.join(first['said'])[-1500:]}")
+                steady = {}
+                for name, of in first.items():
+                    again = second.get(name, [])
+                    if len(of) == len(again):
+                        steady[name] = [
+                            word if word == same and not HASH.match(word) else None for word, same in zip(of, again)]
+                steps.append((words, status, steady))
+            self.groups.append(steps)
         for home in homes:
             shutil.rmtree(home)
 
     def words(self):
         """How many words are compared."""
-        return sum(word is not None for _, _, steady in self.steps for of in steady.values() for word in of)
+        return sum(word is not None for steps in self.groups for _, _, steady in steps for of in steady.values() for word in of)
 
-    def differs(self, program, folder):
-        """The first command that shows something else, or None."""
+    def differs(self, program, folder, among):
+        """The first command that shows something else, or None. Only the groups of `among` are tried: the others don't
+        execute what was changed."""
         shutil.rmtree(folder, ignore_errors=True)
         folder.mkdir()
         seen = {}
         try:
-            for words, status, steady in self.steps:
-                now, found = step(program, words, folder, seen)
-                if now != status or any(differ(of, found.get(name)) for name, of in steady.items()):
-                    return " ".join(words)
+            for group in sorted(among):
+                for words, status, steady in self.groups[group]:
+                    now, found = step(program, words, folder, seen)
+                    if now != status or any(differ(of, found.get(name)) for name, of in steady.items()):
+                        return " ".join(words)
             return None
         finally:
             shutil.rmtree(folder, ignore_errors=True)
