@@ -1,7 +1,8 @@
 """What the runs and reports of `runs.txt` show, and whether a changed program shows something else.
 
-Something else is another word, or a number that differs by more than a billionth of itself: what only rounds otherwise isn't
-a wrong number. So hashes don't count, of streams neither: they move with the last bit. Nor does what differs between two
+Something else is another word, or a number that differs by more than a millionth of itself, the smallest change of a
+constant: what only rounds otherwise isn't a wrong number, and a single count that rounds otherwise moves an estimate by a
+ten-millionth. So hashes don't count, of streams neither: they move with the last bit; nor do sizes of files. Nor does what differs between two
 runs of the unchanged program: times, its own hash. The second of the two has a byte more at its end, which changes its hash
 and nothing else.
 """
@@ -17,7 +18,7 @@ import subprocess
 TEXTS = {".json", ".html", ".xml", ".csv", ".txt", ".toml", ".md", ".svg", ".jsonl"}
 WORD = re.compile(r"[^\s,:;\"'<>(){}\[\]=&/]+")
 HASH = re.compile(r"[0-9a-fA-F]{16,}$")
-ROUNDING = 1e-9
+ROUNDING = 1e-6
 # Of errors that are zero but for rounding.
 ZERO = 1e-12
 DATE = re.compile(r"\d{4}-\d\d-\d\d[T_ ]?[-0-9:.]*Z?")
