@@ -111,8 +111,10 @@ class Baseline:
                 for name, of in first.items():
                     again = second.get(name, [])
                     if len(of) == len(again):
+                        labels = ["", *of]
                         steady[name] = [
-                            word if word == same and not HASH.match(word) else None for word, same in zip(of, again)]
+                            word if word == same and not HASH.match(word) and label != "bytes" else None
+                            for word, same, label in zip(of, again, labels)]
                 steps.append((words, status, steady))
             self.groups.append(steps)
         for home in homes:

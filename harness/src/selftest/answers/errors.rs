@@ -28,7 +28,7 @@ pub(super) fn found() -> Result<Found, String> {
     let mut all = Found::new();
     let walk = vec![
         ("channels", Value::Channels(Channels::GYRO)),
-        size("coefficient", 1e-6, Dimension::RateRandomWalk),
+        size("coefficient", 1e-2, Dimension::RateRandomWalk),
     ];
     pass("rate-random-walk", walk, |name, n, of| {
         if let (300 | 500, "added") = (n, name) {

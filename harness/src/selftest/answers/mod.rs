@@ -14,6 +14,7 @@ mod faults;
 mod more;
 mod navigation;
 mod plant;
+mod procedure;
 mod recovery;
 mod scores;
 mod statistics;
@@ -155,6 +156,13 @@ pub fn cases() -> Vec<Case> {
             "there is no error; half a step of the output's position (2^-27 rad) on each axis, and what \
              two samples leave of a ship's coning and sculling",
             navigation::found,
+        ),
+        case(
+            "answers-procedure",
+            "The stops of the named sequences, and the dwells that a calibration time leaves for them.",
+            known("procedure"),
+            "the tables of docs/method.md (golden/answers.py)",
+            |_| procedure::found().map(outcome),
         ),
         case(
             "answers-recovery",
