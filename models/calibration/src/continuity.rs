@@ -24,7 +24,7 @@
 mod step;
 mod way;
 
-pub(crate) use way::gimbal_turn;
+pub(crate) use way::{c_cb, gimbal_turn, share_of_turn};
 
 use crate::config::{Base, Kalman, Noise, Screening, TurntableRates};
 use nalgebra::{Matrix3, Vector3};

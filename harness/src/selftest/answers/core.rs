@@ -171,7 +171,9 @@ fn corrected(all: &mut Found) {
 }
 
 fn references(all: &mut Found) -> Result<(), String> {
-    for (site, latitude_deg, height_m) in black_box([("", 30.5, 0.0), (" at 4000 m", -60.0, 4000.0)]) {
+    for (site, latitude_deg, height_m) in
+        black_box([("", 30.5, 0.0), (" at 4000 m", -60.0, 4000.0)])
+    {
         let found = reference(&black_box(ReferenceInput {
             latitude_rad: latitude_deg * DEG,
             height_m,

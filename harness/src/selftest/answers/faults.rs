@@ -14,6 +14,8 @@ use octant_sample::{Epoch, GimbalAngles, GimbalCommand, Output};
 use std::f64::consts::PI;
 
 const MARKS: [u64; 6] = [130, 161, 200, 303, 457, 700];
+/// In the pulse of a shock and on the way back.
+const TRUTH_MARKS: [u64; 4] = [110, 118, 130, 161];
 /// First sample that is altered, and how many.
 const FIRST: u64 = 101;
 const SAMPLES: u64 = 400;
@@ -193,6 +195,13 @@ fn suffer(
         for axis in 0..3 {
             gyro[axis] += i64::from(step.sample.delta_theta[axis]);
             accelerometer[axis] += i64::from(step.sample.delta_velocity[axis]);
+        }
+        if name == "shock" && TRUTH_MARKS.contains(&n) {
+            let truth = plant.truth();
+            for (axis, label) in ["north", "east", "down"].into_iter().enumerate() {
+                found.insert(format!("{name}, velocity {label}, {n}"), truth.velocity_mps[axis]);
+            }
+            found.insert(format!("{name}, height, {n}"), truth.height_m);
         }
         if MARKS.contains(&n) {
             for (axis, label) in ["x", "y", "z"].into_iter().enumerate() {

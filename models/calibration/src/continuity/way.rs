@@ -85,12 +85,31 @@ impl Way {
 pub(crate) fn gimbal_turn(from: GimbalAngles, to: GimbalAngles) -> Vector3<f64> {
     let azimuth = to.azimuth_rad() - from.azimuth_rad();
     let roll = to.roll_rad() - from.roll_rad();
-    let (sin, cos) = libm::sincos(0.5 * (from.azimuth_rad() + to.azimuth_rad()));
-    Vector3::new(roll * cos, -roll * sin, azimuth)
+    turned_at(0.5 * (from.azimuth_rad() + to.azimuth_rad()), azimuth, roll)
+}
+
+/// The part of [`gimbal_turn`] between two shares of a way with both gimbals at constant rates. Exact for one gimbal; where
+/// both turn, to the third order of the part's angle.
+pub(crate) fn share_of_turn(
+    from: GimbalAngles,
+    to: GimbalAngles,
+    start: f64,
+    end: f64,
+) -> Vector3<f64> {
+    let azimuth = to.azimuth_rad() - from.azimuth_rad();
+    let roll = to.roll_rad() - from.roll_rad();
+    let middle = from.azimuth_rad() + 0.5 * (start + end) * azimuth;
+    turned_at(middle, azimuth * (end - start), roll * (end - start))
+}
+
+/// Small turns of both gimbals, in the body's axes at this azimuth.
+fn turned_at(middle_rad: f64, azimuth_rad: f64, roll_rad: f64) -> Vector3<f64> {
+    let (sin, cos) = libm::sincos(middle_rad);
+    Vector3::new(roll_rad * cos, -roll_rad * sin, azimuth_rad)
 }
 
 /// `Rx(roll) · Rz(azimuth)`.
-pub(super) fn c_cb(azimuth_rad: f64, roll_rad: f64) -> Matrix3<f64> {
+pub(crate) fn c_cb(azimuth_rad: f64, roll_rad: f64) -> Matrix3<f64> {
     let ((sa, ca), (sr, cr)) = (libm::sincos(azimuth_rad), libm::sincos(roll_rad));
     Matrix3::new(ca, -sa, 0.0, cr * sa, cr * ca, -sr, sr * sa, sr * ca, cr)
 }

@@ -12,7 +12,7 @@
 use super::estimation::Estimation;
 use super::{Core, increments, kalman_of};
 use crate::config::{Base, BaseMotion};
-use crate::continuity::{Edge, gimbal_turn};
+use crate::continuity::{Edge, c_cb, gimbal_turn, share_of_turn};
 use crate::screen::{ACCELEROMETERS, Counts, Examined, GYROS};
 use nalgebra::{Matrix3, Vector3};
 use octant_sample::counts::{DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS, GIMBAL_LSB_RAD};
@@ -31,6 +31,10 @@ const TURNED_RAD: f64 = 1e-4;
 /// Turn in one interval that is a motion and not the flicker of a reading, rad: 1″. Less than that is
 /// what the first sample of a move turns: where it isn't believed, the encoders' turn stands in.
 const TURNS_RAD: f64 = 5e-6;
+
+/// Turn of the gimbals in one step of a gap, rad, and steps of a gap at most.
+const STEP_RAD: f64 = 5e-4;
+const STEPS_MAX: u64 = 12_000;
 
 /// What is remembered of the stretch that is being bridged.
 #[derive(Clone, Debug, Default)]
@@ -436,15 +440,17 @@ impl Core {
         }
         // Where the gimbals were when this sample's interval began: its own turn taken back.
         let (from, to) = (self.bridge.gimbal, self.before(sample));
-        let turn = gimbal_turn(from, to);
         self.begin_stretch();
         let channels = GYROS | ACCELEROMETERS;
-        // A gap may be long: so many steps are fine enough for a body that turns by quarter turns.
-        let steps = missing.min(12_000);
+        // The turns of both gimbals and of the Earth don't commute. A gap may be long, but its turns are few.
+        let turned_rad =
+            (to.azimuth_rad() - from.azimuth_rad()).abs() + (to.roll_rad() - from.roll_rad()).abs();
+        let steps = missing.max((turned_rad / STEP_RAD) as u64).min(STEPS_MAX);
         let interval_s = missing as f64 * self.sample_s / steps as f64;
-        let each = turn / steps as f64;
-        for _ in 0..steps {
-            let (theta, v) = self.known_motion(&each, interval_s);
+        for step in 0..steps {
+            let (start, end) = (step as f64 / steps as f64, (step + 1) as f64 / steps as f64);
+            let turn = share_of_turn(from, to, start, end);
+            let (theta, v) = self.known_motion(&turn, interval_s);
             let known = measured(&self.parameters, &theta, &v, interval_s);
             if let Some(filter) = self.filter_mut() {
                 filter.bridge(channels);
@@ -476,9 +482,12 @@ impl Core {
     /// Encoder angles at the start of this sample's interval, by the turn that the gyros felt in it.
     fn before(&self, sample: &Sample) -> GimbalAngles {
         let raw = Increments::of(&counts_of(sample));
-        let (earth, _) = self.known_motion(&Vector3::zeros(), self.sample_s);
-        let turn = raw.delta_theta - earth;
-        let (sin, cos) = libm::sincos(sample.gimbal.azimuth_rad());
+        // The body is where the gimbals have turned it to, not where the strapdown stands.
+        let c_cb = |at: GimbalAngles| c_cb(at.azimuth_rad(), at.roll_rad());
+        let turned = c_cb(self.bridge.gimbal).transpose() * c_cb(sample.gimbal);
+        let c_bn = turned.transpose() * self.strapdown.c_nb().transpose();
+        let turn = raw.delta_theta - c_bn * self.strapdown.earth().earth_rate() * self.sample_s;
+        let (sin, cos) = libm::sincos(sample.gimbal.azimuth_rad() - 0.5 * turn.z);
         GimbalAngles::from_rad(
             sample.gimbal.azimuth_rad() - turn.z,
             sample.gimbal.roll_rad() - (turn.x * cos - turn.y * sin),
