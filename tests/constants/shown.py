@@ -19,6 +19,8 @@ TEXTS = {".json", ".html", ".xml", ".csv", ".txt", ".toml", ".md", ".svg", ".jso
 WORD = re.compile(r"[^\s,:;\"'<>(){}\[\]=&/]+")
 HASH = re.compile(r"[0-9a-fA-F]{16,}$")
 ROUNDING = 1e-6
+# Points of a series are rounded to these, numbers in a report's text to fewer.
+DECIMALS = 6
 # Of errors that are zero but for rounding.
 ZERO = 1e-12
 DATE = re.compile(r"\d{4}-\d\d-\d\d[T_ ]?[-0-9:.]*Z?")
@@ -147,8 +149,13 @@ def differ(of, found):
 
 
 def is_rounding(word, now):
+    """Within a millionth, or by a unit of the last of a few decimals that both are written with."""
     try:
-        word, now = float(word), float(now)
+        first, second = float(word), float(now)
     except ValueError:
         return False
-    return math.isclose(word, now, rel_tol=ROUNDING, abs_tol=ZERO)
+    if math.isclose(first, second, rel_tol=ROUNDING, abs_tol=ZERO):
+        return True
+    decimals = [len(text.partition(".")[2]) for text in (word, now)]
+    few = all("e" not in text and 0 < places <= DECIMALS for text, places in zip((word, now), decimals))
+    return few and abs(first - second) <= 1.01 * 10.0 ** -max(decimals)

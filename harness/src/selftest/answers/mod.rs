@@ -19,6 +19,7 @@ mod procedure;
 mod recovery;
 mod scores;
 mod statistics;
+mod strapdown;
 mod units;
 
 use super::Case;
@@ -152,10 +153,17 @@ pub fn cases() -> Vec<Case> {
         ),
         case(
             "answers-bridge",
-            "The attitude after samples that are missing in the middle of a move.",
+            "Attitude and velocity through moves, with every sample and with some missing in the middle.",
             bridge::known(),
             "there is no error; steps of the encoders, and the coning of a sample without a predecessor",
             |_| bridge::found().map(outcome),
+        ),
+        case(
+            "answers-strapdown",
+            "Attitude, velocity and position after increments that no vehicle makes.",
+            known("strapdown"),
+            "the two-sample algorithm of Savage, 1998 (golden/answers.py)",
+            |_| strapdown::found().map(outcome),
         ),
         case(
             "answers-navigation",
