@@ -175,7 +175,7 @@ impl Drift {
 
 impl Curve {
     /// Every case keeps other points of its drift: here they come onto one grid.
-    fn of(series_hours: &[[f64; 3]]) -> Option<Self> {
+    pub(crate) fn of(series_hours: &[[f64; 3]]) -> Option<Self> {
         let (first, last) = (series_hours.first()?[0], series_hours.last()?[0]);
         // A series may begin with the first sample instead of before it.
         let duration_s = (last - first) * 3600.0;

@@ -1,6 +1,7 @@
 //! Scores of drifts that are known, and the floor of the noise.
 
 use super::Found;
+use crate::campaign::report::rows::Curve;
 use crate::score::drift::{DriftSample, DriftScorer};
 use crate::score::floor::Floor;
 use crate::score::summary::HeightChannel;
@@ -17,7 +18,28 @@ pub(super) fn found() -> Result<Found, String> {
     drift(&mut all, 30)?;
     drift(&mut all, 3)?;
     floors(&mut all);
+    curves(&mut all)?;
     Ok(all)
+}
+
+/// Drifts of campaigns on their common grids: a straight line stays one. Their lengths, s, lie beside those at which
+/// the grid becomes wider.
+fn curves(all: &mut Found) -> Result<(), String> {
+    for length_s in [49.999, 4999.98, 5000.02, 29_999.9, 30_001.0, 250_000.0] {
+        let row = |k: u32| {
+            let hours = black_box(length_s) * f64::from(k) / (4.0 * 3600.0);
+            [hours, 0.3 + 0.1 * hours, -0.2 * hours]
+        };
+        let series: Vec<[f64; 3]> = (0..=4).map(row).collect();
+        let curve = Curve::of(&series).ok_or("put a drift onto a grid")?;
+        let last = curve.latitude_arcmin.len() - 1;
+        let mut put = |name: &str, value: f64| all.insert(format!("{name}, {length_s} s"), value);
+        put("grid step", curve.step_s);
+        put("grid points", last as f64);
+        put("latitude on the grid", curve.latitude_arcmin[1]);
+        put("longitude on the grid", curve.longitude_arcmin[last - 1]);
+    }
+    Ok(())
 }
 
 fn drift(all: &mut Found, hours: u32) -> Result<(), String> {
