@@ -166,6 +166,13 @@ pub fn cases() -> Vec<Case> {
             |_| strapdown::found().map(outcome),
         ),
         case(
+            "answers-filter",
+            "The σ of all states after seconds and minutes at rest with a velocity a second.",
+            known("filter"),
+            "matrix exponentials of the system error model, by scipy (golden/answers.py)",
+            |_| recovery::rest().map(outcome),
+        ),
+        case(
             "answers-navigation",
             "A perfect instrument navigates for an hour without error, leaning and on a ship.",
             navigation::known(),

@@ -5,7 +5,7 @@ use octant_calibration::config::{
     AidingMode, ErrorModel, Gate, Kalman, Noise, Prior, Recovery, Screening, Site,
 };
 use octant_calibration::continuity::Edge;
-use octant_calibration::covariance::{DR, DV, PHI};
+use octant_calibration::covariance::{DR, DV, PHI, STATE_COUNT};
 use octant_calibration::filter::CalibrationFilter;
 use octant_calibration::strapdown::{Strapdown, Vertical};
 use octant_earth::{UnitQuaternion, Vector3};
@@ -39,6 +39,24 @@ pub(super) fn found() -> Result<Found, String> {
     all.insert("farthest position".to_owned(), farthest(1e6, position_is_followed)?);
     stages(&mut all)?;
     all.insert("age of the checkpoint".to_owned(), checkpoint_age()?);
+    Ok(all)
+}
+
+/// The σ of all states of a filter that is told every second that it stands.
+pub(super) fn rest() -> Result<Found, String> {
+    let mut bench = Bench::new(AidingMode::Velocity { sigma_mps: 1e-3 });
+    let mut all = Found::new();
+    for second in 1..=120 {
+        for _ in 0..SAMPLES_PER_S {
+            bench.stand();
+        }
+        bench.measure_velocity(0.0)?;
+        if matches!(second, 10 | 120) {
+            for state in 0..STATE_COUNT {
+                all.insert(format!("sigma of state {state}, {second} s"), bench.sigma(state));
+            }
+        }
+    }
     Ok(all)
 }
 
