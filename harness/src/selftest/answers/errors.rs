@@ -46,6 +46,7 @@ pub(super) fn found() -> Result<Found, String> {
             tell(&mut all, "gauss-markov", n, [of[3], of[4], of[5]]);
         }
     })?;
+    losses(&mut all)?;
     pass("aiding-noise", vec![size("sigma", 0.3, Dimension::Velocity)], |name, n, of| {
         if name == "velocity" {
             tell(&mut all, "aiding-noise velocity", n, [of[0], of[1], of[2]]);
@@ -66,6 +67,34 @@ fn tell(all: &mut Found, name: &str, n: u64, of: [f64; 3]) {
     }
 }
 
+/// Samples that don't arrive.
+fn losses(all: &mut Found) -> Result<(), String> {
+    let values = vec![size("loss", 0.3, Dimension::Ratio), ("aiding", Value::Choice("lost"))];
+    let (_, mut station) = station("dropout", values)?;
+    let (mut lost, mut sum) = (0u32, 0u64);
+    for n in 1..=500u64 {
+        let sample = Sample { sequence: n, ..Sample::default() };
+        let output = Output::default();
+        station.before(&mut GimbalCommand::default(), &output, &mut Nowhere);
+        if let Delivered::These([]) = station.after(&Epoch { sample, aiding: None }, &output) {
+            (lost, sum) = (lost + 1, sum + n);
+        }
+        station.told();
+    }
+    all.insert("dropout, samples lost".to_owned(), f64::from(lost));
+    all.insert("dropout, sum of their numbers".to_owned(), sum as f64);
+    Ok(())
+}
+
+/// A station with one fault, which acts on 400 samples from 101 on; and the period of its samples, ns.
+fn station(name: &'static str, values: Vec<Named>) -> Result<(u64, Station), String> {
+    let config = perfect(1, site(0.0, 0.0, 0.0), Motion::Static(CaseAttitude::default()));
+    let spec = spec(name, values, 101, 400)?;
+    let station = Station::new(&[spec], &setup(&config))
+        .map_err(|(_, error)| format!("set up the fault {name}: {error}"))?;
+    Ok((config.sample_period_ns, station))
+}
+
 /// Passes samples of zeros through a fault, with a reference at samples 200 and 400; `hear` gets what was added
 /// to the six channels so far, and the references.
 fn pass(
@@ -73,16 +102,12 @@ fn pass(
     values: Vec<Named>,
     mut hear: impl FnMut(&str, u64, [f64; 6]),
 ) -> Result<(), String> {
-    let still = Motion::Static(CaseAttitude::default());
-    let config = perfect(1, site(0.0, 0.0, 0.0), still);
-    let spec = spec(name, values, 101, 400)?;
-    let mut station = Station::new(&[spec], &setup(&config))
-        .map_err(|(_, error)| format!("set up the fault {name}: {error}"))?;
+    let (period_ns, mut station) = station(name, values)?;
     let output = Output::default();
     let mut added = [0.0; 6];
     let [latitude_rad, longitude_rad, height_m] = AT;
     for n in 1..=500u64 {
-        let device_time = DeviceTime::from_ns(n * config.sample_period_ns);
+        let device_time = DeviceTime::from_ns(n * period_ns);
         let reference = match name == "aiding-noise" && n % 200 == 0 {
             true => Some([
                 Reference::Velocity([0.0; 3]),
