@@ -1,6 +1,8 @@
 //! Nights: what got worse is found, what didn't isn't; and everything that goes wrong with a history.
 
 use crate::common::program::octant_in;
+use octant::campaign::case;
+use octant::campaign::plan::Plan;
 use octant::campaign::table::{Table, Value as Cell};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
@@ -314,6 +316,39 @@ fn the_same_program_and_another_result_is_an_error() {
 }
 
 /// A program with other numerics comes to other bits. Neither is it non-deterministic then, nor did the unit get worse.
+#[test]
+fn a_night_is_judged_anew_campaign_by_campaign() {
+    let bench = Bench::new();
+    bench.edit("night.toml", "replicates = 16", "replicates = 2");
+    assert_eq!(bench.night(&["--first"]).0, Some(0));
+    let night = bench.at("h/nights").join(&nights(&bench)[0]);
+    let rejudge = || {
+        let (status, out, err) = bench.octant(&["rejudge", night.to_str().unwrap(), "--json"]);
+        let found: Value =
+            serde_json::from_str(&out).unwrap_or_else(|why| panic!("{why}: {out}{err}"));
+        (status, found)
+    };
+    let (status, found) = rejudge();
+    let judged = &found["judged"][0];
+    assert_eq!((status, judged["then"].as_str()), (Some(0), Some("pass")), "{found}");
+    assert_eq!((&judged["what"], &judged["now"]), (&"campaign".into(), &"pass".into()));
+    assert_eq!(judged["requirements"][0]["then"], "pass");
+    // A result whose value is above its limit fails, whatever verdict stands beside it.
+    let plan = Plan::read(&night.join("night/plan.json")).unwrap();
+    let path = case::file(&night.join("night"), &plan.cases[0].id);
+    let mut result: Value = serde_json::from_slice(&std::fs::read(&path).unwrap()).unwrap();
+    result["summary"]["navigation"]["radial_error_nmi"]["max"] = 4711.0.into();
+    std::fs::write(&path, result.to_string()).unwrap();
+    let (status, found) = rejudge();
+    let judged = &found["judged"][0];
+    assert_eq!((status, &found["verdict"]), (Some(1), &"fail".into()), "{found}");
+    assert_eq!(judged["cases"][0]["case"], plan.cases[0].id);
+    // A night without its campaign's folder is an error that names what is missing.
+    std::fs::remove_file(night.join("night/plan.json")).unwrap();
+    let (status, _, err) = bench.octant(&["rejudge", night.to_str().unwrap()]);
+    assert!(status == Some(2) && err.contains("night/plan.json"), "{err}");
+}
+
 #[test]
 fn other_numerics_are_no_regression_and_no_non_determinism() {
     let bench = Bench::new();

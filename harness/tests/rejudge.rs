@@ -212,6 +212,20 @@ fn the_numerics_version_is_wherever_a_number_is() {
     let expected = octant::campaign::table::Value::Integer(NUMERICS.into());
     assert_eq!(column.at(0), Some(expected));
 
+    // A part of another version isn't merged with one of this: that is told before any number of them.
+    let other = bench.at("other");
+    copy(&out, &other);
+    result["summary"]["numerics"] = (NUMERICS + 1).into();
+    result["summary_blake3"] = case::hash_of_summary(&result["summary"]).into();
+    std::fs::write(case::file(&other, &plan.cases[0].id), result.to_string()).unwrap();
+    std::fs::remove_dir_all(other.join("parts")).unwrap();
+    bench.octant(&["campaign", "run", "other"]);
+    let output = bench.octant(&["campaign", "merge", "out", "other"]);
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(2), "{said}");
+    let told = format!("case {} is of another numerics version", plan.cases[0].id);
+    assert!(said.contains(&told) && said.contains("other/parts"), "{said}");
+
     // A result of another version that comes to other numbers: nobody altered it. One of this version: somebody did.
     bench.octant(&["campaign", "report", "out"]);
     for (version, status, told) in
