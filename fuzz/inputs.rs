@@ -3,10 +3,6 @@
 //! Nothing here may panic, run for long or take much memory, whatever the bytes are; and what is
 //! accepted has to keep its promises.
 
-use octant::fmu::archive::{Archive, Limits};
-use octant::fmu::check::{check_archive, check_description, show};
-use octant::fmu::description::units::{Conversion, known};
-use octant::fmu::description::{decode, read, read_bytes};
 use octant::recorder::reader;
 use octant::scenario::Scenario;
 use octant::scenario::resolve::{Draws, Seeded};
@@ -15,6 +11,10 @@ use octant::source::{
     TimeColumn, TimeUnit,
 };
 use octant_calibration::table::CalibrationTable;
+use octant_fmu_check::{check_archive, check_description, show};
+use octant_fmu_host::archive::{Archive, Limits};
+use octant_fmu_host::description::units::{Conversion, known};
+use octant_fmu_host::description::{decode, read, read_bytes};
 use std::path::Path;
 
 /// A scenario: refused, or resolved to a text that reads back as the same scenario.

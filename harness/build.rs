@@ -1,6 +1,5 @@
 //! Bakes in what a manifest says about the build: the state of the repository and the compiler.
-//! Both may be missing (a source archive, no git): then the manifest says so. And compiles the one
-//! function that Rust can't define: a callback with variable arguments.
+//! Both may be missing (a source archive, no git): then the manifest says so.
 
 use sha2::{Digest, Sha256};
 use std::process::Command;
@@ -38,8 +37,4 @@ fn main() {
     let lock = std::fs::read("../Cargo.lock").map(Sha256::digest);
     let lock = lock.map(|hash| hash.iter().map(|byte| format!("{byte:02x}")).collect::<String>());
     println!("cargo:rustc-env=OCTANT_LOCK_FILE={}", lock.unwrap_or_default());
-    cc::Build::new()
-        .file("src/fmu/instance/logger.c")
-        .extra_warnings(true)
-        .compile("octant_fmi2_logger");
 }

@@ -7,10 +7,10 @@ use criterion::measurement::WallTime;
 use criterion::{
     BenchmarkGroup, Criterion, SamplingMode, Throughput, criterion_group, criterion_main,
 };
-use octant::fmu::description::{Causality, Kind};
-use octant::fmu::instance::{Instance, Options, Place, Plan};
 use octant::run::{Control, Recording, run_method};
 use octant::scenario::{Method, Scenario};
+use octant_fmu_host::description::{Causality, Kind};
+use octant_fmu_host::instance::{Instance, Options, Place, Plan};
 use std::path::{Path, PathBuf};
 
 /// The FMUs of this build.
@@ -26,7 +26,7 @@ fn fmus() -> (tempfile::TempDir, [PathBuf; 2]) {
 fn exchange(group: &mut BenchmarkGroup<WallTime>, name: &str, path: &Path, place: Place) {
     let program = Some(PathBuf::from(env!("CARGO_BIN_EXE_octant")));
     let options = Options { place, program, ..Options::default() };
-    let mut fmu = octant::fmu::open(path, &options).unwrap();
+    let mut fmu = octant_fmu_host::open(path, &options).unwrap();
     let number = |kind| !matches!(kind, Kind::String | Kind::Binary | Kind::Clock);
     let all = |causality| {
         let description = fmu.description();

@@ -1,13 +1,13 @@
 //! `octant fmu build`: what is in the files, that they are what the tables say, and that they run.
 
-use octant::fmu::archive::Archive;
 use octant::fmu::build::{BuildError, Options, build};
-use octant::fmu::description::{
+use octant_fmu::table::{self, Model};
+use octant_fmu_host::archive::Archive;
+use octant_fmu_host::description::{
     Causality, Description, Initial, IntervalVariability, Kind, Standard, Variability, Variable,
     read_bytes,
 };
-use octant::fmu::instance::{self, Instance, Outcome, Place, Plan};
-use octant_fmu::table::{self, Model};
+use octant_fmu_host::instance::{self, Instance, Outcome, Place, Plan};
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
@@ -242,7 +242,7 @@ fn references_are_what_the_libraries_give() {
                 event_mode,
                 ..instance::Options::default()
             };
-            let mut instance = octant::fmu::open(&path, &options).unwrap();
+            let mut instance = octant_fmu_host::open(&path, &options).unwrap();
             let instance = &mut *instance;
             let (set, get) = (plan(instance, &inputs.names), plan(instance, &results.names));
             instance.enter_initialization(0.0, None, None).unwrap();
@@ -296,7 +296,7 @@ fn references_are_what_the_libraries_give() {
 fn the_one_on_a_bus_follows_the_layered_standard() {
     let (model, _, path) = described().last().unwrap();
     assert!(model.needs_clocks());
-    let checked = octant::fmu::check::check(&path).unwrap();
+    let checked = octant_fmu_check::check(&path).unwrap();
     let report = checked.report();
     assert!(report.findings.is_empty(), "{:#?}", report.findings);
     let manifest = "extra/org.fmi-standard.fmi-ls-bus/fmi-ls-manifest.xml";
@@ -308,7 +308,7 @@ fn the_one_on_a_bus_follows_the_layered_standard() {
         event_mode: true,
         ..instance::Options::default()
     };
-    let mut instance = octant::fmu::open(&path, &options).unwrap();
+    let mut instance = octant_fmu_host::open(&path, &options).unwrap();
     instance.enter_initialization(0.0, None, None).unwrap();
     instance.exit_initialization().unwrap();
     let get = plan(&*instance, &["can.waiting".to_owned(), "time".to_owned()]);

@@ -4,10 +4,10 @@
 use crate::common::foreign;
 use crate::common::program::{OCTANT, program};
 use octant::fmu::build;
-use octant::fmu::check::load::load;
-use octant::fmu::check::rules::Severity;
-use octant::fmu::check::{Report, check, show};
-use octant::fmu::instance::Options;
+use octant_fmu_check::load::load;
+use octant_fmu_check::rules::Severity;
+use octant_fmu_check::{Report, check, show};
+use octant_fmu_host::instance::Options;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
@@ -394,7 +394,7 @@ fn the_page_lists_every_rule() {
     let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/fmu-check.md");
     let page = std::fs::read_to_string(page).unwrap();
     let listed: Vec<&str> = page.lines().filter(|line| line.starts_with("| `")).collect();
-    let rules: Vec<String> = octant::fmu::check::rules::RULES
+    let rules: Vec<String> = octant_fmu_check::rules::RULES
         .iter()
         .map(|rule| {
             let severity = rule.severity.name();

@@ -1,11 +1,11 @@
 //! Model exchange against closed forms, and against another method.
 
 use crate::common::foreign;
-use octant::fmu::instance::{Group, Instance, InstanceError, Options, Outcome, Place};
+use octant_fmu_host::instance::{Group, Instance, InstanceError, Options, Outcome, Place};
 
 fn open(name: &str) -> Box<dyn Instance> {
     let options = Options { place: Place::ThisProcess, ..Options::default() };
-    octant::fmu::open(&foreign::fmu(name), &options).unwrap()
+    octant_fmu_host::open(&foreign::fmu(name), &options).unwrap()
 }
 
 fn group(instance: &dyn Instance, name: &str) -> Group {

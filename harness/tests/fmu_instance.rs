@@ -4,9 +4,9 @@
 use crate::common::foreign;
 use std::path::{Path, PathBuf};
 
-use octant::fmu::OpenError;
-use octant::fmu::description::Variable;
-use octant::fmu::instance::{
+use octant_fmu_host::OpenError;
+use octant_fmu_host::description::Variable;
+use octant_fmu_host::instance::{
     Group, Instance, InstanceError, InterfaceKind, Options, Outcome, Place, Plan, Stepped,
 };
 
@@ -16,7 +16,7 @@ fn here() -> Options {
 }
 
 fn open_with(name: &str, options: &Options) -> Result<Box<dyn Instance>, OpenError> {
-    octant::fmu::open(&foreign::fmu(name), options)
+    octant_fmu_host::open(&foreign::fmu(name), options)
 }
 
 fn open(name: &str) -> Box<dyn Instance> {
@@ -259,7 +259,7 @@ fn fmi3_takes_and_gives_every_type() {
     let folder = without_clocks();
     for event_mode in [true, false] {
         let options = Options { event_mode, ..here() };
-        let mut signals = octant::fmu::open(folder.path(), &options).unwrap();
+        let mut signals = octant_fmu_host::open(folder.path(), &options).unwrap();
         let signals = &mut *signals;
         start(signals);
         for (name, values) in SIGNALS {
@@ -359,7 +359,7 @@ fn events_without_early_return_come_at_the_end_of_a_step() {
 fn an_fmu_handles_its_events_itself_where_it_is_asked_to() {
     let folder = without_clocks();
     let options = Options { event_mode: false, ..here() };
-    let mut signals = octant::fmu::open(folder.path(), &options).unwrap();
+    let mut signals = octant_fmu_host::open(folder.path(), &options).unwrap();
     start(&mut *signals);
     let stepped = signals.step(0.0, 0.6).unwrap();
     assert_eq!((stepped.time_s, stepped.outcome, stepped.event), (0.6, Outcome::Done, false));
@@ -469,7 +469,7 @@ fn an_instance_that_is_none_is_said() {
         "fmi2Instantiate of trouble_fmi2.fmu answered no instance: it failed on demand"
     );
     let folder = copy("gain_fmi2", |text| text.replace("{8a6f3c1e-gain}", "{another}"));
-    let error = octant::fmu::open(folder.path(), &here()).map(|_| ()).unwrap_err();
+    let error = octant_fmu_host::open(folder.path(), &here()).map(|_| ()).unwrap_err();
     assert!(error.to_string().contains("guid {another} is not {8a6f3c1e-gain}"), "{error}");
 }
 
@@ -549,7 +549,7 @@ fn library(folder: &Path) -> PathBuf {
 }
 
 fn refusal(folder: &Path) -> String {
-    octant::fmu::open(folder, &here()).map(|_| ()).unwrap_err().to_string()
+    octant_fmu_host::open(folder, &here()).map(|_| ()).unwrap_err().to_string()
 }
 
 #[test]
@@ -588,7 +588,8 @@ fn what_cannot_be_loaded_is_said() {
         assert!(error.contains("is no name of a file"), "{error}");
     }
     let exchange = Options { interface: InterfaceKind::ModelExchange, ..here() };
-    let error = octant::fmu::open(&foreign::fmu("gain_fmi2"), &exchange).map(|_| ()).unwrap_err();
+    let error =
+        octant_fmu_host::open(&foreign::fmu("gain_fmi2"), &exchange).map(|_| ()).unwrap_err();
     assert_eq!(
         error.to_string(),
         "gain_fmi2.fmu can't run by model exchange: it has co-simulation"
@@ -665,9 +666,9 @@ fn what_runs_once_a_process_runs_once() {
         )
     };
     let folder = copy("gain_fmi2", once);
-    let first = octant::fmu::open(folder.path(), &here()).unwrap();
+    let first = octant_fmu_host::open(folder.path(), &here()).unwrap();
     let error = refusal(folder.path());
     assert!(error.ends_with("there is one already, and it can be there only once"), "{error}");
     drop(first);
-    octant::fmu::open(folder.path(), &here()).unwrap();
+    octant_fmu_host::open(folder.path(), &here()).unwrap();
 }

@@ -3,8 +3,8 @@
 
 use crate::common::foreign;
 use crate::common::program::{OCTANT, passes_as_process, program, test_as_process};
-use octant::fmu::OpenError;
-use octant::fmu::instance::{Group, Instance, InstanceError, Options, Outcome, Place, Plan};
+use octant_fmu_host::OpenError;
+use octant_fmu_host::instance::{Group, Instance, InstanceError, Options, Outcome, Place, Plan};
 use std::path::{Path, PathBuf};
 use std::process::Stdio;
 use std::time::{Duration, Instant};
@@ -19,7 +19,7 @@ fn here() -> Options {
 }
 
 fn try_open(name: &str, options: &Options) -> Result<Box<dyn Instance>, OpenError> {
-    octant::fmu::open(&foreign::fmu(name), options)
+    octant_fmu_host::open(&foreign::fmu(name), options)
 }
 
 fn open(name: &str) -> Box<dyn Instance> {
@@ -133,8 +133,8 @@ fn answers_are_the_same_as_in_this_process() {
     ] {
         // The same folder, since what they say names it.
         let folder = foreign::unpacked(name);
-        let mut one = octant::fmu::open(&folder, &apart()).unwrap();
-        let mut other = octant::fmu::open(&folder, &here()).unwrap();
+        let mut one = octant_fmu_host::open(&folder, &apart()).unwrap();
+        let mut other = octant_fmu_host::open(&folder, &here()).unwrap();
         let one = play(&mut *one, inputs, outputs);
         let other = play(&mut *other, inputs, outputs);
         for (one, other) in one.iter().zip(&other) {

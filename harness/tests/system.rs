@@ -1,8 +1,6 @@
 //! `octant.ssp` and its like, run by the program's own master: the bits of the core in process.
 
 use octant::fmu::build::{Options, build};
-use octant::fmu::description::{Description, read_bytes};
-use octant::fmu::instance::Place;
 use octant::fmu::master::run::{Prepared, Request, Results};
 use octant::fmu::master::summary::Ended;
 use octant::fmu::master::system::element_names;
@@ -10,6 +8,8 @@ use octant::recorder::StreamHash;
 use octant::run::{Control, Recording, run_method};
 use octant::scenario::{Method, Scenario};
 use octant::score::verdict::Verdict;
+use octant_fmu_host::description::{Description, read_bytes};
+use octant_fmu_host::instance::Place;
 use octant_sample::counts::{DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS};
 use octant_sample::{
     Aiding, DeviceTime, GimbalAngles, GimbalCommand, Health, Mode, Navigation, Output, Parameters,
@@ -72,7 +72,7 @@ fn stream_hash(request: Request, fmus: [&str; 2]) -> (String, Results) {
     assert!(prepared.warnings().is_empty());
     let descriptions: Vec<Description> = fmus
         .map(|fmu| {
-            let mut archive = octant::fmu::archive::Archive::open(&built().join(fmu)).unwrap();
+            let mut archive = octant_fmu_host::archive::Archive::open(&built().join(fmu)).unwrap();
             read_bytes(&archive.read("modelDescription.xml").unwrap(), fmu).unwrap()
         })
         .into();

@@ -22,9 +22,10 @@
 
 use crate::scenario::complete::complete;
 use crate::scenario::document::{self, Node, Table, Value};
-use crate::scenario::error::{Place, Problem, ScenarioError, suggestion};
+use crate::scenario::error::{Place, Problem, ScenarioError};
 use crate::scenario::keys::CAMPAIGN;
 use crate::scenario::read::Reader;
+use octant_base::names::suggestion;
 use octant_statistics::proportion::Demand;
 use std::path::{Path, PathBuf};
 

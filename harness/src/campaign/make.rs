@@ -195,7 +195,7 @@ fn planned(
     let named = member.verifies.iter().flatten();
     if let Some(unknown) = named.clone().find(|id| !of_file.iter().any(|p| p.check.id == **id)) {
         let known = of_file.iter().map(|planned| planned.check.id.as_str());
-        let known = crate::scenario::suggestion(unknown, known, "verified by test");
+        let known = octant_base::names::suggestion(unknown, known, "verified by test");
         return Err(contradiction(format!(
             "scenario {:?} verifies {unknown:?}, which the requirements don't have, {known}",
             member.id

@@ -40,7 +40,7 @@ pub(crate) enum Ended {
 ///
 /// The thread that starts it has to wait for it: Linux ends it with that thread.
 pub(crate) fn command(program: &Path) -> Command {
-    let mut command = crate::evidence::signature::command(program);
+    let mut command = octant_base::child::command(program);
     command.arg(PARENT).arg(std::process::id().to_string());
     #[cfg(unix)]
     std::os::unix::process::CommandExt::process_group(&mut command, 0);

@@ -1,9 +1,10 @@
 //! `octant faults`: the kinds of faults, and what each does.
 
 use super::{Failure, print, print_json, write};
-use crate::scenario::{fault_example, suggestion};
+use crate::scenario::fault_example;
 use crate::score::verdict::Verdict;
 use clap::{Args, Subcommand};
+use octant_base::names::suggestion;
 use octant_faults::catalogue::{Acts, Family, Kind, Lasts, Parameter};
 use octant_faults::connection::kinds as connection;
 use octant_faults::kinds;

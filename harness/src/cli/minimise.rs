@@ -211,7 +211,7 @@ fn what_broke(arguments: &Arguments, summary: &Summary) -> Result<Broken, Failur
             ))),
             None => Err(Failure::input(format!(
                 "failed to minimise {run}: no requirement {id:?}, {}",
-                crate::scenario::suggestion(
+                octant_base::names::suggestion(
                     id,
                     summary.requirements.iter().map(|r| r.id.as_str()),
                     "requirements"

@@ -101,7 +101,7 @@ fn other(words: &[OsString]) -> Failure {
     let name = words.first().map_or("".into(), |word| word.to_string_lossy());
     let command = <Cli as clap::CommandFactory>::command();
     let known: Vec<&str> = command.get_subcommands().map(clap::Command::get_name).collect();
-    let known = crate::scenario::suggestion(&name, known.into_iter(), "commands");
+    let known = octant_base::names::suggestion(&name, known.into_iter(), "commands");
     Failure::input(format!("unknown command {name:?}, {known}"))
 }
 

@@ -179,7 +179,7 @@ fn accepted(history: &Path, night: Option<&str>) -> Result<Verdict, Failure> {
         (Some(id), _) if nights.iter().any(|night| night.id == id) => id.to_owned(),
         (Some(id), _) => {
             let known = nights.iter().map(|night| night.id.as_str());
-            let near = crate::scenario::suggestion(id, known, "nights");
+            let near = octant_base::names::suggestion(id, known, "nights");
             return Err(Failure::input(format!("unknown night {id:?}, {near}")));
         }
         (None, Some(night)) => night.id.clone(),

@@ -3,7 +3,6 @@
 use super::progress::with_progress;
 use super::{Failure, print, write};
 use crate::evidence::{FmuFacts, Manifest, RunFacts, RunFolder};
-use crate::fmu::instance::Place;
 use crate::fmu::master::experiment::Said;
 use crate::fmu::master::order::Order;
 use crate::fmu::master::run::{PrepareError, Prepared, Request};
@@ -13,6 +12,7 @@ use crate::scenario::quantity::{Dimension, parse};
 use crate::score::junit::junit_of;
 use crate::score::verdict::Verdict;
 use clap::Args;
+use octant_fmu_host::instance::Place;
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 

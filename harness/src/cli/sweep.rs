@@ -110,7 +110,7 @@ fn the_fault(scenario: &Scenario, arguments: &Arguments) -> Result<String, Failu
         (Some(id), _) if ids.contains(&id.as_str()) => Ok(id.clone()),
         (Some(id), _) => Err(Failure::input(format!(
             "failed to sweep {file}: no fault {id:?}, {}",
-            crate::scenario::suggestion(id, ids.iter().copied(), "faults")
+            octant_base::names::suggestion(id, ids.iter().copied(), "faults")
         ))),
     }
 }

@@ -170,7 +170,7 @@ fn quantity(name: &str, text: &str, dimension: Dimension) -> Result<f64, Failure
 fn moved(plan: &Plan, moves: &[Move]) -> Result<Status, Failure> {
     let program = std::env::current_exe()
         .map_err(|error| Failure::bench(format!("the program doesn't find itself: {error}")))?;
-    let mut guard = crate::evidence::signature::command(program);
+    let mut guard = octant_base::child::command(program);
     move_by_hand(plan, moves, guard.args(["turntable", "guard"])).map_err(|error| failure(&error))
 }
 

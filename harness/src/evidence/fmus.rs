@@ -1,10 +1,10 @@
 //! What a manifest says about the FMUs of a run.
 
 use super::manifest::FmuFacts;
-use crate::fmu::description::Description;
 use crate::fmu::mapping::open::path;
 use crate::fmu::mapping::stepper::UseError;
 use crate::scenario::{Endpoint, Fmu, Process, Scenario, Source};
+use octant_fmu_host::description::Description;
 use sha2::{Digest, Sha256};
 use std::path::Path;
 

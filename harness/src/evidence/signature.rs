@@ -10,10 +10,7 @@ use std::path::{Path, PathBuf};
 
 /// Name of the signature beside a manifest.
 pub const FILE_NAME: &str = "manifest.json.minisig";
-/// The variable that names the file of the secret key.
-pub const KEY: &str = "OCTANT_SIGNING_KEY";
-/// The variable with its password, where it has one.
-pub const PASSWORD: &str = "OCTANT_SIGNING_PASSWORD";
+pub use octant_base::child::{KEY, PASSWORD};
 /// The line above a signature, which no signature covers: it is always this one.
 const UNTRUSTED: &str = "signature from octant";
 /// What is signed with the manifest.
@@ -26,14 +23,6 @@ pub const SECOND: &str = "dispositions.toml.minisig";
 /// campaign, or of other results.
 fn disposed(plan: &str, results_blake3: &str) -> String {
     format!("dispositions of octant campaign {plan} with results {results_blake3}")
-}
-
-/// A process to be started that hears nothing of the key: neither its file nor its password. Every process
-/// that the program starts is made here, those that hold the code of others above all.
-pub(crate) fn command(program: impl AsRef<std::ffi::OsStr>) -> std::process::Command {
-    let mut command = std::process::Command::new(program);
-    command.env_remove(KEY).env_remove(PASSWORD);
-    command
 }
 
 /// That nobody else of this host can read the file of a key.
@@ -408,37 +397,5 @@ mod tests {
                 }
             }
         }
-    }
-
-    #[test]
-    fn a_process_hears_nothing_of_the_key() {
-        let command = command("program");
-        let removed: Vec<_> =
-            command.get_envs().filter(|(_, value)| value.is_none()).map(|(name, _)| name).collect();
-        assert_eq!(removed, [KEY, PASSWORD].map(std::ffi::OsStr::new));
-    }
-
-    /// No file of the program starts a process otherwise.
-    #[test]
-    fn every_process_is_started_without_the_key() {
-        let src = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
-        let (mut open, mut seen) = (vec![src], 0);
-        while let Some(folder) = open.pop() {
-            for entry in std::fs::read_dir(folder).unwrap() {
-                let path = entry.unwrap().path();
-                if path.is_dir() {
-                    open.push(path);
-                    continue;
-                }
-                let text = std::fs::read_to_string(&path).unwrap_or_default();
-                // Of the program, not of its tests.
-                let program = text.split("#[cfg(test)]").next().unwrap();
-                let own = path.ends_with("evidence/signature.rs");
-                let found = program.matches("Command::new(").count();
-                assert_eq!(found, usize::from(own), "{}", path.display());
-                seen += program.matches("signature::command(").count();
-            }
-        }
-        assert!(seen >= 5, "{seen} processes are started");
     }
 }

@@ -5,10 +5,11 @@
 
 use super::condition;
 use super::document::{Node, Table, Value, parse_default};
-use super::error::{Place, Problem, nearest, suggestion};
+use super::error::{Place, Problem};
 use super::keys::{Bounds, Default, Key, Kind, Section, Variants};
 use super::ports;
 use super::quantity::{self, Dimension, NotAQuantity};
+use octant_base::names::{nearest, suggestion};
 use octant_faults::Channels;
 
 /// Checks the table and fills in its defaults; problems are added to `problems`.

@@ -1,8 +1,8 @@
 //! Conditions of triggers: `"nis above 25"`, a signal, which side, and a value.
 
 use super::complete::explain;
-use super::error::suggestion;
 use super::quantity::{self, Dimension};
+use octant_base::names::suggestion;
 use octant_faults::trigger::{Comparison, Signal};
 use octant_sample::Health;
 

@@ -22,7 +22,6 @@ mod tour;
 mod write;
 
 pub use error::{Place, Problem, ScenarioError};
-pub(crate) use error::{nearest, suggestion};
 pub use keys::SCHEMA;
 pub(crate) use ports::setting_argument;
 pub use ports::{Code, Made, Port, Set, Setting, Written};
@@ -376,7 +375,7 @@ impl Scenario {
     pub fn with_only(&self, faults: &[String]) -> Result<Self, String> {
         let ids: Vec<&str> = self.faults.iter().map(|fault| fault.spec.id.as_str()).collect();
         if let Some(unknown) = faults.iter().find(|id| !ids.contains(&id.as_str())) {
-            let known = suggestion(unknown, ids.iter().copied(), "its faults");
+            let known = octant_base::names::suggestion(unknown, ids.iter().copied(), "its faults");
             return Err(format!("no fault has the id {unknown:?}, {known}"));
         }
         let keep: Vec<bool> = ids.iter().map(|id| faults.iter().any(|kept| kept == id)).collect();
@@ -431,7 +430,7 @@ pub(crate) fn override_set(document: &mut document::Table, argument: &str) -> Re
     let mut names = path.split('.').peekable();
     while let Some(name) = names.next() {
         let Some(key) = section.key(name) else {
-            let known = error::suggestion(name, section.names(), "known here");
+            let known = octant_base::names::suggestion(name, section.names(), "known here");
             return Err(problem(path, format!("unknown key {name:?}, {known}")));
         };
         if names.peek().is_some() {
@@ -481,7 +480,8 @@ fn fault_of<'a>(
     match faults.iter_mut().find(|node| id_of(node).is_some_and(|found| found == id)) {
         Some(Node { value: Value::Table(fault), .. }) => Ok(fault),
         _ => {
-            let known = error::suggestion(id, ids.iter().map(String::as_str), "faults");
+            let known =
+                octant_base::names::suggestion(id, ids.iter().map(String::as_str), "faults");
             Err(format!("no fault has the id {id:?}, {known}"))
         }
     }

@@ -6,9 +6,10 @@
 
 use super::complete::{explain, join, number};
 use super::document::{Node, Table, Value, parse_argument};
-use super::error::{Place, Problem, suggestion};
+use super::error::{Place, Problem};
 use super::quantity;
 use crate::fmu::mapping::channel::{Channel, Class};
+use octant_base::names::suggestion;
 
 /// Where a scenario says something, for messages that come later than its reading.
 ///

@@ -2,8 +2,8 @@
 //!
 //! For a test of its own: `#[path = "common/foreign.rs"] mod foreign;`.
 
-use octant::fmu::description::Standard;
-use octant::fmu::library::platforms;
+use octant_fmu_host::description::Standard;
+use octant_fmu_host::library::platforms;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::Command;

@@ -3,8 +3,6 @@
 mod toy;
 
 use self::toy::{Toy, describe, done, refused};
-use octant::fmu::description::Description;
-use octant::fmu::instance::{Instance, Outcome, Stepped};
 use octant::fmu::master::error::MasterError;
 use octant::fmu::master::faults::{Faulting, looked_at};
 use octant::fmu::master::flat::Flat;
@@ -15,6 +13,8 @@ use octant::fmu::master::ssp::package::Package;
 use octant::fmu::master::ssp::structure::Structure;
 use octant::fmu::master::system::System;
 use octant::scenario::connection_faults;
+use octant_fmu_host::description::Description;
+use octant_fmu_host::instance::{Instance, Outcome, Stepped};
 use std::sync::{Arc, Mutex};
 
 const HEAD: &str = r#"<SystemStructureDescription version="1.0" name="test"

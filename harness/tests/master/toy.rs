@@ -1,7 +1,9 @@
 //! FMUs in a few lines: a description as text, and a law that steps numbers.
 
-use octant::fmu::description::{Description, read};
-use octant::fmu::instance::{Group, Instance, InstanceError, Message, Outcome, Stepped, Update};
+use octant_fmu_host::description::{Description, read};
+use octant_fmu_host::instance::{
+    Group, Instance, InstanceError, Message, Outcome, Stepped, Update,
+};
 use std::collections::BTreeMap;
 
 /// The numbers of a toy, by value reference.

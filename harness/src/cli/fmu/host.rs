@@ -11,7 +11,7 @@ pub(super) struct Arguments {}
 /// Runs the command.
 #[cfg(target_os = "linux")]
 pub(super) fn command(_arguments: &Arguments) -> Result<Verdict, Failure> {
-    crate::fmu::process::host::serve().map_err(Failure::input)?;
+    octant_fmu_host::process::host::serve().map_err(Failure::input)?;
     Ok(Verdict::Pass)
 }
 

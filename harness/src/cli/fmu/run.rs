@@ -2,8 +2,6 @@
 
 use super::super::progress::with_progress;
 use super::super::{Failure, print, print_json, seconds};
-use crate::fmu::OpenError;
-use crate::fmu::instance::{Instance, InstanceError, InterfaceKind, Options, Place};
 use crate::fmu::mapping::settings::{Settings, Starts};
 use crate::fmu::run::input::{InputError, Inputs};
 use crate::fmu::run::output::{Outputs, Sink};
@@ -12,6 +10,8 @@ use crate::run::Control;
 use crate::scenario::{ScenarioError, setting_argument};
 use crate::score::verdict::Verdict;
 use clap::{Args, ValueEnum};
+use octant_fmu_host::OpenError;
+use octant_fmu_host::instance::{Instance, InstanceError, InterfaceKind, Options, Place};
 use serde::Serialize;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
@@ -192,7 +192,7 @@ fn open(arguments: &Arguments) -> Result<Box<dyn Instance>, Failure> {
         ),
         ..Options::default()
     };
-    crate::fmu::open(&arguments.fmu, &options).map_err(|error| {
+    octant_fmu_host::open(&arguments.fmu, &options).map_err(|error| {
         let message = format!("failed to open {}: {error}", arguments.fmu.display());
         match error {
             OpenError::Instance(InstanceError::Process { .. }) => Failure::bench(message),
@@ -261,7 +261,7 @@ fn log(instance: &mut dyn Instance) {
 
 fn tell(
     arguments: &Arguments,
-    description: &crate::fmu::description::Description,
+    description: &octant_fmu_host::description::Description,
     span: &Span,
     finished: &Finished,
     wall_s: f64,

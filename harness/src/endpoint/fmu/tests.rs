@@ -1,11 +1,11 @@
 use super::*;
-use crate::fmu::description::{Causality, Kind};
-use crate::fmu::mapping::testing::{Own as OwnModel, Scripted, description, variable};
+use crate::fmu::mapping::testing::{Own as OwnModel, Scripted, With, description, variable};
 use crate::recorder::StreamHash;
 use crate::run::method::configurations;
 use crate::scenario::{self, Method};
 use crate::source::{PlantSource, Source};
 use octant_fmu::calibrator::Calibrator;
+use octant_fmu_host::description::{Causality, Kind};
 use octant_sample::Mode;
 use std::path::Path;
 
@@ -21,7 +21,7 @@ fn fmu_of(scenario: &Scenario) -> &Fmu {
     }
 }
 
-fn kept(instance: Box<dyn crate::fmu::instance::Instance>) -> Kept {
+fn kept(instance: Box<dyn octant_fmu_host::instance::Instance>) -> Kept {
     Kept { instance, uri: "fmu:core.fmu".to_owned() }
 }
 
@@ -83,7 +83,7 @@ fn the_end_of_the_source_reaches_our_calibrator() {
     assert_eq!(format!("{a:?}"), format!("{b:?}"));
 }
 
-fn foreign() -> crate::fmu::description::Description {
+fn foreign() -> octant_fmu_host::description::Description {
     use Causality::{Input, Output};
     description(
         "core",

@@ -26,7 +26,7 @@ pub(super) fn library(target: &str) -> Result<PathBuf, BuildError> {
         }
     };
     standard_library(triple, &source).map_err(failed)?;
-    let output = crate::evidence::signature::command("cargo")
+    let output = octant_base::child::command("cargo")
         .arg(if zig { "zigbuild" } else { "build" })
         .args(["--release", "--package", "octant-fmu", "--lib", "--target", target])
         .arg("--message-format=json-render-diagnostics")
@@ -53,16 +53,14 @@ fn source_tree() -> Result<PathBuf, BuildError> {
 }
 
 fn has_zigbuild(source: &Path) -> bool {
-    let asked = crate::evidence::signature::command("cargo-zigbuild")
-        .arg("--version")
-        .current_dir(source)
-        .output();
+    let asked =
+        octant_base::child::command("cargo-zigbuild").arg("--version").current_dir(source).output();
     asked.is_ok_and(|output| output.status.success())
 }
 
 /// Whether the compiler has the standard library of a target.
 fn standard_library(triple: &str, source: &Path) -> Result<(), String> {
-    let output = crate::evidence::signature::command("rustc")
+    let output = octant_base::child::command("rustc")
         .args(["--print", "target-libdir", "--target", triple])
         .current_dir(source)
         .output()

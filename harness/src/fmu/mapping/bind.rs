@@ -4,9 +4,9 @@
 use super::channel::Channel;
 use super::convert::{Conversion, conversion, fits};
 use super::find::{Found, Way, allowed, described, find, unknown};
-use crate::fmu::description::{Description, Variable};
-use crate::fmu::instance::{InstanceError, Plan};
 use crate::scenario::{Fmu, Made, Mapped, Problem, Written};
+use octant_fmu_host::description::{Description, Variable};
+use octant_fmu_host::instance::{InstanceError, Plan};
 
 /// One element of a channel.
 #[derive(Clone, Copy, Debug, PartialEq)]

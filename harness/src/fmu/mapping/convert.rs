@@ -1,9 +1,9 @@
 //! Between the unit of an FMU's variable and SI.
 
 use super::channel::{Channel, Class};
-use crate::fmu::description::units::{Conversion as Units, UnitError};
-use crate::fmu::description::{Description, Kind, Variable};
 use crate::scenario::Dimension;
+use octant_fmu_host::description::units::{Conversion as Units, UnitError};
+use octant_fmu_host::description::{Description, Kind, Variable};
 
 /// SI value = factor · value + offset.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -115,7 +115,7 @@ fn units(
         UnitError::Dimension { from_exponents, .. } => {
             let found = match Dimension::with_exponents(&from_exponents) {
                 Some(dimension) => dimension.name.to_owned(),
-                None => crate::fmu::description::units::dimension(from_exponents),
+                None => octant_fmu_host::description::units::dimension(from_exponents),
             };
             let expected = match channel.class {
                 Class::Quantity(dimension) => {

@@ -1,7 +1,7 @@
 //! Variables by the names that scenarios use, and what is said where there is none.
 
 use super::convert::article;
-use crate::fmu::description::{Causality, Description, Variability, Variable};
+use octant_fmu_host::description::{Causality, Description, Variability, Variable};
 
 /// Which way values go.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -2,12 +2,12 @@
 
 use super::settings::{Settings, Starts};
 use super::stepper::UseError;
-use crate::fmu::OpenError;
-use crate::fmu::archive::Archive;
-use crate::fmu::description::{self, Description};
-use crate::fmu::instance::{Instance, InterfaceKind, Options, Place};
 use crate::scenario::{Fmu, InterfaceChoice, Problem, Process, Scenario};
 use octant_calibration::Config as CoreConfig;
+use octant_fmu_host::OpenError;
+use octant_fmu_host::archive::Archive;
+use octant_fmu_host::description::{self, Description};
+use octant_fmu_host::instance::{Instance, InterfaceKind, Options, Place};
 use octant_plant::config::Config as PlantConfig;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -42,7 +42,7 @@ pub fn instance(scenario: &Scenario, fmu: &Fmu) -> Result<Kept, UseError> {
     // Ours give the same answers without event mode, in a third of the time.
     let own = describe(&path).is_ok_and(|description| is_made_here(&description));
     let options = Options { event_mode: !own, ..options(fmu) };
-    let instance = crate::fmu::open(&path, &options).map_err(|error| match error {
+    let instance = octant_fmu_host::open(&path, &options).map_err(|error| match error {
         OpenError::Instance(error) => UseError::instance(&uri, &error),
         other => UseError::Open { uri: uri.clone(), reason: other.to_string() },
     })?;

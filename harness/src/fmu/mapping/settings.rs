@@ -3,9 +3,9 @@
 use super::channel::{Channel, Class};
 use super::convert::conversion;
 use super::find::{count, find, unknown};
-use crate::fmu::description::{Causality, Description, Initial, Kind, Variability, Variable};
-use crate::fmu::instance::{Access, Group, Instance, InstanceError};
 use crate::scenario::{Dimension, Set, quantity_of};
+use octant_fmu_host::description::{Causality, Description, Initial, Kind, Variability, Variable};
+use octant_fmu_host::instance::{Access, Group, Instance, InstanceError};
 use std::ops::Range;
 
 /// Values that are set before an FMU starts.

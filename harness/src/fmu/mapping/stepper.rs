@@ -2,8 +2,8 @@
 
 use super::bind::{BindError, Bound};
 use super::settings::Starts;
-use crate::fmu::instance::{Instance, InstanceError, Outcome};
 use crate::scenario::{Problem, ScenarioError};
+use octant_fmu_host::instance::{Instance, InstanceError, Outcome};
 
 /// Why an FMU of a scenario can't be used, or went away.
 #[derive(Debug, thiserror::Error)]

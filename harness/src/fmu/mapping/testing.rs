@@ -1,13 +1,15 @@
 //! FMUs without a library, for tests: our own models behind the trait, and models made of closures.
 
-use crate::fmu::description::{
-    BaseUnit, Causality, Description, Dimension, Experiment, Initial, Interface, Kind, Standard,
-    Structure, Unit, Variability, Variable,
-};
-use crate::fmu::instance::{Group, Instance, InstanceError, Message, Outcome, Stepped, Update};
 use octant_fmu::component::Component;
 use octant_fmu::table::{self, Model};
 use octant_fmu::values::Values;
+use octant_fmu_host::description::{
+    BaseUnit, Causality, Description, Dimension, Experiment, Initial, Interface, Kind, Standard,
+    Structure, Unit, Variability, Variable,
+};
+use octant_fmu_host::instance::{
+    Group, Instance, InstanceError, Message, Outcome, Stepped, Update,
+};
 
 /// A variable: everything else is as usual.
 pub(crate) fn variable(name: &str, reference: u32, kind: Kind, causality: Causality) -> Variable {
@@ -44,15 +46,21 @@ pub(crate) fn variable(name: &str, reference: u32, kind: Kind, causality: Causal
     }
 }
 
-impl Variable {
+/// A variable with more.
+pub(crate) trait With {
     /// With a unit.
-    pub(crate) fn in_unit(mut self, unit: &str) -> Self {
+    fn in_unit(self, unit: &str) -> Self;
+    /// As an array.
+    fn array(self, elements: u64) -> Self;
+}
+
+impl With for Variable {
+    fn in_unit(mut self, unit: &str) -> Self {
         self.unit = Some(unit.to_owned());
         self
     }
 
-    /// As an array.
-    pub(crate) fn array(mut self, elements: u64) -> Self {
+    fn array(mut self, elements: u64) -> Self {
         self.dimensions = vec![Dimension::Fixed(elements)];
         self
     }

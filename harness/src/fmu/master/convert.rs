@@ -3,10 +3,10 @@
 use super::flat::Hop;
 use super::ssp::parameters::{Enumeration, Transformation};
 use super::values::{fits, is_float, is_numeric, kind_name, rounded};
-use crate::fmu::description::units::{
+use octant_fmu_host::description::units::{
     Conversion as UnitConversion, candidates, dimension, known, meant,
 };
-use crate::fmu::description::{BaseUnit, Description, Kind, Variable};
+use octant_fmu_host::description::{BaseUnit, Description, Kind, Variable};
 
 /// One thing that is done with a value.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,7 +1,7 @@
 //! Why FMUs can't be run together any further.
 
 use super::solve::SolveError;
-use crate::fmu::instance::InstanceError;
+use octant_fmu_host::instance::InstanceError;
 
 /// Why a system can't go on. What was recorded before is kept.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

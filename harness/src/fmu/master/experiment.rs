@@ -2,7 +2,7 @@
 
 use super::flat::Flat;
 use super::ssp::structure::Structure;
-use crate::fmu::description::Description;
+use octant_fmu_host::description::Description;
 
 /// Steps of a run at most: beyond, a step is surely too short.
 const STEPS_MAX: f64 = 1e12;

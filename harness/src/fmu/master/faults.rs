@@ -3,12 +3,13 @@
 use super::convert::Unit;
 use super::system::{Spot, System, Wire};
 use super::values::{is_float, kind_name, limits};
-use crate::fmu::description::{Description, Kind};
-use crate::scenario::{ConnectionFault, Given, Problem, ScenarioError, nearest, quantity_of};
+use crate::scenario::{ConnectionFault, Given, Problem, ScenarioError, quantity_of};
+use octant_base::names::nearest;
 use octant_faults::catalogue::{Bounds, Parameter, Takes};
 use octant_faults::connection::kinds::Target;
 use octant_faults::connection::{Spec, Station};
 use octant_faults::{BuildError, Value, Values};
+use octant_fmu_host::description::{Description, Kind};
 
 /// The faults of a run, ready to act.
 #[derive(Debug)]

@@ -6,7 +6,7 @@ use super::ssp::structure::{
     Binding, Component, Connection, Connector, ConnectorKind, End, Implementation, Part, Structure,
     System,
 };
-use crate::scenario::suggestion;
+use octant_base::names::suggestion;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 

@@ -6,8 +6,8 @@ use super::graph;
 use super::solve::{Limits, SolveError, Solved, solve};
 use super::system::{Side, System, Wire};
 use super::values::is_float;
-use crate::fmu::description::{Causality, Description, Initial};
-use crate::fmu::instance::{Group, Instance, InstanceError};
+use octant_fmu_host::description::{Causality, Description, Initial};
+use octant_fmu_host::instance::{Group, Instance, InstanceError};
 use std::collections::BTreeMap;
 
 /// A loop that was found.
@@ -308,7 +308,7 @@ fn links<'a>(system: &'a System) -> Vec<Link<'a>> {
 /// doesn't say, so on everything.
 fn dependencies(description: &Description, number: usize) -> Option<Vec<u32>> {
     let variable = &description.variables[number];
-    let of = |list: &[crate::fmu::description::Unknown]| {
+    let of = |list: &[octant_fmu_host::description::Unknown]| {
         list.iter().find(|unknown| unknown.reference == variable.reference).cloned()
     };
     if let Some(unknown) = of(&description.structure.initial_unknowns) {

@@ -56,7 +56,7 @@ impl Order {
         let mut order = Vec::with_capacity(names.len());
         for name in list {
             let Some(index) = names.iter().position(|known| known == name) else {
-                let known = crate::scenario::suggestion(name, names.iter().copied(), "FMUs");
+                let known = octant_base::names::suggestion(name, names.iter().copied(), "FMUs");
                 return Err(format!(
                     "the order names {name:?}, which is no FMU of the system, {known}"
                 ));

@@ -5,9 +5,10 @@ use super::convert::{Conversion, Terminal, Unit};
 use super::flat::{Flat, FlatComponent, FlatParameter};
 use super::ssp::SspError;
 use super::ssp::structure::Structure;
-use crate::fmu::description::{Description, Kind, Variable};
 use crate::fmu::mapping::settings::{Settings, Starts};
-use crate::scenario::{Set, suggestion};
+use crate::scenario::Set;
+use octant_base::names::suggestion;
+use octant_fmu_host::description::{Description, Kind, Variable};
 
 /// What is set in the FMUs of a system before they start, in their order. What the structure gives
 /// to variables that aren't there is passed over, as SSP says, and told in `warnings`.

@@ -6,8 +6,8 @@
 use super::error::MasterError;
 use super::simulation::Simulation;
 use super::system::{Side, System, element_names};
-use crate::fmu::description::Description;
 use crate::fmu::run::output::{Column, Outputs, Sink};
+use octant_fmu_host::description::Description;
 use std::io;
 use std::path::Path;
 
@@ -53,8 +53,11 @@ impl Recorder {
             }
         }
         let numbers = vec![0.0; place];
-        let outputs =
-            Outputs { plan: crate::fmu::instance::Plan::default(), columns, left_out: Vec::new() };
+        let outputs = Outputs {
+            plan: octant_fmu_host::instance::Plan::default(),
+            columns,
+            left_out: Vec::new(),
+        };
         let sinks = paths.iter().map(|path| Sink::file(path, &outputs, name));
         Ok(Self { numbers, sinks: sinks.collect::<Result<_, _>>()?, outputs, every, rows: 0 })
     }

@@ -15,8 +15,6 @@ use super::ssp::package::Package;
 use super::ssp::structure::{Implementation, Structure};
 use super::summary::{Ended, FmuResult, LoopResult, SCHEMA, Summary};
 use super::system::System;
-use crate::fmu::description::Description;
-use crate::fmu::instance::{Instance, InterfaceKind, Options, Place, open};
 use crate::fmu::mapping::settings::Starts;
 use crate::recorder::Event;
 use crate::run::Control;
@@ -24,6 +22,8 @@ use crate::scenario::{ScenarioError, connection_faults, text_of};
 use crate::score::judge::NO_REQUIREMENT;
 use crate::score::summary::FaultResult;
 use crate::score::verdict::Verdict;
+use octant_fmu_host::description::Description;
+use octant_fmu_host::instance::{Instance, InterfaceKind, Options, Place, open};
 use std::path::{Path, PathBuf};
 
 /// Rows of a recording at most, where nobody says how often one is kept.

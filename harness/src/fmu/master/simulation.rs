@@ -15,9 +15,9 @@ use super::faults::Faulting;
 use super::initialize::{Initializer, Loop};
 use super::solve::Limits;
 use super::system::{Side, System};
-use crate::fmu::description::Interface;
-use crate::fmu::instance::{Instance, InstanceError, Outcome, Stepped};
 use octant_faults::connection::Station;
+use octant_fmu_host::description::Interface;
+use octant_fmu_host::instance::{Instance, InstanceError, Outcome, Stepped};
 
 /// How FMUs are stepped.
 #[derive(Clone, Debug, PartialEq)]
@@ -425,7 +425,7 @@ impl<'a> Simulation<'a> {
             let instance = &mut self.instances[node];
             let description = instance.description();
             let group =
-                crate::fmu::instance::Group::of(description, &description.variables[*number]);
+                octant_fmu_host::instance::Group::of(description, &description.variables[*number]);
             let set =
                 group.and_then(|group| instance.set(&group, &self.inputs[node][range.clone()]));
             let error = match set {

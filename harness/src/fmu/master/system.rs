@@ -6,9 +6,9 @@ use super::flat::{Flat, FlatComponent, FlatWire, Port};
 use super::ssp::SspError;
 use super::ssp::structure::{Connector, ConnectorKind, Structure};
 use super::values::{is_numeric, kind_name};
-use crate::fmu::description::{Causality, Description, Kind, Variability, Variable};
-use crate::fmu::instance::{Group, InstanceError, Plan};
-use crate::scenario::suggestion;
+use octant_base::names::suggestion;
+use octant_fmu_host::description::{Causality, Description, Kind, Variability, Variable};
+use octant_fmu_host::instance::{Group, InstanceError, Plan};
 
 /// A system of FMUs, ready to be initialized.
 #[derive(Clone, Debug)]
@@ -413,7 +413,7 @@ fn find<'a>(description: &'a Description, name: &str) -> Result<Found<'a>, Strin
         return Ok(Found { first, count: 1, ..found });
     }
     let names = description.variables.iter().map(|variable| variable.name.as_str());
-    Err(match crate::scenario::nearest(name, names.clone()) {
+    Err(match octant_base::names::nearest(name, names.clone()) {
         Some(near) => format!("it has no variable {name:?}, did you mean {near:?}?"),
         None if description.variables.len() < 20 => {
             format!("it has no variable {name:?}, {}", suggestion(name, names, "variables"))

@@ -1,6 +1,6 @@
 //! Values on their way between variables of different types.
 
-use crate::fmu::description::Kind;
+use octant_fmu_host::description::Kind;
 
 /// Name of a type.
 #[must_use]

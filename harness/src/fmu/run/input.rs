@@ -5,10 +5,10 @@
 //! An array has a column for each element, or one with all of them between blanks, as in the inputs
 //! that FMUs of FMI 3.0 carry with them.
 
-use crate::fmu::description::units::{Conversion, known};
-use crate::fmu::description::{Causality, Description, Kind, Variability, Variable};
-use crate::fmu::instance::{InstanceError, Plan};
 use crate::fmu::mapping::find::{Way, allowed, count, find, unknown};
+use octant_fmu_host::description::units::{Conversion, known};
+use octant_fmu_host::description::{Causality, Description, Kind, Variability, Variable};
+use octant_fmu_host::instance::{InstanceError, Plan};
 use std::path::Path;
 
 /// Why inputs can't be read.

@@ -6,10 +6,10 @@
 pub mod input;
 pub mod output;
 
-use super::instance::{Instance, InstanceError, Outcome};
 use super::mapping::settings::Starts;
 use crate::run::Control;
 use input::Inputs;
+use octant_fmu_host::instance::{Instance, InstanceError, Outcome};
 use output::{Outputs, Sink};
 
 /// How long, and in what steps.

@@ -1,8 +1,8 @@
 //! Rows of an FMU's outputs, as CSV or as an MCAP file of JSON messages.
 
-use crate::fmu::description::{Causality, Description, Kind, Variable};
-use crate::fmu::instance::{InstanceError, Plan};
 use crate::fmu::mapping::find::{count, find, unknown};
+use octant_fmu_host::description::{Causality, Description, Kind, Variable};
+use octant_fmu_host::instance::{InstanceError, Plan};
 use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::{self, BufWriter, Write};
@@ -110,7 +110,7 @@ fn element_name(description: &Description, variable: &Variable, element: usize) 
     if variable.dimensions.is_empty() {
         return variable.name.clone();
     }
-    let one = |dimension: &crate::fmu::description::Dimension| {
+    let one = |dimension: &octant_fmu_host::description::Dimension| {
         let alone = Variable { dimensions: vec![*dimension], ..variable.clone() };
         count(description, &alone).max(1)
     };

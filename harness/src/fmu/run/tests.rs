@@ -1,10 +1,10 @@
 use super::input::{InputError, Inputs};
 use super::output::{Outputs, Sink, TOPIC};
 use super::*;
-use crate::fmu::description::{Causality, Description, Kind, Variability};
 use crate::fmu::mapping::settings::Settings;
-use crate::fmu::mapping::testing::{Scripted, description, variable};
+use crate::fmu::mapping::testing::{Scripted, With, description, variable};
 use crate::scenario::Set;
+use octant_fmu_host::description::{Causality, Description, Kind, Variability};
 
 /// y = 2 u + w[2], held: a copy of h, with a whole number and a text beside.
 fn model() -> Description {

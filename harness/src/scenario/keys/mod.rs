@@ -27,7 +27,8 @@ pub(crate) use source::SOURCE_LIVE;
 pub(crate) use suite::SUITE;
 
 use super::document::{Table, Value};
-use super::error::{Problem, nearest, suggestion};
+use super::error::Problem;
+use octant_base::names::{nearest, suggestion};
 
 /// The version of the format that this program reads.
 pub const SCHEMA: i64 = 1;

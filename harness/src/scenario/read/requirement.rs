@@ -3,12 +3,13 @@
 use super::Reader;
 use crate::scenario::Requirement;
 use crate::scenario::document::Value;
-use crate::scenario::error::{Problem, suggestion};
+use crate::scenario::error::Problem;
 use crate::scenario::quantity::{self, Quantity};
 use crate::score::decision::{Decision, Rule, Uncertainty};
 use crate::score::equipment::{Day, Equipment};
 use crate::score::verdict::{self, Comparison};
 use crate::score::{measures, signed};
+use octant_base::names::suggestion;
 use octant_sample::parameters::{Group, NAMES};
 
 /// Units that the names of measures end in, with the unit's own spelling.

@@ -4,7 +4,6 @@
 //! A command that the core computes from sample k goes in with the step after the next: it acts
 //! from the end of interval k + 1 on, as two FMUs that are stepped in parallel have it.
 
-use crate::fmu::description::Description;
 use crate::fmu::mapping::bind::{BindError, Binder, Bound, Cell, Cells, Handle};
 use crate::fmu::mapping::channel::{Channel, sample, truth};
 use crate::fmu::mapping::find::Way;
@@ -12,6 +11,7 @@ use crate::fmu::mapping::stepper::Stepper;
 use crate::scenario::Fmu;
 use crate::source::counting::Triads;
 use crate::source::{Epoch, Source, SourceError};
+use octant_fmu_host::description::Description;
 use octant_plant::Truth;
 use octant_sample::time::SimulatedTime;
 use octant_sample::{Aiding, DeviceTime, GimbalAngles, GimbalCommand, Reference, Sample, Status};

@@ -5,7 +5,6 @@
 //! degree that goes on smoothly into the next, up to the acceleration. What sensors and reference feel
 //! and what truth tells is that motion, to the last digit.
 
-use crate::fmu::description::Description;
 use crate::fmu::mapping::bind::{BindError, Binder, Bound, Cell};
 use crate::fmu::mapping::channel::{Channel, case};
 use crate::fmu::mapping::find::Way;
@@ -14,6 +13,7 @@ use crate::scenario::Fmu;
 use crate::source::{Epoch, Source, SourceError};
 use octant_earth::ellipsoid::Ellipsoid;
 use octant_faults::disturbance::Disturbed;
+use octant_fmu_host::description::Description;
 use octant_plant::config::{CaseAttitude, Config, Dockside, Motion, Site};
 use octant_plant::course::{Course, Point};
 use octant_plant::{ConfigError, Plant, Truth};

@@ -1,9 +1,9 @@
 use super::*;
-use crate::fmu::description::{Causality, Description, Kind};
-use crate::fmu::mapping::testing::{Scripted, description, variable};
+use crate::fmu::mapping::testing::{Scripted, With, description, variable};
 use crate::run::method::configurations;
 use crate::scenario::{self, Method};
 use crate::source::Epoch;
+use octant_fmu_host::description::{Causality, Description, Kind};
 use octant_sample::counts::{DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS};
 use octant_sample::{GimbalAngles, GimbalCommand, Reference, Status};
 use std::path::Path;
@@ -391,7 +391,7 @@ fn a_ship_that_sways_as_the_plants_own_gives_the_same_counts() {
         let mut cells = [0.0; 64];
         give(&mut cells, 0.0);
         for variable in ship(geodetic).variables {
-            let group = crate::fmu::instance::Group::of(&ship(geodetic), &variable).unwrap();
+            let group = octant_fmu_host::instance::Group::of(&ship(geodetic), &variable).unwrap();
             instance.set(&group, &[cells[variable.reference as usize]]).unwrap();
         }
         let kept = Kept { instance, uri: "fmu:ship.fmu".to_owned() };

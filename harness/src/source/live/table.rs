@@ -45,7 +45,7 @@ impl Table {
             let reason = format!("the program doesn't find itself: {error}");
             SourceError::Table(octant_turntable::Error::Guard { reason })
         })?;
-        let mut guard = crate::evidence::signature::command(program);
+        let mut guard = octant_base::child::command(program);
         guard.args(["turntable", "guard"]);
         let following = Following::start(&plan, &mut guard).map_err(SourceError::Table)?;
         let language = plan.dialect.name().to_owned();

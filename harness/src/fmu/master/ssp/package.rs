@@ -1,7 +1,7 @@
 //! The folder of a system structure: as it lies, or unpacked from an `.ssp`.
 
 use super::SspError;
-use crate::fmu::archive::{Archive, Unpacked};
+use octant_fmu_host::archive::{Archive, Unpacked};
 use std::path::{Path, PathBuf};
 
 /// The structure of a package.
@@ -54,7 +54,7 @@ impl Package {
 
     fn unpack(path: &Path, name: String) -> Result<Self, SspError> {
         // These errors name the file themselves.
-        let failed = |error: crate::fmu::archive::ArchiveError| {
+        let failed = |error: octant_fmu_host::archive::ArchiveError| {
             let text = error.to_string();
             let message = text.strip_prefix(&format!("{name}: ")).unwrap_or(&text).to_owned();
             SspError::of_file(&name, message)

@@ -3,7 +3,7 @@
 
 use super::SspError;
 use super::xml::{self, Element, SSC, SSM, SSV};
-use crate::fmu::description::{BaseUnit, Kind};
+use octant_fmu_host::description::{BaseUnit, Kind};
 
 /// A parameter set: an `.ssv` file, or what stands inline.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -217,7 +217,7 @@ fn literal(element: &Element<'_>, units: &[(String, BaseUnit)]) -> Result<Litera
             let found = units.iter().find(|(known, _)| known == name);
             let known = units.iter().map(|(name, _)| name.as_str());
             Some(found.cloned().ok_or_else(|| {
-                let known = crate::scenario::suggestion(name, known, "units of this file");
+                let known = octant_base::names::suggestion(name, known, "units of this file");
                 element.error(format!("the unit {name:?} is not defined, {known}"))
             })?)
         }

@@ -7,7 +7,7 @@ use super::parameters::{
     self, Enumeration, Mapping, ParameterSet, TRANSFORMATIONS, Transformation, kind_named,
 };
 use super::xml::{self, Element, SSC, SSD};
-use crate::fmu::description::{BaseUnit, Kind};
+use octant_fmu_host::description::{BaseUnit, Kind};
 use std::path::PathBuf;
 
 /// Systems within systems at most: far more than any design has.

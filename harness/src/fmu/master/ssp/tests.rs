@@ -3,9 +3,9 @@
 use super::package::Package;
 use super::parameters::Transformation;
 use super::structure::{Implementation, Structure};
-use crate::fmu::description::Kind;
 use crate::fmu::master::flat::Flat;
 use crate::fmu::master::order::Order;
+use octant_fmu_host::description::Kind;
 use std::path::Path;
 
 const HEAD: &str = r#"<?xml version="1.0" encoding="UTF-8"?>

@@ -1,7 +1,7 @@
 //! Elements and attributes of a file, with their lines.
 
 use super::SspError;
-use crate::scenario::suggestion;
+use octant_base::names::suggestion;
 use roxmltree::{Document, Node, ParsingOptions};
 
 /// Namespaces of the standard, the same for 1.0 and 2.0.

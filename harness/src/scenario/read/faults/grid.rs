@@ -3,8 +3,9 @@
 
 use super::super::Reader;
 use crate::scenario::document::{Node, Value};
-use crate::scenario::error::{Problem, suggestion};
+use crate::scenario::error::Problem;
 use crate::scenario::quantity::{self, Dimension};
+use octant_base::names::suggestion;
 use octant_faults::catalogue::Lasts;
 use octant_faults::trigger::{Repeat, Schedule, Trigger};
 

@@ -1,0 +1,125 @@
+//! What was found, collected.
+
+use super::rules::{Rule, Severity};
+use octant_fmu_host::description::Standard;
+use serde::Serialize;
+use serde::ser::{SerializeStruct, Serializer};
+use std::collections::BTreeMap;
+
+/// How many findings of a rule are kept; the others are counted. A generator that makes a mistake
+/// makes it for every variable.
+const KEPT: usize = 25;
+
+/// One thing that breaks a rule.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Finding {
+    /// The rule.
+    pub rule: &'static Rule,
+    /// The file inside the FMU; empty: the FMU itself.
+    pub entry: String,
+    /// The line, where it is about one.
+    pub line: Option<u32>,
+    /// The variable, unit, element, … that it is about; empty where there is none.
+    pub subject: String,
+    /// What was found.
+    pub found: String,
+    /// What was expected.
+    pub expected: String,
+    /// Where the standard says so: `FMI 2.0, 2.2.7`.
+    pub clause: String,
+}
+
+impl Serialize for Finding {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut state = serializer.serialize_struct("Finding", 8)?;
+        state.serialize_field("severity", &self.rule.severity)?;
+        state.serialize_field("rule", self.rule.id)?;
+        state.serialize_field("entry", &self.entry)?;
+        state.serialize_field("line", &self.line)?;
+        state.serialize_field("subject", &self.subject)?;
+        state.serialize_field("found", &self.found)?;
+        state.serialize_field("expected", &self.expected)?;
+        state.serialize_field("clause", &self.clause)?;
+        state.end()
+    }
+}
+
+/// Where something was found.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Place<'a> {
+    pub(super) entry: &'a str,
+    pub(super) line: Option<u32>,
+    pub(super) subject: &'a str,
+}
+
+/// What was found so far.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Findings {
+    kept: Vec<Finding>,
+    counts: BTreeMap<&'static str, usize>,
+    standard: Option<Standard>,
+}
+
+impl Findings {
+    /// From now on the FMU is of this standard.
+    pub(super) fn of(&mut self, standard: Standard) {
+        self.standard = Some(standard);
+    }
+
+    /// The rule is broken.
+    pub(super) fn add(
+        &mut self,
+        rule: &'static Rule,
+        place: Place<'_>,
+        found: impl Into<String>,
+        expected: impl Into<String>,
+    ) {
+        let count = self.counts.entry(rule.id).or_default();
+        *count += 1;
+        if *count > KEPT {
+            return;
+        }
+        self.kept.push(Finding {
+            rule,
+            entry: place.entry.to_owned(),
+            line: place.line,
+            subject: place.subject.to_owned(),
+            found: found.into(),
+            expected: expected.into(),
+            clause: clause(rule, self.standard),
+        });
+    }
+
+    /// All of them: worst first, each kind in the order of the file; and how many of each rule
+    /// weren't kept.
+    pub(super) fn finish(mut self) -> (Vec<Finding>, BTreeMap<&'static str, usize>) {
+        self.kept.sort_by_key(|finding| std::cmp::Reverse(finding.rule.severity));
+        let more = self
+            .counts
+            .into_iter()
+            .filter(|&(_, count)| count > KEPT)
+            .map(|(rule, count)| (rule, count - KEPT))
+            .collect();
+        (self.kept, more)
+    }
+
+    /// There is an error among them.
+    pub(super) fn has_errors(&self) -> bool {
+        self.kept.iter().any(|finding| finding.rule.severity == Severity::Error)
+    }
+}
+
+/// Where the standard says so.
+fn clause(rule: &Rule, standard: Option<Standard>) -> String {
+    let (name, section) = match standard {
+        Some(Standard::Fmi3) => ("FMI 3.0", rule.fmi3),
+        Some(Standard::Fmi2) if rule.fmi2.is_empty() => ("FMI 3.0", rule.fmi3),
+        _ => ("FMI 2.0", rule.fmi2),
+    };
+    match section {
+        "Octant" | "" => "Octant".into(),
+        // A standard of its own.
+        _ if section.starts_with("FMI-LS-") => section.into(),
+        _ => format!("{name}, {section}"),
+    }
+}

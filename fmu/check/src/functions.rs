@@ -1,0 +1,174 @@
+//! Which functions an FMU has to have: by its interfaces, its capabilities, and the types of its
+//! variables.
+
+use octant_fmu_host::description::{
+    Causality, Clock, Description, Initial, Interface, IntervalVariability, Kind, Variability,
+    Variable,
+};
+
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Of {
+    ModelExchange,
+    CoSimulation,
+    ScheduledExecution,
+}
+
+/// The interface that a function belongs to; none: all of them.
+fn interface_of(function: &str) -> Option<Of> {
+    match function {
+        "fmi2EnterEventMode"
+        | "fmi2NewDiscreteStates"
+        | "fmi2EnterContinuousTimeMode"
+        | "fmi2CompletedIntegratorStep"
+        | "fmi2SetTime"
+        | "fmi2SetContinuousStates"
+        | "fmi2GetDerivatives"
+        | "fmi2GetEventIndicators"
+        | "fmi2GetContinuousStates"
+        | "fmi2GetNominalsOfContinuousStates"
+        | "fmi3InstantiateModelExchange"
+        | "fmi3EnterContinuousTimeMode"
+        | "fmi3CompletedIntegratorStep"
+        | "fmi3SetTime"
+        | "fmi3SetContinuousStates"
+        | "fmi3GetContinuousStateDerivatives"
+        | "fmi3GetEventIndicators"
+        | "fmi3GetContinuousStates"
+        | "fmi3GetNominalsOfContinuousStates"
+        | "fmi3GetNumberOfEventIndicators"
+        | "fmi3GetNumberOfContinuousStates" => Some(Of::ModelExchange),
+        "fmi2SetRealInputDerivatives"
+        | "fmi2GetRealOutputDerivatives"
+        | "fmi2DoStep"
+        | "fmi2CancelStep"
+        | "fmi2GetStatus"
+        | "fmi2GetRealStatus"
+        | "fmi2GetIntegerStatus"
+        | "fmi2GetBooleanStatus"
+        | "fmi2GetStringStatus"
+        | "fmi3InstantiateCoSimulation"
+        | "fmi3EnterStepMode"
+        | "fmi3GetOutputDerivatives"
+        | "fmi3DoStep" => Some(Of::CoSimulation),
+        "fmi3InstantiateScheduledExecution" | "fmi3ActivateModelPartition" => {
+            Some(Of::ScheduledExecution)
+        }
+        _ => None,
+    }
+}
+
+/// The function belongs to an interface that the FMU has, or to all of them.
+pub(super) fn is_of_interface(description: &Description, function: &str) -> bool {
+    match interface_of(function) {
+        Some(Of::ModelExchange) => description.model_exchange.is_some(),
+        Some(Of::CoSimulation) => description.co_simulation.is_some(),
+        Some(Of::ScheduledExecution) => description.scheduled_execution,
+        None => true,
+    }
+}
+
+/// Without the function something that the description promises can't be done. The standards ask for
+/// the others as well, but nobody calls them.
+pub(super) fn is_needed(description: &Description, function: &str) -> bool {
+    let name = function.get(4..).unwrap_or(function);
+    let can = |capability: fn(&Interface) -> bool| {
+        let interfaces = description.co_simulation.iter().chain(&description.model_exchange);
+        interfaces.into_iter().any(capability)
+    };
+    // What nobody can set needs no function that sets it.
+    let sets = name.starts_with("Set");
+    let has = |kind: Kind| {
+        description
+            .variables
+            .iter()
+            .any(|variable| variable.kind == kind && (!sets || is_settable(variable)))
+    };
+    // FMI 2.0 gets enumerations as integers.
+    let of_type = |name: &str| match name {
+        "Real" => has(Kind::Float64),
+        "Integer" => has(Kind::Int32) || has(Kind::Enumeration),
+        "Int64" => has(Kind::Int64) || has(Kind::Enumeration),
+        name => Kind::ALL.into_iter().any(|kind| kind.name() == name && has(kind)),
+    };
+    match name {
+        "GetFMUstate" | "SetFMUstate" | "FreeFMUstate" | "GetFMUState" | "SetFMUState"
+        | "FreeFMUState" => can(|interface| interface.state),
+        "SerializedFMUstateSize"
+        | "SerializeFMUstate"
+        | "DeSerializeFMUstate"
+        | "SerializedFMUStateSize"
+        | "SerializeFMUState"
+        | "DeserializeFMUState" => can(|interface| interface.serialized_state),
+        "GetDirectionalDerivative" => can(|interface| interface.directional_derivatives),
+        "GetAdjointDerivative" => can(|interface| interface.adjoint_derivatives),
+        "SetRealInputDerivatives" => can(|interface| interface.interpolates_inputs),
+        "GetRealOutputDerivatives" | "GetOutputDerivatives" => {
+            can(|interface| interface.output_derivative_order > 0)
+        }
+        // No status that the standard has is an integer, and the one that is a text is for people.
+        "GetIntegerStatus" | "GetStringStatus" => false,
+        "CancelStep" | "GetStatus" | "GetRealStatus" | "GetBooleanStatus" => {
+            can(|interface| interface.asynchronous)
+        }
+        "EnterEventMode" | "UpdateDiscreteStates" | "EnterStepMode" => {
+            description.model_exchange.is_some() || can(|interface| interface.event_mode)
+        }
+        "EvaluateDiscreteStates" => can(|interface| interface.evaluates_discrete_states),
+        "EnterConfigurationMode" | "ExitConfigurationMode" => description
+            .variables
+            .iter()
+            .any(|variable| variable.causality == Causality::StructuralParameter),
+        "GetNumberOfVariableDependencies" | "GetVariableDependencies" => false,
+        "GetIntervalDecimal" => has_clock(description, |_| true),
+        "GetIntervalFraction" => has_clock(description, |clock| clock.supports_fraction),
+        // Who doesn't ask for them has the values of the description.
+        "GetShiftDecimal"
+        | "GetShiftFraction"
+        | "SetIntervalDecimal"
+        | "SetIntervalFraction"
+        | "SetShiftDecimal"
+        | "SetShiftFraction" => false,
+        _ => match name.strip_prefix("Get").or_else(|| name.strip_prefix("Set")) {
+            Some("Version" | "TypesPlatform") => true,
+            Some("DebugLogging") => !description.log_categories.is_empty(),
+            Some(
+                of @ ("Real" | "Integer" | "Float32" | "Float64" | "Int8" | "UInt8" | "Int16"
+                | "UInt16" | "Int32" | "UInt32" | "Int64" | "UInt64" | "Boolean" | "String"
+                | "Binary" | "Clock"),
+            ) => of_type(of),
+            _ => true,
+        },
+    }
+}
+
+/// It can be set at some time.
+fn is_settable(variable: &Variable) -> bool {
+    variable.variability != Variability::Constant
+        && (matches!(
+            variable.causality,
+            Causality::Input | Causality::Parameter | Causality::StructuralParameter
+        ) || matches!(variable.initial, Some(Initial::Exact | Initial::Approx)))
+}
+
+/// There is a clock whose interval the FMU tells, of which `and` is true.
+fn has_clock(description: &Description, and: impl Fn(&Clock) -> bool) -> bool {
+    use IntervalVariability::{Changing, Countdown, Tunable};
+    description.variables.iter().filter_map(|variable| variable.clock.as_ref()).any(|clock| {
+        matches!(clock.interval_variability, Tunable | Changing | Countdown) && and(clock)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_function_of_one_interface_is_a_function() {
+        let names = octant_fmi::fmi2::NAMES.iter().chain(octant_fmi::fmi3::NAMES);
+        let of =
+            |interface| names.clone().filter(|name| interface_of(name) == Some(interface)).count();
+        assert_eq!(of(Of::ModelExchange), 10 + 11);
+        assert_eq!(of(Of::CoSimulation), 9 + 4);
+        assert_eq!(of(Of::ScheduledExecution), 2);
+    }
+}

@@ -1,0 +1,161 @@
+//! The library of an FMU loaded, an instance made, initialized and stepped once.
+//!
+//! This runs the FMU's code. In a process of its own it can crash and hang without harm to us; it
+//! can still do whatever the user may do.
+
+use super::Checked;
+use super::finding::Place;
+use super::rules::{
+    LOAD_INSTANTIATES, LOAD_OPENS, LOAD_STARTS, LOAD_STEPS, LOAD_SURVIVES, LOAD_TOOL, Rule,
+};
+use octant_fmu_host::description::{Causality, Description, Initial, Kind, Variable};
+use octant_fmu_host::instance::open::{OpenError, open_archive};
+use octant_fmu_host::instance::{Instance, InstanceError, InterfaceKind, Options, Outcome, Plan};
+
+/// Step of an FMU whose description has none, s.
+const STEP_S: f64 = 0.01;
+
+/// How many variables are compared with their start values.
+const STARTS_MAX: usize = 100_000;
+
+/// Loads the FMU with each of its interfaces, and makes an instance; with `step` it is initialized,
+/// and does a first step. What fails becomes findings.
+pub fn load(checked: &mut Checked, options: &Options, step: bool) {
+    let Some(description) = checked.description.clone() else { return };
+    let kinds = [
+        (InterfaceKind::CoSimulation, "CoSimulation", &description.co_simulation),
+        (InterfaceKind::ModelExchange, "ModelExchange", &description.model_exchange),
+    ];
+    for (kind, name, interface) in kinds {
+        let Some(interface) = interface else { continue };
+        let place = Place { subject: name, ..Place::default() };
+        // What needs its tool isn't ours to judge without it.
+        if interface.needs_execution_tool {
+            let found = match &description.generation_tool[..] {
+                "" => "it needs the tool that made it".to_owned(),
+                tool => format!("it needs the tool that made it, {tool}"),
+            };
+            checked.findings.add(&LOAD_TOOL, place, found, "an FMU that stands alone");
+            continue;
+        }
+        let options = Options { interface: kind, ..options.clone() };
+        if let Err(failure) = one(checked, &description, &options, name, step) {
+            checked.findings.add(failure.rule, place, failure.found, failure.rule.says);
+        }
+    }
+}
+
+/// A call that failed, and the rule that it breaks.
+struct Failure {
+    rule: &'static Rule,
+    found: String,
+}
+
+impl Failure {
+    /// What an error says of the rule that the call is for.
+    fn of(error: &InstanceError, rule: &'static Rule) -> Self {
+        let rule = match error {
+            InstanceError::Process { .. } => &LOAD_SURVIVES,
+            InstanceError::Load { .. } => &LOAD_OPENS,
+            _ => rule,
+        };
+        Self { rule, found: error.to_string() }
+    }
+}
+
+/// One interface.
+fn one(
+    checked: &mut Checked,
+    description: &Description,
+    options: &Options,
+    name: &str,
+    step: bool,
+) -> Result<(), Failure> {
+    let mut instance =
+        open_archive(&mut checked.archive, options).map_err(|error| match error {
+            OpenError::Instance(error) => Failure::of(&error, &LOAD_INSTANTIATES),
+            error => Failure { rule: &LOAD_OPENS, found: error.to_string() },
+        })?;
+    if !step {
+        return Ok(());
+    }
+    let experiment = description.default_experiment;
+    let start_s = experiment.start_s.filter(|start| start.is_finite()).unwrap_or(0.0);
+    let initialize = |error: InstanceError| Failure::of(&error, &LOAD_INSTANTIATES);
+    instance.enter_initialization(start_s, None, experiment.tolerance).map_err(initialize)?;
+    if let Some(found) = other_starts(&mut *instance, description).map_err(initialize)? {
+        let place = Place { subject: name, ..Place::default() };
+        checked.findings.add(&LOAD_STARTS, place, found, "the start values of the description");
+    }
+    if instance.exit_initialization().map_err(initialize)? {
+        return Ok(());
+    }
+    let fixed = description.co_simulation.as_ref().and_then(|cs| cs.fixed_internal_step_s);
+    let step_s = [experiment.step_s, fixed]
+        .into_iter()
+        .flatten()
+        .find(|&step| step > 0.0 && step.is_finite())
+        .unwrap_or(STEP_S);
+    let steps = |error: InstanceError| Failure::of(&error, &LOAD_STEPS);
+    let stepped = instance.advance(start_s, step_s).map_err(steps)?;
+    if stepped.outcome == Outcome::Discarded {
+        let found = format!("a step of {step_s} s from {start_s} s is refused");
+        return Err(Failure { rule: &LOAD_STEPS, found });
+    }
+    instance.terminate().map_err(steps)
+}
+
+/// A variable that is exact, but has another value than its start value before it was set.
+fn other_starts(
+    instance: &mut dyn Instance,
+    description: &Description,
+) -> Result<Option<String>, InstanceError> {
+    let is_exact = |variable: &&Variable| {
+        let number = !matches!(variable.kind, Kind::String | Kind::Binary | Kind::Clock);
+        let exact =
+            variable.initial == Some(Initial::Exact) || variable.causality == Causality::Input;
+        number && exact && !variable.start.is_empty() && variable.clocks.is_empty()
+    };
+    let variables: Vec<&Variable> =
+        description.variables.iter().filter(is_exact).take(STARTS_MAX).collect();
+    let plan = Plan::new(description, &variables)?;
+    // What can't be got is no start value that differs; that the function is missing is said there.
+    let mut values = vec![None; plan.elements];
+    let mut first = 0;
+    for group in &plan.groups {
+        let mut numbers = vec![0.0; group.elements];
+        match instance.get(group, &mut numbers) {
+            Ok(()) => {
+                for (value, number) in values[first..].iter_mut().zip(numbers) {
+                    *value = Some(number);
+                }
+            }
+            Err(InstanceError::Unsupported { .. }) => {}
+            Err(error) => return Err(error),
+        }
+        first += group.elements;
+    }
+    for (variable, place) in variables.iter().zip(&plan.places) {
+        for (element, value) in values[place.clone()].iter().enumerate() {
+            let text = variable.start.get(element).or(variable.start.first());
+            let start = text.and_then(|text| start(variable.kind, text));
+            let (Some(start), Some(value)) = (start, value) else { continue };
+            // A start value may be NaN.
+            if value.to_bits() != start.to_bits() && *value != start {
+                let name = &variable.name;
+                return Ok(Some(format!("{name:?} is {value}, its start value is {start}")));
+            }
+        }
+    }
+    Ok(None)
+}
+
+/// A start value as numbers travel.
+fn start(kind: Kind, text: &str) -> Option<f64> {
+    use octant_fmu_host::description::xml::{boolean, real};
+    match kind {
+        Kind::Boolean => boolean(text).map(f64::from),
+        Kind::Float32 => text.trim().parse::<f32>().ok().map(f64::from),
+        _ => real(text),
+    }
+}

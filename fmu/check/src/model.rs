@@ -1,0 +1,105 @@
+//! A description with what its file says word by word: rules ask for both.
+
+use super::finding::{Findings, Place};
+use super::rules::Rule;
+use octant_fmu_host::description::xml::Element;
+use octant_fmu_host::description::{Description, Kind, Standard, Variable};
+use std::collections::HashMap;
+
+/// A description and the tree that it was read from.
+pub(super) struct Model<'a, 't> {
+    /// The file inside the FMU.
+    pub(super) entry: &'a str,
+    /// What it means.
+    pub(super) description: &'a Description,
+    /// Its root element.
+    pub(super) root: Element<'a, 't>,
+    /// Its variables.
+    pub(super) variables: Vec<Declared<'a, 't>>,
+    /// Index of the first variable with each value reference.
+    pub(super) by_reference: HashMap<u32, usize>,
+    /// Index of the first variable with each name or alias.
+    pub(super) by_name: HashMap<&'a str, usize>,
+}
+
+/// A variable with its element.
+#[derive(Clone, Copy)]
+pub(super) struct Declared<'a, 't> {
+    /// Its element, with name and causality.
+    pub(super) element: Element<'a, 't>,
+    /// The element with type, start and limits: in FMI 3.0 the same.
+    pub(super) value: Element<'a, 't>,
+    /// What it means.
+    pub(super) variable: &'a Variable,
+}
+
+impl<'a, 't: 'a> Model<'a, 't> {
+    /// Puts both together.
+    pub(super) fn new(entry: &'a str, description: &'a Description, root: Element<'a, 't>) -> Self {
+        let elements = root.child("ModelVariables").into_iter().flat_map(Element::children);
+        let variables: Vec<Declared<'a, 't>> = elements
+            .filter_map(|element| Some((element, value(element, description.standard)?)))
+            .zip(&description.variables)
+            .map(|((element, value), variable)| Declared { element, value, variable })
+            .collect();
+        let mut by_reference = HashMap::new();
+        let mut by_name = HashMap::new();
+        for (index, declared) in variables.iter().enumerate() {
+            by_reference.entry(declared.variable.reference).or_insert(index);
+            by_name.entry(declared.variable.name.as_str()).or_insert(index);
+        }
+        for (index, declared) in variables.iter().enumerate() {
+            for alias in &declared.variable.aliases {
+                by_name.entry(alias.name.as_str()).or_insert(index);
+            }
+        }
+        Self { entry, description, root, variables, by_reference, by_name }
+    }
+
+    /// The standard.
+    pub(super) fn standard(&self) -> Standard {
+        self.description.standard
+    }
+
+    /// It is of FMI 2.0.
+    pub(super) fn is_fmi2(&self) -> bool {
+        self.standard() == Standard::Fmi2
+    }
+
+    /// The place of an element.
+    pub(super) fn at<'p>(&'p self, element: Element<'_, '_>, subject: &'p str) -> Place<'p> {
+        Place { entry: self.entry, line: Some(element.line()), subject }
+    }
+
+    /// A rule is broken by a variable.
+    pub(super) fn broken(
+        &self,
+        findings: &mut Findings,
+        rule: &'static Rule,
+        declared: &Declared<'_, '_>,
+        found: impl Into<String>,
+        expected: impl Into<String>,
+    ) {
+        let place = self.at(declared.element, &declared.variable.name);
+        findings.add(rule, place, found, expected);
+    }
+}
+
+/// The element with type, start and limits of a variable's element; `None`: it is no variable.
+fn value<'a, 't: 'a>(element: Element<'a, 't>, standard: Standard) -> Option<Element<'a, 't>> {
+    let known = |name: &str| Kind::ALL.iter().any(|kind| kind.name() == name);
+    match standard {
+        Standard::Fmi3 => known(element.name()).then_some(element),
+        Standard::Fmi2 if element.name() == "ScalarVariable" => element.children().find(|child| {
+            matches!(child.name(), "Real" | "Integer" | "Boolean" | "String" | "Enumeration")
+        }),
+        Standard::Fmi2 => None,
+    }
+}
+
+impl Declared<'_, '_> {
+    /// Name of its type, as its standard writes it.
+    pub(super) fn type_name(&self) -> &str {
+        self.value.name()
+    }
+}

@@ -1,0 +1,8 @@
+//! Compiles the one function that Rust can't define: a callback with variable arguments.
+
+fn main() {
+    cc::Build::new()
+        .file("src/instance/logger.c")
+        .extra_warnings(true)
+        .compile("octant_fmi2_logger");
+}
