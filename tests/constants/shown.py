@@ -157,5 +157,5 @@ def is_rounding(word, now):
     if math.isclose(first, second, rel_tol=ROUNDING, abs_tol=ZERO):
         return True
     decimals = [len(text.partition(".")[2]) for text in (word, now)]
-    few = all("e" not in text and 0 < places <= DECIMALS for text, places in zip((word, now), decimals))
+    few = "e" not in word + now and 0 < max(decimals) <= DECIMALS
     return few and abs(first - second) <= 1.01 * 10.0 ** -max(decimals)

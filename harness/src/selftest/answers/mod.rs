@@ -6,6 +6,7 @@
 //! one of these notices.
 
 mod bridge;
+mod campaign;
 mod core;
 mod defaults;
 mod draws;
@@ -131,6 +132,13 @@ pub fn cases() -> Vec<Case> {
             |_| scores::found().map(outcome),
         ),
         case(
+            "answers-campaign",
+            "Bounds that a campaign of six runs states, where nobody asked for a confidence.",
+            known("campaign"),
+            "Clopper and Pearson (golden/answers.py)",
+            campaign::found,
+        ),
+        case(
             "answers-core",
             "Limits of the core's screens, a corrected attitude, units of states, references.",
             known("core"),
@@ -214,8 +222,8 @@ mod tests {
         let cancel = std::sync::atomic::AtomicBool::new(false);
         let mut all_wrong = Vec::new();
         for case in cases() {
-            // That one needs the program.
-            if case.id == "answers-navigation" {
+            // These need the program.
+            if matches!(case.id, "answers-navigation" | "answers-campaign") {
                 continue;
             }
             let Expectation::Numbers { known, .. } = &case.expectation else { panic!() };
