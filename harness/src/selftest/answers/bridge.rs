@@ -40,7 +40,7 @@ pub(super) fn found() -> Result<Found, String> {
     let mut all = Found::new();
     for (name, stop, ..) in MOVES {
         let mut with_gap = Bench::new()?;
-        with_gap.into_move(stop, BEFORE)?;
+        with_gap.move_towards(stop, BEFORE)?;
         with_gap.lose(LOST);
         with_gap.step();
         all.insert(
@@ -48,7 +48,7 @@ pub(super) fn found() -> Result<Found, String> {
             with_gap.attitude_error_rad(),
         );
         let mut whole = Bench::new()?;
-        whole.into_move(stop, 1)?;
+        whole.move_towards(stop, 1)?;
         while whole.output.moving {
             whole.step();
         }
@@ -92,8 +92,8 @@ impl Bench {
         }
     }
 
-    /// Up to so many samples into the move to a stop.
-    fn into_move(&mut self, stop: u16, samples: u32) -> Result<(), String> {
+    /// Up to so many samples of the move to a stop.
+    fn move_towards(&mut self, stop: u16, samples: u32) -> Result<(), String> {
         let mut moved = 0;
         while moved < samples {
             self.step();
