@@ -137,7 +137,7 @@ fn text(scores: &Scores) -> String {
         let _ = writeln!(
             out,
             "  navigation {} h, height held",
-            crate::report::number::plain(navigation.duration_h, 4)
+            octant_base::number::plain(navigation.duration_h, 4)
         );
         for (name, error) in [("latitude", lat), ("longitude", lon)] {
             let _ = writeln!(

@@ -84,8 +84,8 @@ fn chart(line: &Line, baseline: Option<usize>) -> Markup {
     html! {
         @if let [only] = line.points.as_slice() {
             h3 { (line.measure) }
-            p { "median " (crate::report::number::significant(only.median, 4)) ", 95th percentile "
-                (crate::report::number::significant(only.p95, 4)) ", in one night" }
+            p { "median " (octant_base::number::significant(only.median, 4)) ", 95th percentile "
+                (octant_base::number::significant(only.p95, 4)) ", in one night" }
         } @else { (chart.render()) }
         @if !worse.is_empty() { p.hint { "Worse than its baseline in night " (worse.join(", ")) "." } }
         @if !better.is_empty() { p.hint { "Better than its baseline in night " (better.join(", ")) "." } }

@@ -1,9 +1,10 @@
 //! The calibration of a run: parameters, how they converged, innovations.
 
 use super::chart::{Band, Chart, Line, Role};
+use super::parameters;
 use super::run::{NisPoint, ParameterPoint, ReportData};
-use super::{number, parameters};
 use maud::{Markup, html};
+use octant_base::number;
 use octant_sample::parameters::Group;
 
 pub(super) fn calibration(data: &ReportData) -> Markup {

@@ -1,8 +1,8 @@
 //! Line charts as inline SVG. Colours are classes of the page's style sheet, so that a chart
 //! follows light, dark and print; without the style sheet nothing is lost but the colour.
 
-use super::number;
 use maud::{Markup, html};
+use octant_base::number;
 
 /// What a line or band stands for: the style sheet gives it its colour and dash.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,10 +1,10 @@
 //! `compare.html` and the plain text of `octant compare`.
 
 use super::chart::{Chart, Line, Role};
-use super::number;
 use super::page::page;
 use crate::score::compare::{Cell, Claim, Comparison, Refusals, interval, percent};
 use maud::{Markup, html};
+use octant_base::number;
 use octant_statistics::sample::Interval;
 
 /// The comparison as text for a terminal.

@@ -1,10 +1,10 @@
 //! What the faults did: the run against its twin without them.
 
 use super::chart::{Chart, Line, Role};
-use super::number;
 use crate::score::counterfactual::{Counterfactual, DriftDifference, HARMFUL_SHIFT_SIGMA};
 use crate::score::summary::{Calibration, Summary};
 use maud::{Markup, html};
+use octant_base::number;
 use octant_sample::parameters::NAMES;
 
 /// Parameters listed at most: those that moved most.

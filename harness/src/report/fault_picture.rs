@@ -2,9 +2,9 @@
 //! difference. One SVG that stands by itself and follows light and dark.
 
 use super::chart::{multiples_of, nice_ticks, round, span, thinned};
-use super::number;
 use crate::run::side_by_side::{SideBySide, Step};
 use maud::{Markup, PreEscaped, html};
+use octant_base::number;
 use octant_faults::catalogue::{Acts, Family, Kind};
 use octant_sample::counts::{DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS, GIMBAL_LSB_RAD};
 use octant_sample::{Aiding, Epoch, Reference};

@@ -5,7 +5,6 @@
 //! - [`campaign`] makes `report.html` of a campaign
 //! - [`fault_picture`] draws what a fault does
 //! - [`chart`] draws lines as inline SVG that follows the colours of the page
-//! - [`number`] writes numbers as people read them
 
 mod calibration;
 pub mod campaign;
@@ -15,7 +14,6 @@ pub mod counterfactual;
 mod discrepancies;
 mod drift;
 pub mod fault_picture;
-pub mod number;
 mod pacing;
 pub(crate) mod page;
 mod parameters;

@@ -1,9 +1,9 @@
 //! How a run kept time.
 
 use super::chart::{Chart, Line, Role};
-use super::number;
 use crate::score::summary::{Lateness, Pacing, Summary};
 use maud::{Markup, html};
+use octant_base::number;
 
 /// The section; nothing of a run that didn't go by the clock.
 pub(super) fn pacing(summary: &Summary) -> Markup {

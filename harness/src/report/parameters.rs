@@ -1,8 +1,8 @@
 //! Every parameter against truth: a table whose last column is the plot.
 
-use super::number;
 use crate::score::summary::{Calibration, ParameterScore};
 use maud::{Markup, html};
+use octant_base::number;
 use octant_sample::parameters::{Group, NAMES};
 
 /// Width of the strip in σ on each side.

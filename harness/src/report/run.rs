@@ -4,7 +4,6 @@ use super::calibration::calibration;
 use super::chart::{Chart, Line, Role};
 use super::counterfactual::counterfactual;
 use super::drift::drift;
-use super::number;
 use super::pacing::pacing;
 use super::page::{badge, page};
 use crate::evidence::discrepancy;
@@ -13,6 +12,7 @@ use crate::score::summary::{Calibration, HeightChannel, Summary};
 use crate::score::verdict::Verdict;
 use crate::score::work::duration;
 use maud::{Markup, html};
+use octant_base::number;
 use octant_sample::Parameters;
 use octant_sample::parameters::PARAMETER_COUNT;
 

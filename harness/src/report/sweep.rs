@@ -1,9 +1,9 @@
 //! `sweep.html`, the heat map of a sweep, alone as `sweep.svg`, and its plain text and CSV.
 
-use super::number;
 use super::page::page;
 use crate::run::sweep::{Axis, Cell, Sweep, indices};
 use maud::{Markup, PreEscaped, html};
+use octant_base::number;
 
 /// Width and height of a cell of the map, px.
 const CELL: [f64; 2] = [112.0, 46.0];

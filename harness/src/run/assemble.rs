@@ -5,7 +5,7 @@ use super::method::MethodRun;
 use super::twin::difference;
 use crate::evidence::disposition::Dispositions;
 use crate::report::counterfactual::in_words;
-use crate::report::{Provenance, ReportData, number};
+use crate::report::{Provenance, ReportData};
 use crate::scenario::{Endpoint, Motion, Scenario, Source};
 use crate::score::decision::{Against, Rule};
 use crate::score::equipment::{self, Day};
@@ -16,6 +16,7 @@ use crate::score::summary::{
     AlteredStreams, Baseline, FaultResult, ParameterScore, SCHEMA, Summary,
 };
 use crate::score::verdict::Verdict;
+use octant_base::number;
 use octant_earth::units::{DEG, DEG_PER_SQRT_HOUR, MICRO_G};
 use octant_sample::parameters::NAMES;
 use octant_turntable::Axis;

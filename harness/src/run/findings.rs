@@ -3,12 +3,12 @@
 
 use super::drive::Ended;
 use super::method::{MethodRun, planned_of};
-use crate::report::number;
 use crate::scenario::{Calibration, Method, Realtime, Scenario};
 use crate::score::judge::Finding;
 use crate::score::summary::Pacing;
 use crate::score::verdict::Verdict;
 use crate::score::work::{Part, duration};
+use octant_base::number;
 use octant_faults::Receipt;
 use octant_faults::catalogue::Acts;
 

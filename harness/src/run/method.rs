@@ -86,7 +86,7 @@ impl From<crate::endpoint::OpenError> for SetupError {
 /// Why a core can't be set up, in the figures of the scenario.
 #[must_use]
 pub fn core_problem(error: &ConfigError) -> String {
-    use crate::report::number::plain;
+    use octant_base::number::plain;
     match error {
         ConfigError::Alignment { alignment_s, dwell_s } if alignment_s <= dwell_s => {
             "coarse alignment needs the first stop at azimuth 0 and roll 0, where the gimbals start"

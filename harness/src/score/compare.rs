@@ -187,7 +187,7 @@ impl Refusals {
             "{}, {}: McNemar's p = {}{}",
             one(first, self.first, &self.first_rate),
             one(second, self.second, &self.second_rate),
-            crate::report::number::significant(self.p, 2),
+            octant_base::number::significant(self.p, 2),
             match self.detectable {
                 Some(part) => format!(
                     "; so many seeds find with 90 % that one method refuses {} % more of them",
@@ -342,7 +342,7 @@ pub fn interval(i: &Improvement) -> String {
 /// A fraction in whole per cent, with a true minus.
 #[must_use]
 pub fn percent(fraction: f64) -> String {
-    crate::report::number::fixed(100.0 * fraction, 0)
+    octant_base::number::fixed(100.0 * fraction, 0)
 }
 
 /// The verdict and its reasons.

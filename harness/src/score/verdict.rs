@@ -177,7 +177,7 @@ impl RequirementResult {
 
     /// That a value is too near to its limit to be told from it.
     fn within(&self, value: f64, band: f64) -> String {
-        let plain = |value| crate::report::number::plain(value, 6);
+        let plain = |value| octant_base::number::plain(value, 6);
         format!(
             "{} is {}, which its reference, uncertain by {}, can't tell from the limit of {}",
             self.measure,
@@ -214,7 +214,7 @@ impl RequirementResult {
     #[must_use]
     pub fn figures(&self) -> (String, String) {
         let value = self.value.unwrap_or(f64::NAN);
-        let figures = [value, self.limit].map(|v| crate::report::number::plain(v, 6));
+        let figures = [value, self.limit].map(|v| octant_base::number::plain(v, 6));
         match figures {
             [a, b] if a == b && value != self.limit => (value.to_string(), self.limit.to_string()),
             [a, b] => (a, b),

@@ -1,6 +1,6 @@
 //! What a run was to do and what it did: the first thing that a verdict rests on.
 
-use crate::report::number::plain;
+use octant_base::number::plain;
 use serde::{Deserialize, Serialize};
 
 /// Shortfall of a duration that is none, s: a unit changes its mode a sample or two late.

@@ -1,9 +1,9 @@
 //! What the head of a recording says about its run.
 
 use crate::recorder::reader::Info;
-use crate::report::number::plain;
 use crate::scenario::resolve::{Draws, Seeded};
 use crate::scenario::{Method, Scenario};
+use octant_base::number::plain;
 use octant_faults::trigger::{Schedule, Trigger};
 use octant_sample::Parameters;
 use std::path::Path;

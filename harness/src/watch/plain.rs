@@ -2,8 +2,8 @@
 
 use super::follow::{Follow, Stage};
 use super::state::{FaultState, State};
-use crate::report::number::{fixed, significant};
 use crate::score::verdict::Verdict;
+use octant_base::number::{fixed, significant};
 use octant_sample::Mode;
 use octant_sample::parameters::{Group, NAMES};
 use std::fmt::Write as _;
@@ -245,7 +245,7 @@ fn parameters(state: &State) -> String {
         let unit = group.si_per_unit();
         for i in group.range().filter(|i| estimate.sigma[*i] > 0.0) {
             let (value, sigma) = (values[i] / unit, estimate.sigma[i] / unit);
-            let decimals = crate::report::number::decimals_for(sigma, 2);
+            let decimals = octant_base::number::decimals_for(sigma, 2);
             let _ = writeln!(
                 out,
                 "  {:24} {:>10} ± {} {}",

@@ -3,7 +3,7 @@
 use super::bench::{Bench, CAMPAIGN, check, drawn, final_nmi, rate};
 use octant::campaign::case;
 use octant::campaign::plan::FactorValue;
-use octant::report::number::significant;
+use octant_base::number::significant;
 use serde_json::{Value, json};
 
 /// Percentile, definition 7 of Hyndman and Fan.

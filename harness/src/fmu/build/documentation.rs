@@ -2,8 +2,8 @@
 
 use super::describe::{STEP_S, STOP_S, TOOL, has_start};
 use super::prose::{self, Prose};
-use crate::report::number::plain;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
+use octant_base::number::plain;
 use octant_fmu::table::{Causality, Kind, Model, Quantity, Ticks, Variability, Variable};
 
 /// Which standard the page is for.

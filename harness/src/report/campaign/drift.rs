@@ -6,8 +6,8 @@ use crate::campaign::report::figures::{
     CombinationFigures, EnvelopeFigures, PERCENTILES, ScenarioFigures,
 };
 use crate::report::chart::{Band, Chart, Line, Role};
-use crate::report::number;
 use maud::{Markup, html};
+use octant_base::number;
 
 /// Combinations that are drawn.
 pub(super) const DRAWN_MAX: usize = 24;

@@ -4,8 +4,8 @@ use super::{case_link, heading};
 use crate::campaign::report::Report;
 use crate::campaign::report::rows::{Outcome, Row};
 use crate::report::discrepancies::table;
-use crate::report::number;
 use maud::{Markup, html};
+use octant_base::number;
 
 /// Cases of a kind that are shown.
 const SHOWN: usize = 50;

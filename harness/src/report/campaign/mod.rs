@@ -12,11 +12,11 @@ mod prediction;
 mod requirements;
 mod sensitivity;
 
-use super::number;
 use super::page::{badge, page};
 use crate::campaign::report::{Report, evidence};
 use crate::score::verdict::Verdict;
 use maud::{Markup, html};
+use octant_base::number;
 use octant_statistics::sample::Interval;
 
 /// Rows of a long table that the page shows; the rest is in files of their own.

@@ -3,8 +3,8 @@
 use super::{heading, with_bounds};
 use crate::campaign::report::Report;
 use crate::observe::against::{Comparison, Row};
-use crate::report::number;
 use maud::{Markup, html};
+use octant_base::number;
 
 pub(super) fn section(report: &Report<'_>) -> Markup {
     let prediction = &report.prediction;

@@ -3,10 +3,10 @@
 use super::heading;
 use crate::campaign::report::requirement::{Part, RequirementFigures};
 use crate::campaign::report::{POLICY, Report};
-use crate::report::number;
 use crate::report::page::badge;
 use crate::score::verdict::Verdict;
 use maud::{Markup, html};
+use octant_base::number;
 use octant_requirements::requirement::percent;
 use octant_requirements::trace::Counts;
 use octant_statistics::cluster::Draws;

@@ -3,8 +3,8 @@
 use super::heading;
 use crate::campaign::report::Report;
 use crate::campaign::report::figures::FactorFigures;
-use crate::report::number;
 use maud::{Markup, html};
+use octant_base::number;
 
 pub(super) fn section(report: &Report<'_>) -> Markup {
     let drawn = || {

@@ -1,9 +1,9 @@
 //! How it came to this: drift, NIS and lateness over run time.
 
 use super::SOFT;
-use crate::report::number::{decimals_for, fixed};
 use crate::watch::series::Series;
 use crate::watch::state::State;
+use octant_base::number::{decimals_for, fixed};
 use ratatui::Frame;
 use ratatui::layout::{Constraint, Layout, Rect};
 use ratatui::style::{Color, Style};

@@ -1,10 +1,10 @@
 //! Everything at this moment.
 
 use super::{ACTS, ALERT, GOOD, SOFT, parameters, row};
-use crate::report::number::fixed;
 use crate::watch::follow::{Follow, Stage};
 use crate::watch::plain;
 use crate::watch::state::{Drift, State};
+use octant_base::number::fixed;
 use octant_sample::Mode;
 use ratatui::Frame;
 use ratatui::layout::{Constraint, Layout, Rect};

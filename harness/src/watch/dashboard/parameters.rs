@@ -2,9 +2,9 @@
 
 use super::{ALERT, SOFT};
 use crate::endpoint::ParameterEstimate;
-use crate::report::number::{decimals_for, fixed};
 use crate::watch::plain;
 use crate::watch::state::State;
+use octant_base::number::{decimals_for, fixed};
 use octant_sample::Parameters;
 use octant_sample::parameters::{Group, NAMES};
 use ratatui::Frame;

@@ -188,7 +188,7 @@ impl Grid {
     }
 
     pub(super) fn words(&self, epochs: u64) -> String {
-        use crate::report::number::plain;
+        use octant_base::number::plain;
         format!("{} s", plain(epochs as f64 * self.period_s(), 9))
     }
 }
