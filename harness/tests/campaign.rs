@@ -8,7 +8,7 @@ use octant::campaign::merge::{self, MergeError};
 use octant::campaign::plan::{Plan, Written};
 use octant::campaign::table::{Table, Value};
 use octant::campaign::{results, status};
-use octant::score::verdict::Verdict;
+use octant_requirements::Verdict;
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};

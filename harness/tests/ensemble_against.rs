@@ -13,9 +13,9 @@ use octant::score::summary::{
     Calibration, ErrorScore, HealthCounts, HeightChannel, Navigation, ParameterScore, RadialScore,
     SCHEMA, Summary,
 };
-use octant::score::verdict::Verdict;
 use octant_random::normal::Ziggurat;
 use octant_random::stream::{Phase, key};
+use octant_requirements::Verdict;
 use octant_sample::parameters::NAMES;
 use std::collections::BTreeMap;
 use tempfile::TempDir;

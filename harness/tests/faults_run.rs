@@ -13,13 +13,13 @@ use octant::run::{
 };
 use octant::scenario::{Method, Scenario};
 use octant::score::summary::FaultResult;
-use octant::score::verdict::Verdict;
 use octant::source::{Epoch, PlantSource, Replay, Source};
 use octant_faults::catalogue::{Acts, Family, Kind, Lasts};
 use octant_faults::rule::{Context, DeliveryRule, Rule, UnitEvent, UnitRule};
 use octant_faults::station::Spec;
 use octant_faults::trigger::{Repeat, Schedule, Trigger};
 use octant_faults::{Station, Values};
+use octant_requirements::Verdict;
 use octant_sample::canonical::{AIDING_BYTES, SAMPLE_BYTES, aiding, sample};
 use octant_sample::{GimbalCommand, Mode, Output, Parameters};
 use std::path::Path;

@@ -14,8 +14,8 @@ use octant::evidence::signature::{self, Key};
 use octant::recorder::reader::{Item, Recording};
 use octant::scenario::Scenario;
 use octant::score::summary::Summary;
-use octant::score::verdict::Verdict;
 use octant_calibration::table::CalibrationTable;
+use octant_requirements::Verdict;
 use std::path::{Path, PathBuf};
 use tempfile::TempDir;
 

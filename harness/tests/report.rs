@@ -15,8 +15,9 @@ use octant::score::reference::{ReferenceInput, reference};
 use octant::score::summary::{
     Baseline, Calibration, HealthCounts, HeightChannel, Navigation, SCHEMA, Summary,
 };
-use octant::score::verdict::{Comparison as Sign, Requirement, Verdict};
+use octant::score::verdict::Requirement;
 use octant_earth::units::{ARCSEC, DEG, DEG_PER_SQRT_HOUR, MICRO_G};
+use octant_requirements::{Comparison as Sign, Verdict};
 use octant_sample::Parameters;
 use octant_sample::parameters::{Group, NAMES, PARAMETER_COUNT};
 

@@ -7,9 +7,9 @@ use octant::fmu::master::system::element_names;
 use octant::recorder::StreamHash;
 use octant::run::{Control, Recording, run_method};
 use octant::scenario::{Method, Scenario};
-use octant::score::verdict::Verdict;
 use octant_fmu_host::description::{Description, read_bytes};
 use octant_fmu_host::instance::Place;
+use octant_requirements::Verdict;
 use octant_sample::counts::{DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS};
 use octant_sample::{
     Aiding, DeviceTime, GimbalAngles, GimbalCommand, Health, Mode, Navigation, Output, Parameters,

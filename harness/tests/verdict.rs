@@ -10,8 +10,9 @@ use octant::score::summary::{
     Calibration, ErrorScore, FaultResult, HealthCounts, HeightChannel, Navigation, RadialScore,
     SCHEMA, Summary, SummaryError,
 };
-use octant::score::verdict::{Comparison, Requirement, Verdict, evaluate, measure};
+use octant::score::verdict::{Requirement, evaluate, measure};
 use octant::score::work::Work;
+use octant_requirements::{Comparison, Verdict};
 use proptest::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
 

@@ -16,12 +16,12 @@ use octant::score::summary::{
     Baseline, Calibration, ErrorScore, FaultResult, HealthCounts, HeightChannel, Lateness,
     Navigation, Pacing, RadialScore, Summary,
 };
-use octant::score::verdict::{Comparison, Requirement, Verdict};
+use octant::score::verdict::Requirement;
 use octant_realtime::schedule::{Granted, Outcome};
 use octant_requirements::requirement::{
     self as required, Check, Ensemble, Limit, Requirements, Verification,
 };
-use octant_requirements::trace as traced;
+use octant_requirements::{Comparison, Verdict};
 use proptest::prelude::*;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -62,19 +62,6 @@ proptest! {
             prop_assert!(worst_of(worse) >= worst);
         }
     }
-}
-
-#[test]
-fn both_kinds_of_verdict_have_one_order_and_one_name() {
-    let pairs: Vec<_> = Verdict::ALL[1..].iter().zip(traced::Verdict::ALL).collect();
-    for (a, b) in &pairs {
-        assert_eq!(a.name(), b.name());
-        for (c, d) in &pairs {
-            assert_eq!(a.cmp(c), b.cmp(d));
-        }
-    }
-    // Only a pass is a success to the shell, and that nothing was asked.
-    assert!(Verdict::ALL.iter().all(|v| (v.exit_code() == 0) == (*v <= Verdict::Pass)));
 }
 
 /// What a requirement finds in a run.
@@ -350,7 +337,7 @@ fn campaign(folder: &Path, outcomes: &[Came], ensemble: Option<Ensemble>) -> (Pl
     }
     let check = Check {
         measure: Found::Kept.requirement().measure,
-        comparison: required::Comparison::AtMost,
+        comparison: Comparison::AtMost,
         limit: Limit::Number(1.0),
         ensemble,
     };
@@ -410,11 +397,11 @@ proptest! {
             && outcomes.iter().all(|outcome| matches!(outcome, Came::Ran(parts) if shown(parts)));
         if status.verdict() == Verdict::Pass {
             prop_assert!(whole, "{outcomes:?}");
-            prop_assert_eq!(trace.verdict(), traced::Verdict::Pass);
+            prop_assert_eq!(trace.verdict(), Verdict::Pass);
         }
         // The trace judges requirements alone: where an ensemble is asked for, a run that came to nothing
         // counts as one that didn't pass. What is missing or broke the bench never passes.
-        if trace.verdict() == traced::Verdict::Pass {
+        if trace.verdict() == Verdict::Pass {
             let ran = outcomes.iter().all(|outcome| matches!(outcome, Came::Ran(_)));
             prop_assert!(whole || (ran && ensemble.is_some()), "{outcomes:?}");
         }

@@ -8,7 +8,8 @@
 //! CASES has a line for each case: its id, the verdict of each check as `ID=verdict`.
 #![allow(clippy::print_stdout)]
 
-use octant_requirements::trace::{Case, CaseResult, Trace, Verdict};
+use octant_requirements::Verdict;
+use octant_requirements::trace::{Case, CaseResult, Trace};
 use octant_requirements::{Requirements, file, reqif, sdoc, strictdoc};
 use std::error::Error;
 use std::path::Path;

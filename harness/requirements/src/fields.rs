@@ -1,8 +1,7 @@
 //! Fields by which the requirement's own keys are known in the formats of others.
 
-use crate::requirement::{
-    Check, Comparison, Ensemble, Limit, Requirement, Verification, percent, probability,
-};
+use crate::requirement::{Check, Ensemble, Limit, Requirement, Verification, percent, probability};
+use crate::verdict::Comparison;
 
 pub(crate) const MEASURE: &str = "MEASURE";
 pub(crate) const COMPARISON: &str = "COMPARISON";

@@ -1,6 +1,7 @@
 //! Requirements of a campaign, and what became of them.
 //!
 //! - [`requirement`] is what a requirement is, [`file`](mod@file) is `requirements.toml`
+//! - [`verdict`] is what anything comes to, and how a measure is held against a limit
 //! - [`sdoc`] and [`reqif`] are the formats of others: StrictDoc's documents, and ReqIF
 //! - [`trace`] goes from requirements to cases, results and recordings, and back; [`strictdoc`] shows it
 //!   in StrictDoc
@@ -16,6 +17,8 @@ pub mod requirement;
 pub mod sdoc;
 pub mod strictdoc;
 pub mod trace;
+pub mod verdict;
 
 pub use error::{Imported, Problem, RequirementsError};
 pub use requirement::{Requirement, Requirements};
+pub use verdict::{Comparison, Verdict};

@@ -1,45 +1,7 @@
 //! What a requirement is: a statement with an id, and how it is verified.
 
+use crate::verdict::Comparison;
 use serde::{Deserialize, Serialize};
-
-/// How a measure is held against its limit.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub enum Comparison {
-    /// The measure may not be above the limit.
-    #[serde(rename = "<=")]
-    AtMost,
-    /// The measure must be below the limit.
-    #[serde(rename = "<")]
-    Below,
-    /// The measure may not be below the limit.
-    #[serde(rename = ">=")]
-    AtLeast,
-    /// The measure must be above the limit.
-    #[serde(rename = ">")]
-    Above,
-}
-
-impl Comparison {
-    /// All of them.
-    pub const ALL: [Self; 4] = [Self::AtMost, Self::Below, Self::AtLeast, Self::Above];
-
-    /// The sign as it is written.
-    #[must_use]
-    pub const fn sign(self) -> &'static str {
-        match self {
-            Self::AtMost => "<=",
-            Self::Below => "<",
-            Self::AtLeast => ">=",
-            Self::Above => ">",
-        }
-    }
-
-    /// The comparison that is written so.
-    #[must_use]
-    pub fn of_sign(sign: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|c| c.sign() == sign)
-    }
-}
 
 /// A limit as it was written. What it is worth is known to who knows the units.
 #[derive(Clone, Debug, PartialEq)]

@@ -8,7 +8,8 @@
 use crate::error::ExportError;
 use crate::requirement::Requirements;
 use crate::sdoc::legal_uid;
-use crate::trace::{Link, Row, Trace, Verdict};
+use crate::trace::{Link, Row, Trace};
+use crate::verdict::Verdict;
 use std::collections::HashMap;
 use std::fmt::Write as _;
 

@@ -1,40 +1,11 @@
 //! From requirements to cases, results and recordings, and back.
 
 use crate::requirement::{Ensemble, Requirement, Requirements, Verification};
+use crate::verdict::Verdict;
 use octant_statistics::cluster::Draws;
 use octant_statistics::proportion;
 use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
-
-/// What a check, a case or a requirement comes to. The order is the order of badness.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Verdict {
-    /// It is shown to be good.
-    Pass,
-    /// Nothing is shown.
-    Inconclusive,
-    /// It is shown to be bad.
-    Fail,
-    /// The bench failed.
-    Error,
-}
-
-impl Verdict {
-    /// All verdicts, from best to worst.
-    pub const ALL: [Self; 4] = [Self::Pass, Self::Inconclusive, Self::Fail, Self::Error];
-
-    /// The name used in files and on the screen.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Pass => "pass",
-            Self::Inconclusive => "inconclusive",
-            Self::Fail => "fail",
-            Self::Error => "error",
-        }
-    }
-}
 
 /// A case of a campaign: what it is there to verify, and what it came to.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -98,7 +69,8 @@ impl Counts {
         *match verdict {
             None => &mut self.missing,
             Some(Verdict::Pass) => &mut self.pass,
-            Some(Verdict::Inconclusive) => &mut self.inconclusive,
+            // Where nothing was required nothing is shown.
+            Some(Verdict::None | Verdict::Inconclusive) => &mut self.inconclusive,
             Some(Verdict::Fail) => &mut self.fail,
             Some(Verdict::Error) => &mut self.error,
         } += 1;

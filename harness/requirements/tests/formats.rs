@@ -1,8 +1,9 @@
 //! Any requirements go through every format and come back the same.
 
+use octant_requirements::Comparison;
 use octant_requirements::requirement::{
-    Attribute, Check, Comparison, Definition, Ensemble, Kind, Limit, Parent, Requirement,
-    Requirements, Verification,
+    Attribute, Check, Definition, Ensemble, Kind, Limit, Parent, Requirement, Requirements,
+    Verification,
 };
 use octant_requirements::{file, reqif, sdoc};
 use proptest::collection::vec;

@@ -1,10 +1,12 @@
 //! The trace both ways, and that nothing ends in pass that wasn't shown.
 
+use octant_requirements::Comparison;
+use octant_requirements::Verdict;
 use octant_requirements::requirement::{
-    Check, Comparison, Ensemble, Limit, Requirement, Requirements, Verification,
+    Check, Ensemble, Limit, Requirement, Requirements, Verification,
 };
 use octant_requirements::strictdoc;
-use octant_requirements::trace::{Case, CaseResult, Counts, Trace, Verdict, judge};
+use octant_requirements::trace::{Case, CaseResult, Counts, Trace, judge};
 use octant_statistics::cluster::Draws;
 use proptest::prelude::*;
 

@@ -9,7 +9,7 @@ use super::plan::Plan;
 use super::results::{self, RESULT, Rows, TABLES};
 use super::table::{Table, TableError, Value, Values};
 use crate::score::rederive::stands;
-use crate::score::verdict::{Comparison, Verdict};
+use octant_requirements::{Comparison, Verdict};
 use std::collections::{BTreeMap, HashMap};
 use std::path::{Path, PathBuf};
 

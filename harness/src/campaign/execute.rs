@@ -4,7 +4,7 @@
 use super::case::{self, CaseResult, Job, Kept};
 use super::plan::{Case, Plan, PlanError};
 use super::process::{Ended, TRIES, command, wait};
-use crate::score::verdict::Verdict;
+use octant_requirements::Verdict;
 use std::io::{Read, Write};
 use std::path::{Path, PathBuf};
 use std::process::{ExitStatus, Stdio};

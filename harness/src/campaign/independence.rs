@@ -8,7 +8,7 @@ use super::case::CaseResult;
 use super::plan::{Case, FactorValue, Plan};
 use super::report::combination::of_grid;
 use super::status;
-use crate::score::verdict::Verdict;
+use octant_requirements::Verdict;
 use octant_statistics::cluster;
 use std::collections::{BTreeMap, HashMap};
 

@@ -12,7 +12,7 @@ use super::status;
 use crate::evidence::files;
 use crate::evidence::inside::Inside;
 use crate::evidence::manifest::CampaignFacts;
-use crate::score::verdict::Comparison;
+use octant_requirements::Comparison;
 use serde_json::Value;
 use std::path::Path;
 

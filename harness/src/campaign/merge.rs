@@ -7,7 +7,7 @@ use super::plan::{Plan, short};
 use super::results::{Columns, NUMERICS, TABLES, ordered};
 use super::stop;
 use super::table::{Kind, Table, TableError, Values, write};
-use crate::score::verdict::Verdict;
+use octant_requirements::Verdict;
 use std::borrow::Cow;
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::path::{Path, PathBuf};

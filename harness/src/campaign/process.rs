@@ -78,7 +78,7 @@ pub(crate) fn end_with(parent: u32) -> io::Result<()> {
 #[cfg(unix)]
 fn end_if_left(parent: u32) {
     if std::os::unix::process::parent_id() != parent && !is_there(parent) {
-        std::process::exit(i32::from(crate::score::verdict::Verdict::Error.exit_code()));
+        std::process::exit(i32::from(octant_requirements::Verdict::Error.exit_code()));
     }
 }
 

@@ -4,9 +4,7 @@ use super::plan::Plan;
 use crate::scenario::read::requirement::{limit_of, path_of};
 use crate::score::{signed, verdict};
 use octant_requirements::file::{Checker, read};
-use octant_requirements::requirement::{
-    Check, Comparison, Ensemble, Limit, Requirement, Requirements,
-};
+use octant_requirements::requirement::{Check, Ensemble, Limit, Requirement, Requirements};
 use octant_requirements::{Problem, RequirementsError};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
@@ -65,9 +63,9 @@ pub fn load(path: &Path) -> Result<Requirements, RequirementsError> {
 /// Limits on one side of a measure that has a sign.
 fn one_sided(requirements: &Requirements, text: &str) -> Vec<Problem> {
     let checks = || requirements.requirements.iter().filter_map(|r| Some((&r.id, r.check()?)));
-    let both = || checks().map(|(_, check)| (check.measure.as_str(), comparison(check.comparison)));
+    let both = || checks().map(|(_, check)| (check.measure.as_str(), check.comparison));
     let problem = |(id, check): (&String, &Check)| {
-        let message = signed::one_sided((&check.measure, comparison(check.comparison)), both())?;
+        let message = signed::one_sided((&check.measure, check.comparison), both())?;
         let quoted = format!("\"{}\"", check.measure);
         let at = |line: &str| Some(line.find(&quoted)? + 1);
         let (line, column) = (text.lines().enumerate())
@@ -78,15 +76,6 @@ fn one_sided(requirements: &Requirements, text: &str) -> Vec<Problem> {
     checks().filter_map(problem).collect()
 }
 
-const fn comparison(comparison: Comparison) -> verdict::Comparison {
-    match comparison {
-        Comparison::AtMost => verdict::Comparison::AtMost,
-        Comparison::Below => verdict::Comparison::Below,
-        Comparison::AtLeast => verdict::Comparison::AtLeast,
-        Comparison::Above => verdict::Comparison::Above,
-    }
-}
-
 /// The requirements of a file that runs verify.
 pub(super) fn planned(requirements: &Requirements) -> Vec<Planned> {
     let of = |requirement: &Requirement| {
@@ -95,7 +84,7 @@ pub(super) fn planned(requirements: &Requirements) -> Vec<Planned> {
             check: verdict::Requirement {
                 id: requirement.id.clone(),
                 measure: check.measure.clone(),
-                comparison: comparison(check.comparison),
+                comparison: check.comparison,
                 // It was checked when the file was read.
                 limit: number(&check.measure, &check.limit).unwrap_or(f64::NAN),
             },

@@ -8,8 +8,8 @@ use super::requirements;
 use super::stop::{self, Decision};
 use crate::score::judge;
 use crate::score::numerics::differs;
-use crate::score::verdict::Verdict;
 use octant_base::number::plain;
+use octant_requirements::Verdict;
 use octant_requirements::requirement::Ensemble;
 use octant_requirements::trace::{Counts, judge};
 use octant_statistics::cluster::Draws;
@@ -194,8 +194,6 @@ pub fn of(plan: &Plan, folder: &Path, shard: Shard) -> Result<Status, String> {
         let needed = ensemble.map(|Ensemble { pass, confidence }| {
             further_if_all_pass(Demand { pass, confidence }, draws.not_passed, draws.known())
         });
-        let verdict = Verdict::ALL.into_iter().find(|known| known.name() == verdict.name());
-        let verdict = verdict.unwrap_or(Verdict::Error);
         (id.to_owned(), RequirementStatus { verdict, reason, counts, draws, ensemble, needed })
     };
     status.requirements = counts.into_iter().map(of).collect();

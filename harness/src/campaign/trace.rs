@@ -7,11 +7,9 @@ use super::independence;
 use super::plan::{Plan, PlanError};
 use super::requirements;
 use super::status;
-use crate::score::verdict;
-use octant_requirements::requirement::{
-    Check, Comparison, Limit, Requirement, Requirements, Verification,
-};
-use octant_requirements::trace::{Case, CaseResult as Traced, Trace, Verdict};
+use octant_requirements::requirement::{Check, Limit, Requirement, Requirements, Verification};
+use octant_requirements::trace::{Case, CaseResult as Traced, Trace};
+use octant_requirements::{Comparison, Verdict};
 use std::path::Path;
 
 /// The requirements of the campaign that a plan was made of; none where it names no file of them.
@@ -54,7 +52,7 @@ pub fn with_those_of_scenarios(plan: &Plan, of_file: &Requirements) -> Requireme
             let text = own.map_or("", |own| own.text.as_str());
             let check = Check {
                 measure: own.map_or_else(String::new, |own| own.check.measure.clone()),
-                comparison: own.map_or(Comparison::AtMost, |own| comparison(own.check.comparison)),
+                comparison: own.map_or(Comparison::AtMost, |own| own.check.comparison),
                 limit: Limit::Number(own.map_or(f64::NAN, |own| own.check.limit)),
                 ensemble: None,
             };
@@ -64,15 +62,6 @@ pub fn with_those_of_scenarios(plan: &Plan, of_file: &Requirements) -> Requireme
         }
     }
     all
-}
-
-const fn comparison(comparison: verdict::Comparison) -> Comparison {
-    match comparison {
-        verdict::Comparison::AtMost => Comparison::AtMost,
-        verdict::Comparison::Below => Comparison::Below,
-        verdict::Comparison::AtLeast => Comparison::AtLeast,
-        verdict::Comparison::Above => Comparison::Above,
-    }
 }
 
 /// Traces a campaign by the results in its folder: all that its cases check, of the file of requirements or of
@@ -101,8 +90,8 @@ pub fn trace(
             // A check that passes in a run which shows nothing isn't shown either, and of two results
             // none counts.
             let most = match status::besides(&result) {
-                _ if differing(&path, &case.id).is_some() => verdict::Verdict::Error,
-                verdict::Verdict::Fail => verdict::Verdict::Inconclusive,
+                _ if differing(&path, &case.id).is_some() => Verdict::Error,
+                Verdict::Fail => Verdict::Inconclusive,
                 other => other,
             };
             // Nor is one that fails there among the failures that an ensemble may have.
@@ -112,7 +101,7 @@ pub fn trace(
             };
             let check = |id: &String| {
                 let check = match result.check(id) {
-                    verdict::Verdict::Fail if most != verdict::Verdict::Pass && allowed(id) => most,
+                    Verdict::Fail if most != Verdict::Pass && allowed(id) => most,
                     check => check.worst(most),
                 };
                 (id.clone(), traced(check))
@@ -140,12 +129,7 @@ pub fn trace(
     Ok(Trace::new(requirements, &cases))
 }
 
-const fn traced(verdict: verdict::Verdict) -> Verdict {
-    match verdict {
-        verdict::Verdict::Pass => Verdict::Pass,
-        // What asks for nothing shows nothing of a requirement.
-        verdict::Verdict::None | verdict::Verdict::Inconclusive => Verdict::Inconclusive,
-        verdict::Verdict::Fail => Verdict::Fail,
-        verdict::Verdict::Error => Verdict::Error,
-    }
+/// What asks for nothing shows nothing of a requirement.
+fn traced(verdict: Verdict) -> Verdict {
+    if verdict == Verdict::None { Verdict::Inconclusive } else { verdict }
 }

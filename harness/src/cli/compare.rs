@@ -6,8 +6,8 @@ use crate::run::Control;
 use crate::run::paired::{Side, paired};
 use crate::scenario::{Method, Scenario};
 use crate::score::compare::Comparison;
-use crate::score::verdict::Verdict;
 use clap::Args;
+use octant_requirements::Verdict;
 use std::path::PathBuf;
 
 #[derive(Debug, Args)]

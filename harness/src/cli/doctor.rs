@@ -1,11 +1,11 @@
 //! `octant doctor`.
 
 use super::{Failure, print, print_json};
-use crate::score::verdict::Verdict;
 use clap::Args;
 use octant_realtime::host::{Finding, Grade, look};
 use octant_realtime::latency::{Found, Trial, measure};
 use octant_realtime::schedule::Wish;
+use octant_requirements::Verdict;
 use serde::Serialize;
 use std::fmt::Write as _;
 use std::time::Duration;

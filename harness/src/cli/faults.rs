@@ -2,12 +2,12 @@
 
 use super::{Failure, print, print_json, write};
 use crate::scenario::fault_example;
-use crate::score::verdict::Verdict;
 use clap::{Args, Subcommand};
 use octant_base::names::suggestion;
 use octant_faults::catalogue::{Acts, Family, Kind, Lasts, Parameter};
 use octant_faults::connection::kinds as connection;
 use octant_faults::kinds;
+use octant_requirements::Verdict;
 use serde::Serialize;
 use std::path::PathBuf;
 

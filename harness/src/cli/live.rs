@@ -1,8 +1,8 @@
 //! Runs served to Foxglove: `octant watch --foxglove`, `octant run --live`.
 
 use super::Failure;
-use crate::score::verdict::Verdict;
 use crate::watch::follow::Follow;
+use octant_requirements::Verdict;
 
 /// Where a run is served by default: to this host alone.
 pub(super) const DEFAULT_ADDRESS: &str = "127.0.0.1:8765";

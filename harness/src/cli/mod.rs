@@ -35,8 +35,8 @@ mod verify;
 mod watch;
 
 use crate::scenario::{Dimension, quantity_of};
-use crate::score::verdict::Verdict;
 use clap::{Args, Parser, Subcommand};
+use octant_requirements::Verdict;
 use std::ffi::OsString;
 use std::path::PathBuf;
 use std::process::ExitCode;

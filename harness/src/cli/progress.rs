@@ -89,9 +89,7 @@ pub(super) mod interrupts {
             let _ = ctrlc::set_handler(|| {
                 if SEEN.swap(true, Ordering::Relaxed) {
                     octant_turntable::stop_all("somebody ended the program");
-                    std::process::exit(i32::from(
-                        crate::score::verdict::Verdict::Error.exit_code(),
-                    ));
+                    std::process::exit(i32::from(octant_requirements::Verdict::Error.exit_code()));
                 }
             });
         });

@@ -11,7 +11,7 @@ use crate::run::assemble::{Choice, assemble_with};
 use crate::scenario::{Endpoint, Scenario, Source};
 use crate::score::equipment::Day;
 use crate::score::numerics::differs;
-use crate::score::verdict::Verdict;
+use octant_requirements::Verdict;
 use serde::Serialize;
 use serde_json::Value;
 use std::hash::{BuildHasher, RandomState};

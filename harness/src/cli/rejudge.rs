@@ -2,8 +2,8 @@
 
 use super::{Failure, print, print_json, write};
 use crate::evidence::rejudge::{self, RejudgeError};
-use crate::score::verdict::Verdict;
 use clap::Args;
+use octant_requirements::Verdict;
 use std::path::{Path, PathBuf};
 
 #[derive(Debug, Args)]

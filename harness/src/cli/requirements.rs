@@ -2,8 +2,8 @@
 
 use super::{Failure, print, write};
 use crate::campaign::requirements::Measures;
-use crate::score::verdict::Verdict;
 use clap::{Args, Subcommand};
+use octant_requirements::Verdict;
 use octant_requirements::{Requirements, file, reqif, sdoc};
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;

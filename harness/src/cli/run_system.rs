@@ -10,9 +10,9 @@ use crate::fmu::master::summary::{Ended, FmuResult};
 use crate::run::Control;
 use crate::scenario::quantity::{Dimension, parse};
 use crate::score::junit::junit_of;
-use crate::score::verdict::Verdict;
 use clap::Args;
 use octant_fmu_host::instance::Place;
+use octant_requirements::Verdict;
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 

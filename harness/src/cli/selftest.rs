@@ -3,12 +3,12 @@
 use super::progress::interrupts;
 use super::{Failure, print};
 use crate::campaign::plan;
-use crate::score::verdict::Verdict;
 use crate::selftest::judge::Judged;
 use crate::selftest::record::{CaseRecord, FILE_NAME, Record, write};
 use crate::selftest::{answers, cases, run};
 use clap::Args;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use octant_requirements::Verdict;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, SystemTime};

@@ -6,8 +6,8 @@ use crate::report;
 use crate::run::Control;
 use crate::run::sweep::{Axis, SweepError, cells_of, indices, sweep};
 use crate::scenario::Scenario;
-use crate::score::verdict::Verdict;
 use clap::Args;
+use octant_requirements::Verdict;
 use std::path::PathBuf;
 
 /// Cells of a grid at most: each is a run.

@@ -2,8 +2,8 @@
 
 use super::{Failure, print, print_json};
 use crate::scenario::{Dimension, Scenario, quantity_of};
-use crate::score::verdict::Verdict;
 use clap::{Args, Subcommand, ValueEnum};
+use octant_requirements::Verdict;
 use octant_turntable::simulate::listen;
 use octant_turntable::{
     Axis, AxisLimits, Dialect, Error, Limits, Move, Plan, Settings, Status, check_port, look,

@@ -2,12 +2,12 @@
 
 use super::progress::interrupts;
 use super::{Failure, print};
-use crate::score::verdict::Verdict;
 use crate::watch::dashboard::{self, Page};
 use crate::watch::follow::{Follow, Stage};
 use crate::watch::place::Place;
 use crate::watch::plain;
 use clap::Args;
+use octant_requirements::Verdict;
 use ratatui::crossterm::event::{self, Event, KeyCode, KeyEventKind, KeyModifiers};
 use std::io::IsTerminal;
 use std::path::{Path, PathBuf};

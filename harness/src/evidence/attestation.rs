@@ -5,7 +5,7 @@
 
 use super::inside::Inside;
 use super::manifest::{FILE_NAME, Manifest};
-use crate::score::verdict::Verdict;
+use octant_requirements::Verdict;
 use serde_json::{Value, json};
 
 /// The result of a test as the predicate has it. What shows nothing never passes.

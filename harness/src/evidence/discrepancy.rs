@@ -6,7 +6,7 @@
 
 use crate::score::judge;
 use crate::score::summary::Summary;
-use crate::score::verdict::Verdict;
+use octant_requirements::Verdict;
 use serde::Serialize;
 
 /// Something that isn't a pass.

@@ -13,7 +13,7 @@ use crate::score::judge::{Finding, derive};
 use crate::score::numerics::{differs, in_words};
 use crate::score::rederive;
 use crate::score::summary::Summary;
-use crate::score::verdict::Verdict;
+use octant_requirements::Verdict;
 use serde_json::Value;
 use std::path::Path;
 

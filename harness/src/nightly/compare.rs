@@ -13,7 +13,7 @@ use super::night::{CampaignNight, Night, Program};
 use super::results::CaseRow;
 use super::suite::SuiteResult;
 use crate::score::numerics::in_words;
-use crate::score::verdict::Verdict;
+use octant_requirements::Verdict;
 use octant_statistics::multiple::holm;
 use octant_statistics::paired::{PassPairs, difference};
 use octant_statistics::power;

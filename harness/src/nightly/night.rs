@@ -4,7 +4,7 @@ use super::suite::SuiteResult;
 use crate::evidence::manifest::{Git, Host, Manifest};
 use crate::evidence::{RunFacts, sha256};
 use crate::score::numerics::in_words;
-use crate::score::verdict::Verdict;
+use octant_requirements::Verdict;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};

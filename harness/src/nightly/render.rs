@@ -3,8 +3,8 @@
 use super::compare::{Change, Comparison, Tested, Turned};
 use super::night::{CampaignNight, Night, Program};
 use super::suite::SuiteResult;
-use crate::score::verdict::Verdict;
 use octant_base::number::{plain, significant};
+use octant_requirements::Verdict;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::fmt::Write as _;

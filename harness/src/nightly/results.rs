@@ -3,7 +3,7 @@
 use crate::campaign::merge::merged;
 use crate::campaign::table::{Table, TableError, Value, Values};
 use crate::score::rederive::stands;
-use crate::score::verdict::{Comparison, Verdict};
+use octant_requirements::{Comparison, Verdict};
 use octant_sample::parameters::{Group, NAMES};
 use std::collections::BTreeMap;
 use std::path::Path;

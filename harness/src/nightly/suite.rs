@@ -5,7 +5,7 @@ use super::night::write;
 use crate::campaign::process::{self, Ended, TRIES};
 use crate::scenario::suite::{Case, Suite};
 use crate::score::summary::Summary;
-use crate::score::verdict::Verdict;
+use octant_requirements::Verdict;
 use serde::{Deserialize, Serialize};
 use std::io::Read;
 use std::path::{Path, PathBuf};

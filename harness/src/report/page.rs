@@ -1,7 +1,7 @@
 //! The frame of every page: one file, no network.
 
-use crate::score::verdict::Verdict;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
+use octant_requirements::Verdict;
 
 /// A whole page. The script reads out charts under the pointer; without it nothing is missing.
 pub(crate) fn page(title: &str, body: &Markup) -> String {

@@ -9,10 +9,10 @@ use super::page::{badge, page};
 use crate::evidence::discrepancy;
 use crate::evidence::disposition::Dispositions;
 use crate::score::summary::{Calibration, HeightChannel, Summary};
-use crate::score::verdict::Verdict;
 use crate::score::work::duration;
 use maud::{Markup, html};
 use octant_base::number;
+use octant_requirements::Verdict;
 use octant_sample::Parameters;
 use octant_sample::parameters::PARAMETER_COUNT;
 

@@ -15,9 +15,9 @@ use crate::score::reference::{ReferenceInput, reference};
 use crate::score::summary::{
     AlteredStreams, Baseline, FaultResult, ParameterScore, SCHEMA, Summary,
 };
-use crate::score::verdict::Verdict;
 use octant_base::number;
 use octant_earth::units::{DEG, DEG_PER_SQRT_HOUR, MICRO_G};
+use octant_requirements::Verdict;
 use octant_sample::parameters::NAMES;
 use octant_turntable::Axis;
 use std::collections::BTreeMap;

@@ -6,11 +6,11 @@ use super::method::{MethodRun, planned_of};
 use crate::scenario::{Calibration, Method, Realtime, Scenario};
 use crate::score::judge::Finding;
 use crate::score::summary::Pacing;
-use crate::score::verdict::Verdict;
 use crate::score::work::{Part, duration};
 use octant_base::number;
 use octant_faults::Receipt;
 use octant_faults::catalogue::Acts;
+use octant_requirements::Verdict;
 
 /// What bears on the verdict of a run of one or two methods.
 #[must_use]

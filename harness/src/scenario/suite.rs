@@ -18,7 +18,7 @@ use super::document::{self, Table};
 use super::error::{Place, Problem, ScenarioError};
 use super::keys::SUITE;
 use super::read::Reader;
-use crate::score::verdict::Verdict;
+use octant_requirements::Verdict;
 use std::path::{Path, PathBuf};
 
 /// A list of scenarios with the ends that are expected of them.

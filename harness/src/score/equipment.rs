@@ -4,7 +4,7 @@
 //! later, the run comes to the same.
 
 use super::judge::{About, Finding};
-use super::verdict::Verdict;
+use octant_requirements::Verdict;
 use serde::{Deserialize, Serialize};
 use std::time::SystemTime;
 

@@ -4,8 +4,9 @@
 //! all of them are in the summary, so that whoever reads one can derive its verdict again.
 
 use super::summary::{Baseline, Calibration, FaultResult, Summary, WITH_FINDINGS};
-use super::verdict::{Requirement, RequirementResult, Verdict, evaluate};
+use super::verdict::{Requirement, RequirementResult, evaluate};
 use super::work::{Part, Short, Work};
+use octant_requirements::Verdict;
 use serde::{Deserialize, Serialize};
 
 /// Whom a finding is about.
@@ -284,7 +285,7 @@ pub(super) fn as_far_as_done(summary: &Summary, result: RequirementResult) -> Re
 /// Whether a limit that is broken can't be kept any more, whatever comes: a maximum, a count, a mark that
 /// was reached, what a calibration that is over came to.
 fn stays_broken(summary: &Summary, result: &RequirementResult) -> bool {
-    use super::verdict::Comparison;
+    use octant_requirements::Comparison;
     let upper = matches!(result.comparison, Comparison::AtMost | Comparison::Below);
     let path = result.measure.trim_matches('|');
     let name = path.rsplit('.').next().unwrap_or(path);

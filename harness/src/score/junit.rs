@@ -1,7 +1,8 @@
 //! `junit.xml`: the verdict for CI systems, in the flavour of nextest.
 
 use super::summary::{FaultResult, Summary};
-use super::verdict::{RequirementResult, Verdict};
+use super::verdict::RequirementResult;
+use octant_requirements::Verdict;
 use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
 
 /// The run as JUnit XML: one suite named for the scenario, one case for each requirement with a

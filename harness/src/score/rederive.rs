@@ -6,7 +6,8 @@
 
 use super::judge::{About, Finding, as_far_as_done, derive};
 use super::summary::{Summary, WITH_FINDINGS};
-use super::verdict::{Comparison, Requirement, RequirementResult, Verdict, evaluate};
+use super::verdict::{Requirement, RequirementResult, evaluate};
+use octant_requirements::{Comparison, Verdict};
 
 /// The results of a stored summary's requirements, held against its measures again: nothing that it says of
 /// them is taken over but their ids, measures and limits.

@@ -6,8 +6,9 @@ use super::counterfactual::Counterfactual;
 use super::decision::Decided;
 use super::judge::Finding;
 use super::reference::Reference;
-use super::verdict::{RequirementResult, Verdict};
+use super::verdict::RequirementResult;
 use super::work::Work;
+use octant_requirements::Verdict;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 

@@ -3,8 +3,8 @@
 //! A case that must not pass and passes is worse than any other deviation: the verdicts of this program
 //! can't be believed then. It is an alarm.
 
-use crate::score::verdict::Verdict;
 use octant_base::number::significant;
+use octant_requirements::Verdict;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::fmt::Write as _;

@@ -5,8 +5,8 @@ use super::Case;
 use super::bench::{Bench, Said};
 use super::golden::{BELIEVING, SPIKE};
 use super::judge::{Expectation, Outcome};
-use crate::score::verdict::Verdict;
 use minisign::KeyPair;
+use octant_requirements::Verdict;
 
 pub(super) const SHORT: &str = include_str!("../../../fixtures/selftest/short.toml");
 const BIAS_STEP: &str = include_str!("../../../fixtures/selftest/bias-step.toml");

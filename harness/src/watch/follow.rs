@@ -8,7 +8,7 @@ use crate::recorder::reader::Item;
 use crate::score::judge::derive;
 use crate::score::rederive;
 use crate::score::summary::Summary;
-use crate::score::verdict::Verdict;
+use octant_requirements::Verdict;
 use std::collections::VecDeque;
 use std::time::{Duration, Instant};
 

@@ -2,8 +2,8 @@
 
 use super::follow::{Follow, Stage};
 use super::state::{FaultState, State};
-use crate::score::verdict::Verdict;
 use octant_base::number::{fixed, significant};
+use octant_requirements::Verdict;
 use octant_sample::Mode;
 use octant_sample::parameters::{Group, NAMES};
 use std::fmt::Write as _;

@@ -5,7 +5,7 @@ use super::bench::{Bench, SCENARIO, check};
 use octant::campaign::plan::{Case, Plan};
 use octant::campaign::stop::Decision;
 use octant::campaign::{merge, results, status};
-use octant::score::verdict::Verdict;
+use octant_requirements::Verdict;
 use serde_json::{Value, json};
 use std::path::PathBuf;
 

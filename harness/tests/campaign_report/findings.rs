@@ -5,7 +5,7 @@ use octant::campaign::case;
 use octant::campaign::plan::Plan;
 use octant::campaign::report::Report;
 use octant::evidence::discrepancy::Discrepancy;
-use octant::score::verdict::Verdict;
+use octant_requirements::Verdict;
 use serde_json::{Value, json};
 use std::path::Path;
 

@@ -1,7 +1,7 @@
 //! Honest units, written in other ways: none of them raises anything.
 
 use super::unit::{CALIBRATION, HONEST, Over, SECOND, Turn, Twist, run, run_of, scenario};
-use octant::score::verdict::Verdict;
+use octant_requirements::Verdict;
 use octant_sample::{Health, Mode};
 use std::f64::consts::TAU;
 

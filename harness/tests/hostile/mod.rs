@@ -14,7 +14,7 @@ mod sessions;
 mod studies;
 mod unit;
 
-use octant::score::verdict::Verdict;
+use octant_requirements::Verdict;
 
 /// How an attack ends: with a verdict, or before there is one.
 #[derive(Clone, Copy, Debug)]

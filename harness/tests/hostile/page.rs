@@ -1,7 +1,7 @@
 //! The page of all attacks, from the tests themselves.
 
 use super::{Row, answers, bench, fmu, honest, sessions};
-use octant::score::verdict::Verdict;
+use octant_requirements::Verdict;
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::path::Path;

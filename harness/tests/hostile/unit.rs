@@ -238,7 +238,7 @@ pub fn check(about: &str, ends: &super::Ends, found: Result<Summary, String>) {
     let (status, reasons) = match found {
         Ok(summary) => (summary.verdict.exit_code(), summary.reasons.join("; ")),
         // What can't be begun, or goes away without a word.
-        Err(reason) => (octant::score::verdict::Verdict::Error.exit_code(), reason),
+        Err(reason) => (octant_requirements::Verdict::Error.exit_code(), reason),
     };
     assert_eq!(status, ends.status, "{about}: {reasons}");
     assert!(

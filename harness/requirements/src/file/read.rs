@@ -5,9 +5,10 @@ use crate::document::{Lines, Problems, Reader, describe};
 use crate::error::{Problem, RequirementsError};
 use crate::fields::{self, misnamed, own_fields};
 use crate::requirement::{
-    Attribute, Check, Comparison, Definition, Ensemble, Kind, Limit, Parent, Requirement,
-    Requirements, Verification, probability,
+    Attribute, Check, Definition, Ensemble, Kind, Limit, Parent, Requirement, Requirements,
+    Verification, probability,
 };
+use crate::verdict::Comparison;
 use std::cell::RefCell;
 use std::collections::HashMap;
 use toml::de::{DeTable, DeValue};

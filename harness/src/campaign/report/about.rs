@@ -2,9 +2,8 @@
 
 use crate::campaign::plan::Plan;
 use crate::campaign::trace::requirements_of;
-use octant_requirements::requirement::{
-    Check, Comparison, Limit, Requirement, Requirements, Verification,
-};
+use octant_requirements::Comparison;
+use octant_requirements::requirement::{Check, Limit, Requirement, Requirements, Verification};
 
 /// The requirements that the cases of a plan check, and why some of their texts aren't known.
 pub(super) fn requirements(plan: &Plan) -> (Requirements, Vec<String>) {

@@ -6,7 +6,7 @@ use super::rows::{Outcome, Row};
 use crate::campaign::plan::Plan;
 use crate::campaign::status::Status;
 use crate::evidence::discrepancy::{Discrepancy, Subject};
-use crate::score::verdict::Verdict;
+use octant_requirements::Verdict;
 use std::collections::BTreeMap;
 
 /// Everything that isn't a pass. `notes` is what else was found wrong, in words.

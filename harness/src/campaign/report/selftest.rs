@@ -1,6 +1,6 @@
 //! `selftest.json` in the folder of a campaign: what the self-test of the program came to.
 
-use crate::score::verdict::Verdict;
+use octant_requirements::Verdict;
 use serde::Deserialize;
 use std::path::Path;
 

@@ -5,7 +5,7 @@ use crate::cli::{Failure, print};
 use crate::evidence::Manifest;
 use crate::evidence::disposition::{self, Dispositions};
 use crate::evidence::signature;
-use crate::score::verdict::Verdict;
+use octant_requirements::Verdict;
 use std::path::Path;
 
 pub(super) fn command(folder: &Path) -> Result<Verdict, Failure> {

@@ -13,8 +13,8 @@ use crate::campaign::table::TableError;
 use crate::campaign::trace::{requirements_of, with_those_of_scenarios};
 use crate::campaign::{emit, status};
 use crate::run::Control;
-use crate::score::verdict::Verdict;
 use clap::{Args, Subcommand, ValueEnum};
+use octant_requirements::Verdict;
 use octant_requirements::trace::{Row, Unknown};
 use std::path::{Path, PathBuf};
 

@@ -6,8 +6,8 @@ use crate::cli::verify::signing_key;
 use crate::cli::{Failure, print, write};
 use crate::evidence::discrepancy::counted;
 use crate::evidence::disposition::DispositionError;
-use crate::score::verdict::Verdict;
 use clap::Args;
+use octant_requirements::Verdict;
 use std::path::PathBuf;
 use std::time::SystemTime;
 

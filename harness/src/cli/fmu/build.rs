@@ -3,8 +3,8 @@
 use super::super::{Failure, print, print_json};
 use crate::fmu::build::{BuildError, Options, build};
 use crate::scenario::Scenario;
-use crate::score::verdict::Verdict;
 use clap::Args;
+use octant_requirements::Verdict;
 use serde::Serialize;
 use std::path::PathBuf;
 

@@ -1,13 +1,13 @@
 //! `octant fmu check`.
 
 use super::super::{Failure, print, print_json};
-use crate::score::verdict::Verdict;
 use clap::Args;
 use octant_fmu_check::load::load;
 use octant_fmu_check::rules::Severity;
 use octant_fmu_check::{Report, check, show};
 use octant_fmu_host::archive::ArchiveError;
 use octant_fmu_host::instance::Options;
+use octant_requirements::Verdict;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 

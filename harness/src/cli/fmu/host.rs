@@ -1,8 +1,8 @@
 //! `octant fmu host`.
 
 use super::super::Failure;
-use crate::score::verdict::Verdict;
 use clap::Args;
+use octant_requirements::Verdict;
 
 /// Hold an FMU for another process: for the program's own use.
 #[derive(Debug, Args)]

@@ -7,8 +7,8 @@ mod run;
 mod run_source;
 
 use super::Failure;
-use crate::score::verdict::Verdict;
 use clap::{Args, Subcommand};
+use octant_requirements::Verdict;
 
 /// What is done with FMUs.
 #[derive(Debug, Args)]

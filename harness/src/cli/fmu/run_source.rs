@@ -6,7 +6,7 @@ use super::run::{Arguments, Interface, Process, in_the_way};
 use crate::run::method::run_as_far_as_it_goes;
 use crate::run::{Control, Ended, Recording};
 use crate::scenario::{Method, Scenario, setting_argument};
-use crate::score::verdict::Verdict;
+use octant_requirements::Verdict;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 use std::time::Instant;

@@ -5,8 +5,8 @@ use crate::cli::{Failure, ScenarioArguments, load, print, print_json};
 use crate::observe::against::{Against, Comparison, Selection, against};
 use crate::observe::ensemble::{Ensemble, ensemble};
 use crate::scenario::{Method, Scenario};
-use crate::score::verdict::Verdict;
 use octant_base::number::significant;
+use octant_requirements::Verdict;
 use std::fmt::Write as _;
 use std::path::Path;
 

@@ -21,9 +21,9 @@ use crate::run::Control;
 use crate::scenario::{ScenarioError, connection_faults, text_of};
 use crate::score::judge::NO_REQUIREMENT;
 use crate::score::summary::FaultResult;
-use crate::score::verdict::Verdict;
 use octant_fmu_host::description::Description;
 use octant_fmu_host::instance::{Instance, InterfaceKind, Options, Place, open};
+use octant_requirements::Verdict;
 use std::path::{Path, PathBuf};
 
 /// Rows of a recording at most, where nobody says how often one is kept.

@@ -4,7 +4,7 @@
 
 use super::initialize::Loop;
 use crate::score::summary::FaultResult;
-use crate::score::verdict::Verdict;
+use octant_requirements::Verdict;
 use serde::Serialize;
 
 /// Version of the form of this summary.

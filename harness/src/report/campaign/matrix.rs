@@ -5,9 +5,7 @@ use super::{ROWS_MAX, case_link, heading};
 use crate::campaign::report::Report;
 use crate::campaign::report::combination::shown;
 use crate::report::page::badge;
-use crate::score::verdict::Verdict;
 use maud::{Markup, html};
-use octant_requirements::trace;
 
 pub(super) fn section(report: &Report<'_>, beside: bool) -> Markup {
     let trace = &report.trace;
@@ -21,7 +19,7 @@ pub(super) fn section(report: &Report<'_>, beside: bool) -> Markup {
             details {
                 summary {
                     strong { (row.id) } ": "
-                    @match row.verdict { Some(verdict) => (badge(of(verdict))), None => span.soft { "not by a run" } }
+                    @match row.verdict { Some(verdict) => (badge(verdict)), None => span.soft { "not by a run" } }
                     " " (row.cases.len()) " cases, verified by " (row.verification)
                 }
                 p.reason { (row.reason) }
@@ -51,11 +49,6 @@ fn rest(all: usize) -> Markup {
             p.hint { (all - ROWS_MAX) " more: octant campaign trace lists all of them." }
         }
     }
-}
-
-fn of(verdict: trace::Verdict) -> Verdict {
-    let known = Verdict::ALL.into_iter().find(|known| known.name() == verdict.name());
-    known.unwrap_or(Verdict::Error)
 }
 
 fn missing(title: &str, ids: &[String], cases: bool) -> Markup {

@@ -14,9 +14,9 @@ mod sensitivity;
 
 use super::page::{badge, page};
 use crate::campaign::report::{Report, evidence};
-use crate::score::verdict::Verdict;
 use maud::{Markup, html};
 use octant_base::number;
+use octant_requirements::Verdict;
 use octant_statistics::sample::Interval;
 
 /// Rows of a long table that the page shows; the rest is in files of their own.

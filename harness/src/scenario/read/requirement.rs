@@ -7,9 +7,10 @@ use crate::scenario::error::Problem;
 use crate::scenario::quantity::{self, Quantity};
 use crate::score::decision::{Decision, Rule, Uncertainty};
 use crate::score::equipment::{Day, Equipment};
-use crate::score::verdict::{self, Comparison};
+use crate::score::verdict;
 use crate::score::{measures, signed};
 use octant_base::names::suggestion;
+use octant_requirements::Comparison;
 use octant_sample::parameters::{Group, NAMES};
 
 /// Units that the names of measures end in, with the unit's own spelling.

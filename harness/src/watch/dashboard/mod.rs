@@ -6,8 +6,8 @@ mod parameters;
 
 use super::follow::{Follow, Stage};
 use super::plain;
-use crate::score::verdict::Verdict;
 use octant_base::number::{fixed, significant};
+use octant_requirements::Verdict;
 use ratatui::Frame;
 use ratatui::layout::{Constraint, Layout, Rect};
 use ratatui::style::{Color, Modifier, Style};

@@ -1,0 +1,113 @@
+//! Verdicts: none < pass < inconclusive < fail < error, and the worst wins; and how a measure is held against a limit.
+
+use serde::{Deserialize, Serialize};
+
+/// What a run, a requirement or a finding comes to. The order is the order of badness.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Verdict {
+    /// Nothing was required, so nothing is shown: the least of all, which changes no other.
+    None,
+    /// It is shown to be good.
+    Pass,
+    /// Nothing is shown: a measure is missing, a fault never fired, a record was dropped.
+    Inconclusive,
+    /// It is shown to be bad.
+    Fail,
+    /// The bench failed: device gone, disk full.
+    Error,
+}
+
+impl Verdict {
+    /// All verdicts, from best to worst.
+    pub const ALL: [Self; 5] =
+        [Self::None, Self::Pass, Self::Inconclusive, Self::Fail, Self::Error];
+
+    /// The worse of the two.
+    #[must_use]
+    pub fn worst(self, other: Self) -> Self {
+        self.max(other)
+    }
+
+    /// Exit status of the program; 2 is bad input or usage and no verdict.
+    #[must_use]
+    pub const fn exit_code(self) -> u8 {
+        match self {
+            Self::None | Self::Pass => 0,
+            Self::Fail => 1,
+            Self::Inconclusive => 3,
+            Self::Error => 4,
+        }
+    }
+
+    /// The name used in files and on the screen.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::None => "none",
+            Self::Pass => "pass",
+            Self::Inconclusive => "inconclusive",
+            Self::Fail => "fail",
+            Self::Error => "error",
+        }
+    }
+}
+
+/// How a measure is held against a limit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Comparison {
+    /// The measure may not be above the limit.
+    #[serde(rename = "<=")]
+    AtMost,
+    /// The measure must be below the limit.
+    #[serde(rename = "<")]
+    Below,
+    /// The measure may not be below the limit.
+    #[serde(rename = ">=")]
+    AtLeast,
+    /// The measure must be above the limit.
+    #[serde(rename = ">")]
+    Above,
+}
+
+impl Comparison {
+    /// All of them.
+    pub const ALL: [Self; 4] = [Self::AtMost, Self::Below, Self::AtLeast, Self::Above];
+
+    /// The sign as it is written.
+    #[must_use]
+    pub const fn sign(self) -> &'static str {
+        match self {
+            Self::AtMost => "<=",
+            Self::Below => "<",
+            Self::AtLeast => ">=",
+            Self::Above => ">",
+        }
+    }
+
+    /// The comparison that is written so.
+    #[must_use]
+    pub fn of_sign(sign: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|c| c.sign() == sign)
+    }
+
+    /// Room to the limit, positive on the good side.
+    #[must_use]
+    pub fn margin(self, value: f64, limit: f64) -> f64 {
+        match self {
+            Self::AtMost | Self::Below => limit - value,
+            Self::AtLeast | Self::Above => value - limit,
+        }
+    }
+
+    /// Whether a value keeps a limit; NaN keeps none.
+    #[must_use]
+    pub fn holds(self, value: f64, limit: f64) -> bool {
+        match self {
+            Self::AtMost => value <= limit,
+            Self::Below => value < limit,
+            Self::AtLeast => value >= limit,
+            Self::Above => value > limit,
+        }
+    }
+}
