@@ -15,8 +15,8 @@ use octant::score::reference::{ReferenceInput, reference};
 use octant::score::summary::{
     Baseline, Calibration, HealthCounts, HeightChannel, Navigation, SCHEMA, Summary,
 };
-use octant::score::verdict::Requirement;
 use octant_earth::units::{ARCSEC, DEG, DEG_PER_SQRT_HOUR, MICRO_G};
+use octant_requirements::verdict::LimitCheck;
 use octant_requirements::{Comparison as Sign, Verdict};
 use octant_sample::Parameters;
 use octant_sample::parameters::{Group, NAMES, PARAMETER_COUNT};
@@ -165,7 +165,7 @@ fn data() -> ReportData {
         pacing: None,
         stream_hash: "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855".to_owned(),
     };
-    let requirement = |id: &str, measure: &str, limit| Requirement {
+    let requirement = |id: &str, measure: &str, limit| LimitCheck {
         id: id.to_owned(),
         measure: measure.to_owned(),
         comparison: Sign::AtMost,

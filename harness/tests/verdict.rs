@@ -5,13 +5,14 @@ use octant::run::{Control, Recording, assemble, run_method};
 use octant::scenario::{Method, Scenario};
 use octant::score::judge::{About, Finding, NO_REQUIREMENT, derive, judge, judge_by};
 use octant::score::junit::junit;
-use octant::score::measures;
 use octant::score::summary::{
     Calibration, ErrorScore, FaultResult, HealthCounts, HeightChannel, Navigation, RadialScore,
     SCHEMA, Summary, SummaryError,
 };
-use octant::score::verdict::{Requirement, evaluate, measure};
+use octant::score::verdict::{evaluate, measure};
 use octant::score::work::Work;
+use octant_requirements::measures;
+use octant_requirements::verdict::LimitCheck;
 use octant_requirements::{Comparison, Verdict};
 use proptest::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
@@ -63,11 +64,11 @@ fn summary() -> Summary {
     }
 }
 
-fn requirement(measure: &str, comparison: Comparison, limit: f64) -> Requirement {
-    Requirement { id: "NAV-1".to_owned(), measure: measure.to_owned(), comparison, limit }
+fn requirement(measure: &str, comparison: Comparison, limit: f64) -> LimitCheck {
+    LimitCheck { id: "NAV-1".to_owned(), measure: measure.to_owned(), comparison, limit }
 }
 
-fn judged(requirements: &[Requirement], findings: &[Finding]) -> Summary {
+fn judged(requirements: &[LimitCheck], findings: &[Finding]) -> Summary {
     let mut summary = summary();
     judge(&mut summary, requirements, findings).unwrap();
     summary

@@ -16,11 +16,11 @@ use octant::score::summary::{
     Baseline, Calibration, ErrorScore, FaultResult, HealthCounts, HeightChannel, Lateness,
     Navigation, Pacing, RadialScore, Summary,
 };
-use octant::score::verdict::Requirement;
 use octant_realtime::schedule::{Granted, Outcome};
 use octant_requirements::requirement::{
     self as required, Check, Ensemble, Limit, Requirements, Verification,
 };
+use octant_requirements::verdict::LimitCheck;
 use octant_requirements::{Comparison, Verdict};
 use proptest::prelude::*;
 use std::collections::BTreeMap;
@@ -185,7 +185,7 @@ impl Parts {
             pacing: None,
             stream_hash: "00".to_owned(),
         };
-        let requirements: Vec<Requirement> = self.checks.iter().map(Found::requirement).collect();
+        let requirements: Vec<LimitCheck> = self.checks.iter().map(Found::requirement).collect();
         let finding = |verdict: &Verdict| Finding {
             verdict: *verdict,
             about: About::Run,
@@ -199,7 +199,7 @@ impl Parts {
 
 impl Found {
     /// All of them check the same requirement.
-    fn requirement(&self) -> Requirement {
+    fn requirement(&self) -> LimitCheck {
         let (measure, limit) = match self {
             Self::Kept => ("navigation.longitude_error_arcmin.max", 1.0),
             Self::Broken => ("navigation.longitude_error_arcmin.max", 0.5),
@@ -207,7 +207,7 @@ impl Found {
             Self::NotANumber => ("navigation.longitude_error_arcmin.slope_per_day", 1.0),
         };
         let measure = measure.to_owned();
-        Requirement { id: "NAV-1".to_owned(), measure, comparison: Comparison::AtMost, limit }
+        LimitCheck { id: "NAV-1".to_owned(), measure, comparison: Comparison::AtMost, limit }
     }
 
     fn verdict(self) -> Verdict {
@@ -412,7 +412,7 @@ proptest! {
         // A requirement that no case checks, beside the others.
         let mut more = plan;
         more.requirements.push(Planned {
-            check: Requirement { id: "NAV-2".to_owned(), ..Found::Kept.requirement() },
+            check: LimitCheck { id: "NAV-2".to_owned(), ..Found::Kept.requirement() },
             ensemble,
         });
         let with = status::of(&more, folder.path(), Shard::WHOLE).unwrap().verdict();

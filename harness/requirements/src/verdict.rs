@@ -111,3 +111,18 @@ impl Comparison {
         }
     }
 }
+
+/// A limit on one measure of the summary.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct LimitCheck {
+    /// Id of the requirement that this check verifies.
+    pub id: String,
+    /// Path of the measure in the summary, with dots:
+    /// `navigation.longitude_error_arcmin.max`, `calibration.parameters.g_zz.error`. With bars
+    /// around it the magnitude is meant: `|calibration.parameters.g_zz.error|`.
+    pub measure: String,
+    /// How it is held against the limit.
+    pub comparison: Comparison,
+    /// The limit, in the unit of the measure.
+    pub limit: f64,
+}

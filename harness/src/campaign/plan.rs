@@ -6,8 +6,8 @@
 use super::file::{Limits, Stop};
 use super::requirements::Planned;
 use crate::scenario::{Scenario, ScenarioError};
-use crate::score::verdict;
 use octant_requirements::RequirementsError;
+use octant_requirements::verdict::LimitCheck;
 use octant_statistics::proportion::Demand;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -94,7 +94,7 @@ pub struct PlannedScenario {
     pub requirements: Vec<String>,
     /// Those of them that the scenario itself doesn't have.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub checks: Vec<verdict::Requirement>,
+    pub checks: Vec<LimitCheck>,
 }
 
 /// One case: everything that makes its result.

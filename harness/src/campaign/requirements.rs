@@ -2,9 +2,10 @@
 
 use super::plan::Plan;
 use crate::scenario::read::requirement::{limit_of, path_of};
-use crate::score::{signed, verdict};
 use octant_requirements::file::{Checker, read};
 use octant_requirements::requirement::{Check, Ensemble, Limit, Requirement, Requirements};
+use octant_requirements::signed;
+use octant_requirements::verdict::LimitCheck;
 use octant_requirements::{Problem, RequirementsError};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
@@ -13,7 +14,7 @@ use std::path::Path;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Planned {
     /// What a case checks.
-    pub check: verdict::Requirement,
+    pub check: LimitCheck,
     /// What has to hold of all cases together; without it every case has to pass.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub ensemble: Option<Ensemble>,
@@ -81,7 +82,7 @@ pub(super) fn planned(requirements: &Requirements) -> Vec<Planned> {
     let of = |requirement: &Requirement| {
         let check = requirement.check()?;
         Some(Planned {
-            check: verdict::Requirement {
+            check: LimitCheck {
                 id: requirement.id.clone(),
                 measure: check.measure.clone(),
                 comparison: check.comparison,

@@ -12,11 +12,11 @@ use crate::run::method::{MethodError, SetupError, configurations, run_as_far_as_
 use crate::run::raw_counts;
 use crate::run::{Control, Ended, MethodRun, Recording, Run};
 use crate::scenario::{Endpoint, Method, Scenario, Source};
-use crate::score::equipment::Day;
 use crate::score::junit::junit;
 use crate::source::LiveSource;
 use clap::Args;
 use octant_requirements::Verdict;
+use octant_requirements::equipment::Day;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::SystemTime;

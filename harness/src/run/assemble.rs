@@ -7,8 +7,7 @@ use crate::evidence::disposition::Dispositions;
 use crate::report::counterfactual::in_words;
 use crate::report::{Provenance, ReportData};
 use crate::scenario::{Endpoint, Motion, Scenario, Source};
-use crate::score::decision::{Against, Rule};
-use crate::score::equipment::{self, Day};
+use crate::score::equipment;
 use crate::score::judge::{Finding, judge_by};
 use crate::score::numerics::NUMERICS;
 use crate::score::reference::{ReferenceInput, reference};
@@ -18,6 +17,8 @@ use crate::score::summary::{
 use octant_base::number;
 use octant_earth::units::{DEG, DEG_PER_SQRT_HOUR, MICRO_G};
 use octant_requirements::Verdict;
+use octant_requirements::decision::{Against, Rule};
+use octant_requirements::equipment::Day;
 use octant_sample::parameters::NAMES;
 use octant_turntable::Axis;
 use std::collections::BTreeMap;

@@ -83,9 +83,9 @@ pub struct Scenario {
     /// Limits that the results have to keep.
     pub requirements: Vec<Requirement>,
     /// What a value near a limit comes to.
-    pub decision: crate::score::decision::Decision,
+    pub decision: octant_requirements::decision::Decision,
     /// What the bench measures with.
-    pub equipment: Vec<crate::score::equipment::Equipment>,
+    pub equipment: Vec<octant_requirements::equipment::Equipment>,
     /// What is recorded.
     pub record: Record,
     /// Where samples come from.
@@ -220,7 +220,7 @@ impl Calibration {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Requirement {
     /// What is checked.
-    pub check: crate::score::verdict::Requirement,
+    pub check: octant_requirements::verdict::LimitCheck,
     /// What is required, as a sentence.
     pub text: String,
     /// The limit as it was written.

@@ -4,9 +4,10 @@
 //! all of them are in the summary, so that whoever reads one can derive its verdict again.
 
 use super::summary::{Baseline, Calibration, FaultResult, Summary, WITH_FINDINGS};
-use super::verdict::{Requirement, RequirementResult, evaluate};
+use super::verdict::{RequirementResult, evaluate};
 use super::work::{Part, Short, Work};
 use octant_requirements::Verdict;
+use octant_requirements::verdict::LimitCheck;
 use serde::{Deserialize, Serialize};
 
 /// Whom a finding is about.
@@ -84,7 +85,7 @@ pub(crate) fn unfired(summary: &Summary) -> impl Iterator<Item = (&FaultResult, 
 /// If the summary can't be written as JSON.
 pub fn judge(
     summary: &mut Summary,
-    requirements: &[Requirement],
+    requirements: &[LimitCheck],
     findings: &[Finding],
 ) -> Result<(), serde_json::Error> {
     judge_by(summary, requirements, findings, |_| Ok(0.0))
@@ -96,13 +97,13 @@ pub fn judge(
 /// If the summary can't be written as JSON.
 pub fn judge_by(
     summary: &mut Summary,
-    requirements: &[Requirement],
+    requirements: &[LimitCheck],
     findings: &[Finding],
     uncertainty: impl Fn(&str) -> Result<f64, String>,
 ) -> Result<(), serde_json::Error> {
     let document = serde_json::to_value(&*summary)?;
     summary.findings = findings.to_vec();
-    let result = |requirement: &Requirement| {
+    let result = |requirement: &LimitCheck| {
         let result = evaluate(requirement, &document);
         match uncertainty(&requirement.measure) {
             Ok(uncertainty) => result.with_uncertainty(uncertainty),

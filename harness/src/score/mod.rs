@@ -5,13 +5,12 @@
 //! - [`mod@reference`] and [`floor`] say what physics lets the scores be
 //! - [`ensemble`] has the statistics over many runs, [`compare`] those of two methods in pairs
 //! - [`health`] counts what the core reported on the way
-//! - [`summary`] is `summary.json`, [`measures`] are the numbers in it, [`work`] is what was planned and done
-//! - [`verdict`] holds a measure against its limit, [`decision`] what a value near its limit comes to, [`signed`] which measures have a sign, [`judge`] derives the verdict of a summary, [`junit`] tells CI
-//! - [`rederive`] holds a stored summary against itself, [`numerics`] says whose bits can be compared, [`equipment`] until when certificates hold
+//! - [`summary`] is `summary.json`, [`work`] is what was planned and done
+//! - [`verdict`] holds a measure against its limit, [`judge`] derives the verdict of a summary, [`junit`] tells CI
+//! - [`rederive`] holds a stored summary against itself, [`numerics`] says whose bits can be compared, [`equipment`] what expired certificates come to
 
 pub mod compare;
 pub mod counterfactual;
-pub mod decision;
 pub mod drift;
 pub mod ensemble;
 pub mod equipment;
@@ -19,14 +18,12 @@ pub mod floor;
 pub mod health;
 pub mod judge;
 pub mod junit;
-pub mod measures;
 pub mod numerics;
 pub mod parameters;
 pub mod rederive;
 pub mod reference;
 mod regression;
 mod series;
-pub mod signed;
 pub mod summary;
 pub mod trace;
 pub mod verdict;

@@ -6,7 +6,8 @@
 
 use super::judge::{About, Finding, as_far_as_done, derive};
 use super::summary::{Summary, WITH_FINDINGS};
-use super::verdict::{Requirement, RequirementResult, evaluate};
+use super::verdict::{RequirementResult, evaluate};
+use octant_requirements::verdict::LimitCheck;
 use octant_requirements::{Comparison, Verdict};
 
 /// The results of a stored summary's requirements, held against its measures again: nothing that it says of
@@ -17,7 +18,7 @@ use octant_requirements::{Comparison, Verdict};
 pub fn results(summary: &Summary) -> Result<Vec<RequirementResult>, serde_json::Error> {
     let document = serde_json::to_value(summary)?;
     let again = |result: &RequirementResult| {
-        let requirement = Requirement {
+        let requirement = LimitCheck {
             id: result.id.clone(),
             measure: result.measure.clone(),
             comparison: result.comparison,

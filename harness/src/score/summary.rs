@@ -3,12 +3,12 @@
 //! Nothing of host or clock is in it: the same scenario, seed and core give the same bytes.
 
 use super::counterfactual::Counterfactual;
-use super::decision::Decided;
 use super::judge::Finding;
 use super::reference::Reference;
 use super::verdict::RequirementResult;
 use super::work::Work;
 use octant_requirements::Verdict;
+use octant_requirements::decision::Decided;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 

@@ -1,24 +1,9 @@
 //! A measure against its limit.
 
-use super::decision::in_band;
-use octant_requirements::{Comparison, Verdict};
+use octant_requirements::decision::in_band;
+use octant_requirements::verdict::{Comparison, LimitCheck, Verdict};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
-
-/// A limit on one measure of the summary.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Requirement {
-    /// Id of the requirement that this check verifies.
-    pub id: String,
-    /// Path of the measure in the summary, with dots:
-    /// `navigation.longitude_error_arcmin.max`, `calibration.parameters.g_zz.error`. With bars
-    /// around it the magnitude is meant: `|calibration.parameters.g_zz.error|`.
-    pub measure: String,
-    /// How it is held against the limit.
-    pub comparison: Comparison,
-    /// The limit, in the unit of the measure.
-    pub limit: f64,
-}
 
 /// A requirement with what was found.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -124,7 +109,7 @@ impl RequirementResult {
 
 /// Holds one requirement against a summary as JSON.
 #[must_use]
-pub fn evaluate(requirement: &Requirement, summary: &Value) -> RequirementResult {
+pub fn evaluate(requirement: &LimitCheck, summary: &Value) -> RequirementResult {
     let found = if requirement.limit.is_finite() {
         measure(&requirement.measure, summary)
     } else {

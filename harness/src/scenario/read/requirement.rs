@@ -5,12 +5,12 @@ use crate::scenario::Requirement;
 use crate::scenario::document::Value;
 use crate::scenario::error::Problem;
 use crate::scenario::quantity::{self, Quantity};
-use crate::score::decision::{Decision, Rule, Uncertainty};
-use crate::score::equipment::{Day, Equipment};
-use crate::score::verdict;
-use crate::score::{measures, signed};
 use octant_base::names::suggestion;
 use octant_requirements::Comparison;
+use octant_requirements::decision::{Decision, Rule, Uncertainty};
+use octant_requirements::equipment::{Day, Equipment};
+use octant_requirements::verdict::LimitCheck;
+use octant_requirements::{measures, signed};
 use octant_sample::parameters::{Group, NAMES};
 
 /// Units that the names of measures end in, with the unit's own spelling.
@@ -42,7 +42,7 @@ pub(super) fn read(root: &Reader<'_>) -> Result<Vec<Requirement>, Problem> {
         let bare = path_of(measure).map_err(|message| table.problem("measure", message))?;
         let (limit, limit_text) = limit(&table, bare)?;
         all.push(Requirement {
-            check: verdict::Requirement {
+            check: LimitCheck {
                 id,
                 measure: measure.to_owned(),
                 comparison: match table.text("comparison")? {

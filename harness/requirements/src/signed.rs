@@ -1,6 +1,6 @@
 //! Measures that have a sign: a limit on one side of one lets everything on the other side through.
 
-use octant_requirements::Comparison;
+use crate::verdict::Comparison;
 
 /// Whether a measure, by its path without bars, can be negative in a good run.
 #[must_use]
