@@ -5,11 +5,11 @@
 
 use octant::recorder::reader;
 use octant::scenario::Scenario;
-use octant::scenario::resolve::{Draws, Seeded};
-use octant::source::{
-    Axis, Column, Delimiter, Epoch, Quantity, Source, TextFiles, TextMapping, TextSource,
-    TimeColumn, TimeUnit,
+use octant::scenario::recorded::{
+    Axis, Column, Delimiter, Quantity, TextFiles, TextMapping, TimeColumn, TimeUnit,
 };
+use octant::scenario::resolve::{Draws, Seeded};
+use octant::source::{Epoch, Source, TextSource};
 use octant_calibration::table::CalibrationTable;
 use octant_fmu_check::{check_archive, check_description, show};
 use octant_fmu_host::archive::{Archive, Limits};

@@ -2,9 +2,8 @@
 
 use crate::common::epochs::{push, record, stream, truth_of};
 use octant::recorder::{Policy, Recorder, RecorderOptions, Samples, StreamHash};
-use octant::source::{
-    Epoch, MappedField, MappedStamp, McapMapping, Quantity, Replay, Source, SourceError, TimeUnit,
-};
+use octant::scenario::recorded::{MappedField, MappedStamp, McapMapping, Quantity, TimeUnit};
+use octant::source::{Epoch, Replay, Source, SourceError};
 use octant_sample::counts::DELTA_THETA_LSB_RAD;
 use octant_sample::{GimbalCommand, Status};
 use std::collections::BTreeMap;

@@ -1,9 +1,9 @@
 //! Text of real instruments as a source: counts, stamps, and errors that name the place.
 
-use octant::source::{
-    Axis, Column, Delimiter, Epoch, GimbalColumns, Quantity, Source, SourceError, TextFiles,
-    TextMapping, TextSource, TimeColumn, TimeUnit,
+use octant::scenario::recorded::{
+    Axis, Column, Delimiter, GimbalColumns, Quantity, TextFiles, TextMapping, TimeColumn, TimeUnit,
 };
+use octant::source::{Epoch, Source, SourceError, TextSource};
 use octant_sample::counts::{DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS};
 use octant_sample::{GimbalCommand, Status};
 use std::path::{Path, PathBuf};

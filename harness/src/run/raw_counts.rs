@@ -9,7 +9,7 @@ use octant_sample::Parameters;
 pub fn text(source: &Source, parameters: &Parameters) -> String {
     use std::fmt::Write as _;
     let Source::Text(mapping) = source else { return String::new() };
-    let nominal = |axes: &[crate::source::Axis; 3]| Nominal {
+    let nominal = |axes: &[crate::scenario::recorded::Axis; 3]| Nominal {
         bias_counts: [0, 1, 2].map(|i| axes[i].offset),
         scale: [0, 1, 2].map(|i| axes[i].scale),
     };

@@ -5,6 +5,7 @@
 //! ([`resolve`]) and put into the configurations of plant and core, so that two methods compared
 //! on one seed meet the same instrument.
 
+pub mod channel;
 pub(crate) mod complete;
 mod condition;
 mod derive;
@@ -15,6 +16,7 @@ pub(crate) mod keys;
 mod ports;
 pub(crate) mod quantity;
 pub(crate) mod read;
+pub mod recorded;
 pub mod resolve;
 mod schema;
 pub mod suite;

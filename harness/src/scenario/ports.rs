@@ -8,7 +8,7 @@ use super::complete::{explain, join, number};
 use super::document::{Node, Table, Value, parse_argument};
 use super::error::{Place, Problem};
 use super::quantity;
-use crate::fmu::mapping::channel::{Channel, Class};
+use crate::scenario::channel::{Channel, Class};
 use octant_base::names::suggestion;
 
 /// Where a scenario says something, for messages that come later than its reading.
@@ -322,7 +322,7 @@ pub(super) fn codes(value: &Value) -> Option<Vec<Code>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fmu::mapping::channel::{answer, sample};
+    use crate::scenario::channel::{answer, sample};
     use crate::scenario::document;
 
     fn node(text: &str) -> Node {

@@ -4,7 +4,7 @@ use super::complete::expected;
 use super::document::parse_default;
 use super::keys::{Bounds, Default, Key, Kind, SCENARIO, SCHEMA, Section, Variants};
 use super::quantity::Dimension;
-use crate::fmu::mapping::channel::Channel;
+use crate::scenario::channel::Channel;
 use serde_json::{Map, Value, json};
 
 /// A number followed by a unit.

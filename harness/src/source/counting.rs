@@ -1,18 +1,8 @@
 //! Measured quantities of a real instrument into the integer counts of a sample.
 
+use crate::scenario::recorded::{Quantity, SPLIT_MAX};
 use octant_sample::counts::{Accumulator, DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS};
 use octant_sample::{DeviceTime, GimbalAngles, Sample, Status};
-
-/// What a file's inertial columns hold.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Quantity {
-    /// Angular rate, rad/s, and specific force, m/s², taken as constant over the interval that ends
-    /// at the stamp.
-    #[default]
-    Rates,
-    /// Angle increments, rad, and velocity increments, m/s, over that interval.
-    Increments,
-}
 
 /// One row of a file in SI.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -26,9 +16,6 @@ pub(super) struct Measured {
     /// Gimbal azimuth and roll, rad, where the file has them.
     pub(super) gimbal_rad: Option<[f64; 2]>,
 }
-
-/// Most samples that a row may be split into.
-pub const SPLIT_MAX: u32 = 1000;
 
 /// Turns increments of both triads into counts and carries the remainder of each axis.
 #[derive(Clone, Copy, Debug, Default)]

@@ -1,93 +1,13 @@
 //! An MCAP file that octant did not write, as a source: topic and fields named by a mapping.
 
-use super::counting::{Counting, Measured, Quantity};
+use super::counting::{Counting, Measured};
 use super::fields::{Definition, FieldDecoder, FieldPath, Number};
-use super::text::TimeUnit;
 use super::{Epoch, SourceError};
 use crate::recorder::records::{End, Records};
+use crate::scenario::recorded::{MappedField, MappedStamp, McapMapping, TimeUnit};
 use mcap::records::{Record, op};
 use std::collections::{BTreeSet, HashMap};
 use std::io::Read;
-
-/// A field of a message and what turns it into SI.
-#[derive(Clone, Debug, PartialEq)]
-pub struct MappedField {
-    /// Path of the field: `angular_velocity.x`, `axes[2].rate`.
-    pub path: String,
-    /// What the instrument shows at zero, in units of the field.
-    pub offset: f64,
-    /// SI units per unit of the field, `(value − offset) · scale`; negative turns the axis around.
-    pub scale: f64,
-}
-
-impl MappedField {
-    fn si(path: &str) -> Self {
-        Self { path: path.into(), offset: 0.0, scale: 1.0 }
-    }
-}
-
-/// Where the stamp of a message comes from.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum MappedStamp {
-    /// Log time of the message.
-    LogTime,
-    /// Publish time of the message.
-    PublishTime,
-    /// Fields of the message.
-    Field {
-        /// Path of a number. Whole numbers are exact; others are rounded to what an f64 holds.
-        path: String,
-        /// Its unit.
-        unit: TimeUnit,
-        /// Path of whole nanoseconds to add, as stamps of ROS have them.
-        nanoseconds: Option<String>,
-    },
-}
-
-/// How the messages of a foreign MCAP file become samples. Encodings: JSON, and CDR with a
-/// `ros2msg` schema.
-#[derive(Clone, Debug, PartialEq)]
-pub struct McapMapping {
-    /// Topic of the inertial messages.
-    pub topic: String,
-    /// Gyros x y z of the body: rad/s (rad, for increments) after scaling.
-    pub gyro: [MappedField; 3],
-    /// Accelerometers x y z of the body: m/s² (m/s) after scaling.
-    pub accelerometer: [MappedField; 3],
-    /// What these fields are.
-    pub quantity: Quantity,
-    /// Stamps.
-    pub stamp: MappedStamp,
-    /// Nominal rate of the messages, Hz: gives the interval of the first.
-    pub nominal_rate_hz: f64,
-    /// Samples that a message becomes, equal parts of its interval: counts then hold faster rates.
-    pub split: u32,
-    /// Gimbal azimuth and roll, rad after scaling, where the messages have them.
-    pub gimbal: Option<[MappedField; 2]>,
-}
-
-impl McapMapping {
-    /// The mapping of `sensor_msgs/msg/Imu`, stamped by its header.
-    #[must_use]
-    pub fn ros_imu(topic: &str, nominal_rate_hz: f64) -> Self {
-        let axes =
-            |name: &str| ["x", "y", "z"].map(|axis| MappedField::si(&format!("{name}.{axis}")));
-        Self {
-            topic: topic.into(),
-            gyro: axes("angular_velocity"),
-            accelerometer: axes("linear_acceleration"),
-            quantity: Quantity::Rates,
-            stamp: MappedStamp::Field {
-                path: "header.stamp.sec".into(),
-                unit: TimeUnit::Second,
-                nanoseconds: Some("header.stamp.nanosec".into()),
-            },
-            nominal_rate_hz,
-            split: 1,
-            gimbal: None,
-        }
-    }
-}
 
 /// Paths in the order in which the numbers come back: gyro, accelerometer, gimbal, stamp.
 struct Plan {

@@ -1,6 +1,7 @@
 //! The source of a scenario.
 
-use super::{LiveSource, Replay, Source, SourceError, TextFiles, TextMapping, TextSource};
+use super::{LiveSource, Replay, Source, SourceError, TextSource};
+use crate::scenario::recorded::{TextFiles, TextMapping};
 use crate::scenario::{self, FileName, Scenario};
 use octant_plant::config::Config;
 use std::path::PathBuf;

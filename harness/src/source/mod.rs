@@ -11,16 +11,11 @@ mod replay;
 mod rows;
 mod text;
 
-pub use counting::{Quantity, SPLIT_MAX};
-pub use foreign::{MappedField, MappedStamp, McapMapping};
 pub use from_scenario::open;
 pub use live::LiveSource;
 pub use plant::PlantSource;
 pub use replay::Replay;
-pub use text::{
-    Axis, Column, Delimiter, GimbalColumns, TextFiles, TextMapping, TextSource, TimeColumn,
-    TimeUnit,
-};
+pub use text::TextSource;
 
 use octant_faults::disturbance::Disturbed;
 use octant_plant::Truth;

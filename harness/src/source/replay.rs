@@ -3,11 +3,12 @@
 //! Read from first to last in bounded memory, whatever the length. The gimbal commands of the core
 //! are ignored: what was recorded has happened.
 
-use super::foreign::{Foreign, McapMapping};
+use super::foreign::Foreign;
 use super::{Epoch, Source, SourceError};
 use crate::recorder::Samples;
 use crate::recorder::reader::{Epochs, Info, ReadError, RecordedEpoch, Recording};
 use crate::scenario::Scenario;
+use crate::scenario::recorded::McapMapping;
 use octant_plant::Truth;
 use octant_sample::GimbalCommand;
 use std::fs::File;

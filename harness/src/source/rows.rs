@@ -1,7 +1,7 @@
 //! Rows of a delimited text file, with what is needed to name a place in it.
 
 use super::SourceError;
-use super::text::{Column, Delimiter};
+use crate::scenario::recorded::{Column, Delimiter};
 use csv::StringRecord;
 use std::fs::File;
 use std::io::{BufRead, BufReader, Read};

@@ -1,8 +1,8 @@
 //! The channels of a core, bound to the variables of an FMU.
 
 use crate::fmu::mapping::bind::{BindError, Binder, Bound, Cell, Cells, Handle};
-use crate::fmu::mapping::channel::{answer, sample};
 use crate::fmu::mapping::find::Way;
+use crate::scenario::channel::{answer, sample};
 use crate::scenario::{Code, Fmu};
 use octant_fmu_host::description::Description;
 use octant_sample::Mode;

@@ -1,9 +1,9 @@
 //! Channels bound to the variables of one FMU: where each element lies in the numbers that are set
 //! or got together, and how it is converted.
 
-use super::channel::Channel;
 use super::convert::{Conversion, conversion, fits};
 use super::find::{Found, Way, allowed, described, find, unknown};
+use crate::scenario::channel::Channel;
 use crate::scenario::{Fmu, Made, Mapped, Problem, Written};
 use octant_fmu_host::description::{Description, Variable};
 use octant_fmu_host::instance::{InstanceError, Plan};

@@ -1,7 +1,7 @@
 //! Between the unit of an FMU's variable and SI.
 
-use super::channel::{Channel, Class};
 use crate::scenario::Dimension;
+use crate::scenario::channel::{Channel, Class};
 use octant_fmu_host::description::units::{Conversion as Units, UnitError};
 use octant_fmu_host::description::{Description, Kind, Variable};
 

@@ -3,7 +3,6 @@
 //!
 //! | module | idea |
 //! |---|---|
-//! | [`channel`] | what crosses between the harness and an FMU |
 //! | [`find`] | variables by the names that people write |
 //! | [`convert`] | between the unit of a variable and SI |
 //! | [`bind`] | channels bound to variables: where each number lies |
@@ -12,7 +11,6 @@
 //! | [`stepper`] | an FMU that is started, and stepped in time |
 
 pub mod bind;
-pub mod channel;
 pub mod convert;
 pub mod find;
 pub mod open;

@@ -1,8 +1,8 @@
 //! Values that are set in an FMU before it starts, checked against its description.
 
-use super::channel::{Channel, Class};
 use super::convert::conversion;
 use super::find::{count, find, unknown};
+use crate::scenario::channel::{Channel, Class};
 use crate::scenario::{Dimension, Set, quantity_of};
 use octant_fmu_host::description::{Causality, Description, Initial, Kind, Variability, Variable};
 use octant_fmu_host::instance::{Access, Group, Instance, InstanceError};

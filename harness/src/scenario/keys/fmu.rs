@@ -1,7 +1,7 @@
 //! Keys of imported FMUs: how one is run, what is set in it, which of its variables is what.
 
 use super::{Bounds, Default, Key, Kind, Section, key, section};
-use crate::fmu::mapping::channel::{Channel, answer, case, sample, truth};
+use crate::scenario::channel::{Channel, answer, case, sample, truth};
 use crate::scenario::quantity::Dimension;
 
 const INTERFACE: Key = key(

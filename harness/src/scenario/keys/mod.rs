@@ -15,7 +15,7 @@ mod source;
 mod suite;
 
 use super::quantity::Dimension;
-use crate::fmu::mapping::channel::Channel;
+use crate::scenario::channel::Channel;
 
 pub(crate) use campaign::CAMPAIGN;
 pub(crate) use connection::{CONNECTIONS, connection_section};

@@ -153,7 +153,7 @@ static TEXT: Section = section(&[
 
 const SPLIT: Key = key(
     "split",
-    Kind::Integer(1, crate::source::SPLIT_MAX as i64),
+    Kind::Integer(1, crate::scenario::recorded::SPLIT_MAX as i64),
     Default::Value("1"),
     "Samples that a row or message becomes, equal parts of its interval, so that counts hold faster rates (179 deg/s at 100 Hz, 358 deg/s at 200 Hz).",
 );

@@ -6,7 +6,7 @@
 use super::Reader;
 use super::live::{self, Live};
 use super::source::FileName;
-use crate::fmu::mapping::channel::Channel;
+use crate::scenario::channel::Channel;
 use crate::scenario::document::{Node, Value};
 use crate::scenario::error::Problem;
 use crate::scenario::keys::{ENDPOINT_MAP, Kind, SOURCE_MAP, Section};

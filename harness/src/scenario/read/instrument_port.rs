@@ -3,11 +3,8 @@
 use super::Reader;
 use super::source::FileName;
 use crate::scenario::error::Problem;
-use crate::source::SourceError;
-use octant_instruments::dbc::{Database, Gatherer, Mapping};
 use octant_instruments::{Axes, Protocol};
 use octant_link::Uri;
-use std::path::Path;
 
 /// An instrument on a port.
 #[derive(Clone, Debug, PartialEq)]
@@ -49,32 +46,6 @@ pub struct Messages {
     pub database: FileName,
     /// Which signals are which channels.
     pub mapping: FileName,
-}
-
-impl Messages {
-    /// What puts readings together from them. The files are relative to a folder.
-    ///
-    /// # Errors
-    /// If a file can't be read, or they don't fit each other.
-    pub fn gatherer(&self, folder: &Path) -> Result<Gatherer, SourceError> {
-        let read = |name: &FileName| {
-            let path = name.path(folder).map_err(SourceError::FileName)?;
-            let file = path.display().to_string();
-            match std::fs::read_to_string(&path) {
-                Ok(text) => Ok((file, text)),
-                Err(error) => Err(SourceError::Read { path: file, reason: error.to_string() }),
-            }
-        };
-        let wrong = |problem: octant_instruments::dbc::Problem| SourceError::Read {
-            path: problem.place,
-            reason: problem.what,
-        };
-        let (file, text) = read(&self.database)?;
-        let database = Database::parse(&file, &text).map_err(wrong)?;
-        let (file, text) = read(&self.mapping)?;
-        let mapping = Mapping::parse(&file, &text).map_err(wrong)?;
-        Gatherer::new(&database, &mapping).map_err(wrong)
-    }
 }
 
 /// Reads it.

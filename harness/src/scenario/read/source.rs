@@ -4,7 +4,7 @@ use super::Reader;
 use super::fmu::Fmu;
 use super::instrument_port::{Instrument, instrument};
 use crate::scenario::error::Problem;
-use crate::source::{
+use crate::scenario::recorded::{
     Axis, Column, Delimiter, GimbalColumns, MappedField, MappedStamp, McapMapping, Quantity,
     TextFiles, TextMapping, TimeColumn, TimeUnit,
 };

@@ -5,10 +5,10 @@
 //! from the end of interval k + 1 on, as two FMUs that are stepped in parallel have it.
 
 use crate::fmu::mapping::bind::{BindError, Binder, Bound, Cell, Cells, Handle};
-use crate::fmu::mapping::channel::{Channel, sample, truth};
 use crate::fmu::mapping::find::Way;
 use crate::fmu::mapping::stepper::Stepper;
 use crate::scenario::Fmu;
+use crate::scenario::channel::{Channel, sample, truth};
 use crate::source::counting::Triads;
 use crate::source::{Epoch, Source, SourceError};
 use octant_fmu_host::description::Description;

@@ -6,10 +6,10 @@
 //! and what truth tells is that motion, to the last digit.
 
 use crate::fmu::mapping::bind::{BindError, Binder, Bound, Cell};
-use crate::fmu::mapping::channel::{Channel, case};
 use crate::fmu::mapping::find::Way;
 use crate::fmu::mapping::stepper::Stepper;
 use crate::scenario::Fmu;
+use crate::scenario::channel::{Channel, case};
 use crate::source::{Epoch, Source, SourceError};
 use octant_earth::ellipsoid::Ellipsoid;
 use octant_faults::disturbance::Disturbed;

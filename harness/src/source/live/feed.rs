@@ -1,8 +1,11 @@
 //! Readings from a port, and when they came.
 
+use crate::scenario::FileName;
+use crate::scenario::read::instrument_port::Messages;
 use crate::scenario::{Instrument, Speaks};
 use crate::source::SourceError;
 use octant_instruments::dbc::{CanFrame, Gatherer};
+use octant_instruments::dbc::{Database, Mapping};
 use octant_instruments::{AnyDecoder, Event, Reading};
 use octant_link::port::{self, Bytes, Heard, Listener, Port};
 use octant_wire::Role;
@@ -45,7 +48,7 @@ impl Feed {
         let protocol = match &instrument.speaks {
             Speaks::Bytes(protocol) => *protocol,
             Speaks::Can(messages) => {
-                let gatherer = messages.gatherer(folder)?;
+                let gatherer = gatherer(messages, folder)?;
                 let identifiers: Vec<(u32, bool)> = gatherer.identifiers().collect();
                 let listener = Listener::open(uri, &identifiers);
                 let listener = listener.map_err(|error| gone(error.to_string()))?;
@@ -155,4 +158,28 @@ impl Line {
             }
         }
     }
+}
+
+/// What puts readings together from them. The files are relative to a folder.
+///
+/// # Errors
+/// If a file can't be read, or they don't fit each other.
+pub(super) fn gatherer(messages: &Messages, folder: &Path) -> Result<Gatherer, SourceError> {
+    let read = |name: &FileName| {
+        let path = name.path(folder).map_err(SourceError::FileName)?;
+        let file = path.display().to_string();
+        match std::fs::read_to_string(&path) {
+            Ok(text) => Ok((file, text)),
+            Err(error) => Err(SourceError::Read { path: file, reason: error.to_string() }),
+        }
+    };
+    let wrong = |problem: octant_instruments::dbc::Problem| SourceError::Read {
+        path: problem.place,
+        reason: problem.what,
+    };
+    let (file, text) = read(&messages.database)?;
+    let database = Database::parse(&file, &text).map_err(wrong)?;
+    let (file, text) = read(&messages.mapping)?;
+    let mapping = Mapping::parse(&file, &text).map_err(wrong)?;
+    Gatherer::new(&database, &mapping).map_err(wrong)
 }

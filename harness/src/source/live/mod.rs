@@ -56,7 +56,7 @@ impl LiveSource {
     /// If a file can't be read, or isn't what it should be.
     pub fn check(scenario: &Scenario, instrument: &Instrument) -> Result<(), SourceError> {
         if let Speaks::Can(messages) = &instrument.speaks {
-            messages.gatherer(&scenario.folder)?;
+            feed::gatherer(messages, &scenario.folder)?;
         }
         match &scenario.drive {
             Some(drive) => drive.plan(&scenario.folder).map(drop).map_err(SourceError::Table),
