@@ -45,7 +45,7 @@ fn the_values_of_an_independent_program_come_out_of_the_scenario() {
     assert_eq!((tally.gaps, tally.out_of_order), (0, 0));
 
     let Source::Text(mapping) = &scenario.source else { panic!("{:?}", scenario.source) };
-    let nominal = |axes: &[scenario::recorded::Axis; 3]| Nominal {
+    let nominal = |axes: &[octant::scenario::recorded::Axis; 3]| Nominal {
         bias_counts: axes.each_ref().map(|axis| axis.offset),
         scale: axes.each_ref().map(|axis| axis.scale),
     };
