@@ -4,17 +4,17 @@
 //! accepted has to keep its promises.
 
 use octant::recorder::reader;
-use octant::scenario::Scenario;
-use octant::scenario::recorded::{
-    Axis, Column, Delimiter, Quantity, TextFiles, TextMapping, TimeColumn, TimeUnit,
-};
-use octant::scenario::resolve::{Draws, Seeded};
 use octant::source::{Epoch, Source, TextSource};
 use octant_calibration::table::CalibrationTable;
 use octant_fmu_check::{check_archive, check_description, show};
 use octant_fmu_host::archive::{Archive, Limits};
 use octant_fmu_host::description::units::{Conversion, known};
 use octant_fmu_host::description::{decode, read, read_bytes};
+use octant_scenario::Scenario;
+use octant_scenario::recorded::{
+    Axis, Column, Delimiter, Quantity, TextFiles, TextMapping, TimeColumn, TimeUnit,
+};
+use octant_scenario::resolve::{Draws, Seeded};
 use std::path::Path;
 
 /// A scenario: refused, or resolved to a text that reads back as the same scenario.

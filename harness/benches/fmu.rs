@@ -8,9 +8,9 @@ use criterion::{
     BenchmarkGroup, Criterion, SamplingMode, Throughput, criterion_group, criterion_main,
 };
 use octant::run::{Control, Recording, run_method};
-use octant::scenario::{Method, Scenario};
 use octant_fmu_host::description::{Causality, Kind};
 use octant_fmu_host::instance::{Instance, Options, Place, Plan};
+use octant_scenario::{Method, Scenario};
 use std::path::{Path, PathBuf};
 
 /// The FMUs of this build.

@@ -4,7 +4,7 @@
 
 use criterion::{Criterion, SamplingMode, Throughput, criterion_group, criterion_main};
 use octant::run::{Control, Recording, run_method};
-use octant::scenario::{Method, Scenario};
+use octant_scenario::{Method, Scenario};
 use std::path::Path;
 
 fn bench(criterion: &mut Criterion) {

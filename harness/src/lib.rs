@@ -14,7 +14,6 @@ pub mod observe;
 pub mod recorder;
 pub mod report;
 pub mod run;
-pub mod scenario;
 pub mod score;
 pub mod selftest;
 pub mod source;

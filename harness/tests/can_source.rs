@@ -1,9 +1,9 @@
 //! An instrument on a CAN bus as a source: behind an adapter on a serial line, which is played here.
 
-use octant::scenario::{Scenario, Source as Kind};
 use octant::source::{Epoch, LiveSource, Source};
 use octant_link::port::{Bytes, Pty};
 use octant_sample::{DeviceTime, GimbalAngles, GimbalCommand, Sample, Status};
+use octant_scenario::{Scenario, Source as Kind};
 use octant_wire::Message;
 use octant_wire::can::{Format, segments};
 use octant_wire::message::{Role, SampleMessage, Step};
@@ -138,7 +138,7 @@ fn what_does_not_go_together_is_refused_with_its_place() {
         let files = "database = \"unit.dbc\"\nmapping = \"unit.toml\"\n";
         let scenario = scenario(folder.path(), "can:can0", files).unwrap();
         let draws =
-            octant::scenario::resolve::Draws::of(&scenario, &octant::scenario::resolve::Seeded(1));
+            octant_scenario::resolve::Draws::of(&scenario, &octant_scenario::resolve::Seeded(1));
         scenario.to_resolved_toml(1, &draws)
     };
     // It stands in another folder.

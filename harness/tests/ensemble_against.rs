@@ -7,7 +7,6 @@ use octant::campaign::case::{self, CaseResult};
 use octant::campaign::plan::Plan;
 use octant::observe::against::{Against, RUNS_MIN, Selection, against};
 use octant::observe::ensemble::{Ensemble, ensemble};
-use octant::scenario::{Method, Scenario};
 use octant::score::judge::judge;
 use octant::score::summary::{
     Calibration, ErrorScore, HealthCounts, HeightChannel, Navigation, ParameterScore, RadialScore,
@@ -17,6 +16,7 @@ use octant_random::normal::Ziggurat;
 use octant_random::stream::{Phase, key};
 use octant_requirements::Verdict;
 use octant_sample::parameters::NAMES;
+use octant_scenario::{Method, Scenario};
 use std::collections::BTreeMap;
 use tempfile::TempDir;
 

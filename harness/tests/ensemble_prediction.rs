@@ -4,7 +4,6 @@
 use nalgebra::{Quaternion, UnitQuaternion};
 use octant::observe::ensemble::{Ensemble, ensemble, state_unit};
 use octant::run::method::configurations;
-use octant::scenario::{Method, Scenario};
 use octant_calibration::Core;
 use octant_calibration::covariance::{DR, DV, PARAMETERS, PHI, STATE_COUNT};
 use octant_earth::ellipsoid::Ellipsoid;
@@ -13,6 +12,7 @@ use octant_earth::units::{ARCMIN, NAUTICAL_MILE_M};
 use octant_plant::Plant;
 use octant_plant::config::{AidingKind, Config};
 use octant_sample::{GimbalCommand, Mode};
+use octant_scenario::{Method, Scenario};
 use octant_statistics::sample::{mean, percentile, rms};
 use std::path::Path;
 use std::sync::atomic::{AtomicU64, Ordering};

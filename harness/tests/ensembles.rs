@@ -126,7 +126,7 @@ fn twenty_seeds_are_consistent() {
 fn claim(scenario: &str) -> octant::score::compare::Comparison {
     use octant::run::Control;
     use octant::run::paired::{Side, paired};
-    use octant::scenario::{Method, Scenario};
+    use octant_scenario::{Method, Scenario};
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/scenarios/");
     let rate = ["imu.rate=50 Hz".to_owned()];
     let path = format!("{path}{scenario}");

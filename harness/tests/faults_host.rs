@@ -5,7 +5,7 @@ use crate::common::program::{json, program};
 use octant::recorder::reader::{self, Item};
 use octant::run::method::{MethodError, SetupError};
 use octant::run::{Control, Recording, run_method};
-use octant::scenario::{Method, Scenario};
+use octant_scenario::{Method, Scenario};
 use serde_json::Value;
 use std::path::Path;
 use std::time::{Duration, Instant};

@@ -11,7 +11,6 @@ use octant::run::{
     Control, Ended, Faulted, Host, MethodRun, Recording, Watcher, assemble, drive_faulted,
     run_method,
 };
-use octant::scenario::{Method, Scenario};
 use octant::score::summary::FaultResult;
 use octant::source::{Epoch, PlantSource, Replay, Source};
 use octant_faults::catalogue::{Acts, Family, Kind, Lasts};
@@ -22,6 +21,7 @@ use octant_faults::{Station, Values};
 use octant_requirements::Verdict;
 use octant_sample::canonical::{AIDING_BYTES, SAMPLE_BYTES, aiding, sample};
 use octant_sample::{GimbalCommand, Mode, Output, Parameters};
+use octant_scenario::{Method, Scenario};
 use std::path::Path;
 
 const LOCKSTEP: &str = include_str!("../../fixtures/scenarios/lockstep.toml");

@@ -1,12 +1,12 @@
 //! Faults in scenarios: what is read, and what the program says about those that can't be.
 
-use octant::scenario::resolve::{Draws, Seeded};
-use octant::scenario::{Place, Problem, Scenario, fault_example};
 use octant_earth::units::DEG_PER_HOUR;
 use octant_faults::catalogue::{Acts, Dimension};
 use octant_faults::trigger::{Comparison, Repeat, Signal, Trigger};
 use octant_faults::{Channels, Station, Value, kinds};
 use octant_sample::Mode;
+use octant_scenario::resolve::{Draws, Seeded};
+use octant_scenario::{Place, Problem, Scenario, fault_example};
 use std::path::Path;
 
 /// Four hours in eight positions and one of navigation, 200 Hz; six positions beside it.

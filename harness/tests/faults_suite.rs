@@ -1,10 +1,10 @@
 //! Every kind of fault in a short scenario: each ends as its suite says, and each fault fired.
 
 use octant::run::{Control, MethodRun, Recording, assemble, run_method};
-use octant::scenario::suite::{Case, Suite};
-use octant::scenario::{Method, Scenario};
 use octant_faults::catalogue::Acts;
 use octant_faults::{Kind, kinds};
+use octant_scenario::suite::{Case, Suite};
+use octant_scenario::{Method, Scenario};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -38,7 +38,7 @@ fn every_kind_has_a_case_and_every_file_is_listed() {
     assert_eq!(listed, expected, "in the order of the catalogue");
     for (path, kind) in expected.iter().zip(in_samples()) {
         let scenario = Scenario::load(path, &[]).unwrap();
-        let of_kind = |f: &octant::scenario::Fault| f.spec.kind.name == kind.name;
+        let of_kind = |f: &octant_scenario::Fault| f.spec.kind.name == kind.name;
         assert!(scenario.faults.iter().any(of_kind), "{}", path.display());
         assert!(!scenario.requirements.is_empty(), "{}", path.display());
     }

@@ -8,7 +8,6 @@
 )]
 
 use octant::run::method::configurations;
-use octant::scenario::{Method, Scenario};
 use octant::source::{Epoch, PlantSource, Source};
 use octant_calibration::{Config, Core};
 use octant_fmi::fmi2::{CO_SIMULATION, OK};
@@ -24,6 +23,7 @@ use octant_sample::{
     DeviceTime, GimbalAngles, GimbalCommand, Health, Mode, Navigation, Output, Parameters,
     Reference, canonical,
 };
+use octant_scenario::{Method, Scenario};
 use std::ffi::CString;
 use std::path::Path;
 use std::ptr::{null, null_mut};

@@ -329,8 +329,8 @@ fn parameters_of_a_scenario_are_written_with_all_their_bits() {
     let folder = tempfile::tempdir().unwrap();
     let scenario =
         Path::new(env!("CARGO_MANIFEST_DIR")).join("../fixtures/scenarios/lockstep.toml");
-    let scenario = octant::scenario::Scenario::load(&scenario, &[]).unwrap();
-    let method = octant::scenario::Method::Primary;
+    let scenario = octant_scenario::Scenario::load(&scenario, &[]).unwrap();
+    let method = octant_scenario::Method::Primary;
     let (_, core, _) = octant::run::method::configurations(&scenario, method, 1).unwrap();
     let options = Options {
         out: folder.path().to_owned(),

@@ -1,14 +1,14 @@
 //! What the core is configured with survives as parameters of the Calibrator FMU: bit for bit, and
 //! within the ranges that its table gives.
 
-use octant::scenario::resolve::{Draws, Seeded};
-use octant::scenario::{Method, Scenario};
 use octant_calibration::Config;
 use octant_earth::{Vector3, rotation};
 use octant_fmu::calibrator::table::MODEL;
 use octant_fmu::calibrator::{config, put, start_values};
 use octant_fmu::table::{Kind, Variable};
 use octant_fmu::values::Values;
+use octant_scenario::resolve::{Draws, Seeded};
+use octant_scenario::{Method, Scenario};
 use std::path::PathBuf;
 
 fn files() -> Vec<PathBuf> {

@@ -3,7 +3,6 @@
 
 use octant::endpoint::{Endpoint, InProcess};
 use octant::run::method::configurations;
-use octant::scenario::{Method, Scenario};
 use octant_calibration::config as core;
 use octant_faults::catalogue::{Acts, Lasts};
 use octant_faults::disturbance::Disturbed;
@@ -22,6 +21,7 @@ use octant_sample::{
     Aiding, DeviceTime, Epoch, GimbalAngles, GimbalCommand, Output, Reference, Sample, Status,
     Truth, canonical,
 };
+use octant_scenario::{Method, Scenario};
 use std::path::Path;
 
 fn fixtures() -> String {

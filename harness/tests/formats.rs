@@ -12,10 +12,10 @@ use octant::campaign::{merge, requirements, status};
 use octant::evidence::manifest::Manifest;
 use octant::evidence::signature::{self, Key};
 use octant::recorder::reader::{Item, Recording};
-use octant::scenario::Scenario;
 use octant::score::summary::Summary;
 use octant_calibration::table::CalibrationTable;
 use octant_requirements::Verdict;
+use octant_scenario::Scenario;
 use std::path::{Path, PathBuf};
 use tempfile::TempDir;
 

@@ -2,11 +2,11 @@
 //! reference values come from an independent program (see the recording's README).
 
 use octant::calibrate::in_passes;
-use octant::scenario::resolve::{Draws, Seeded};
-use octant::scenario::{Method, Scenario, Source};
 use octant::source;
 use octant_calibration::least_squares::raw::{self, Nominal};
 use octant_earth::Vector3;
+use octant_scenario::resolve::{Draws, Seeded};
+use octant_scenario::{Method, Scenario, Source};
 use std::path::{Path, PathBuf};
 
 /// Where real recordings are: by default a folder beside the repository.
@@ -45,7 +45,7 @@ fn the_values_of_an_independent_program_come_out_of_the_scenario() {
     assert_eq!((tally.gaps, tally.out_of_order), (0, 0));
 
     let Source::Text(mapping) = &scenario.source else { panic!("{:?}", scenario.source) };
-    let nominal = |axes: &[octant::scenario::recorded::Axis; 3]| Nominal {
+    let nominal = |axes: &[octant_scenario::recorded::Axis; 3]| Nominal {
         bias_counts: axes.each_ref().map(|axis| axis.offset),
         scale: axes.each_ref().map(|axis| axis.scale),
     };

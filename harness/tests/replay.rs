@@ -2,10 +2,10 @@
 
 use crate::common::epochs::{push, record, stream, truth_of};
 use octant::recorder::{Policy, Recorder, RecorderOptions, Samples, StreamHash};
-use octant::scenario::recorded::{MappedField, MappedStamp, McapMapping, Quantity, TimeUnit};
 use octant::source::{Epoch, Replay, Source, SourceError};
 use octant_sample::counts::DELTA_THETA_LSB_RAD;
 use octant_sample::{GimbalCommand, Status};
+use octant_scenario::recorded::{MappedField, MappedStamp, McapMapping, Quantity, TimeUnit};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 

@@ -1,6 +1,6 @@
 //! What the program says about scenarios that aren't: place, path, found, expected.
 
-use octant::scenario::{Place, Problem, Scenario};
+use octant_scenario::{Place, Problem, Scenario};
 use proptest::prelude::*;
 use std::path::Path;
 
@@ -315,7 +315,7 @@ proptest! {
             Just("\"1e-300 s\"".to_owned()),
         ],
     ) {
-        let tour = octant::scenario::tour();
+        let tour = octant_scenario::tour();
         let lines: Vec<&str> = tour.lines().collect();
         let line = line * lines.len() / 400;
         let changed = lines[line].split_once(" = ").map(|(key, _)| format!("{key} = {value}"));

@@ -1,9 +1,9 @@
 //! The scenarios that ship with Octant: each is read, resolved and read again.
 
-use octant::scenario::resolve::{Draws, Seeded};
-use octant::scenario::{Method, Scenario};
 use octant_earth::Vector3;
 use octant_sample::parameters::Group;
+use octant_scenario::resolve::{Draws, Seeded};
+use octant_scenario::{Method, Scenario};
 use std::path::{Path, PathBuf};
 
 fn files() -> Vec<PathBuf> {

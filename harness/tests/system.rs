@@ -6,7 +6,6 @@ use octant::fmu::master::summary::Ended;
 use octant::fmu::master::system::element_names;
 use octant::recorder::StreamHash;
 use octant::run::{Control, Recording, run_method};
-use octant::scenario::{Method, Scenario};
 use octant_fmu_host::description::{Description, read_bytes};
 use octant_fmu_host::instance::Place;
 use octant_requirements::Verdict;
@@ -15,6 +14,7 @@ use octant_sample::{
     Aiding, DeviceTime, GimbalAngles, GimbalCommand, Health, Mode, Navigation, Output, Parameters,
     Reference, Sample, Status,
 };
+use octant_scenario::{Method, Scenario};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;

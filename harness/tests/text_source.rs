@@ -1,11 +1,11 @@
 //! Text of real instruments as a source: counts, stamps, and errors that name the place.
 
-use octant::scenario::recorded::{
-    Axis, Column, Delimiter, GimbalColumns, Quantity, TextFiles, TextMapping, TimeColumn, TimeUnit,
-};
 use octant::source::{Epoch, Source, SourceError, TextSource};
 use octant_sample::counts::{DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS};
 use octant_sample::{GimbalCommand, Status};
+use octant_scenario::recorded::{
+    Axis, Column, Delimiter, GimbalColumns, Quantity, TextFiles, TextMapping, TimeColumn, TimeUnit,
+};
 use std::path::{Path, PathBuf};
 
 fn axis(column: usize, offset: f64, scale: f64) -> Axis {

@@ -2,9 +2,9 @@
 
 use crate::common::program::passes_as_process;
 use crate::common::table::{Bench, Stage, wait_for};
-use octant::scenario::Source as Kind;
 use octant::source::{Epoch, LiveSource, Source};
 use octant_sample::{GimbalAngles, GimbalCommand};
+use octant_scenario::Source as Kind;
 
 /// In a process of its own: a panic stops every table of its process.
 #[test]

@@ -2,7 +2,6 @@
 
 use octant::evidence::discrepancy::of_run;
 use octant::run::{Control, Recording, assemble, run_method};
-use octant::scenario::{Method, Scenario};
 use octant::score::judge::{About, Finding, NO_REQUIREMENT, derive, judge, judge_by};
 use octant::score::junit::junit;
 use octant::score::summary::{
@@ -14,6 +13,7 @@ use octant::score::work::Work;
 use octant_requirements::measures;
 use octant_requirements::verdict::LimitCheck;
 use octant_requirements::{Comparison, Verdict};
+use octant_scenario::{Method, Scenario};
 use proptest::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
 

@@ -10,7 +10,6 @@ use octant::campaign::requirements::Planned;
 use octant::campaign::{status, trace};
 use octant::run::realtime::Kept;
 use octant::run::{Control, Recording, assemble, run_method};
-use octant::scenario::{Method, Scenario};
 use octant::score::judge::{About, Finding, besides, derive, judge};
 use octant::score::summary::{
     Baseline, Calibration, ErrorScore, FaultResult, HealthCounts, HeightChannel, Lateness,
@@ -22,6 +21,7 @@ use octant_requirements::requirement::{
 };
 use octant_requirements::verdict::LimitCheck;
 use octant_requirements::{Comparison, Verdict};
+use octant_scenario::{Method, Scenario};
 use proptest::prelude::*;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};

@@ -88,10 +88,10 @@ fn settled(before: &Config, core: &Core) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scenario::resolve::{Draws, Seeded};
-    use crate::scenario::{Method, Scenario};
     use crate::source::PlantSource;
     use octant_earth::Vector3;
+    use octant_scenario::resolve::{Draws, Seeded};
+    use octant_scenario::{Method, Scenario};
 
     #[test]
     fn a_source_that_ends_early_concludes_the_calibration() {

@@ -20,12 +20,12 @@
 //! uniform = [1, 1000]
 //! ```
 
-use crate::scenario::complete::complete;
-use crate::scenario::document::{self, Node, Table, Value};
-use crate::scenario::error::{Place, Problem, ScenarioError};
-use crate::scenario::keys::CAMPAIGN;
-use crate::scenario::read::Reader;
 use octant_base::names::suggestion;
+use octant_scenario::complete::complete;
+use octant_scenario::document::{self, Node, Table, Value};
+use octant_scenario::error::{Place, Problem, ScenarioError};
+use octant_scenario::keys::CAMPAIGN;
+use octant_scenario::read::Reader;
 use octant_statistics::proportion::Demand;
 use std::path::{Path, PathBuf};
 
@@ -302,7 +302,7 @@ fn settings(node: &Node) -> Vec<String> {
         match &node.value {
             Value::Table(table) => {
                 for entry in &table.entries {
-                    let path = crate::scenario::complete::join(prefix, &entry.key);
+                    let path = octant_scenario::complete::join(prefix, &entry.key);
                     walk(&path, &entry.node, all);
                 }
             }

@@ -5,7 +5,7 @@ use super::plan::{
     CASES_MAX, Case, FactorValue, Plan, PlanError, PlannedScenario, SCHEMA, StopRule, system,
 };
 use super::requirements::{self, Planned};
-use crate::scenario::Scenario;
+use octant_scenario::Scenario;
 use std::collections::{BTreeMap, HashMap};
 use std::path::{Path, PathBuf};
 
@@ -153,7 +153,7 @@ fn meaning(value: &str) -> String {
         match value {
             toml::Value::Integer(number) => format!("{:?}", *number as f64 + 0.0),
             toml::Value::Float(number) => format!("{:?}", number + 0.0),
-            toml::Value::String(text) => match crate::scenario::quantity_of(text) {
+            toml::Value::String(text) => match octant_scenario::quantity_of(text) {
                 // Rounding of the conversion aside: 1 deg and 60 arcmin.
                 Ok(quantity) => format!("{:.12e} in SI", quantity.si + 0.0),
                 Err(_) => format!("{:?}", text.trim()),

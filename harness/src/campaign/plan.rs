@@ -5,9 +5,9 @@
 
 use super::file::{Limits, Stop};
 use super::requirements::Planned;
-use crate::scenario::{Scenario, ScenarioError};
 use octant_requirements::RequirementsError;
 use octant_requirements::verdict::LimitCheck;
+use octant_scenario::{Scenario, ScenarioError};
 use octant_statistics::proportion::Demand;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -342,7 +342,7 @@ impl PlannedScenario {
     fn with(&self, case: &Case) -> Result<Scenario, PlanError> {
         let mut scenario = Scenario::load(&self.file, &case.set)?;
         scenario.requirements.extend(self.checks.iter().map(|check| {
-            crate::scenario::Requirement {
+            octant_scenario::Requirement {
                 check: check.clone(),
                 text: String::new(),
                 limit_text: check.limit.to_string(),

@@ -1,12 +1,12 @@
 //! The requirements of a campaign: from their file into its cases, and what the cases show of them.
 
 use super::plan::Plan;
-use crate::scenario::read::requirement::{limit_of, path_of};
 use octant_requirements::file::{Checker, read};
 use octant_requirements::requirement::{Check, Ensemble, Limit, Requirement, Requirements};
 use octant_requirements::signed;
 use octant_requirements::verdict::LimitCheck;
 use octant_requirements::{Problem, RequirementsError};
+use octant_scenario::read::requirement::{limit_of, path_of};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 

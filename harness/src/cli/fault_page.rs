@@ -4,8 +4,8 @@ use super::Failure;
 use super::faults::{acts, lasts};
 use crate::report::fault_picture::{Window, picture as draw};
 use crate::run::side_by_side::side_by_side;
-use crate::scenario::{Scenario, fault_example, fault_parameters};
 use octant_faults::catalogue::{Acts, Kind, Lasts};
+use octant_scenario::{Scenario, fault_example, fault_parameters};
 use std::path::Path;
 
 /// What the example of a kind is simulated in: at 100 s the instrument dwells, the third position

@@ -1,13 +1,13 @@
 //! `octant faults`: the kinds of faults, and what each does.
 
 use super::{Failure, print, print_json, write};
-use crate::scenario::fault_example;
 use clap::{Args, Subcommand};
 use octant_base::names::suggestion;
 use octant_faults::catalogue::{Acts, Family, Kind, Lasts, Parameter};
 use octant_faults::connection::kinds as connection;
 use octant_faults::kinds;
 use octant_requirements::Verdict;
+use octant_scenario::fault_example;
 use serde::Serialize;
 use std::path::PathBuf;
 
@@ -117,7 +117,7 @@ impl Row {
     }
 
     fn new(page: &Page) -> Self {
-        let takes = crate::scenario::fault_parameters(page.name);
+        let takes = octant_scenario::fault_parameters(page.name);
         let parameter = |parameter: &'static Parameter| ParameterRow {
             name: parameter.name,
             takes: takes
@@ -250,7 +250,7 @@ fn describe(page: &Page) -> String {
     if page.parameters.is_empty() {
         out += "  none\n";
     }
-    let takes = crate::scenario::fault_parameters(page.name);
+    let takes = octant_scenario::fault_parameters(page.name);
     for parameter in page.parameters {
         out += &format!("  {}\n", parameter.name);
         out += &format!("{}\n", wrapped(parameter.doc, "      "));

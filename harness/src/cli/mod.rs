@@ -34,9 +34,9 @@ mod turntable;
 mod verify;
 mod watch;
 
-use crate::scenario::{Dimension, quantity_of};
 use clap::{Args, Parser, Subcommand};
 use octant_requirements::Verdict;
+use octant_scenario::{Dimension, quantity_of};
 use std::ffi::OsString;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -236,7 +236,7 @@ pub fn main() -> ExitCode {
         Command::Fmu(arguments) => fmu::command(&arguments),
         Command::Other(words) => Err(other(&words)),
         Command::Schema => {
-            print(&format!("{:#}\n", crate::scenario::schema())).map(|()| Verdict::Pass)
+            print(&format!("{:#}\n", octant_scenario::schema())).map(|()| Verdict::Pass)
         }
     };
     match outcome {
@@ -310,7 +310,7 @@ fn print_json(value: &impl serde::Serialize) -> Result<(), Failure> {
 fn load(
     arguments: &ScenarioArguments,
     more: &[String],
-) -> Result<crate::scenario::Scenario, Failure> {
+) -> Result<octant_scenario::Scenario, Failure> {
     load_fired(arguments, more, &[])
 }
 
@@ -319,12 +319,12 @@ fn load_fired(
     arguments: &ScenarioArguments,
     more: &[String],
     fires: &[String],
-) -> Result<crate::scenario::Scenario, Failure> {
+) -> Result<octant_scenario::Scenario, Failure> {
     let mut overrides = arguments.set.clone();
     overrides.extend_from_slice(more);
     let path = &arguments.scenario;
     let scenario =
-        crate::scenario::Scenario::load_fired(path, &overrides, fires).map_err(Failure::input)?;
+        octant_scenario::Scenario::load_fired(path, &overrides, fires).map_err(Failure::input)?;
     for warning in scenario.warnings() {
         note!("octant: {}: {warning}", path.display());
     }

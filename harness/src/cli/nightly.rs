@@ -15,9 +15,9 @@ use crate::nightly::night::{self, CampaignNight, Night, Program, SCHEMA, free_na
 use crate::nightly::render::Report;
 use crate::nightly::suite::{self, SuiteResult};
 use crate::nightly::trend;
-use crate::scenario::suite::Suite;
 use clap::{Args, Subcommand};
 use octant_requirements::Verdict;
+use octant_scenario::suite::Suite;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, SystemTime};

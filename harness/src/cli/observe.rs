@@ -7,7 +7,6 @@ use crate::observe::covariance::{AnalysisError, Drift, predict, state_name};
 use crate::observe::ensemble::state_unit;
 use crate::observe::static_rank;
 use crate::run::method::{configurations, label};
-use crate::scenario::{Distribution, Method, Motion, Scenario};
 use clap::Args;
 use octant_base::number::significant;
 use octant_calibration::config::{Config, Estimator, StaticIntervals};
@@ -16,6 +15,7 @@ use octant_calibration::filter::prior_sigmas;
 use octant_earth::frames::c_nc;
 use octant_requirements::Verdict;
 use octant_sample::parameters::Group;
+use octant_scenario::{Distribution, Method, Motion, Scenario};
 use serde::Serialize;
 use std::path::PathBuf;
 

@@ -5,12 +5,12 @@ use crate::endpoint::{Endpoint, InProcess, ParameterEstimate};
 use crate::recorder::StreamHash;
 use crate::run::method::configurations;
 use crate::run::unit;
-use crate::scenario::Scenario;
 use crate::source::{Epoch, Replay, Source};
 use clap::Args;
 use octant_requirements::Verdict;
 use octant_sample::parameters::PARAMETER_COUNT;
 use octant_sample::{GimbalCommand, Output};
+use octant_scenario::Scenario;
 use serde::Serialize;
 use std::path::PathBuf;
 
@@ -63,7 +63,7 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     let (_, core, _) = configurations(&scenario, method, seed).map_err(|e| bad(&e))?;
     // Where the recording's core was an FMU, that FMU again; what a device answered is compared with the
     // core in this process.
-    let device = matches!(scenario.endpoint, crate::scenario::Endpoint::Live(_));
+    let device = matches!(scenario.endpoint, octant_scenario::Endpoint::Live(_));
     let elsewhere = (!device).then(|| crate::endpoint::open(&scenario, &core)).transpose();
     let mut endpoint: Box<dyn Endpoint> = match elsewhere.map_err(|e| bad(&e))?.flatten() {
         Some(endpoint) => endpoint,

@@ -12,7 +12,6 @@ use crate::recorder::reader::{Epochs, Recording};
 use crate::report::{Provenance, ReportData};
 use crate::run::done::Plan;
 use crate::run::{Watcher, unit};
-use crate::scenario::Scenario;
 use crate::score::numerics::differs;
 use crate::score::rederive;
 use crate::score::summary::Summary;
@@ -22,6 +21,7 @@ use octant_faults::rule::UnitEvent;
 use octant_requirements::Verdict;
 use octant_sample::Parameters;
 use octant_sample::parameters::{Group, NAMES};
+use octant_scenario::Scenario;
 use std::path::{Path, PathBuf};
 
 #[derive(Debug, Args)]

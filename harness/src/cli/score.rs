@@ -3,12 +3,12 @@
 use super::{Failure, print, print_json};
 use crate::recorder::reader::Recording;
 use crate::run::method::planned_of;
-use crate::scenario::resolve::{Draws, Seeded};
-use crate::scenario::{Method, Scenario};
 use crate::score::parameters::{nees, score, worst_normalized_error};
 use crate::score::summary::{HeightChannel, Navigation, ParameterScore};
 use clap::Args;
 use octant_requirements::Verdict;
+use octant_scenario::resolve::{Draws, Seeded};
+use octant_scenario::{Method, Scenario};
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -43,7 +43,7 @@ fn true_parameters(path: &Path, scenario: &Scenario) -> Result<bool, Failure> {
         .map_err(|error| Failure::input(format!("failed to read {}: {error}", path.display())))?;
     // Recordings of before FMUs don't say it.
     let said = recording.info().run.get("true_parameters").map(|text| text == "true");
-    Ok(said.unwrap_or(scenario.source == crate::scenario::Source::Plant))
+    Ok(said.unwrap_or(scenario.source == octant_scenario::Source::Plant))
 }
 
 /// The scenario inside a recording.

@@ -3,12 +3,12 @@
 use super::{Failure, ScenarioArguments, load};
 use crate::endpoint::ServedCore;
 use crate::run::method::{MethodError, SetupError, core_of};
-use crate::scenario::{Method, Scenario};
 use clap::Args;
 use octant_link::Uri;
 use octant_link::device::{Notice, serve};
 use octant_realtime::schedule::{self, Wish};
 use octant_requirements::Verdict;
+use octant_scenario::{Method, Scenario};
 use octant_wire::message::Pacing;
 use std::path::PathBuf;
 use std::sync::Arc;

@@ -5,9 +5,9 @@ use super::{Failure, ScenarioArguments, load, print, print_json, write};
 use crate::report;
 use crate::run::Control;
 use crate::run::sweep::{Axis, SweepError, cells_of, indices, sweep};
-use crate::scenario::Scenario;
 use clap::Args;
 use octant_requirements::Verdict;
+use octant_scenario::Scenario;
 use std::path::PathBuf;
 
 /// Cells of a grid at most: each is a run.

@@ -1,9 +1,9 @@
 //! `octant turntable`: a table by hand, and a simulated one.
 
 use super::{Failure, print, print_json};
-use crate::scenario::{Dimension, Scenario, quantity_of};
 use clap::{Args, Subcommand, ValueEnum};
 use octant_requirements::Verdict;
+use octant_scenario::{Dimension, Scenario, quantity_of};
 use octant_turntable::simulate::listen;
 use octant_turntable::{
     Axis, AxisLimits, Dialect, Error, Limits, Move, Plan, Settings, Status, check_port, look,

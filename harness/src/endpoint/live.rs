@@ -6,7 +6,6 @@
 
 use super::{Conclusion, Endpoint, EndpointError, OpenError, ParameterEstimate, RemoteClock, Sent};
 use crate::recorder;
-use crate::scenario::{Live, Scenario};
 use crate::source::Epoch;
 use octant_calibration::Config;
 use octant_faults::catalogue::Acts;
@@ -17,6 +16,7 @@ use octant_link::{PortError, Uri, Wire, load, port};
 use octant_realtime::clock::{HostTime, now};
 use octant_sample::parameters::PARAMETER_COUNT;
 use octant_sample::{Output, Parameters};
+use octant_scenario::{Live, Scenario};
 use octant_wire::message::{Gathered, OutputMessage, Pacing, Reason, Role, Step};
 use std::collections::VecDeque;
 use std::time::{Duration, Instant};

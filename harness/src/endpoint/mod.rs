@@ -13,7 +13,6 @@ pub use served::ServedCore;
 
 use crate::fmu::mapping::stepper::UseError;
 use crate::recorder::Event;
-use crate::scenario::{self, Scenario};
 use crate::source::Epoch;
 use octant_calibration::Config;
 use octant_calibration::state_machine::ConfigError;
@@ -23,6 +22,7 @@ use octant_link::harness::SessionError;
 use octant_realtime::clock::HostTime;
 use octant_sample::parameters::PARAMETER_COUNT;
 use octant_sample::{Output, Parameters};
+use octant_scenario::{self as scenario, Scenario};
 
 /// The estimated parameters with their standard deviations, SI.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -3,8 +3,8 @@
 use super::manifest::FmuFacts;
 use crate::fmu::mapping::open::path;
 use crate::fmu::mapping::stepper::UseError;
-use crate::scenario::{Endpoint, Fmu, Process, Scenario, Source};
 use octant_fmu_host::description::Description;
+use octant_scenario::{Endpoint, Fmu, Process, Scenario, Source};
 use sha2::{Digest, Sha256};
 use std::path::Path;
 

@@ -1,7 +1,7 @@
 //! What a manifest says about the recordings that a run took its samples from.
 
 use super::sha256;
-use crate::scenario::{FileName, Scenario, Source};
+use octant_scenario::{FileName, Scenario, Source};
 use serde::{Deserialize, Serialize};
 
 /// A recording that samples came from.

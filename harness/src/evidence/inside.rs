@@ -7,7 +7,6 @@
 use super::files;
 use super::manifest::Manifest;
 use crate::recorder::reader::{Recording, stream_hash};
-use crate::scenario::Scenario;
 use crate::score::equipment;
 use crate::score::judge::{Finding, derive};
 use crate::score::numerics::{differs, in_words};
@@ -15,6 +14,7 @@ use crate::score::rederive;
 use crate::score::summary::Summary;
 use octant_requirements::Verdict;
 use octant_requirements::equipment::Day;
+use octant_scenario::Scenario;
 use serde_json::Value;
 use std::path::Path;
 

@@ -3,9 +3,9 @@
 
 use super::night::write;
 use crate::campaign::process::{self, Ended, TRIES};
-use crate::scenario::suite::{Case, Suite};
 use crate::score::summary::Summary;
 use octant_requirements::Verdict;
+use octant_scenario::suite::{Case, Suite};
 use serde::{Deserialize, Serialize};
 use std::io::Read;
 use std::path::{Path, PathBuf};

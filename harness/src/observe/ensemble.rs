@@ -9,10 +9,6 @@ use super::covariance::{AnalysisError, PositionError, Reached, arcmin_m, reach, 
 use super::platform::{Platform, SAMPLE_S};
 use super::truth::{Swing, Truth, Unseen, Wander};
 use crate::run::method::{SetupError, configurations, label};
-use crate::scenario::resolve::{Draws, Seeded};
-use crate::scenario::{
-    Alignment, Distribution, Dockside, Endpoint, Method, Motion, Scenario, Source,
-};
 use nalgebra::{Matrix3, Vector3};
 use octant_calibration::config::{Config, ErrorModel, Estimator};
 use octant_calibration::covariance::{Covariance, DR, DV, PARAMETERS, PHI, STATE_COUNT};
@@ -24,6 +20,10 @@ use octant_earth::units::{ARCSEC, NAUTICAL_MILE_M};
 use octant_plant::config as plant;
 use octant_sample::GimbalAngles;
 use octant_sample::parameters::Group;
+use octant_scenario::resolve::{Draws, Seeded};
+use octant_scenario::{
+    Alignment, Distribution, Dockside, Endpoint, Method, Motion, Scenario, Source,
+};
 use octant_statistics::normal;
 use octant_statistics::radius::Plane;
 use serde::{Deserialize, Serialize};

@@ -6,7 +6,6 @@ use super::twin::difference;
 use crate::evidence::disposition::Dispositions;
 use crate::report::counterfactual::in_words;
 use crate::report::{Provenance, ReportData};
-use crate::scenario::{Endpoint, Motion, Scenario, Source};
 use crate::score::equipment;
 use crate::score::judge::{Finding, judge_by};
 use crate::score::numerics::NUMERICS;
@@ -20,6 +19,7 @@ use octant_requirements::Verdict;
 use octant_requirements::decision::{Against, Rule};
 use octant_requirements::equipment::Day;
 use octant_sample::parameters::NAMES;
+use octant_scenario::{Endpoint, Motion, Scenario, Source};
 use octant_turntable::Axis;
 use std::collections::BTreeMap;
 

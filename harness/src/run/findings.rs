@@ -3,7 +3,6 @@
 
 use super::drive::Ended;
 use super::method::{MethodRun, planned_of};
-use crate::scenario::{Calibration, Method, Realtime, Scenario};
 use crate::score::judge::Finding;
 use crate::score::summary::Pacing;
 use crate::score::work::{Part, duration};
@@ -11,6 +10,7 @@ use octant_base::number;
 use octant_faults::Receipt;
 use octant_faults::catalogue::Acts;
 use octant_requirements::Verdict;
+use octant_scenario::{Calibration, Method, Realtime, Scenario};
 
 /// What bears on the verdict of a run of one or two methods.
 #[must_use]

@@ -7,13 +7,13 @@
 
 use super::method::{Recording, SetupError};
 use crate::recorder::{Event, Trouble};
-use crate::scenario::Scenario;
 use octant_faults::Kind;
 use octant_faults::catalogue::Acts;
 use octant_faults::host::{HostAction, Hosted};
 use octant_faults::kinds::host::{FULL, STALLED, STARVED};
 use octant_realtime::clock::{HostTime, now};
 use octant_realtime::schedule::{self, Granted, Wish};
+use octant_scenario::Scenario;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::mpsc::sync_channel;
@@ -38,7 +38,7 @@ impl Host {
         recorder: &Trouble,
     ) -> Result<Self, SetupError> {
         let mut host = Self::default();
-        let of_host = |fault: &&crate::scenario::Fault| fault.spec.kind.acts == Acts::Host;
+        let of_host = |fault: &&octant_scenario::Fault| fault.spec.kind.acts == Acts::Host;
         for fault in scenario.faults.iter().filter(of_host) {
             let refused = |reason: String| SetupError::Fault { id: fault.spec.id.clone(), reason };
             if let Some(reason) = without(fault.spec.kind, recording) {

@@ -12,8 +12,6 @@ use crate::endpoint::{Conclusion, Endpoint, EndpointError, InProcess, ParameterE
 use crate::recorder::{
     Event, Policy, Recorder, RecorderError, RecorderOptions, RecorderSummary, Samples, Trouble,
 };
-use crate::scenario::resolve::{Draws, Seeded};
-use crate::scenario::{self, Method, Realtime, Scenario, Source as SourceKind};
 use crate::score::parameters::{nees, score, worst_normalized_error};
 use crate::score::summary::{Calibration, HeightChannel, Navigation};
 use crate::score::trace::Trace;
@@ -26,6 +24,8 @@ use octant_faults::Receipt;
 use octant_plant::Plant;
 use octant_sample::parameters::{Group, NAMES};
 use octant_sample::{Mode, Output, Parameters};
+use octant_scenario::resolve::{Draws, Seeded};
+use octant_scenario::{self as scenario, Method, Realtime, Scenario, Source as SourceKind};
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;

@@ -1,15 +1,15 @@
 //! A calibration in the raw numbers of a real instrument's file, the way data sheets print it.
 
-use crate::scenario::Source;
 use octant_calibration::least_squares::raw::{Nominal, RawModel, accelerometer, gyroscope};
 use octant_sample::Parameters;
+use octant_scenario::Source;
 
 /// Both sensors in raw numbers, as text; empty where samples don't come from a text file.
 #[must_use]
 pub fn text(source: &Source, parameters: &Parameters) -> String {
     use std::fmt::Write as _;
     let Source::Text(mapping) = source else { return String::new() };
-    let nominal = |axes: &[crate::scenario::recorded::Axis; 3]| Nominal {
+    let nominal = |axes: &[octant_scenario::recorded::Axis; 3]| Nominal {
         bias_counts: [0, 1, 2].map(|i| axes[i].offset),
         scale: [0, 1, 2].map(|i| axes[i].scale),
     };

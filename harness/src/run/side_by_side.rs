@@ -8,11 +8,11 @@ use super::method::{MethodError, SetupError, configurations, faulted};
 use super::watch::Watcher;
 use crate::endpoint::{Endpoint, EndpointError, InProcess, ParameterEstimate, Tells};
 use crate::recorder::Recorder;
-use crate::scenario::{Method, Scenario};
 use crate::source::{Epoch, PlantSource, Source, SourceError};
 use octant_faults::Receipt;
 use octant_faults::disturbance::Disturbed;
 use octant_sample::{GimbalCommand, Output, Parameters, Truth};
+use octant_scenario::{Method, Scenario};
 use std::cell::RefCell;
 use std::rc::Rc;
 

@@ -1,8 +1,8 @@
 //! Measured quantities of a real instrument into the integer counts of a sample.
 
-use crate::scenario::recorded::{Quantity, SPLIT_MAX};
 use octant_sample::counts::{Accumulator, DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS};
 use octant_sample::{DeviceTime, GimbalAngles, Sample, Status};
+use octant_scenario::recorded::{Quantity, SPLIT_MAX};
 
 /// One row of a file in SI.
 #[derive(Clone, Copy, Debug, PartialEq)]

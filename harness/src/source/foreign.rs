@@ -4,8 +4,8 @@ use super::counting::{Counting, Measured};
 use super::fields::{Definition, FieldDecoder, FieldPath, Number};
 use super::{Epoch, SourceError};
 use crate::recorder::records::{End, Records};
-use crate::scenario::recorded::{MappedField, MappedStamp, McapMapping, TimeUnit};
 use mcap::records::{Record, op};
+use octant_scenario::recorded::{MappedField, MappedStamp, McapMapping, TimeUnit};
 use std::collections::{BTreeSet, HashMap};
 use std::io::Read;
 

@@ -1,9 +1,9 @@
 //! The source of a scenario.
 
 use super::{LiveSource, Replay, Source, SourceError, TextSource};
-use crate::scenario::recorded::{TextFiles, TextMapping};
-use crate::scenario::{self, FileName, Scenario};
 use octant_plant::config::Config;
+use octant_scenario::recorded::{TextFiles, TextMapping};
+use octant_scenario::{self as scenario, FileName, Scenario};
 use std::path::PathBuf;
 
 /// Opens the source of a scenario; `None` where it is the plant alone, which is made from what the

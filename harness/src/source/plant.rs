@@ -62,8 +62,8 @@ impl Source for PlantSource {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scenario::Scenario;
-    use crate::scenario::resolve::{Draws, Seeded};
+    use octant_scenario::Scenario;
+    use octant_scenario::resolve::{Draws, Seeded};
 
     #[test]
     fn it_is_the_plant_and_it_ends() {

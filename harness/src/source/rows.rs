@@ -1,8 +1,8 @@
 //! Rows of a delimited text file, with what is needed to name a place in it.
 
 use super::SourceError;
-use crate::scenario::recorded::{Column, Delimiter};
 use csv::StringRecord;
+use octant_scenario::recorded::{Column, Delimiter};
 use std::fs::File;
 use std::io::{BufRead, BufReader, Read};
 use std::path::Path;

@@ -3,9 +3,9 @@
 use super::counting::{Counting, Measured};
 use super::rows::Rows;
 use super::{Epoch, Source, SourceError, nominal_period_ns};
-use crate::scenario::recorded::{Axis, Column, TextFiles, TextMapping, TimeUnit};
 use octant_plant::Truth;
 use octant_sample::GimbalCommand;
+use octant_scenario::recorded::{Axis, Column, TextFiles, TextMapping, TimeUnit};
 use std::path::Path;
 
 /// Streams delimited text.

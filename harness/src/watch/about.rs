@@ -1,11 +1,11 @@
 //! What the head of a recording says about its run.
 
 use crate::recorder::reader::Info;
-use crate::scenario::resolve::{Draws, Seeded};
-use crate::scenario::{Method, Scenario};
 use octant_base::number::plain;
 use octant_faults::trigger::{Schedule, Trigger};
 use octant_sample::Parameters;
+use octant_scenario::resolve::{Draws, Seeded};
+use octant_scenario::{Method, Scenario};
 use std::path::Path;
 
 /// A fault that is armed.

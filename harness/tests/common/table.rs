@@ -2,12 +2,12 @@
 
 use super::program::OCTANT;
 use octant::run::method::configurations;
-use octant::scenario::{Method, Scenario};
 use octant_instruments::{AnyEncoder, Protocol, Reading};
 use octant_link::port::{Bytes, Pty};
 use octant_plant::Plant;
 use octant_plant::config::Turntable;
 use octant_sample::{GimbalAngles, GimbalCommand, Status};
+use octant_scenario::{Method, Scenario};
 use octant_turntable::simulate::{Controller, Server};
 use octant_turntable::{Axis, Dialect};
 use serde_json::Value;

@@ -3,8 +3,8 @@
 use super::unit::{check, summary_of};
 use super::{Ends, Row, breaks, fails, open};
 use crate::common::foreign;
-use octant::scenario::Scenario;
 use octant::score::summary::Summary;
+use octant_scenario::Scenario;
 use std::path::Path;
 
 const SCENARIO: &str = r#"

@@ -3,13 +3,13 @@
 use octant::endpoint::ServedCore;
 use octant::run::method::{Recording, core_of, run_as_far_as_it_goes};
 use octant::run::{Control, assemble};
-use octant::scenario::{Method, Scenario};
 use octant::score::summary::Summary;
 use octant_link::device::{Device, Notice, Steps};
 use octant_link::port::{self, Bytes as _, Pty};
 use octant_link::{Uri, Wire};
 use octant_sample::parameters::PARAMETER_COUNT;
 use octant_sample::{Aiding, Output, Parameters, Sample};
+use octant_scenario::{Method, Scenario};
 use octant_wire::Role;
 use std::path::Path;
 use std::sync::Arc;
@@ -210,14 +210,14 @@ pub fn run_of(scenario: &Scenario, over: Over, twist: Twist) -> Result<Summary, 
     let served = Served::new(over, scenario, twist);
     let at = [
         format!("endpoint.uri={}", served.uri),
-        "endpoint.link.answer=1 s".to_owned(),
+        "endpoint.link.answer=10 s".to_owned(),
         "endpoint.link.hello=5 s".to_owned(),
     ];
     let text = scenario.to_resolved_toml(
         scenario.seed,
-        &octant::scenario::resolve::Draws::of(
+        &octant_scenario::resolve::Draws::of(
             scenario,
-            &octant::scenario::resolve::Seeded(scenario.seed),
+            &octant_scenario::resolve::Seeded(scenario.seed),
         ),
     );
     let scenario = Scenario::parse(&text, "hostile.toml", Path::new(""), &at).unwrap();

@@ -12,9 +12,9 @@ use octant::fmu::master::solve::Limits;
 use octant::fmu::master::ssp::package::Package;
 use octant::fmu::master::ssp::structure::Structure;
 use octant::fmu::master::system::System;
-use octant::scenario::connection_faults;
 use octant_fmu_host::description::Description;
 use octant_fmu_host::instance::{Instance, Outcome, Stepped};
+use octant_scenario::connection_faults;
 use std::sync::{Arc, Mutex};
 
 const HEAD: &str = r#"<SystemStructureDescription version="1.0" name="test"

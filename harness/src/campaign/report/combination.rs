@@ -5,8 +5,8 @@
 //! combination alone.
 
 use crate::campaign::plan::{Case, FactorValue, Plan};
-use crate::scenario::quantity_of;
 use octant_base::number;
+use octant_scenario::quantity_of;
 use std::collections::HashMap;
 
 /// A scenario with a value of each factor of the grid.

@@ -2,9 +2,9 @@
 
 use super::super::{Failure, print, print_json};
 use crate::fmu::build::{BuildError, Options, build};
-use crate::scenario::Scenario;
 use clap::Args;
 use octant_requirements::Verdict;
+use octant_scenario::Scenario;
 use serde::Serialize;
 use std::path::PathBuf;
 

@@ -4,9 +4,9 @@ use crate::campaign::plan::{FILE_NAME, Plan};
 use crate::cli::{Failure, ScenarioArguments, load, print, print_json};
 use crate::observe::against::{Against, Comparison, Selection, against};
 use crate::observe::ensemble::{Ensemble, ensemble};
-use crate::scenario::{Method, Scenario};
 use octant_base::number::significant;
 use octant_requirements::Verdict;
+use octant_scenario::{Method, Scenario};
 use std::fmt::Write as _;
 use std::path::Path;
 

@@ -10,7 +10,6 @@ use super::{Conclusion, Endpoint, EndpointError, ParameterEstimate, Tells};
 use crate::fmu::mapping::bind::Cell;
 use crate::fmu::mapping::open::{self, Kept};
 use crate::fmu::mapping::stepper::{Stepper, UseError};
-use crate::scenario::{Fmu, Scenario};
 use crate::source::Epoch;
 use octant_calibration::Config;
 use octant_sample::counts::{DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS};
@@ -19,6 +18,7 @@ use octant_sample::{
     DeviceTime, GimbalAngles, GimbalCommand, Health, Mode, Navigation, Output, Parameters,
     Reference,
 };
+use octant_scenario::{Fmu, Scenario};
 use ports::{Ports, Triad};
 
 /// An FMU as the core.

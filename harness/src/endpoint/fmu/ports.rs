@@ -2,11 +2,11 @@
 
 use crate::fmu::mapping::bind::{BindError, Binder, Bound, Cell, Cells, Handle};
 use crate::fmu::mapping::find::Way;
-use crate::scenario::channel::{answer, sample};
-use crate::scenario::{Code, Fmu};
 use octant_fmu_host::description::Description;
 use octant_sample::Mode;
 use octant_sample::parameters::{Group, PARAMETER_COUNT};
+use octant_scenario::channel::{answer, sample};
+use octant_scenario::{Code, Fmu};
 
 /// Sensors of one kind.
 #[derive(Clone, Copy, Debug)]
@@ -206,7 +206,7 @@ fn estimates(description: &Description, fmu: &Fmu) -> Result<(Bound, Estimates),
 fn modes(
     description: &Description,
     fmu: &Fmu,
-) -> Result<Vec<(i64, Mode)>, crate::scenario::Problem> {
+) -> Result<Vec<(i64, Mode)>, octant_scenario::Problem> {
     if fmu.modes.is_empty() {
         return Ok(Mode::ALL.map(|mode| (mode as i64, mode)).into());
     }
@@ -216,8 +216,8 @@ fn modes(
         ));
     };
     let name = match &mapped.ports[0].what {
-        crate::scenario::Made::Variable { name, .. } => name.as_str(),
-        crate::scenario::Made::Constant(_) => "",
+        octant_scenario::Made::Variable { name, .. } => name.as_str(),
+        octant_scenario::Made::Constant(_) => "",
     };
     let items = description
         .variable(name)

@@ -2,11 +2,11 @@ use super::*;
 use crate::fmu::mapping::testing::{Own as OwnModel, Scripted, With, description, variable};
 use crate::recorder::StreamHash;
 use crate::run::method::configurations;
-use crate::scenario::{self, Method};
 use crate::source::{PlantSource, Source};
 use octant_fmu::calibrator::Calibrator;
 use octant_fmu_host::description::{Causality, Kind};
 use octant_sample::Mode;
+use octant_scenario::{self as scenario, Method};
 use std::path::Path;
 
 fn scenario(text: &str) -> Scenario {

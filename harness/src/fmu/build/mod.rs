@@ -28,7 +28,6 @@ mod system;
 mod target;
 mod terminals;
 
-use crate::scenario::Scenario;
 use archive::{File, archive};
 use documentation::{Standard, documentation};
 use library::Library;
@@ -38,6 +37,7 @@ use octant_fmu::calibrator_can::CalibratorCan;
 use octant_fmu::component::Component as _;
 use octant_fmu::plant::Plant;
 use octant_fmu::table::Model;
+use octant_scenario::Scenario;
 use reference::Reference;
 use std::path::PathBuf;
 use system::Configured;

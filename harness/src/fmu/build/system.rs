@@ -4,8 +4,8 @@ use super::archive::{File, archive};
 use super::ssp::{self, ParameterValues};
 use super::{BuildError, Own, parameters};
 use crate::run::method::configurations;
-use crate::scenario::{Method, Scenario, Source};
 use octant_fmu::table::Model;
+use octant_scenario::{Method, Scenario, Source};
 use std::path::Path;
 
 /// Ten minutes that show calibration and navigation: what the archive has where no scenario is

@@ -3,10 +3,10 @@
 
 use super::convert::{Conversion, conversion, fits};
 use super::find::{Found, Way, allowed, described, find, unknown};
-use crate::scenario::channel::Channel;
-use crate::scenario::{Fmu, Made, Mapped, Problem, Written};
 use octant_fmu_host::description::{Description, Variable};
 use octant_fmu_host::instance::{InstanceError, Plan};
+use octant_scenario::channel::Channel;
+use octant_scenario::{Fmu, Made, Mapped, Problem, Written};
 
 /// One element of a channel.
 #[derive(Clone, Copy, Debug, PartialEq)]

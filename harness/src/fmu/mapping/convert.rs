@@ -1,9 +1,9 @@
 //! Between the unit of an FMU's variable and SI.
 
-use crate::scenario::Dimension;
-use crate::scenario::channel::{Channel, Class};
 use octant_fmu_host::description::units::{Conversion as Units, UnitError};
 use octant_fmu_host::description::{Description, Kind, Variable};
+use octant_scenario::Dimension;
+use octant_scenario::channel::{Channel, Class};
 
 /// SI value = factor · value + offset.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -2,13 +2,13 @@
 
 use super::settings::{Settings, Starts};
 use super::stepper::UseError;
-use crate::scenario::{Fmu, InterfaceChoice, Problem, Process, Scenario};
 use octant_calibration::Config as CoreConfig;
 use octant_fmu_host::OpenError;
 use octant_fmu_host::archive::Archive;
 use octant_fmu_host::description::{self, Description};
 use octant_fmu_host::instance::{Instance, InterfaceKind, Options, Place};
 use octant_plant::config::Config as PlantConfig;
+use octant_scenario::{Fmu, InterfaceChoice, Problem, Process, Scenario};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 

@@ -2,10 +2,10 @@
 
 use super::convert::conversion;
 use super::find::{count, find, unknown};
-use crate::scenario::channel::{Channel, Class};
-use crate::scenario::{Dimension, Set, quantity_of};
 use octant_fmu_host::description::{Causality, Description, Initial, Kind, Variability, Variable};
 use octant_fmu_host::instance::{Access, Group, Instance, InstanceError};
+use octant_scenario::channel::{Channel, Class};
+use octant_scenario::{Dimension, Set, quantity_of};
 use std::ops::Range;
 
 /// Values that are set before an FMU starts.

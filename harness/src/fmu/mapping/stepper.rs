@@ -2,8 +2,8 @@
 
 use super::bind::{BindError, Bound};
 use super::settings::Starts;
-use crate::scenario::{Problem, ScenarioError};
 use octant_fmu_host::instance::{Instance, InstanceError, Outcome};
+use octant_scenario::{Problem, ScenarioError};
 
 /// Why an FMU of a scenario can't be used, or went away.
 #[derive(Debug, thiserror::Error)]

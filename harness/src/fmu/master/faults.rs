@@ -3,13 +3,13 @@
 use super::convert::Unit;
 use super::system::{Spot, System, Wire};
 use super::values::{is_float, kind_name, limits};
-use crate::scenario::{ConnectionFault, Given, Problem, ScenarioError, quantity_of};
 use octant_base::names::nearest;
 use octant_faults::catalogue::{Bounds, Parameter, Takes};
 use octant_faults::connection::kinds::Target;
 use octant_faults::connection::{Spec, Station};
 use octant_faults::{BuildError, Value, Values};
 use octant_fmu_host::description::{Description, Kind};
+use octant_scenario::{ConnectionFault, Given, Problem, ScenarioError, quantity_of};
 
 /// The faults of a run, ready to act.
 #[derive(Debug)]
@@ -140,7 +140,7 @@ impl Faulting {
             of_file(
                 file,
                 problem.unwrap_or(Problem {
-                    place: crate::scenario::Place::Default,
+                    place: octant_scenario::Place::Default,
                     path: "faults".to_owned(),
                     message,
                 }),

@@ -6,9 +6,9 @@ use super::flat::{Flat, FlatComponent, FlatParameter};
 use super::ssp::SspError;
 use super::ssp::structure::Structure;
 use crate::fmu::mapping::settings::{Settings, Starts};
-use crate::scenario::Set;
 use octant_base::names::suggestion;
 use octant_fmu_host::description::{Description, Kind, Variable};
+use octant_scenario::Set;
 
 /// What is set in the FMUs of a system before they start, in their order. What the structure gives
 /// to variables that aren't there is passed over, as SSP says, and told in `warnings`.

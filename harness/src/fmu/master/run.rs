@@ -18,12 +18,12 @@ use super::system::System;
 use crate::fmu::mapping::settings::Starts;
 use crate::recorder::Event;
 use crate::run::Control;
-use crate::scenario::{ScenarioError, connection_faults, text_of};
 use crate::score::judge::NO_REQUIREMENT;
 use crate::score::summary::FaultResult;
 use octant_fmu_host::description::Description;
 use octant_fmu_host::instance::{Instance, InterfaceKind, Options, Place, open};
 use octant_requirements::Verdict;
+use octant_scenario::{ScenarioError, connection_faults, text_of};
 use std::path::{Path, PathBuf};
 
 /// Rows of a recording at most, where nobody says how often one is kept.

@@ -3,8 +3,8 @@ use super::output::{Outputs, Sink, TOPIC};
 use super::*;
 use crate::fmu::mapping::settings::Settings;
 use crate::fmu::mapping::testing::{Scripted, With, description, variable};
-use crate::scenario::Set;
 use octant_fmu_host::description::{Causality, Description, Kind, Variability};
+use octant_scenario::Set;
 
 /// y = 2 u + w[2], held: a copy of h, with a whole number and a text beside.
 fn model() -> Description {

@@ -17,12 +17,12 @@ use super::faulted::Faulted;
 use super::watch::Watcher;
 use crate::endpoint::{Endpoint, RemoteClock};
 use crate::recorder::Recorder;
-use crate::scenario::Realtime;
 use crate::score::summary::{DeviceClock, Lateness, Pacing};
 use crate::source::Source;
 use octant_realtime::lateness::Figures;
 use octant_realtime::pace::FrameClock;
 use octant_realtime::schedule::{self, Granted};
+use octant_scenario::Realtime;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Entries of the ring: at 1 kHz the recorder may stall for eight seconds.

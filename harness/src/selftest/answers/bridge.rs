@@ -3,12 +3,12 @@
 
 use super::Found;
 use crate::run::method::configurations;
-use crate::scenario::{Method, Scenario};
 use crate::selftest::judge::Known;
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use octant_calibration::Core;
 use octant_plant::Plant;
 use octant_sample::{GimbalCommand, Output};
+use octant_scenario::{Method, Scenario};
 use std::path::Path;
 
 /// Without errors, on a fast table: 60 °/s and 60 °/s², at 50 Hz.

@@ -1,7 +1,7 @@
 //! What a scenario has where nothing is given.
 
 use super::Found;
-use crate::scenario::{Motion, Scenario};
+use octant_scenario::{Motion, Scenario};
 use std::path::Path;
 
 const STATIC: &str = "schema = 1\n[procedure.navigation]\nduration = \"1 h\"\n";

@@ -1,8 +1,8 @@
 //! The stops of every named sequence, and the dwells that a calibration time leaves for them.
 
 use super::Found;
-use crate::scenario::Scenario;
 use octant_calibration::sequence::Sequence;
+use octant_scenario::Scenario;
 use std::path::Path;
 
 /// Those whose angles follow from a rule; the others have angles of our own.

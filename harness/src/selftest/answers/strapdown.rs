@@ -2,11 +2,11 @@
 
 use super::Found;
 use crate::run::method::configurations;
-use crate::scenario::{Method, Scenario};
 use nalgebra::{UnitQuaternion, Vector3};
 use octant_calibration::Core;
 use octant_calibration::config::{Alignment, Config};
 use octant_sample::{DeviceTime, Sample};
+use octant_scenario::{Method, Scenario};
 use std::hint::black_box;
 use std::path::Path;
 

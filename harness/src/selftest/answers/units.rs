@@ -1,8 +1,8 @@
 //! Units: what a scenario's quantities are in SI.
 
 use super::Found;
-use crate::scenario::quantity;
 use octant_sample::parameters::Group;
+use octant_scenario::quantity;
 
 pub(super) fn found() -> Result<Found, String> {
     let mut all = Found::new();

@@ -7,14 +7,14 @@
 use crate::fmu::mapping::bind::{BindError, Binder, Bound, Cell, Cells, Handle};
 use crate::fmu::mapping::find::Way;
 use crate::fmu::mapping::stepper::Stepper;
-use crate::scenario::Fmu;
-use crate::scenario::channel::{Channel, sample, truth};
 use crate::source::counting::Triads;
 use crate::source::{Epoch, Source, SourceError};
 use octant_fmu_host::description::Description;
 use octant_plant::Truth;
 use octant_sample::time::SimulatedTime;
 use octant_sample::{Aiding, DeviceTime, GimbalAngles, GimbalCommand, Reference, Sample, Status};
+use octant_scenario::Fmu;
+use octant_scenario::channel::{Channel, sample, truth};
 
 /// What a run asks of an instrument.
 #[derive(Clone, Copy, Debug, PartialEq)]

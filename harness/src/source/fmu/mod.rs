@@ -10,8 +10,8 @@ use octant_plant::Truth;
 use super::{Source, SourceError};
 use crate::fmu::mapping::open::{self, Kept};
 use crate::fmu::mapping::stepper::{Stepper, UseError};
-use crate::scenario::{Fmu, Scenario};
 use octant_plant::config as plant;
+use octant_scenario::{Fmu, Scenario};
 
 /// Opens the FMU of a scenario's source. `plant` is what the scenario makes of its own plant:
 /// our Plant FMU is set to be it.

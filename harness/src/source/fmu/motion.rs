@@ -8,8 +8,6 @@
 use crate::fmu::mapping::bind::{BindError, Binder, Bound, Cell};
 use crate::fmu::mapping::find::Way;
 use crate::fmu::mapping::stepper::Stepper;
-use crate::scenario::Fmu;
-use crate::scenario::channel::{Channel, case};
 use crate::source::{Epoch, Source, SourceError};
 use octant_earth::ellipsoid::Ellipsoid;
 use octant_faults::disturbance::Disturbed;
@@ -18,6 +16,8 @@ use octant_plant::config::{CaseAttitude, Config, Dockside, Motion, Site};
 use octant_plant::course::{Course, Point};
 use octant_plant::{ConfigError, Plant, Truth};
 use octant_sample::GimbalCommand;
+use octant_scenario::Fmu;
+use octant_scenario::channel::{Channel, case};
 use std::collections::VecDeque;
 use std::f64::consts::{PI, TAU};
 

@@ -1,11 +1,11 @@
 use super::*;
 use crate::fmu::mapping::testing::{Scripted, With, description, variable};
 use crate::run::method::configurations;
-use crate::scenario::{self, Method};
 use crate::source::Epoch;
 use octant_fmu_host::description::{Causality, Description, Kind};
 use octant_sample::counts::{DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS};
 use octant_sample::{GimbalAngles, GimbalCommand, Reference, Status};
+use octant_scenario::{self as scenario, Method};
 use std::path::Path;
 
 fn sine() -> Description {

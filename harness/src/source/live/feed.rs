@@ -1,13 +1,13 @@
 //! Readings from a port, and when they came.
 
-use crate::scenario::FileName;
-use crate::scenario::read::instrument_port::Messages;
-use crate::scenario::{Instrument, Speaks};
 use crate::source::SourceError;
 use octant_instruments::dbc::{CanFrame, Gatherer};
 use octant_instruments::dbc::{Database, Mapping};
 use octant_instruments::{AnyDecoder, Event, Reading};
 use octant_link::port::{self, Bytes, Heard, Listener, Port};
+use octant_scenario::FileName;
+use octant_scenario::read::instrument_port::Messages;
+use octant_scenario::{Instrument, Speaks};
 use octant_wire::Role;
 use std::path::Path;
 use std::time::{Duration, Instant};

@@ -1,8 +1,8 @@
 //! The table under the instrument.
 
-use crate::scenario::Drive;
 use crate::source::SourceError;
 use octant_sample::{GimbalAngles, GimbalCommand};
+use octant_scenario::Drive;
 use octant_turntable::{Axis, Following};
 use serde_json::json;
 use std::path::Path;

@@ -13,7 +13,7 @@ use super::SspError;
 use super::package::Package;
 use super::xml::{Element, SSC, SSD};
 use crate::fmu::master::order::Order;
-use crate::scenario::quantity;
+use octant_scenario::quantity;
 
 /// Type of the annotation.
 pub const TYPE: &str = "octant.co-simulation";

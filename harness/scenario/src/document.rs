@@ -1,0 +1,371 @@
+//! A scenario as it was written: a tree of values that know where they stand.
+
+use super::error::{Place, Problem};
+use std::fmt::Write as _;
+use toml::de::{DeTable, DeValue};
+
+/// A value and where it was written.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Node {
+    /// The value.
+    pub value: Value,
+    /// Where it stands.
+    pub place: Place,
+}
+
+/// A value of the kinds that TOML has.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Value {
+    /// A text.
+    Text(String),
+    /// A whole number.
+    Integer(i64),
+    /// A number with a fraction.
+    Number(f64),
+    /// True or false.
+    Boolean(bool),
+    /// A date or time, which no key takes; as it was written.
+    Date(String),
+    /// An array.
+    Array(Vec<Node>),
+    /// A table.
+    Table(Table),
+}
+
+impl Value {
+    /// What it is, for "found …".
+    pub fn describe(&self) -> String {
+        match self {
+            Self::Text(text) => format!("{text:?}"),
+            Self::Integer(number) => format!("the bare number {number}"),
+            Self::Number(number) => format!("the bare number {number}"),
+            Self::Boolean(value) => format!("{value}"),
+            Self::Date(text) => format!("the date {text}"),
+            Self::Array(entries) => format!("an array of {}", entries.len()),
+            Self::Table(_) => "a table".to_owned(),
+        }
+    }
+}
+
+/// A key of a table, where it stands, and its value.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Entry {
+    /// The key.
+    pub key: String,
+    /// Where it stands.
+    pub place: Place,
+    /// The value.
+    pub node: Node,
+}
+
+/// A table.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Table {
+    /// The keys in the order in which they were written.
+    pub entries: Vec<Entry>,
+}
+
+impl Table {
+    /// The value of a key.
+    pub fn get(&self, key: &str) -> Option<&Node> {
+        self.entries.iter().find(|entry| entry.key == key).map(|entry| &entry.node)
+    }
+
+    /// The value of a key, to be changed.
+    pub fn get_mut(&mut self, key: &str) -> Option<&mut Node> {
+        self.entries.iter_mut().find(|entry| entry.key == key).map(|entry| &mut entry.node)
+    }
+
+    /// Replaces or adds a value.
+    pub fn set(&mut self, key: &str, node: Node) {
+        match self.get_mut(key) {
+            Some(present) => *present = node,
+            None => {
+                self.entries.push(Entry { key: key.to_owned(), place: node.place.clone(), node })
+            }
+        }
+    }
+
+    /// Removes a key, if it is there.
+    pub fn remove(&mut self, key: &str) {
+        self.entries.retain(|entry| entry.key != key);
+    }
+
+    /// The value at a dotted path.
+    pub fn at(&self, path: &str) -> Option<&Node> {
+        let (first, rest) = path.split_once('.').map_or((path, None), |(a, b)| (a, Some(b)));
+        match (self.get(first)?, rest) {
+            (node, None) => Some(node),
+            (Node { value: Value::Table(table), .. }, Some(rest)) => table.at(rest),
+            _ => None,
+        }
+    }
+
+    /// Removes the value at a dotted path, if there is one.
+    pub fn remove_at(&mut self, path: &str) {
+        match path.split_once('.') {
+            None => self.remove(path),
+            Some((first, rest)) => {
+                if let Some(Node { value: Value::Table(table), .. }) = self.get_mut(first) {
+                    table.remove_at(rest);
+                }
+            }
+        }
+    }
+
+    /// Sets the value at a dotted path and makes the tables on the way. A value in the way that is
+    /// not a table is replaced by one.
+    pub fn set_at(&mut self, path: &str, node: Node) {
+        let Some((first, rest)) = path.split_once('.') else { return self.set(path, node) };
+        if !matches!(self.get(first), Some(Node { value: Value::Table(_), .. })) {
+            let place = node.place.clone();
+            self.set(first, Node { value: Value::Table(Self::default()), place });
+        }
+        if let Some(Node { value: Value::Table(table), .. }) = self.get_mut(first) {
+            table.set_at(rest, node);
+        }
+    }
+}
+
+/// Parses TOML text.
+pub fn parse(text: &str) -> Result<Table, Vec<Problem>> {
+    let lines = Lines::new(text);
+    match DeTable::parse(text) {
+        Ok(table) => {
+            let table = lines.table(table.into_inner());
+            let problems = controls(&table, "");
+            if problems.is_empty() { Ok(table) } else { Err(problems) }
+        }
+        Err(error) => Err(vec![Problem {
+            place: lines.place(error.span().map_or(text.len(), |span| span.start)),
+            path: String::new(),
+            message: format!("not TOML: {}", error.message().replace('\n', ", ")),
+        }]),
+    }
+}
+
+/// Keys whose texts are names: on one line.
+const NAMES: [&str; 6] = ["title", "id", "name", "label", "serial", "certificate"];
+
+/// Control characters in texts and keys: what a terminal would obey, and no file of others can hold. A line
+/// break or a tab may be in what isn't a name.
+fn controls(table: &Table, path: &str) -> Vec<Problem> {
+    let mut found = Vec::new();
+    for entry in &table.entries {
+        let path =
+            if path.is_empty() { entry.key.clone() } else { format!("{path}.{}", entry.key) };
+        if let Some(c) = control(&entry.key, true) {
+            found.push(problem_of(c, &entry.place, path.escape_debug().to_string()));
+        } else {
+            controls_of(&entry.node, &path, NAMES.contains(&entry.key.as_str()), &mut found);
+        }
+    }
+    found
+}
+
+fn controls_of(node: &Node, path: &str, is_name: bool, found: &mut Vec<Problem>) {
+    match &node.value {
+        Value::Text(text) => {
+            let c = control(text, is_name);
+            found.extend(c.map(|c| problem_of(c, &node.place, path.to_owned())));
+        }
+        Value::Array(entries) => {
+            entries.iter().for_each(|entry| controls_of(entry, path, is_name, found));
+        }
+        Value::Table(table) => found.extend(controls(table, path)),
+        _ => {}
+    }
+}
+
+fn problem_of(c: char, place: &Place, path: String) -> Problem {
+    let message = format!("found the control character {:?}, expected text that can be printed", c);
+    Problem { place: place.clone(), path, message }
+}
+
+/// The first control character of a text.
+fn control(text: &str, is_name: bool) -> Option<char> {
+    // Those that turn the direction of text around them hide what stands there.
+    let turns = |c: char| matches!(c, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
+    let is_bad = |c: char| turns(c) || (c.is_control() && (is_name || !"\n\r\t".contains(c)));
+    text.chars().find(|c| is_bad(*c))
+}
+
+/// The control characters of what an argument sets.
+pub fn controls_of_argument(path: &str, node: &Node) -> Option<Problem> {
+    let mut found = Vec::new();
+    let name = path.rsplit('.').next().unwrap_or(path);
+    controls_of(node, &path.escape_debug().to_string(), NAMES.contains(&name), &mut found);
+    found.into_iter().next()
+}
+
+/// Parses the value of a `--set KEY=VALUE`: TOML, or a text without its quotes.
+pub fn parse_argument(value: &str, argument: &str) -> Node {
+    let place = Place::Argument(argument.to_owned());
+    let value = value.trim();
+    let node = match parse_value(value) {
+        Some(node) => node,
+        None => Node { value: Value::Text(value.to_owned()), place: place.clone() },
+    };
+    replace_places(node, &place)
+}
+
+/// Parses a default of the key table.
+pub fn parse_default(value: &str) -> Node {
+    let text = Value::Text(value.to_owned());
+    let node = parse_value(value).unwrap_or(Node { value: text, place: Place::Default });
+    replace_places(node, &Place::Default)
+}
+
+fn parse_value(value: &str) -> Option<Node> {
+    // A line break would let further keys in.
+    let table = (!value.contains('\n')).then(|| parse(&format!("x = {value}")).ok())??;
+    table.entries.into_iter().next().map(|entry| entry.node)
+}
+
+fn replace_places(mut node: Node, place: &Place) -> Node {
+    node.place = place.clone();
+    node.value = match node.value {
+        Value::Array(entries) => {
+            Value::Array(entries.into_iter().map(|n| replace_places(n, place)).collect())
+        }
+        Value::Table(table) => Value::Table(Table {
+            entries: table
+                .entries
+                .into_iter()
+                .map(|entry| Entry {
+                    key: entry.key,
+                    place: place.clone(),
+                    node: replace_places(entry.node, place),
+                })
+                .collect(),
+        }),
+        plain => plain,
+    };
+    node
+}
+
+/// Turns byte offsets into lines and columns.
+struct Lines<'a> {
+    text: &'a str,
+    starts: Vec<usize>,
+}
+
+impl<'a> Lines<'a> {
+    fn new(text: &'a str) -> Self {
+        let starts = std::iter::once(0)
+            .chain(text.bytes().enumerate().filter(|(_, b)| *b == b'\n').map(|(i, _)| i + 1))
+            .collect();
+        Self { text, starts }
+    }
+
+    fn place(&self, offset: usize) -> Place {
+        let line = self.starts.partition_point(|start| *start <= offset);
+        let start = self.starts[line - 1];
+        let before = self.text.get(start..offset).unwrap_or_default();
+        Place::File { line, column: before.chars().count() + 1 }
+    }
+
+    fn table(&self, table: DeTable<'_>) -> Table {
+        let mut entries: Vec<(usize, Entry)> = table
+            .into_iter()
+            .map(|(key, value)| {
+                let at = key.span().start;
+                let entry = Entry {
+                    key: key.into_inner().into_owned(),
+                    place: self.place(at),
+                    node: self.node(value),
+                };
+                (at, entry)
+            })
+            .collect();
+        // In the order in which they were written, so that problems are told in that order.
+        entries.sort_by_key(|(at, _)| *at);
+        Table { entries: entries.into_iter().map(|(_, entry)| entry).collect() }
+    }
+
+    fn node(&self, value: toml::Spanned<DeValue<'_>>) -> Node {
+        let place = self.place(value.span().start);
+        let value = match value.into_inner() {
+            DeValue::String(text) => Value::Text(text.into_owned()),
+            DeValue::Integer(number) => {
+                match i64::from_str_radix(number.as_str(), number.radix()) {
+                    Ok(integer) => Value::Integer(integer),
+                    // Beyond 64 bits: no key takes it, and as a number it is told so.
+                    Err(_) => Value::Number(number.as_str().parse().unwrap_or(f64::INFINITY)),
+                }
+            }
+            // `nan`, `inf` and what doesn't parse all end as not finite, which every key refuses.
+            DeValue::Float(number) => Value::Number(number.as_str().parse().unwrap_or(f64::NAN)),
+            DeValue::Boolean(value) => Value::Boolean(value),
+            DeValue::Datetime(date) => Value::Date(date.to_string()),
+            DeValue::Array(entries) => {
+                Value::Array(entries.into_iter().map(|entry| self.node(entry)).collect())
+            }
+            DeValue::Table(table) => Value::Table(self.table(table)),
+        };
+        Node { value, place }
+    }
+}
+
+/// Writes a value on one line.
+pub fn write_value(value: &Value, out: &mut String) {
+    match value {
+        Value::Text(text) => write_quoted(text, out),
+        Value::Integer(number) => _ = write!(out, "{number}"),
+        Value::Number(number) => _ = write!(out, "{number:?}"),
+        Value::Boolean(value) => _ = write!(out, "{value}"),
+        Value::Date(text) => out.push_str(text),
+        Value::Array(entries) => {
+            out.push('[');
+            for (index, entry) in entries.iter().enumerate() {
+                if index > 0 {
+                    out.push_str(", ");
+                }
+                write_value(&entry.value, out);
+            }
+            out.push(']');
+        }
+        Value::Table(table) => {
+            out.push_str("{ ");
+            for (index, entry) in table.entries.iter().enumerate() {
+                if index > 0 {
+                    out.push_str(", ");
+                }
+                write_key(&entry.key, out);
+                out.push_str(" = ");
+                write_value(&entry.node.value, out);
+            }
+            out.push_str(" }");
+        }
+    }
+}
+
+/// JSON escapes what a basic string of TOML must, except DEL.
+fn write_quoted(text: &str, out: &mut String) {
+    let quoted = serde_json::Value::from(text).to_string();
+    out.push_str(&quoted.replace('\u{7f}', "\\u007f"));
+}
+
+/// Writes a key, in quotes where it has to have them.
+fn write_key(key: &str, out: &mut String) {
+    let bare = |c: char| c.is_ascii_alphanumeric() || c == '-' || c == '_';
+    if !key.is_empty() && key.chars().all(bare) {
+        out.push_str(key)
+    } else {
+        write_quoted(key, out)
+    }
+}
+
+/// A value as JSON.
+pub fn json(value: &Value) -> serde_json::Value {
+    match value {
+        Value::Text(text) | Value::Date(text) => serde_json::Value::from(text.as_str()),
+        Value::Integer(number) => serde_json::Value::from(*number),
+        Value::Number(number) => serde_json::Value::from(*number),
+        Value::Boolean(value) => serde_json::Value::from(*value),
+        Value::Array(entries) => entries.iter().map(|entry| json(&entry.value)).collect(),
+        Value::Table(table) => {
+            table.entries.iter().map(|entry| (entry.key.clone(), json(&entry.node.value))).collect()
+        }
+    }
+}

@@ -1,0 +1,296 @@
+//! Keys of faults: those that all have, and those of each kind, made from the catalogue.
+
+use super::{Bounds, Default, Key, Kind, Section, Tag, Variants, key, section};
+use crate::quantity::Dimension;
+use octant_faults::catalogue::{self, Lasts, Parameter, Takes};
+use octant_faults::kinds;
+use std::sync::LazyLock;
+
+/// A fault: its kind decides which keys it has.
+pub(crate) static FAULT: Variants = Variants { tag: Tag::Value("kind"), forms: || &FORMS };
+
+/// The keys of every kind. The catalogue is fixed when the program is built: what is made from it
+/// is made once and kept.
+static FORMS: LazyLock<Vec<(&'static str, &'static Section)>> =
+    LazyLock::new(|| kinds::all().map(|kind| (kind.name, leak(fault(kind)))).collect());
+
+/// The keys of a kind.
+pub(crate) fn kind_section(kind: &str) -> Option<&'static Section> {
+    FORMS.iter().find(|(name, _)| *name == kind).map(|(_, section)| *section)
+}
+
+pub(super) fn leak<T>(value: T) -> &'static T {
+    Box::leak(Box::new(value))
+}
+
+pub(super) fn leak_all<T>(values: Vec<T>) -> &'static [T] {
+    Box::leak(values.into_boxed_slice())
+}
+
+fn fault(kind: &'static catalogue::Kind) -> Section {
+    let mut keys = vec![
+        key("id", Kind::Text, Default::Required, "Name of the fault, unique in the scenario."),
+        named(kind.name, kind.summary),
+    ];
+    keys.extend(kind.parameters.iter().map(parameter));
+    keys.push(key("trigger", Kind::Variants(&TRIGGER), Default::Required, "When it sets in."));
+    keys.extend(lasting(kind.lasts));
+    Section { keys: leak_all(keys), one_of: false }
+}
+
+/// The key of the kind, in the form of one kind.
+pub(super) fn named(name: &'static str, summary: &'static str) -> Key {
+    key(
+        "kind",
+        Kind::Choice(leak_all(vec![(name, summary)])),
+        Default::Required,
+        "What happens: the name of a kind of fault.",
+    )
+}
+
+/// How long a fault lasts, how it fades and comes back.
+pub(super) fn lasting(lasts: Lasts) -> [Key; 3] {
+    let duration = match lasts {
+        Lasts::Instant => refused("duration", "this kind is over in an instant"),
+        Lasts::Span | Lasts::Fading => key(
+            "duration",
+            SPAN,
+            Default::Absent("to the end of the run"),
+            "How long it lasts, rounded to whole samples.",
+        ),
+    };
+    let recovery = match lasts {
+        Lasts::Fading => key(
+            "recovery",
+            Kind::Quantity(&[Dimension::TIME, Dimension::SAMPLES], Bounds::NotNegative),
+            Default::Value("0 s"),
+            "How long it fades after that, down a straight line.",
+        ),
+        Lasts::Span => refused("recovery", "this kind doesn't fade: it is there or it isn't"),
+        Lasts::Instant => refused("recovery", "this kind is over in an instant"),
+    };
+    let repeat = key(
+        "repeat",
+        Kind::Either(&OFTEN),
+        Default::Absent("once, or as often as a periodic or random trigger says"),
+        "How often it comes back: so many times in all at this distance, or every time.",
+    );
+    [duration, recovery, repeat]
+}
+
+const fn refused(name: &'static str, reason: &'static str) -> Key {
+    key(name, Kind::Refused(reason), Default::Absent("none"), "Not for this kind.")
+}
+
+/// The key of a parameter of the catalogue.
+pub(super) fn parameter(parameter: &'static Parameter) -> Key {
+    let dimensions = |all: &[catalogue::Dimension]| leak_all(all.iter().map(dimension).collect());
+    let kind = match parameter.takes {
+        Takes::Quantity(all, limits) => Kind::Quantity(dimensions(all), bounds(limits)),
+        Takes::Vector(all) => Kind::Vector(dimensions(all)),
+        Takes::Integer(from, to) => Kind::Integer(from, to),
+        Takes::Flag => Kind::Boolean,
+        Takes::Choice(choices) => Kind::Choice(choices),
+        Takes::Channels => Kind::Channels,
+        Takes::Number(limits) => Kind::Number(bounds(limits)),
+        Takes::Value => Kind::Either(&VALUE),
+        // The limits are looked at when the unit of the connection is known.
+        Takes::Difference(_) => Kind::Limit,
+    };
+    let default = parameter.default.map_or(Default::Required, |text| {
+        // A text stays one where it would read as something else: `nan`, `1`.
+        let is_text = match parameter.takes {
+            Takes::Quantity(..) | Takes::Choice(_) | Takes::Value => true,
+            Takes::Channels => !text.starts_with('['),
+            Takes::Vector(_)
+            | Takes::Integer(..)
+            | Takes::Flag
+            | Takes::Number(_)
+            | Takes::Difference(_) => false,
+        };
+        Default::Value(if is_text { format!("{text:?}").leak() } else { text })
+    });
+    key(parameter.name, kind, default, parameter.doc)
+}
+
+/// A value that an input can have.
+static VALUE: [Kind; 3] = [Kind::Text, Kind::Number(Bounds::Any), Kind::Boolean];
+
+fn bounds(bounds: catalogue::Bounds) -> Bounds {
+    match bounds {
+        catalogue::Bounds::NotZero => Bounds::NotZero,
+        catalogue::Bounds::Any => Bounds::Any,
+        catalogue::Bounds::Positive => Bounds::Positive,
+        catalogue::Bounds::NotNegative => Bounds::NotNegative,
+        catalogue::Bounds::Within(from, to, words) => Bounds::Within(from, to, words),
+    }
+}
+
+/// The scenario's dimension of one of the catalogue.
+pub(crate) fn dimension(dimension: &catalogue::Dimension) -> Dimension {
+    use catalogue::Dimension as Of;
+    match dimension {
+        Of::Time => Dimension::TIME,
+        Of::Samples => Dimension::SAMPLES,
+        Of::Frequency => Dimension::FREQUENCY,
+        Of::Angle => Dimension::ANGLE,
+        Of::SmallAngle => Dimension::SMALL_ANGLE,
+        Of::AngularRate => Dimension::ANGULAR_RATE,
+        Of::GyroBias => Dimension::GYRO_BIAS,
+        Of::AngularAcceleration => Dimension::ANGULAR_ACCELERATION,
+        Of::AngleRandomWalk => Dimension::ANGLE_RANDOM_WALK,
+        Of::RateRandomWalk => Dimension::RATE_RANDOM_WALK,
+        Of::GDependent => Dimension::G_DEPENDENT,
+        Of::Length => Dimension::LENGTH,
+        Of::Velocity => Dimension::VELOCITY,
+        Of::Acceleration => Dimension::ACCELERATION,
+        Of::AccelBias => Dimension::ACCEL_BIAS,
+        Of::VelocityRandomWalk => Dimension::VELOCITY_RANDOM_WALK,
+        Of::AccelRandomWalk => Dimension::ACCEL_RANDOM_WALK,
+        Of::Ratio => Dimension::RATIO,
+        Of::Temperature => Dimension::TEMPERATURE,
+        Of::TemperatureRate => Dimension::TEMPERATURE_RATE,
+        Of::GyroBiasPerK => Dimension::GYRO_BIAS_PER_K,
+        Of::AccelBiasPerK => Dimension::ACCEL_BIAS_PER_K,
+        Of::ScalePerK => Dimension::SCALE_PER_K,
+        Of::AccelerationPsd => Dimension::ACCELERATION_PSD,
+    }
+}
+
+const SPAN: Kind = Kind::Quantity(&[Dimension::TIME, Dimension::SAMPLES], Bounds::Positive);
+/// A time, or a number of samples, from 0.
+const DELAY: Kind = Kind::Quantity(&[Dimension::TIME, Dimension::SAMPLES], Bounds::NotNegative);
+pub(super) const AFTER: Key = key("after", DELAY, Default::Value("0 s"), "How long after that.");
+const STOP: Kind = Kind::Integer(1, u16::MAX as i64);
+const PHASE: Key = key(
+    "phase",
+    Kind::Choice(&[
+        ("calibration", "the positions of the calibration"),
+        ("navigation", "those of the rotation in navigation"),
+    ]),
+    Default::Value("calibration"),
+    "Which positions are counted.",
+);
+const FROM: Key =
+    key("from", DELAY, Default::Value("0 s"), "Time of the run before which it waits.");
+const UNTIL: Key = key(
+    "until",
+    SPAN,
+    Default::Absent("the end of the run"),
+    "Time of the run after which it sets in no more.",
+);
+
+/// Forms of a trigger.
+pub(super) static TRIGGER: Variants = Variants {
+    tag: Tag::Key("trigger"),
+    forms: || {
+        static FORMS: [(&str, &Section); 10] = [
+            ("at", &AT),
+            ("sample", &SAMPLE),
+            ("position", &POSITION),
+            ("moving_to", &MOVING_TO),
+            ("mode", &MODE),
+            ("when", &WHEN),
+            ("every", &EVERY),
+            ("poisson", &POISSON),
+            ("after_fault", &AFTER_FAULT),
+            ("manual", &MANUAL),
+        ];
+        &FORMS
+    },
+};
+
+pub(super) static AT: Section = section(&[key(
+    "at",
+    DELAY,
+    Default::Required,
+    "Time of the run: the first sample that it alters is that of the interval which begins then.",
+)]);
+pub(super) static SAMPLE: Section = section(&[key(
+    "sample",
+    Kind::Integer(1, i64::MAX),
+    Default::Required,
+    "Number of the first sample that it alters, from 1.",
+)]);
+static POSITION: Section = section(&[
+    key(
+        "position",
+        STOP,
+        Default::Required,
+        "The core arrives at this position, counted from 1 over all passes.",
+    ),
+    AFTER,
+    PHASE,
+]);
+static MOVING_TO: Section = section(&[
+    key(
+        "moving_to",
+        STOP,
+        Default::Required,
+        "The core sets out for this position, counted from 1 over all passes.",
+    ),
+    AFTER,
+    PHASE,
+]);
+static MODE: Section = section(&[
+    key(
+        "mode",
+        Kind::Choice(&[
+            ("aligning", "it looks for its attitude"),
+            ("calibrating", "it turns through positions"),
+            ("navigating", "it navigates"),
+        ]),
+        Default::Required,
+        "The core enters this mode.",
+    ),
+    AFTER,
+]);
+static WHEN: Section =
+    section(&[key("when", Kind::Condition, Default::Required, "A signal crosses a value."), AFTER]);
+pub(super) static EVERY: Section = section(&[
+    key("every", SPAN, Default::Required, "Again and again, onsets so far apart."),
+    FROM,
+    UNTIL,
+]);
+pub(super) static POISSON: Section = section(&[
+    key(
+        "poisson",
+        Kind::Quantity(&[Dimension::TIME, Dimension::FREQUENCY], Bounds::Positive),
+        Default::Required,
+        "At random: the mean time from its end to its next onset, or how often it comes a second.",
+    ),
+    FROM,
+    UNTIL,
+]);
+pub(super) static AFTER_FAULT: Section = section(&[
+    key("after_fault", Kind::Text, Default::Required, "The fault of this id has ended."),
+    AFTER,
+]);
+pub(super) static MANUAL: Section = section(&[
+    key("manual", Kind::Boolean, Default::Required, "By hand."),
+    key(
+        "fire",
+        Kind::Times,
+        Default::Absent("only with `octant run --fire ID=TIME`"),
+        "Times of the run at which it is fired; `octant run --fire ID=TIME` adds one.",
+    ),
+]);
+
+static OFTEN: [Kind; 2] = [
+    Kind::Choice(&[("every time", "whenever the trigger comes true again")]),
+    Kind::Variants(&REPEAT),
+];
+
+/// Forms of a repetition.
+static REPEAT: Variants = Variants {
+    tag: Tag::Key("repetition"),
+    forms: || {
+        static FORMS: [(&str, &Section); 1] = [("times", &TIMES)];
+        &FORMS
+    },
+};
+
+static TIMES: Section = section(&[
+    key("times", Kind::Integer(2, u32::MAX as i64), Default::Required, "Onsets in all."),
+    key("every", SPAN, Default::Required, "Distance of the onsets."),
+]);

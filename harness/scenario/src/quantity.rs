@@ -1,0 +1,528 @@
+//! Quantities as users write them, `"0.005 deg/h"`: a number, a unit, a dimension.
+//!
+//! A unit is a product or quotient of unit names, each with an integer power or under a root:
+//! `deg/h/g`, `ug/sqrt(Hz)`, `m/s^2`, `°/√h`. Values are SI and rad inside; g is 9.80665 m/s².
+
+use octant_earth::units::{ARCMIN, ARCSEC, DEG, NAUTICAL_MILE_M, STANDARD_GRAVITY_MPS2};
+
+/// Powers of metre, second, radian, kelvin and sample, doubled so that roots are whole numbers.
+pub type Powers = [i16; 5];
+
+/// What a quantity measures: the powers of its unit, and how to speak of it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Dimension {
+    powers: Powers,
+    /// What it is, with its article: `an angular rate`.
+    pub name: &'static str,
+    /// A quantity of this dimension, as an example in messages.
+    pub example: &'static str,
+    /// The unit in which values of this dimension are written.
+    pub unit: &'static str,
+    /// The SI unit, in which every value can be written exactly.
+    si_unit: &'static str,
+}
+
+const fn dimension(
+    [m, s, rad, k, samples]: Powers,
+    name: &'static str,
+    example: &'static str,
+    unit: &'static str,
+    si_unit: &'static str,
+) -> Dimension {
+    Dimension { powers: [m, s, rad, k, samples], name, example, unit, si_unit }
+}
+
+impl Dimension {
+    /// Duration or period.
+    pub const TIME: Self = dimension([0, 2, 0, 0, 0], "a time", "12 h", "s", "s");
+    /// A number of samples, told apart from a ratio: `"20 samples"`.
+    pub const SAMPLES: Self =
+        dimension([0, 0, 0, 0, 2], "a number of samples", "20 samples", "samples", "samples");
+    /// Frequency or rate of samples.
+    pub const FREQUENCY: Self = dimension([0, -2, 0, 0, 0], "a frequency", "200 Hz", "Hz", "Hz");
+    /// Angle.
+    pub const ANGLE: Self = dimension([0, 0, 2, 0, 0], "an angle", "30.5 deg", "deg", "rad");
+    /// Small angle, written in arcsec.
+    pub const SMALL_ANGLE: Self =
+        dimension([0, 0, 2, 0, 0], "an angle", "40 arcsec", "arcsec", "rad");
+    /// Angular rate of a motion.
+    pub const ANGULAR_RATE: Self =
+        dimension([0, -2, 2, 0, 0], "an angular rate", "10 deg/s", "deg/s", "rad/s");
+    /// Angular rate of a gyro error.
+    pub const GYRO_BIAS: Self =
+        dimension([0, -2, 2, 0, 0], "an angular rate", "0.005 deg/h", "deg/h", "rad/s");
+    /// Angular acceleration.
+    pub const ANGULAR_ACCELERATION: Self =
+        dimension([0, -4, 2, 0, 0], "an angular acceleration", "10 deg/s^2", "deg/s^2", "rad/s^2");
+    /// Angle random walk.
+    pub const ANGLE_RANDOM_WALK: Self = dimension(
+        [0, -1, 2, 0, 0],
+        "an angle random walk",
+        "0.0007 deg/sqrt(h)",
+        "deg/sqrt(h)",
+        "rad/sqrt(s)",
+    );
+    /// Rate random walk.
+    pub const RATE_RANDOM_WALK: Self = dimension(
+        [0, -3, 2, 0, 0],
+        "a rate random walk",
+        "0.0001 deg/h/sqrt(h)",
+        "deg/h/sqrt(h)",
+        "rad/s/sqrt(s)",
+    );
+    /// Gyro bias per acceleration.
+    pub const G_DEPENDENT: Self = dimension(
+        [-2, 2, 2, 0, 0],
+        "a g-dependent gyro bias",
+        "0.0005 deg/h/g",
+        "deg/h/g",
+        "rad/s/(m/s^2)",
+    );
+    /// Length.
+    pub const LENGTH: Self = dimension([2, 0, 0, 0, 0], "a length", "0.15 m", "m", "m");
+    /// Velocity.
+    pub const VELOCITY: Self = dimension([2, -2, 0, 0, 0], "a velocity", "1 mm/s", "m/s", "m/s");
+    /// Acceleration.
+    pub const ACCELERATION: Self =
+        dimension([2, -4, 0, 0, 0], "an acceleration", "9.81 m/s^2", "m/s^2", "m/s^2");
+    /// Acceleration of an accelerometer error.
+    pub const ACCEL_BIAS: Self =
+        dimension([2, -4, 0, 0, 0], "an acceleration", "100 ug", "ug", "m/s^2");
+    /// Accelerometer noise density.
+    pub const VELOCITY_RANDOM_WALK: Self = dimension(
+        [2, -3, 0, 0, 0],
+        "an accelerometer noise density",
+        "50 ug/sqrt(Hz)",
+        "ug/sqrt(Hz)",
+        "m/s^2/sqrt(Hz)",
+    );
+    /// Ratio.
+    pub const RATIO: Self = dimension([0, 0, 0, 0, 0], "a ratio", "30 ppm", "ppm", "m/m");
+    /// Temperature difference.
+    pub const TEMPERATURE: Self =
+        dimension([0, 0, 0, 2, 0], "a temperature difference", "20 K", "K", "K");
+    /// Temperature rate.
+    pub const TEMPERATURE_RATE: Self =
+        dimension([0, -2, 0, 2, 0], "a temperature rate", "5 K/h", "K/h", "K/s");
+    /// Gyro bias per kelvin.
+    pub const GYRO_BIAS_PER_K: Self = dimension(
+        [0, -2, 2, -2, 0],
+        "a gyro bias sensitivity",
+        "0.0002 deg/h/K",
+        "deg/h/K",
+        "rad/s/K",
+    );
+    /// Accelerometer bias per kelvin.
+    pub const ACCEL_BIAS_PER_K: Self = dimension(
+        [2, -4, 0, -2, 0],
+        "an accelerometer bias sensitivity",
+        "2 ug/K",
+        "ug/K",
+        "m/s^2/K",
+    );
+    /// Scale factor per kelvin.
+    pub const SCALE_PER_K: Self =
+        dimension([0, 0, 0, -2, 0], "a scale factor sensitivity", "0.5 ppm/K", "ppm/K", "1/K");
+
+    /// Random walk of an accelerometer bias.
+    pub const ACCEL_RANDOM_WALK: Self = dimension(
+        [2, -5, 0, 0, 0],
+        "a random walk of acceleration",
+        "1 ug/sqrt(h)",
+        "ug/sqrt(h)",
+        "m/s^2/sqrt(s)",
+    );
+    /// Power spectral density of a vibration.
+    pub const ACCELERATION_PSD: Self = dimension(
+        [4, -6, 0, 0, 0],
+        "a spectral density of acceleration",
+        "0.01 g^2/Hz",
+        "g^2/Hz",
+        "(m/s^2)^2/Hz",
+    );
+
+    const ALL: [Self; 24] = [
+        Self::TIME,
+        Self::SAMPLES,
+        Self::FREQUENCY,
+        Self::ANGLE,
+        Self::SMALL_ANGLE,
+        Self::ANGULAR_RATE,
+        Self::GYRO_BIAS,
+        Self::ANGULAR_ACCELERATION,
+        Self::ANGLE_RANDOM_WALK,
+        Self::RATE_RANDOM_WALK,
+        Self::G_DEPENDENT,
+        Self::LENGTH,
+        Self::VELOCITY,
+        Self::ACCELERATION,
+        Self::ACCEL_BIAS,
+        Self::VELOCITY_RANDOM_WALK,
+        Self::RATIO,
+        Self::TEMPERATURE,
+        Self::TEMPERATURE_RATE,
+        Self::GYRO_BIAS_PER_K,
+        Self::ACCEL_BIAS_PER_K,
+        Self::SCALE_PER_K,
+        Self::ACCEL_RANDOM_WALK,
+        Self::ACCELERATION_PSD,
+    ];
+
+    /// Exponents of kg, m, s, A, K, mol, cd, rad in the unit of FMUs; `None` where they are not
+    /// whole, or count samples.
+    #[must_use]
+    pub fn exponents(self) -> Option<[i8; 8]> {
+        exponents(self.powers)
+    }
+
+    /// The SI unit, in which every value can be written exactly.
+    #[must_use]
+    pub const fn si_unit(self) -> &'static str {
+        self.si_unit
+    }
+
+    /// The dimension with these exponents that scenarios use, where there is one.
+    pub fn with_exponents(exponents: &[i8; 8]) -> Option<Self> {
+        Self::ALL.into_iter().find(|dimension| dimension.exponents().as_ref() == Some(exponents))
+    }
+
+    /// The dimension of a parsed quantity, where it is one that scenarios use.
+    pub fn of(quantity: Quantity) -> Option<Self> {
+        Self::ALL.into_iter().find(|d| d.powers == quantity.powers)
+    }
+
+    /// Writes an SI value as a quantity that parses back to the same bits: in the user's unit with
+    /// as few digits as that takes, else in SI.
+    #[must_use]
+    pub fn write(self, value: f64) -> String {
+        for unit in [self.unit, self.si_unit] {
+            let Ok((factor, _)) = parse_unit(unit) else { continue };
+            for digits in 0..17 {
+                let text = format!("{:.digits$e}", value / factor);
+                // Through f64 again, for its shortest plain spelling.
+                let Ok(number) = text.parse::<f64>() else { continue };
+                if (number * factor).to_bits() == value.to_bits() {
+                    return format!("{} {unit}", plain(number));
+                }
+            }
+        }
+        format!("{value:e} {}", self.si_unit)
+    }
+}
+
+fn exponents([m, s, rad, k, samples]: Powers) -> Option<[i8; 8]> {
+    if samples != 0 || [m, s, rad, k].iter().any(|power| power % 2 != 0) {
+        return None;
+    }
+    let half = |power: i16| i8::try_from(power / 2).ok();
+    Some([0, half(m)?, half(s)?, 0, half(k)?, 0, 0, half(rad)?])
+}
+
+/// A number without exponent where that reads well.
+fn plain(number: f64) -> String {
+    let size = number.abs();
+    if size == 0.0 || (1e-6..1e7).contains(&size) {
+        format!("{number}")
+    } else {
+        format!("{number:e}")
+    }
+}
+
+/// A parsed quantity.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Quantity {
+    /// Value in SI and rad.
+    pub si: f64,
+    powers: Powers,
+}
+
+impl Quantity {
+    /// Whether two quantities measure the same.
+    #[must_use]
+    pub fn same_dimension(self, other: Self) -> bool {
+        self.powers == other.powers
+    }
+
+    /// Exponents of kg, m, s, A, K, mol, cd, rad; `None`: it has roots, or counts samples.
+    pub fn exponents(self) -> Option<[i8; 8]> {
+        exponents(self.powers)
+    }
+
+    /// Whether this is a quantity of the dimension.
+    #[must_use]
+    pub fn is(self, dimension: Dimension) -> bool {
+        self.powers == dimension.powers
+    }
+}
+
+/// Why a text isn't a quantity: a fragment that fits after "found".
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum NotAQuantity {
+    /// It doesn't start with a finite number.
+    NoNumber,
+    /// A number and nothing else.
+    NoUnit,
+    /// The unit isn't one, with the part that wasn't understood.
+    UnknownUnit(String),
+}
+
+/// Parses a number with its unit.
+pub fn parse(text: &str) -> Result<Quantity, NotAQuantity> {
+    let text = text.trim();
+    let (number, unit) = text.split_at(number_length(text));
+    let value: f64 = number.parse().map_err(|_| NotAQuantity::NoNumber)?;
+    let unit = unit.trim();
+    if unit.is_empty() {
+        return Err(NotAQuantity::NoUnit);
+    }
+    let (factor, powers) = parse_unit(unit).map_err(NotAQuantity::UnknownUnit)?;
+    let si = value * factor;
+    if !si.is_finite() {
+        return Err(NotAQuantity::NoNumber);
+    }
+    Ok(Quantity { si, powers })
+}
+
+/// Bytes of the decimal number that a text starts with.
+fn number_length(text: &str) -> usize {
+    let bytes = text.as_bytes();
+    let digits = |from: usize| bytes[from..].iter().take_while(|b| b.is_ascii_digit()).count();
+    let mut at = usize::from(matches!(bytes.first(), Some(b'+' | b'-')));
+    at += digits(at);
+    if bytes.get(at) == Some(&b'.') {
+        at += 1 + digits(at + 1);
+    }
+    if matches!(bytes.get(at), Some(b'e' | b'E')) {
+        let sign = usize::from(matches!(bytes.get(at + 1), Some(b'+' | b'-')));
+        let exponent = digits(at + 1 + sign);
+        if exponent > 0 {
+            at += 1 + sign + exponent;
+        }
+    }
+    at
+}
+
+/// Unit names, SI value of one, powers.
+const UNITS: &[(&str, f64, Powers)] = &[
+    ("1", 1.0, [0, 0, 0, 0, 0]),
+    ("rad", 1.0, [0, 0, 2, 0, 0]),
+    ("mrad", 1e-3, [0, 0, 2, 0, 0]),
+    ("urad", 1e-6, [0, 0, 2, 0, 0]),
+    ("deg", DEG, [0, 0, 2, 0, 0]),
+    ("°", DEG, [0, 0, 2, 0, 0]),
+    ("arcmin", ARCMIN, [0, 0, 2, 0, 0]),
+    ("'", ARCMIN, [0, 0, 2, 0, 0]),
+    ("′", ARCMIN, [0, 0, 2, 0, 0]),
+    ("arcsec", ARCSEC, [0, 0, 2, 0, 0]),
+    ("\"", ARCSEC, [0, 0, 2, 0, 0]),
+    ("″", ARCSEC, [0, 0, 2, 0, 0]),
+    ("s", 1.0, [0, 2, 0, 0, 0]),
+    ("ms", 1e-3, [0, 2, 0, 0, 0]),
+    ("us", 1e-6, [0, 2, 0, 0, 0]),
+    ("ns", 1e-9, [0, 2, 0, 0, 0]),
+    ("min", 60.0, [0, 2, 0, 0, 0]),
+    ("h", 3600.0, [0, 2, 0, 0, 0]),
+    ("day", 86400.0, [0, 2, 0, 0, 0]),
+    ("Hz", 1.0, [0, -2, 0, 0, 0]),
+    ("kHz", 1e3, [0, -2, 0, 0, 0]),
+    ("m", 1.0, [2, 0, 0, 0, 0]),
+    ("mm", 1e-3, [2, 0, 0, 0, 0]),
+    ("cm", 1e-2, [2, 0, 0, 0, 0]),
+    ("um", 1e-6, [2, 0, 0, 0, 0]),
+    ("km", 1e3, [2, 0, 0, 0, 0]),
+    ("nmi", NAUTICAL_MILE_M, [2, 0, 0, 0, 0]),
+    ("kn", NAUTICAL_MILE_M / 3600.0, [2, -2, 0, 0, 0]),
+    ("g", STANDARD_GRAVITY_MPS2, [2, -4, 0, 0, 0]),
+    ("mg", 1e-3 * STANDARD_GRAVITY_MPS2, [2, -4, 0, 0, 0]),
+    ("ug", octant_earth::units::MICRO_G, [2, -4, 0, 0, 0]),
+    ("ppm", 1e-6, [0, 0, 0, 0, 0]),
+    ("%", 1e-2, [0, 0, 0, 0, 0]),
+    ("K", 1.0, [0, 0, 0, 2, 0]),
+    ("mK", 1e-3, [0, 0, 0, 2, 0]),
+    ("samples", 1.0, [0, 0, 0, 0, 2]),
+    ("sample", 1.0, [0, 0, 0, 0, 2]),
+];
+
+/// The names of the units that products are made of.
+pub fn unit_names() -> impl Iterator<Item = &'static str> + Clone {
+    UNITS.iter().map(|(name, ..)| *name)
+}
+
+/// SI value and powers of a unit; the error is the part that wasn't understood.
+fn parse_unit(text: &str) -> Result<(f64, Powers), String> {
+    // Both code points of mu, and the superscript and root signs, in their plain spellings.
+    let plain = text.replace(['µ', 'μ'], "u").replace('²', "^2").replace(['·', '⋅'], "*");
+    let mut parser = UnitParser { rest: &plain, depth: 0 };
+    let unit = parser.product()?;
+    if parser.rest.trim().is_empty() { Ok(unit) } else { Err(parser.rest.trim().to_owned()) }
+}
+
+struct UnitParser<'a> {
+    rest: &'a str,
+    depth: u8,
+}
+
+impl UnitParser<'_> {
+    fn eat(&mut self, token: &str) -> bool {
+        let rest = self.rest.trim_start();
+        let found = rest.strip_prefix(token);
+        self.rest = found.unwrap_or(rest);
+        found.is_some()
+    }
+
+    fn product(&mut self) -> Result<(f64, Powers), String> {
+        let (mut factor, mut powers) = self.power()?;
+        loop {
+            let sign = if self.eat("/") {
+                -1
+            } else if self.eat("*") {
+                1
+            } else {
+                return Ok((factor, powers));
+            };
+            let (f, p) = self.power()?;
+            factor = if sign < 0 { factor / f } else { factor * f };
+            for (a, b) in powers.iter_mut().zip(p) {
+                *a = add(*a, sign, b)?;
+            }
+        }
+    }
+
+    fn power(&mut self) -> Result<(f64, Powers), String> {
+        let (base, powers) = self.atom()?;
+        if !self.eat("^") {
+            return Ok((base, powers));
+        }
+        let exponent = ["-1", "-2", "1", "2", "3"]
+            .into_iter()
+            .find(|text| self.eat(text))
+            .and_then(|text| text.parse::<i16>().ok())
+            .ok_or_else(|| format!("^{}", self.rest))?;
+        let mut factor = 1.0;
+        for _ in 0..exponent.abs() {
+            factor = if exponent < 0 { factor / base } else { factor * base };
+        }
+        let mut raised = [0; 5];
+        for (a, b) in raised.iter_mut().zip(powers) {
+            *a = add(0, exponent, b)?;
+        }
+        Ok((factor, raised))
+    }
+
+    fn atom(&mut self) -> Result<(f64, Powers), String> {
+        if self.depth > 8 {
+            return Err(self.rest.to_owned());
+        }
+        if self.eat("sqrt(") || self.eat("√(") {
+            let inner = self.nested()?;
+            return root(inner).ok_or_else(|| "sqrt".to_owned());
+        }
+        if self.eat("√") {
+            self.depth += 1;
+            let inner = self.atom()?;
+            self.depth -= 1;
+            return root(inner).ok_or_else(|| "√".to_owned());
+        }
+        if self.eat("(") {
+            return self.nested();
+        }
+        let end = self.rest.find(['/', '*', '^', '(', ')', ' ']).unwrap_or(self.rest.len());
+        let (name, rest) = self.rest.split_at(end);
+        let unit = UNITS.iter().find(|(known, ..)| *known == name);
+        let (_, factor, powers) = unit.ok_or_else(|| name.to_owned())?;
+        self.rest = rest;
+        Ok((*factor, *powers))
+    }
+
+    fn nested(&mut self) -> Result<(f64, Powers), String> {
+        self.depth += 1;
+        let inner = self.product()?;
+        self.depth -= 1;
+        if self.eat(")") { Ok(inner) } else { Err(format!("{} without )", self.rest)) }
+    }
+}
+
+fn add(a: i16, times: i16, b: i16) -> Result<i16, String> {
+    times.checked_mul(b).and_then(|x| a.checked_add(x)).ok_or_else(|| "power too large".to_owned())
+}
+
+fn root((factor, powers): (f64, Powers)) -> Option<(f64, Powers)> {
+    powers.iter().all(|p| p % 2 == 0).then(|| (factor.sqrt(), powers.map(|p| p / 2)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use octant_earth::units;
+    use proptest::prelude::*;
+
+    #[test]
+    fn the_units_of_the_field_have_their_si_values() {
+        let cases = [
+            ("0.005 deg/h", 0.005 * units::DEG_PER_HOUR, Dimension::GYRO_BIAS),
+            ("0.005°/h", 0.005 * units::DEG_PER_HOUR, Dimension::GYRO_BIAS),
+            ("12 h", 43200.0, Dimension::TIME),
+            ("200 Hz", 200.0, Dimension::FREQUENCY),
+            ("30.5 deg", 30.5 * units::DEG, Dimension::ANGLE),
+            ("18 arcsec", 18.0 * units::ARCSEC, Dimension::ANGLE),
+            ("18″", 18.0 * units::ARCSEC, Dimension::ANGLE),
+            ("50 ug/sqrt(Hz)", 50.0 * units::MICRO_G, Dimension::VELOCITY_RANDOM_WALK),
+            ("50 µg/√Hz", 50.0 * units::MICRO_G, Dimension::VELOCITY_RANDOM_WALK),
+            ("50 μg/√(Hz)", 50.0 * units::MICRO_G, Dimension::VELOCITY_RANDOM_WALK),
+            ("7e-4 deg/sqrt(h)", 7e-4 * units::DEG_PER_SQRT_HOUR, Dimension::ANGLE_RANDOM_WALK),
+            ("30 ppm", 30.0 * units::PPM, Dimension::RATIO),
+            ("5e-4 deg/h/g", 5e-4 * units::DEG_PER_HOUR_PER_G, Dimension::G_DEPENDENT),
+            ("10 deg/s", 10.0 * units::DEG, Dimension::ANGULAR_RATE),
+            ("10 deg/s^2", 10.0 * units::DEG, Dimension::ANGULAR_ACCELERATION),
+            ("10 °/s²", 10.0 * units::DEG, Dimension::ANGULAR_ACCELERATION),
+            ("1 mm/s", 1e-3, Dimension::VELOCITY),
+            ("2.4 m/s^2", 2.4, Dimension::ACCELERATION),
+            ("40 g", 40.0 * units::STANDARD_GRAVITY_MPS2, Dimension::ACCELERATION),
+        ];
+        for (text, si, dimension) in cases {
+            let quantity = parse(text).unwrap();
+            assert_eq!(quantity.si, si, "{text}");
+            assert!(quantity.is(dimension), "{text} is {}", dimension.name);
+        }
+    }
+
+    #[test]
+    fn what_is_not_a_quantity_says_why() {
+        assert_eq!(parse("fast"), Err(NotAQuantity::NoNumber));
+        assert_eq!(parse("1e999 s"), Err(NotAQuantity::NoNumber));
+        assert_eq!(parse("12"), Err(NotAQuantity::NoUnit));
+        assert_eq!(parse("12 parsec"), Err(NotAQuantity::UnknownUnit("parsec".into())));
+        assert_eq!(parse("1 deg/hour"), Err(NotAQuantity::UnknownUnit("hour".into())));
+        assert!(parse("1 m/").is_err() && parse("1 sqrt(Hz").is_err());
+    }
+
+    proptest! {
+        #[test]
+        fn any_text_is_parsed_without_a_panic(text in "\\PC*") {
+            let _ = parse(&text);
+            let _ = parse(&format!("1 {text}"));
+        }
+
+        #[test]
+        fn a_written_quantity_parses_to_the_same_bits(
+            value in prop::num::f64::NORMAL.prop_filter("of instruments", |v| {
+                (1e-25..1e25).contains(&v.abs())
+            }),
+            index in 0..Dimension::ALL.len(),
+        ) {
+            let dimension = Dimension::ALL[index];
+            let text = dimension.write(value);
+            let parsed = parse(&text).unwrap();
+            prop_assert!(parsed.is(dimension), "{text}");
+            prop_assert_eq!(parsed.si.to_bits(), value.to_bits(), "{}", text);
+        }
+    }
+
+    #[test]
+    fn round_numbers_are_written_round() {
+        let bias = parse("0.005 deg/h").unwrap().si;
+        assert_eq!(Dimension::GYRO_BIAS.write(bias), "0.005 deg/h");
+        assert_eq!(Dimension::SMALL_ANGLE.write(parse("40 arcsec").unwrap().si), "40 arcsec");
+        assert_eq!(Dimension::TIME.write(0.0), "0 s");
+    }
+}

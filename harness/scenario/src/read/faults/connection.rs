@@ -1,0 +1,220 @@
+//! Faults on connections of FMUs: from a text to what can be looked up in a system.
+
+use super::grid::{Grid, Waiting, check_chains};
+use super::{Reader, value};
+use crate::complete::{self, number};
+use crate::document::{self, Node, Value as Written};
+use crate::error::{Place, Problem, ScenarioError};
+use crate::{fire, keys};
+use octant_faults::Values;
+use octant_faults::catalogue::{Parameter, Takes};
+use octant_faults::connection::kinds::{self, Kind};
+use octant_faults::trigger::{Schedule, Trigger};
+use std::path::Path;
+
+/// A fault on a connection, as far as it is known without the system.
+#[derive(Clone, Debug)]
+pub struct ConnectionFault {
+    /// Its id.
+    pub id: String,
+    /// The input that it acts on.
+    pub connection: String,
+    /// Its kind.
+    pub kind: &'static Kind,
+    /// Values that mean the same on every connection.
+    pub values: Values,
+    /// Values that are in the unit of the connection.
+    pub given: Vec<(&'static Parameter, Given)>,
+    /// When; of a condition, what comes after it.
+    pub schedule: Schedule,
+    /// The condition that it waits for.
+    pub when: Option<String>,
+    /// Steps at which it is fired by hand, in order.
+    pub fires: Vec<u64>,
+    /// Where it and its keys were written.
+    places: Vec<(String, Place)>,
+    path: String,
+}
+
+/// A value in the unit of a connection.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Given {
+    /// A plain number.
+    Number(f64),
+    /// A quantity, or the name of an item.
+    Text(String),
+    /// Yes or no.
+    Flag(bool),
+}
+
+impl ConnectionFault {
+    /// A problem with one of its keys.
+    #[must_use]
+    pub fn problem(&self, key: &str, message: impl Into<String>) -> Problem {
+        let at = |key: &str| self.places.iter().find(|(known, _)| known == key);
+        let place = at(key).or_else(|| at("")).map_or(Place::Default, |(_, place)| place.clone());
+        Problem { place, path: complete::join(&self.path, key), message: message.into() }
+    }
+
+    /// It is fired by hand, and nobody does.
+    #[must_use]
+    pub fn is_idle(&self) -> bool {
+        self.schedule.trigger == Trigger::Manual && self.fires.is_empty()
+    }
+}
+
+/// Reads a list of faults on connections for a run of so many steps of a length, with `--fire`
+/// arguments `ID=TIME` applied. `file` names it in errors.
+///
+/// # Errors
+/// If it isn't TOML or not such a list: every problem with its place.
+pub fn connection_faults(
+    text: &str,
+    file: &str,
+    step_s: f64,
+    steps: u64,
+    fires: &[String],
+) -> Result<Vec<ConnectionFault>, ScenarioError> {
+    let with_file = |problems| ScenarioError { file: file.to_owned(), problems };
+    let mut table = document::parse(text).map_err(with_file)?;
+    let mut problems = Vec::new();
+    for argument in fires {
+        if let Err(problem) = fire(&mut table, argument) {
+            problems.push(problem);
+        }
+    }
+    let start = Place::File { line: 1, column: 1 };
+    complete::complete(&mut table, &keys::CONNECTIONS, "", &start, &mut problems);
+    if !problems.is_empty() {
+        return Err(with_file(problems));
+    }
+    read(&Reader::root(&table), &Grid { period_ns: step_s * 1e9, step: "step" }, steps)
+        .map_err(|problem| with_file(vec![problem]))
+}
+
+fn read(root: &Reader<'_>, grid: &Grid, steps: u64) -> Result<Vec<ConnectionFault>, Problem> {
+    let tables = root.tables("faults");
+    let mut all: Vec<ConnectionFault> = Vec::with_capacity(tables.len());
+    for table in &tables {
+        let fault = fault(table, grid)?;
+        if all.iter().any(|other| other.id == fault.id) {
+            let id = &fault.id;
+            return Err(
+                table.problem("id", format!("found {id:?} a second time, expected unique ids"))
+            );
+        }
+        all.push(fault);
+    }
+    let waiting: Vec<Waiting<'_>> = all
+        .iter()
+        .map(|fault| Waiting { id: &fault.id, schedule: &fault.schedule, lasts: fault.kind.lasts })
+        .collect();
+    check_chains(&tables, &waiting)?;
+    for (index, table) in tables.iter().enumerate() {
+        let trigger = table.table("trigger")?;
+        let late = earliest(&all, index, all.len()).filter(|earliest| *earliest > steps);
+        let late = late.or_else(|| all[index].fires.iter().copied().find(|fire| *fire > steps));
+        if let Some(late) = late {
+            let message = format!(
+                "it can't fire: it would set in at {} at the earliest, and the run ends at {}",
+                grid.words(late.saturating_sub(1)),
+                grid.words(steps)
+            );
+            return Err(trigger.problem(trigger.first_key(), message));
+        }
+    }
+    Ok(all)
+}
+
+fn fault(table: &Reader<'_>, grid: &Grid) -> Result<ConnectionFault, Problem> {
+    let id = table.text("id")?;
+    if id.trim().is_empty() {
+        return Err(table.problem("id", "found an empty text, expected a name"));
+    }
+    let name = table.text("kind")?;
+    let kind = kinds::named(name)
+        .ok_or_else(|| table.problem("kind", format!("found {name:?}, which is no kind")))?;
+    let mut places = vec![(String::new(), table.place.clone())];
+    let mut values = Values::default();
+    let mut given = Vec::new();
+    for parameter in kind.parameters {
+        let key = parameter.name;
+        if let Some(node) = table.node(key).filter(|node| node.place != Place::Default) {
+            places.push((key.to_owned(), node.place.clone()));
+        }
+        match parameter.takes {
+            Takes::Value | Takes::Difference(_) => {
+                given.push((parameter, self::given(table, key)?))
+            }
+            _ => values.set(key, value(table, parameter)?),
+        }
+    }
+    for key in ["id", "kind", "connection", "trigger"] {
+        if let Some(node) = table.node(key) {
+            places.push((key.to_owned(), node.place.clone()));
+        }
+    }
+    let trigger = table.table("trigger")?;
+    let when = trigger.optional_text("when").map(str::to_owned);
+    let (of_trigger, fires) = match when {
+        Some(_) => (Trigger::Outside { delay: grid.delay(&trigger)? }, Vec::new()),
+        None => grid.trigger(&trigger)?,
+    };
+    Ok(ConnectionFault {
+        id: id.to_owned(),
+        connection: table.text("connection")?.to_owned(),
+        kind,
+        values,
+        given,
+        schedule: grid.schedule(table, kind.lasts, of_trigger, &fires)?,
+        when,
+        fires,
+        places,
+        path: table.path.clone(),
+    })
+}
+
+fn given(table: &Reader<'_>, key: &str) -> Result<Given, Problem> {
+    match table.node(key) {
+        Some(Node { value: Written::Text(text), .. }) => Ok(Given::Text(text.clone())),
+        Some(Node { value: Written::Boolean(value), .. }) => Ok(Given::Flag(*value)),
+        Some(node) => match number(&node.value) {
+            Some(value) => Ok(Given::Number(value)),
+            None => Err(table.problem(key, format!("found {}", node.value.describe()))),
+        },
+        None => Err(table.problem(key, "missing")),
+    }
+}
+
+/// The first step at which a fault can set in, where that is known. `depth` ends the walk along
+/// faults that wait for each other.
+fn earliest(all: &[ConnectionFault], index: usize, depth: usize) -> Option<u64> {
+    let fault = all.get(index)?;
+    match &fault.schedule.trigger {
+        Trigger::After { fault: id, delay } => {
+            let other = all.iter().position(|other| other.id == *id)?;
+            let start = earliest(all, other, depth.checked_sub(1)?)?;
+            let schedule = &all[other].schedule;
+            let length = schedule.duration.unwrap_or(1).saturating_add(schedule.recovery);
+            Some(start.saturating_add(length).saturating_add(*delay))
+        }
+        Trigger::Outside { delay } => Some(delay.saturating_add(1)),
+        Trigger::Manual => fault.fires.first().copied(),
+        other => other.earliest(),
+    }
+}
+
+/// Faults of a file.
+///
+/// # Errors
+/// If it can't be read.
+pub fn text_of(path: &Path) -> Result<String, ScenarioError> {
+    std::fs::read_to_string(path).map_err(|error| ScenarioError {
+        file: path.display().to_string(),
+        problems: vec![Problem {
+            place: Place::Unread,
+            path: String::new(),
+            message: error.to_string(),
+        }],
+    })
+}

@@ -1,0 +1,296 @@
+//! When faults set in: triggers in epochs, and those that can't come true.
+
+use super::grid::Grid;
+use super::{Fault, Reader, method_name};
+use crate::condition;
+use crate::error::Problem;
+use crate::{Alignment, Calibration, Method, Scenario, Source};
+use octant_calibration::config::TurntableRates;
+use octant_calibration::schedule::move_between_s;
+use octant_calibration::sequence::{Sequence, Stop};
+use octant_faults::catalogue::Kind;
+use octant_faults::trigger::{Schedule, Trigger};
+use octant_sample::Mode;
+
+/// What is known of the run's time before it starts.
+pub(super) struct Timing<'a> {
+    scenario: &'a Scenario,
+    grid: Grid,
+    /// Epochs of the whole run, where they are known.
+    total: Option<u64>,
+    calibration_samples: u64,
+}
+
+/// One walk through positions.
+struct Walk<'a> {
+    sequence: &'a Sequence,
+    from: Stop,
+    dwell_s: f64,
+    /// Positions that come, over all passes; `None`: as long as it lasts.
+    positions: Option<u64>,
+    name: &'static str,
+}
+
+impl<'a> Timing<'a> {
+    pub(super) fn of(scenario: &'a Scenario) -> Self {
+        Self {
+            scenario,
+            grid: Grid { period_ns: scenario.sample_period_ns as f64, step: "sample" },
+            total: scenario.samples(),
+            calibration_samples: scenario.calibration_samples(),
+        }
+    }
+
+    /// The schedule of a fault, and the epochs at which it is fired by hand.
+    pub(super) fn schedule(
+        &self,
+        table: &Reader<'_>,
+        kind: &Kind,
+    ) -> Result<(Schedule, Vec<u64>), Problem> {
+        let (trigger, fires) = self.trigger(&table.table("trigger")?)?;
+        let schedule = self.grid.schedule(table, kind.lasts, trigger, &fires)?;
+        Ok((schedule, fires))
+    }
+
+    fn trigger(&self, table: &Reader<'_>) -> Result<(Trigger, Vec<u64>), Problem> {
+        let delay = self.grid.delay(table)?;
+        let mode = || {
+            Ok(if table.text("phase")? == "calibration" {
+                Mode::Calibrating
+            } else {
+                Mode::Navigating
+            })
+        };
+        let stop = |key| Ok(table.integer::<u16>(key)?.saturating_sub(1));
+        let trigger = if table.node("position").is_some() {
+            Trigger::Position { stop: stop("position")?, mode: mode()?, delay }
+        } else if table.node("moving_to").is_some() {
+            Trigger::Move { stop: stop("moving_to")?, mode: mode()?, delay }
+        } else if table.node("mode").is_some() {
+            let mode = match table.text("mode")? {
+                "aligning" => Mode::Aligning,
+                "calibrating" => Mode::Calibrating,
+                _ => Mode::Navigating,
+            };
+            Trigger::Mode { mode, delay }
+        } else if table.node("when").is_some() {
+            let (signal, comparison, value) =
+                condition::parse(table.text("when")?).map_err(|m| table.problem("when", m))?;
+            if signal.needs_truth()
+                && let Some(without) = without_truth(&self.scenario.source)
+            {
+                let found = table.text("when")?;
+                let message = format!("found {found:?}, which needs truth, and {without}");
+                return Err(table.problem("when", message));
+            }
+            Trigger::Condition { signal, comparison, value, delay }
+        } else {
+            return self.grid.trigger(table);
+        };
+        Ok((trigger, Vec::new()))
+    }
+
+    /// Refuses a fault that can't fire, as far as that is known before the run.
+    pub(super) fn check(
+        &self,
+        table: &Reader<'_>,
+        all: &[Fault],
+        index: usize,
+    ) -> Result<(), Problem> {
+        let trigger = table.table("trigger")?;
+        self.check_phase(&trigger, &all[index].spec.schedule.trigger)?;
+        let (Some(earliest), Some(total)) = (self.earliest(all, index, all.len()), self.total)
+        else {
+            return Ok(());
+        };
+        if let Some(fire) = all[index].fires.iter().find(|fire| **fire > total) {
+            let message = format!(
+                "found {}, and the run ends at {}",
+                self.grid.words(fire.saturating_sub(1)),
+                self.grid.words(total)
+            );
+            return Err(trigger.problem("fire", message));
+        }
+        if earliest > total {
+            let key = trigger.first_key();
+            let at_the_earliest = match all[index].spec.schedule.trigger {
+                Trigger::Epoch(_) => "",
+                _ => " at the earliest",
+            };
+            let message = format!(
+                "it can't fire: it would set in at {}{at_the_earliest}, and the run ends at {}",
+                self.grid.words(earliest.saturating_sub(1)),
+                self.grid.words(total)
+            );
+            return Err(trigger.problem(key, message));
+        }
+        Ok(())
+    }
+
+    /// A trigger waits for a phase that the run has, and for positions that it goes to.
+    fn check_phase(&self, table: &Reader<'_>, trigger: &Trigger) -> Result<(), Problem> {
+        let (mode, key) = match trigger {
+            Trigger::Position { mode, .. } => (*mode, "position"),
+            Trigger::Move { mode, .. } => (*mode, "moving_to"),
+            Trigger::Mode { mode, .. } => (*mode, "mode"),
+            _ => return Ok(()),
+        };
+        let there = match mode {
+            Mode::Aligning => matches!(self.scenario.alignment, Alignment::Coarse { .. }),
+            Mode::Calibrating => self.scenario.calibration.is_some(),
+            _ => self.scenario.navigation.is_some(),
+        };
+        if !there {
+            let (what, section) = match mode {
+                Mode::Aligning => ("its attitude is handed over", "procedure.alignment"),
+                Mode::Calibrating => ("it has no calibration", "procedure.calibration"),
+                _ => ("it has no navigation", "procedure.navigation"),
+            };
+            let message =
+                format!("it can't fire: the run never is {}, {what} ({section})", mode.name());
+            return Err(table.problem(key, message));
+        }
+        let (Trigger::Position { stop, mode, .. } | Trigger::Move { stop, mode, .. }) = trigger
+        else {
+            return Ok(());
+        };
+        let moving = matches!(trigger, Trigger::Move { .. });
+        for walk in self.walks(*mode) {
+            let number = u64::from(*stop) + 1;
+            if let Some(positions) = walk.positions
+                && number > positions
+            {
+                let message = format!(
+                    "it can't fire: found position {number}, and {} has {positions}",
+                    walk.name
+                );
+                return Err(table.problem(key, message));
+            }
+            if moving && walk.move_to_s(*stop, &self.rates()) < self.grid.period_s() {
+                let message = format!(
+                    "it can't fire: in {} the gimbals are at position {number} already when its \
+                     turn comes",
+                    walk.name
+                );
+                return Err(table.problem(key, message));
+            }
+        }
+        Ok(())
+    }
+
+    fn rates(&self) -> TurntableRates {
+        TurntableRates {
+            rate_radps: self.scenario.turntable.rate_radps,
+            acceleration_radps2: self.scenario.turntable.acceleration_radps2,
+        }
+    }
+
+    /// The walks through positions of both methods.
+    fn walks(&self, mode: Mode) -> Vec<Walk<'_>> {
+        let methods = [
+            (Method::Primary, self.scenario.calibration.as_ref()),
+            (Method::Baseline, self.scenario.baseline.as_ref()),
+        ];
+        let mut walks = Vec::new();
+        for (method, calibration) in methods {
+            if mode == Mode::Calibrating {
+                walks.extend(calibration.map(|calibration| Walk {
+                    sequence: &calibration.sequence,
+                    from: Stop::default(),
+                    dwell_s: calibration.dwell_s,
+                    positions: Some(positions(calibration)),
+                    name: method_name(method),
+                }));
+            } else if (method == Method::Primary || calibration.is_some())
+                && let Some(plan) = &self.scenario.navigation
+            {
+                let last = calibration.and_then(|c| c.sequence.stops().last().copied());
+                walks.push(Walk {
+                    sequence: &plan.rotation,
+                    from: last.unwrap_or_default(),
+                    dwell_s: plan.dwell_s,
+                    positions: None,
+                    name: "the rotation in navigation",
+                });
+            }
+        }
+        walks
+    }
+
+    /// The first epoch at which a fault can set in, where that is known. `depth` ends the walk
+    /// along faults that wait for each other.
+    fn earliest(&self, all: &[Fault], index: usize, depth: usize) -> Option<u64> {
+        let fault = all.get(index)?;
+        let after = |start: u64, delay: &u64| Some(start.saturating_add(*delay));
+        match &fault.spec.schedule.trigger {
+            Trigger::Position { stop, mode, delay } | Trigger::Move { stop, mode, delay } => {
+                let moving = matches!(fault.spec.schedule.trigger, Trigger::Move { .. });
+                let walks = self.walks(*mode);
+                // The later one: the fault is to fire in both methods.
+                let reached = walks
+                    .iter()
+                    .map(|walk| self.grid.of_time(walk.reached_s(*stop, moving, &self.rates())));
+                after(self.start(*mode).saturating_add(reached.max()?), delay)
+            }
+            Trigger::Mode { mode, delay } => after(self.start(*mode), delay),
+            Trigger::After { fault: id, delay } => {
+                let other = all.iter().position(|other| other.spec.id == *id)?;
+                let start = self.earliest(all, other, depth.checked_sub(1)?)?;
+                let schedule = &all[other].spec.schedule;
+                let length = schedule.duration.unwrap_or(1).saturating_add(schedule.recovery);
+                after(start.saturating_add(length), delay)
+            }
+            Trigger::Condition { delay, .. } => after(1, delay),
+            Trigger::Manual => fault.fires.first().copied(),
+            other => other.earliest(),
+        }
+    }
+
+    /// The first epoch of a mode.
+    fn start(&self, mode: Mode) -> u64 {
+        match (mode, self.scenario.alignment) {
+            (Mode::Navigating, _) => self.calibration_samples,
+            (Mode::Calibrating, Alignment::Coarse { duration_s }) => self.grid.of_time(duration_s),
+            _ => 0,
+        }
+    }
+}
+
+impl Walk<'_> {
+    fn at(&self, stop: u16) -> Stop {
+        let stops = self.sequence.stops();
+        stops[usize::from(stop) % stops.len()]
+    }
+
+    fn before(&self, stop: u16) -> Stop {
+        stop.checked_sub(1).map_or(self.from, |before| self.at(before))
+    }
+
+    fn move_to_s(&self, stop: u16, rates: &TurntableRates) -> f64 {
+        move_between_s(&self.before(stop), &self.at(stop), rates)
+    }
+
+    /// When a position is reached, or set out for, since the start of the walk, s.
+    fn reached_s(&self, stop: u16, moving: bool, rates: &TurntableRates) -> f64 {
+        let before: f64 = (0..stop)
+            .map(|stop| self.move_to_s(stop, rates) + self.at(stop).weight * self.dwell_s)
+            .sum();
+        if moving { before } else { before + self.move_to_s(stop, rates) }
+    }
+}
+
+fn positions(calibration: &Calibration) -> u64 {
+    calibration.sequence.stops().len() as u64 * u64::from(calibration.sequence.passes())
+}
+
+/// What a source without truth is, in words. An FMU without a map may be our plant, which has it.
+fn without_truth(source: &Source) -> Option<&'static str> {
+    match source {
+        Source::Plant => None,
+        Source::Fmu(fmu) if fmu.is_motion() || fmu.map.is_empty() => None,
+        Source::Fmu(fmu) if fmu.map.iter().any(|m| m.channel.name.starts_with("truth.")) => None,
+        Source::Fmu(_) => Some("source.fmu.map has no truth"),
+        Source::Replay { .. } | Source::Text(_) => Some("the source is a recording"),
+        Source::Live(_) => Some("the source is a real instrument"),
+    }
+}
