@@ -415,7 +415,7 @@ mod tests {
 
     #[test]
     fn the_shipped_tour_is_the_one_of_the_table() {
-        let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/scenarios/tour.toml");
+        let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/scenarios/tour.toml");
         if std::env::var_os("OCTANT_WRITE_FIXTURES").is_some() {
             std::fs::write(file, tour()).unwrap();
         }
