@@ -3,13 +3,13 @@
 //! Nothing here may panic, run for long or take much memory, whatever the bytes are; and what is
 //! accepted has to keep its promises.
 
-use octant::recorder::reader;
 use octant::source::{Epoch, Source, TextSource};
 use octant_calibration::table::CalibrationTable;
 use octant_fmu_check::{check_archive, check_description, show};
 use octant_fmu_host::archive::{Archive, Limits};
 use octant_fmu_host::description::units::{Conversion, known};
 use octant_fmu_host::description::{decode, read, read_bytes};
+use octant_recorder::reader;
 use octant_scenario::Scenario;
 use octant_scenario::recorded::{
     Axis, Column, Delimiter, Quantity, TextFiles, TextMapping, TimeColumn, TimeUnit,

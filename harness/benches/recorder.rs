@@ -7,7 +7,7 @@ mod epochs;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use epochs::{PERIOD_NS, Step, push, stream};
-use octant::recorder::{Frame, Policy, Recorder, RecorderOptions, Samples, StreamHash};
+use octant_recorder::{Frame, Policy, Recorder, RecorderOptions, Samples, StreamHash};
 use std::hint::black_box;
 
 const EPOCHS: u64 = 200 * 600;

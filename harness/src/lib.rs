@@ -11,7 +11,6 @@ pub mod evidence;
 pub mod fmu;
 pub mod nightly;
 pub mod observe;
-pub mod recorder;
 pub mod report;
 pub mod run;
 pub mod score;

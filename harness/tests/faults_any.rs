@@ -4,11 +4,11 @@
 #[path = "../../models/faults/tests/any_fault/draw.rs"]
 mod draw;
 
-use octant::recorder::reader::{Epochs, RecordedEpoch, Recording as Reader};
 use octant::run::{Control, Recording, assemble, run_method};
 use octant_faults::catalogue::Acts;
 use octant_faults::trigger::Trigger;
 use octant_faults::{Receipt, Spec};
+use octant_recorder::reader::{Epochs, RecordedEpoch, Recording as Reader};
 use octant_scenario::{Fault, Method, Place, Scenario};
 use proptest::prelude::*;
 use std::path::Path;

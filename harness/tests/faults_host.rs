@@ -2,9 +2,9 @@
 //! still.
 
 use crate::common::program::{json, program};
-use octant::recorder::reader::{self, Item};
 use octant::run::method::{MethodError, SetupError};
 use octant::run::{Control, Recording, run_method};
+use octant_recorder::reader::{self, Item};
 use octant_scenario::{Method, Scenario};
 use serde_json::Value;
 use std::path::Path;

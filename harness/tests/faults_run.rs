@@ -3,8 +3,6 @@
 
 use crate::common::program::{octant_in, program};
 use octant::endpoint::{Endpoint, InProcess};
-use octant::recorder::reader::{Epochs, RecordedEpoch, Recording as Reader, stream_hash};
-use octant::recorder::{Event, Policy, Recorder, RecorderOptions, RecorderSummary, Samples};
 use octant::run::done::Plan;
 use octant::run::method::configurations;
 use octant::run::{
@@ -18,6 +16,8 @@ use octant_faults::rule::{Context, DeliveryRule, Rule, UnitEvent, UnitRule};
 use octant_faults::station::Spec;
 use octant_faults::trigger::{Repeat, Schedule, Trigger};
 use octant_faults::{Station, Values};
+use octant_recorder::reader::{Epochs, RecordedEpoch, Recording as Reader, stream_hash};
+use octant_recorder::{Event, Policy, Recorder, RecorderOptions, RecorderSummary, Samples};
 use octant_requirements::Verdict;
 use octant_sample::canonical::{AIDING_BYTES, SAMPLE_BYTES, aiding, sample};
 use octant_sample::{GimbalCommand, Mode, Output, Parameters};

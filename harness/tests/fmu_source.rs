@@ -3,7 +3,7 @@
 use crate::common::foreign;
 use crate::common::program::{ends, json, octant};
 use octant::fmu::build::{Options, build};
-use octant::recorder::reader::{Item, Recording};
+use octant_recorder::reader::{Item, Recording};
 use octant_sample::counts::{DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS};
 use octant_sample::{Mode, Output as Answer, Sample, Status, Truth};
 use serde_json::Value;

@@ -3,14 +3,15 @@
 
 use crate::common::allocations;
 use crate::common::program::{ends, json};
-use octant::endpoint::{Endpoint, EndpointError, InProcess, ParameterEstimate, Sent};
-use octant::recorder::{Recorder, RecorderOptions};
+use octant::endpoint::{Endpoint, EndpointError, InProcess, Sent};
 use octant::run::done::Plan;
 use octant::run::method::configurations;
 use octant::run::realtime::{Line, drive_by_clock};
 use octant::run::{Control, Ended, Faulted, Host, Recording, Watcher};
 use octant::source::{Epoch, PlantSource};
 use octant_realtime::clock::{HostTime, now};
+use octant_recorder::{Recorder, RecorderOptions};
+use octant_sample::parameters::ParameterEstimate;
 use octant_sample::{Output, Parameters};
 use octant_scenario::{Method, Scenario};
 use serde_json::Value;
@@ -170,7 +171,7 @@ fn drive(
 ) -> (
     Result<Ended, String>,
     octant::run::realtime::Kept,
-    octant::recorder::RecorderSummary,
+    octant_recorder::RecorderSummary,
     Option<u64>,
 ) {
     let folder = tempfile::tempdir().unwrap();

@@ -1,11 +1,11 @@
 //! Recordings: what was put in comes out, bit for bit, whatever happens to the file.
 
 use crate::common::epochs::{Memory, PERIOD_NS, Step, push, record, stream, truth_of};
-use octant::endpoint::ParameterEstimate;
-use octant::recorder::reader::{self, Epochs, Item, ReadError, Recording};
-use octant::recorder::{Event, Policy, Recorder, RecorderError, RecorderOptions, Samples, message};
 use octant::source::Epoch;
 use octant_plant::Truth;
+use octant_recorder::reader::{self, Epochs, Item, ReadError, Recording};
+use octant_recorder::{Event, Policy, Recorder, RecorderError, RecorderOptions, Samples, message};
+use octant_sample::parameters::ParameterEstimate;
 use octant_sample::{
     Aiding, DeviceTime, GimbalAngles, GimbalCommand, Health, Mode, Navigation, Output, Parameters,
     Reference, Sample, Status,
@@ -439,14 +439,14 @@ fn parameters_that_were_announced_have_to_come() {
     steps[300].output.parameters_revision = 9;
     let mut recorder = Recorder::hash_only(&RecorderOptions::default());
     let error = steps.iter().find_map(|step| {
-        let frame = octant::recorder::Frame {
+        let frame = octant_recorder::Frame {
             clean: &step.clean,
             faulted: &step.faulted,
             output: &step.output,
         };
         recorder.push(frame).err().or_else(|| {
             if let Some(parameters) = step.parameters {
-                recorder.extra(&octant::recorder::Extra::Parameters(parameters));
+                recorder.extra(&octant_recorder::Extra::Parameters(parameters));
             }
             None
         })

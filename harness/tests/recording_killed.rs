@@ -3,8 +3,8 @@
 
 use crate::common::epochs::{push, stream};
 use crate::common::program::{ended, octant, program, test_as_process};
-use octant::recorder::reader::{Epochs, Recording, contents};
-use octant::recorder::{Policy, Recorder, RecorderOptions, Samples};
+use octant_recorder::reader::{Epochs, Recording, contents};
+use octant_recorder::{Policy, Recorder, RecorderOptions, Samples};
 use std::io::{BufRead, BufReader, Write};
 use std::path::Path;
 use std::process::Stdio;

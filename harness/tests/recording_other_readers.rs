@@ -2,7 +2,7 @@
 //! `OCTANT_PYTHON` names a Python that has the packages of `tests/rigs/requirements.txt`.
 
 use crate::common::epochs::{push, stream};
-use octant::recorder::{Policy, Recorder, RecorderOptions, Samples};
+use octant_recorder::{Policy, Recorder, RecorderOptions, Samples};
 use std::path::Path;
 use std::process::Command;
 

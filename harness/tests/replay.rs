@@ -1,8 +1,8 @@
 //! Replay: a full recording gives every epoch again; others are refused or mapped.
 
 use crate::common::epochs::{push, record, stream, truth_of};
-use octant::recorder::{Policy, Recorder, RecorderOptions, Samples, StreamHash};
 use octant::source::{Epoch, Replay, Source, SourceError};
+use octant_recorder::{Policy, Recorder, RecorderOptions, Samples, StreamHash};
 use octant_sample::counts::DELTA_THETA_LSB_RAD;
 use octant_sample::{GimbalCommand, Status};
 use octant_scenario::recorded::{MappedField, MappedStamp, McapMapping, Quantity, TimeUnit};

@@ -4,10 +4,10 @@ use octant::fmu::build::{Options, build};
 use octant::fmu::master::run::{Prepared, Request, Results};
 use octant::fmu::master::summary::Ended;
 use octant::fmu::master::system::element_names;
-use octant::recorder::StreamHash;
 use octant::run::{Control, Recording, run_method};
 use octant_fmu_host::description::{Description, read_bytes};
 use octant_fmu_host::instance::Place;
+use octant_recorder::StreamHash;
 use octant_requirements::Verdict;
 use octant_sample::counts::{DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS};
 use octant_sample::{
@@ -169,7 +169,7 @@ fn output(names: &Names) -> Output {
     }
 }
 
-fn estimate(names: &Names, revision: u32) -> octant::endpoint::ParameterEstimate {
+fn estimate(names: &Names, revision: u32) -> octant_sample::parameters::ParameterEstimate {
     let all = |prefix: &str| {
         let mut values = [f64::NAN; 30];
         for group in octant_sample::parameters::Group::ALL {
@@ -179,7 +179,7 @@ fn estimate(names: &Names, revision: u32) -> octant::endpoint::ParameterEstimate
         }
         values
     };
-    octant::endpoint::ParameterEstimate {
+    octant_sample::parameters::ParameterEstimate {
         revision,
         parameters: Parameters::from_array(&all("parameters")),
         sigma: all("sigma"),

@@ -3,13 +3,13 @@
 use crate::common::epochs::{push, record, stream};
 use crate::common::program::{ended, octant_in, program};
 use octant::evidence::{Existing, RunFolder};
-use octant::recorder::reader::{Item, Recording};
-use octant::recorder::{Event, Policy, Recorder, RecorderOptions, Samples};
 use octant::watch::dashboard::{self, Page};
 use octant::watch::follow::{Follow, Stage};
 use octant::watch::place::Place;
 use octant::watch::plain;
 use octant::watch::tail::{Reached, Tail, TailError};
+use octant_recorder::reader::{Item, Recording};
+use octant_recorder::{Event, Policy, Recorder, RecorderOptions, Samples};
 use ratatui::Terminal;
 use ratatui::backend::TestBackend;
 use serde_json::{Value, json};

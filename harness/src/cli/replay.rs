@@ -1,14 +1,15 @@
 //! `octant replay`: the core again, on a recorded stream.
 
 use super::{Failure, print, print_json};
-use crate::endpoint::{Endpoint, InProcess, ParameterEstimate};
-use crate::recorder::StreamHash;
+use crate::endpoint::{Endpoint, InProcess};
 use crate::run::method::configurations;
 use crate::run::unit;
 use crate::source::{Epoch, Replay, Source};
 use clap::Args;
+use octant_recorder::StreamHash;
 use octant_requirements::Verdict;
 use octant_sample::parameters::PARAMETER_COUNT;
+use octant_sample::parameters::ParameterEstimate;
 use octant_sample::{GimbalCommand, Output};
 use octant_scenario::Scenario;
 use serde::Serialize;

@@ -1,11 +1,11 @@
 //! `octant score`: scoring alone, from a recording that has truth and outputs.
 
 use super::{Failure, print, print_json};
-use crate::recorder::reader::Recording;
 use crate::run::method::planned_of;
 use crate::score::parameters::{nees, score, worst_normalized_error};
 use crate::score::summary::{HeightChannel, Navigation, ParameterScore};
 use clap::Args;
+use octant_recorder::reader::Recording;
 use octant_requirements::Verdict;
 use octant_scenario::resolve::{Draws, Seeded};
 use octant_scenario::{Method, Scenario};

@@ -4,7 +4,7 @@
 //! where nothing was measured; an answer carries number and stamp of the sample that it answers;
 //! modes go forward until somebody restarts the unit.
 
-use super::ParameterEstimate;
+use octant_sample::parameters::ParameterEstimate;
 use octant_sample::parameters::{Group, NAMES, PARAMETER_COUNT};
 use octant_sample::{Mode, Output, Sample};
 use std::f64::consts::FRAC_PI_2;

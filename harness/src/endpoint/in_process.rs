@@ -1,8 +1,9 @@
 //! The core in this process.
 
-use super::{Conclusion, Endpoint, EndpointError, ParameterEstimate};
+use super::{Conclusion, Endpoint, EndpointError};
 use crate::source::Epoch;
 use octant_calibration::{Config, Core};
+use octant_sample::parameters::ParameterEstimate;
 use octant_sample::{Output, Parameters};
 
 /// The calibration core, called directly.

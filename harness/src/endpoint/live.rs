@@ -4,8 +4,7 @@
 //! so the outputs are those of the device's core to the last bit, however bad the line is. By the
 //! clock a sample is sent once, and what comes of it is taken when it comes.
 
-use super::{Conclusion, Endpoint, EndpointError, OpenError, ParameterEstimate, RemoteClock, Sent};
-use crate::recorder;
+use super::{Conclusion, Endpoint, EndpointError, OpenError, RemoteClock, Sent};
 use crate::source::Epoch;
 use octant_calibration::Config;
 use octant_faults::catalogue::Acts;
@@ -14,7 +13,9 @@ use octant_link::clock::ClockEstimator;
 use octant_link::harness::{ANEW, Event, Harness, Options, Patience, Sending, SessionError};
 use octant_link::{PortError, Uri, Wire, load, port};
 use octant_realtime::clock::{HostTime, now};
+use octant_recorder as recorder;
 use octant_sample::parameters::PARAMETER_COUNT;
+use octant_sample::parameters::ParameterEstimate;
 use octant_sample::{Output, Parameters};
 use octant_scenario::{Live, Scenario};
 use octant_wire::message::{Gathered, OutputMessage, Pacing, Reason, Role, Step};

@@ -12,7 +12,6 @@ pub use live::{LiveEndpoint, configuration};
 pub use served::ServedCore;
 
 use crate::fmu::mapping::stepper::UseError;
-use crate::recorder::Event;
 use crate::source::Epoch;
 use octant_calibration::Config;
 use octant_calibration::state_machine::ConfigError;
@@ -20,20 +19,10 @@ use octant_calibration::table::CalibrationTable;
 use octant_faults::wire::Wired;
 use octant_link::harness::SessionError;
 use octant_realtime::clock::HostTime;
-use octant_sample::parameters::PARAMETER_COUNT;
+use octant_recorder::Event;
+use octant_sample::parameters::ParameterEstimate;
 use octant_sample::{Output, Parameters};
 use octant_scenario::{self as scenario, Scenario};
-
-/// The estimated parameters with their standard deviations, SI.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ParameterEstimate {
-    /// Revision: equal to [`Output::parameters_revision`] of the output that it belongs to.
-    pub revision: u32,
-    /// Estimates.
-    pub parameters: Parameters,
-    /// 1σ in the order of [`octant_sample::parameters::NAMES`].
-    pub sigma: [f64; PARAMETER_COUNT],
-}
 
 /// One realisation of the calibration core.
 pub trait Endpoint {

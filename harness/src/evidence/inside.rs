@@ -6,12 +6,12 @@
 
 use super::files;
 use super::manifest::Manifest;
-use crate::recorder::reader::{Recording, stream_hash};
 use crate::score::equipment;
 use crate::score::judge::{Finding, derive};
 use crate::score::numerics::{differs, in_words};
 use crate::score::rederive;
 use crate::score::summary::Summary;
+use octant_recorder::reader::{Recording, stream_hash};
 use octant_requirements::Verdict;
 use octant_requirements::equipment::Day;
 use octant_scenario::Scenario;

@@ -3,10 +3,10 @@
 //! Messages on `/parameters` go with an output, and an output with a sample. After the last sample
 //! there is none.
 
-use crate::endpoint::ParameterEstimate;
-use crate::recorder::Event;
+use octant_recorder::Event;
 use octant_sample::Parameters;
 use octant_sample::parameters::NAMES;
+use octant_sample::parameters::ParameterEstimate;
 use serde_json::{Map, Value};
 
 /// Kind of the event.

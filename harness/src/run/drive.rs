@@ -2,8 +2,8 @@
 
 use super::watch::Watcher;
 use crate::endpoint::{Endpoint, EndpointError};
-use crate::recorder::{Extra, Frame, Recorder, RecorderError};
 use crate::source::{Epoch, Source, SourceError};
+use octant_recorder::{Extra, Frame, Recorder, RecorderError};
 use octant_sample::{GimbalCommand, Mode, Output};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 

@@ -7,7 +7,6 @@ use super::drive::{Control, Ended, RunError, answered, look_every, over};
 use super::host::Host;
 use super::watch::Watcher;
 use crate::endpoint::Endpoint;
-use crate::recorder::{Event, Extra, Frame, Recorder};
 use crate::source::{Epoch, Source};
 use octant_faults::catalogue::Acts;
 use octant_faults::disturbance::Disturbed;
@@ -16,6 +15,7 @@ use octant_faults::rule::UnitEvent;
 use octant_faults::station::{Delivered, World};
 use octant_faults::wire::Wired;
 use octant_faults::{Receipt, Station};
+use octant_recorder::{Event, Extra, Frame, Recorder};
 use octant_sample::{GimbalCommand, Output, Truth};
 
 /// A station with what is done to it by hand.

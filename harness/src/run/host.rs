@@ -6,13 +6,13 @@
 //! before the run.
 
 use super::method::{Recording, SetupError};
-use crate::recorder::{Event, Trouble};
 use octant_faults::Kind;
 use octant_faults::catalogue::Acts;
 use octant_faults::host::{HostAction, Hosted};
 use octant_faults::kinds::host::{FULL, STALLED, STARVED};
 use octant_realtime::clock::{HostTime, now};
 use octant_realtime::schedule::{self, Granted, Wish};
+use octant_recorder::{Event, Trouble};
 use octant_scenario::Scenario;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};

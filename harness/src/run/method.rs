@@ -8,10 +8,7 @@ use super::host::Host;
 use super::realtime::{Kept, Line, drive_by_clock};
 use super::watch::Watcher;
 use crate::calibrate::{PassError, in_passes};
-use crate::endpoint::{Conclusion, Endpoint, EndpointError, InProcess, ParameterEstimate, Tells};
-use crate::recorder::{
-    Event, Policy, Recorder, RecorderError, RecorderOptions, RecorderSummary, Samples, Trouble,
-};
+use crate::endpoint::{Conclusion, Endpoint, EndpointError, InProcess, Tells};
 use crate::score::parameters::{nees, score, worst_normalized_error};
 use crate::score::summary::{Calibration, HeightChannel, Navigation};
 use crate::score::trace::Trace;
@@ -22,6 +19,10 @@ use octant_calibration::state_machine::ConfigError;
 use octant_calibration::table::CalibrationTable;
 use octant_faults::Receipt;
 use octant_plant::Plant;
+use octant_recorder::{
+    Event, Policy, Recorder, RecorderError, RecorderOptions, RecorderSummary, Samples, Trouble,
+};
+use octant_sample::parameters::ParameterEstimate;
 use octant_sample::parameters::{Group, NAMES};
 use octant_sample::{Mode, Output, Parameters};
 use octant_scenario::resolve::{Draws, Seeded};

@@ -1,8 +1,8 @@
 //! What happened to the unit under test, as an event of the recording: a replay does it again.
 
 use crate::endpoint::{Endpoint, EndpointError};
-use crate::recorder::Event;
 use octant_faults::rule::UnitEvent;
+use octant_recorder::Event;
 use octant_sample::Parameters;
 use octant_sample::parameters::NAMES;
 use serde_json::{Map, Value, json};

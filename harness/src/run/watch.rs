@@ -6,7 +6,6 @@
 
 use super::done::{Done, Plan};
 use super::follow::Follow;
-use crate::endpoint::ParameterEstimate;
 use crate::endpoint::answer::{AnswerCheck, Misbehaviour};
 use crate::report::{GimbalPoint, HealthEvent, NisPoint, ParameterPoint};
 use crate::score::drift::{DriftSample, DriftScorer};
@@ -15,6 +14,7 @@ use crate::score::trace::Trace;
 use crate::score::work::Work;
 use crate::source::Epoch;
 use octant_plant::Truth;
+use octant_sample::parameters::ParameterEstimate;
 use octant_sample::{DeviceTime, Health, Mode, Output};
 
 /// Grid on which truth is compared with the navigation solution, ns.

@@ -230,8 +230,8 @@ pub struct AlteredStreams {
     pub faulted_blake3: String,
 }
 
-impl From<&crate::recorder::AlteredStreams> for AlteredStreams {
-    fn from(streams: &crate::recorder::AlteredStreams) -> Self {
+impl From<&octant_recorder::AlteredStreams> for AlteredStreams {
+    fn from(streams: &octant_recorder::AlteredStreams) -> Self {
         Self {
             first_sample: streams.first_sample,
             clean_blake3: streams.clean_blake3.clone(),

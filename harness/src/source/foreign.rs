@@ -3,8 +3,8 @@
 use super::counting::{Counting, Measured};
 use super::fields::{Definition, FieldDecoder, FieldPath, Number};
 use super::{Epoch, SourceError};
-use crate::recorder::records::{End, Records};
 use mcap::records::{Record, op};
+use octant_recorder::records::{End, Records};
 use octant_scenario::recorded::{MappedField, MappedStamp, McapMapping, TimeUnit};
 use std::collections::{BTreeSet, HashMap};
 use std::io::Read;
@@ -206,7 +206,7 @@ fn read_step(decoders: &HashMap<u16, FieldDecoder>, plan: &Plan, opcode: u8, dat
     if !matches!(opcode, op::SCHEMA | op::CHANNEL | op::MESSAGE) {
         return Step::Nothing;
     }
-    match crate::recorder::records::parse(opcode, data) {
+    match octant_recorder::records::parse(opcode, data) {
         Err(error) => Step::Damaged(error.to_string()),
         Ok(Record::Schema { header, data }) => Step::Schema {
             id: header.id,

@@ -5,9 +5,9 @@
 
 use super::foreign::Foreign;
 use super::{Epoch, Source, SourceError};
-use crate::recorder::Samples;
-use crate::recorder::reader::{Epochs, Info, ReadError, RecordedEpoch, Recording};
 use octant_plant::Truth;
+use octant_recorder::Samples;
+use octant_recorder::reader::{Epochs, Info, ReadError, RecordedEpoch, Recording};
 use octant_sample::GimbalCommand;
 use octant_scenario::Scenario;
 use octant_scenario::recorded::McapMapping;
@@ -161,7 +161,7 @@ fn samples_in_summary(path: &Path) -> Option<u64> {
     while let Some(event) = reader.next_event() {
         match event.ok()? {
             SummaryReadEvent::ReadRequest(n) => {
-                let n = n.min(crate::recorder::records::RECORD_BYTES_MAX);
+                let n = n.min(octant_recorder::records::RECORD_BYTES_MAX);
                 let read = file.read(reader.insert(n)).ok()?;
                 reader.notify_read(read);
             }
@@ -175,7 +175,7 @@ fn samples_in_summary(path: &Path) -> Option<u64> {
     let channel = summary
         .channels
         .values()
-        .find(|channel| channel.topic == crate::recorder::message::Topic::Imu.name())?;
+        .find(|channel| channel.topic == octant_recorder::message::Topic::Imu.name())?;
     summary.stats?.channel_message_counts.get(&channel.id).copied()
 }
 

@@ -1,8 +1,8 @@
 //! What the head of a recording says about its run.
 
-use crate::recorder::reader::Info;
 use octant_base::number::plain;
 use octant_faults::trigger::{Schedule, Trigger};
+use octant_recorder::reader::Info;
 use octant_sample::Parameters;
 use octant_scenario::resolve::{Draws, Seeded};
 use octant_scenario::{Method, Scenario};

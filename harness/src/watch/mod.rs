@@ -1,7 +1,7 @@
 //! Watching a run from outside, while it goes on and after it.
 //!
 //! A run hands its recording to the system every 250 ms
-//! ([`FLUSH_INTERVAL`](crate::recorder::FLUSH_INTERVAL)). Who watches reads that file as it grows
+//! ([`FLUSH_INTERVAL`](octant_recorder::FLUSH_INTERVAL)). Who watches reads that file as it grows
 //! ([`tail`]) and keeps what is known of the run ([`state`]); [`follow`] knows where the file is
 //! and how the run ended. What is known is shown as a line ([`plain`]), as a dashboard
 //! ([`dashboard`]), or to Foxglove (`foxglove`, a feature).

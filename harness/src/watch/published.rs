@@ -2,7 +2,7 @@
 //! people read, by topic.
 
 use super::state::State;
-use crate::recorder::reader::Item;
+use octant_recorder::reader::Item;
 use octant_sample::parameters::{Group, NAMES};
 use serde_json::{Map, Value, json};
 

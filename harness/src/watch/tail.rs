@@ -5,7 +5,7 @@
 //! is how a run ends.
 
 use super::place::Place;
-use crate::recorder::reader::{Info, Item, ReadError, Recording};
+use octant_recorder::reader::{Info, Item, ReadError, Recording};
 use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom};
 use std::path::PathBuf;

@@ -1,9 +1,9 @@
 //! Epochs for the tests of recordings.
 
-use octant::endpoint::ParameterEstimate;
-use octant::recorder::{Extra, Frame, Recorder, RecorderOptions, RecorderSummary};
 use octant::source::Epoch;
 use octant_plant::Truth;
+use octant_recorder::{Extra, Frame, Recorder, RecorderOptions, RecorderSummary};
+use octant_sample::parameters::ParameterEstimate;
 use octant_sample::time::SimulatedTime;
 use octant_sample::{
     Aiding, DeviceTime, GimbalAngles, GimbalCommand, Health, Mode, Navigation, Output, Parameters,
@@ -99,7 +99,7 @@ pub fn truth_of(step: &Step) -> Truth {
 }
 
 /// What the run loop does with one step.
-pub fn push(recorder: &mut Recorder, step: &Step) -> Result<(), octant::recorder::RecorderError> {
+pub fn push(recorder: &mut Recorder, step: &Step) -> Result<(), octant_recorder::RecorderError> {
     recorder.push(Frame { clean: &step.clean, faulted: &step.faulted, output: &step.output })?;
     if recorder.truth_due() {
         recorder.extra(&Extra::Truth(truth_of(step)));

@@ -218,6 +218,17 @@ impl Parameters {
     }
 }
 
+/// The estimated parameters with their standard deviations, SI.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ParameterEstimate {
+    /// Revision: equal to [`Output::parameters_revision`](crate::Output::parameters_revision) of the output that it belongs to.
+    pub revision: u32,
+    /// Estimates.
+    pub parameters: Parameters,
+    /// 1σ in the order of [`NAMES`].
+    pub sigma: [f64; PARAMETER_COUNT],
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -6,7 +6,7 @@
 mod ports;
 
 use super::answer::Misbehaviour;
-use super::{Conclusion, Endpoint, EndpointError, ParameterEstimate, Tells};
+use super::{Conclusion, Endpoint, EndpointError, Tells};
 use crate::fmu::mapping::bind::Cell;
 use crate::fmu::mapping::open::{self, Kept};
 use crate::fmu::mapping::stepper::{Stepper, UseError};
@@ -14,6 +14,7 @@ use crate::source::Epoch;
 use octant_calibration::Config;
 use octant_sample::counts::{DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS};
 use octant_sample::parameters::PARAMETER_COUNT;
+use octant_sample::parameters::ParameterEstimate;
 use octant_sample::{
     DeviceTime, GimbalAngles, GimbalCommand, Health, Mode, Navigation, Output, Parameters,
     Reference,

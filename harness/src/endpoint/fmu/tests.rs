@@ -1,10 +1,10 @@
 use super::*;
 use crate::fmu::mapping::testing::{Own as OwnModel, Scripted, With, description, variable};
-use crate::recorder::StreamHash;
 use crate::run::method::configurations;
 use crate::source::{PlantSource, Source};
 use octant_fmu::calibrator::Calibrator;
 use octant_fmu_host::description::{Causality, Kind};
+use octant_recorder::StreamHash;
 use octant_sample::Mode;
 use octant_scenario::{self as scenario, Method};
 use std::path::Path;

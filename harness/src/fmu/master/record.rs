@@ -111,7 +111,7 @@ impl Recorder {
     ///
     /// # Errors
     /// If a file can't be written.
-    pub fn event(&mut self, time_s: f64, event: &crate::recorder::Event) -> io::Result<()> {
+    pub fn event(&mut self, time_s: f64, event: &octant_recorder::Event) -> io::Result<()> {
         self.sinks.iter_mut().try_for_each(|sink| sink.event(time_s, event))
     }
 

@@ -233,7 +233,7 @@ impl Sink {
     ///
     /// # Errors
     /// If it can't be written.
-    pub fn event(&mut self, time_s: f64, event: &crate::recorder::Event) -> io::Result<()> {
+    pub fn event(&mut self, time_s: f64, event: &octant_recorder::Event) -> io::Result<()> {
         match self {
             Self::Mcap(mcap) => mcap.event(time_s, event),
             Self::None | Self::Csv(_) => Ok(()),
@@ -304,7 +304,7 @@ impl Mcap {
         self.put(self.channel, time_s)
     }
 
-    fn event(&mut self, time_s: f64, event: &crate::recorder::Event) -> io::Result<()> {
+    fn event(&mut self, time_s: f64, event: &octant_recorder::Event) -> io::Result<()> {
         let channel = match self.events {
             Some(channel) => channel,
             None => {

@@ -1,8 +1,8 @@
 //! What the real-time thread tells the rest of the program about a step.
 
-use crate::endpoint::ParameterEstimate;
 use crate::source::Epoch;
 use octant_faults::rule::UnitEvent;
+use octant_sample::parameters::ParameterEstimate;
 use octant_sample::{Output, Truth};
 
 /// One thing that happened. Laid into a ring that has room for all of them: a box would be an

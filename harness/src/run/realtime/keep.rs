@@ -1,12 +1,12 @@
 //! Everything but the frames: recording and watching what the real-time thread tells.
 
 use super::entry::{Answer, Entry};
-use crate::recorder::{Event, Extra, Frame, Recorder, RecorderError};
 use crate::run::faulted::occurrence_event;
 use crate::run::unit;
 use crate::run::watch::Watcher;
 use crate::source::Epoch;
 use octant_faults::rule::UnitEvent;
+use octant_recorder::{Event, Extra, Frame, Recorder, RecorderError};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 

@@ -16,12 +16,12 @@ use super::drive::{Control, Ended, RunError};
 use super::faulted::Faulted;
 use super::watch::Watcher;
 use crate::endpoint::{Endpoint, RemoteClock};
-use crate::recorder::Recorder;
 use crate::score::summary::{DeviceClock, Lateness, Pacing};
 use crate::source::Source;
 use octant_realtime::lateness::Figures;
 use octant_realtime::pace::FrameClock;
 use octant_realtime::schedule::{self, Granted};
+use octant_recorder::Recorder;
 use octant_scenario::Realtime;
 use std::sync::atomic::{AtomicBool, Ordering};
 

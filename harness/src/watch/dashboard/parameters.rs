@@ -1,11 +1,11 @@
 //! The thirty parameters with their σ.
 
 use super::{ALERT, SOFT};
-use crate::endpoint::ParameterEstimate;
 use crate::watch::plain;
 use crate::watch::state::State;
 use octant_base::number::{decimals_for, fixed};
 use octant_sample::Parameters;
+use octant_sample::parameters::ParameterEstimate;
 use octant_sample::parameters::{Group, NAMES};
 use ratatui::Frame;
 use ratatui::layout::Rect;

@@ -5,8 +5,8 @@
 //! no padding, so a message is a fixed number of bytes. Numbers travel as their bits: NaN payloads
 //! and signed zeros survive.
 
-use crate::endpoint::ParameterEstimate;
-use octant_plant::Truth;
+use octant_sample::Truth;
+use octant_sample::parameters::ParameterEstimate;
 use octant_sample::parameters::{NAMES, PARAMETER_COUNT};
 use octant_sample::time::SimulatedTime;
 use octant_sample::{

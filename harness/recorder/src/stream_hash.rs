@@ -5,8 +5,8 @@
 //! with their σ when the output's revision changed. It is taken at full rate, before any
 //! decimation, and holds no host time: recording policy, block size and realisation don't move it.
 
-use crate::endpoint::ParameterEstimate;
 use octant_sample::canonical::{self, AIDING_BYTES, OUTPUT_BYTES, PARAMETERS_BYTES, SAMPLE_BYTES};
+use octant_sample::parameters::ParameterEstimate;
 use octant_sample::{Aiding, Output, Sample};
 
 /// Bytes gathered before the hash function is called: BLAKE3 is several times faster on pieces of

@@ -4,9 +4,9 @@ use super::message::{self, MessageError, Topic};
 use super::records::{End, Records, RecordsError};
 use super::writer::{FORMAT_METADATA, RUN_METADATA, SCENARIO_ATTACHMENT};
 use super::{Event, FORMAT_VERSION, Samples, StreamHash};
-use crate::endpoint::ParameterEstimate;
 use mcap::records::{Record, op};
-use octant_plant::Truth;
+use octant_sample::Truth;
+use octant_sample::parameters::ParameterEstimate;
 use octant_sample::{Aiding, Output, Sample};
 use std::collections::{BTreeMap, HashMap};
 use std::fs::File;
@@ -315,7 +315,7 @@ fn read_step(channels: &HashMap<u16, Option<Topic>>, opcode: u8, data: &[u8]) ->
         op::MESSAGE | op::METADATA | op::ATTACHMENT | op::CHANNEL => {}
         _ => return Step::Nothing,
     }
-    match crate::recorder::records::parse(opcode, data) {
+    match crate::records::parse(opcode, data) {
         Err(error) => Step::Damaged(error.to_string()),
         Ok(Record::Metadata(record)) if record.name == FORMAT_METADATA => {
             Step::Metadata(record.metadata)

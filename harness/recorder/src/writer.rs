@@ -21,9 +21,9 @@ use super::sink::Sink;
 use super::{
     Counts, Event, FLUSH_INTERVAL, FORMAT_VERSION, Policy, RecorderError, RecorderOptions, Samples,
 };
-use crate::endpoint::ParameterEstimate;
 use mcap::records::{MessageHeader, Metadata};
 use mcap::write::NoSeek;
+use octant_sample::parameters::ParameterEstimate;
 use octant_sample::{Mode, Output};
 use std::borrow::Cow;
 use std::collections::BTreeMap;

@@ -14,7 +14,7 @@ use super::writer::{RecordingWriter, next_on_grid};
 use super::{
     Counts, Event, Extra, FLUSH_INTERVAL, Frame, RecorderError, RecorderOptions, StreamHash,
 };
-use crate::source::Epoch;
+use octant_sample::Epoch;
 use octant_sample::{Mode, Output};
 use std::fs::File;
 use std::io::Write;

@@ -1,9 +1,9 @@
 //! A block of epochs: what the run loop collects and the recorder's thread works off.
 
 use super::{Event, Extra, Frame};
-use crate::endpoint::ParameterEstimate;
-use crate::source::Epoch;
-use octant_plant::Truth;
+use octant_sample::Epoch;
+use octant_sample::Truth;
+use octant_sample::parameters::ParameterEstimate;
 use octant_sample::{Aiding, Output, Sample};
 
 /// Epochs in columns, what is rare in lists of its own: a plain epoch costs two short copies.

@@ -20,10 +20,10 @@ pub use handle::{Recorder, RecorderSummary};
 pub use stream_hash::StreamHash;
 pub use trouble::Trouble;
 
-use crate::endpoint::ParameterEstimate;
-use crate::source::Epoch;
-use octant_plant::Truth;
+use octant_sample::Epoch;
 use octant_sample::Output;
+use octant_sample::Truth;
+use octant_sample::parameters::ParameterEstimate;
 use std::collections::BTreeMap;
 use std::time::Duration;
 
