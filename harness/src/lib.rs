@@ -13,7 +13,6 @@ pub mod nightly;
 pub mod observe;
 pub mod report;
 pub mod run;
-pub mod score;
 pub mod selftest;
 pub mod source;
 pub mod watch;

@@ -5,8 +5,8 @@ use crate::common::program::program;
 use octant::report::compare as page;
 use octant::run::Control;
 use octant::run::paired::{Side, paired};
-use octant::score::compare::{Maxima, PairedRun, Refusals, compare};
 use octant_scenario::{Method, Scenario};
+use octant_score::compare::{Maxima, PairedRun, Refusals, compare};
 use std::path::Path;
 
 /// Limits of the mean NIS about its expectation: some seeds are refused.

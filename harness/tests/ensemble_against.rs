@@ -7,16 +7,16 @@ use octant::campaign::case::{self, CaseResult};
 use octant::campaign::plan::Plan;
 use octant::observe::against::{Against, RUNS_MIN, Selection, against};
 use octant::observe::ensemble::{Ensemble, ensemble};
-use octant::score::judge::judge;
-use octant::score::summary::{
-    Calibration, ErrorScore, HealthCounts, HeightChannel, Navigation, ParameterScore, RadialScore,
-    SCHEMA, Summary,
-};
 use octant_random::normal::Ziggurat;
 use octant_random::stream::{Phase, key};
 use octant_requirements::Verdict;
 use octant_sample::parameters::NAMES;
 use octant_scenario::{Method, Scenario};
+use octant_score::judge::judge;
+use octant_score::summary::{
+    Calibration, ErrorScore, HealthCounts, HeightChannel, Navigation, ParameterScore, RadialScore,
+    SCHEMA, Summary,
+};
 use std::collections::BTreeMap;
 use tempfile::TempDir;
 

@@ -123,7 +123,7 @@ fn twenty_seeds_are_consistent() {
 
 /// Six positions without G states against eight with them, 20 seeds, by a shipped scenario. At 50 Hz, a quarter
 /// of the work: drift doesn't depend on the rate. `tests/claims` has the same cells at 200 Hz.
-fn claim(scenario: &str) -> octant::score::compare::Comparison {
+fn claim(scenario: &str) -> octant_score::compare::Comparison {
     use octant::run::Control;
     use octant::run::paired::{Side, paired};
     use octant_scenario::{Method, Scenario};
@@ -143,7 +143,7 @@ fn claim(scenario: &str) -> octant::score::compare::Comparison {
 /// The independent Monte Carlo's figures (arcmin): latitude and longitude at 24 h and 72 h. Twenty
 /// seeds of other draws differ by 20 to 25 %, one sigma of an rms over 20 is 16 %; three of the
 /// difference of two such are 67 %, and no figure may be off by more than half.
-fn assert_near(comparison: &octant::score::compare::Comparison, six: [f64; 4], eight: [f64; 4]) {
+fn assert_near(comparison: &octant_score::compare::Comparison, six: [f64; 4], eight: [f64; 4]) {
     assert_eq!(comparison.cells.len(), 4);
     for (i, cell) in comparison.cells.iter().enumerate() {
         for (ours, reference) in [(cell.first, six[i]), (cell.second, eight[i])] {

@@ -71,7 +71,7 @@ fn receipts(specs: &[Spec], seed: u64) -> Option<(Vec<Receipt>, Option<u64>)> {
     // What comes out as JSON goes in again.
     let json = run.summary.to_json().unwrap();
     assert_eq!(
-        octant::score::summary::Summary::from_json(&json).unwrap().verdict,
+        octant_score::summary::Summary::from_json(&json).unwrap().verdict,
         run.summary.verdict
     );
     Some((receipts, first_altered(&path)))

@@ -9,7 +9,6 @@ use octant::run::{
     Control, Ended, Faulted, Host, MethodRun, Recording, Watcher, assemble, drive_faulted,
     run_method,
 };
-use octant::score::summary::FaultResult;
 use octant::source::{Epoch, PlantSource, Replay, Source};
 use octant_faults::catalogue::{Acts, Family, Kind, Lasts};
 use octant_faults::rule::{Context, DeliveryRule, Rule, UnitEvent, UnitRule};
@@ -22,6 +21,7 @@ use octant_requirements::Verdict;
 use octant_sample::canonical::{AIDING_BYTES, SAMPLE_BYTES, aiding, sample};
 use octant_sample::{GimbalCommand, Mode, Output, Parameters};
 use octant_scenario::{Method, Scenario};
+use octant_score::summary::FaultResult;
 use std::path::Path;
 
 const LOCKSTEP: &str = include_str!("../../fixtures/scenarios/lockstep.toml");
@@ -197,7 +197,7 @@ fn a_fault_that_never_fires_leaves_the_run_inconclusive() {
     assert_eq!(run.summary.verdict, Verdict::Inconclusive);
     let reason = "fault spike-1 never fired: its trigger never came true";
     assert!(run.summary.reasons.iter().any(|r| r == reason), "{:?}", run.summary.reasons);
-    assert!(octant::score::junit::junit(&run.summary).unwrap().contains("fault spike-1"));
+    assert!(octant_score::junit::junit(&run.summary).unwrap().contains("fault spike-1"));
     let page = octant::report::run::render(&run.report);
     assert!(page.contains("spike-1") && page.contains("<h2>Faults</h2>"));
 }

@@ -11,11 +11,11 @@ use octant::campaign::table::{Kind, Table, Value};
 use octant::campaign::{merge, requirements, status};
 use octant::evidence::manifest::Manifest;
 use octant::evidence::signature::{self, Key};
-use octant::score::summary::Summary;
 use octant_calibration::table::CalibrationTable;
 use octant_recorder::reader::{Item, Recording};
 use octant_requirements::Verdict;
 use octant_scenario::Scenario;
+use octant_score::summary::Summary;
 use std::path::{Path, PathBuf};
 use tempfile::TempDir;
 
@@ -95,7 +95,7 @@ fn a_summary() {
     assert_eq!(summary.navigation.unwrap().duration_h, 1.0 / 6.0);
     assert_eq!(summary.stream_hash.len(), 64);
 
-    let newest = octant::score::summary::SCHEMA;
+    let newest = octant_score::summary::SCHEMA;
     let next = format!("\"schema\": {}", newest + 1);
     let (_folder, newer) = changed("run/summary.json", "\"schema\": 1", &next);
     let text = std::fs::read_to_string(newer).unwrap();

@@ -360,7 +360,7 @@ fn other_numerics_are_no_regression_and_no_non_determinism() {
     let text = std::fs::read_to_string(&night).unwrap();
     let value: Value = serde_json::from_str(&text).unwrap();
     let hash = value["suite"][0]["stream_hash"].as_str().unwrap().to_owned();
-    let numerics = octant::score::numerics::NUMERICS;
+    let numerics = octant_score::numerics::NUMERICS;
     let written = format!("\"numerics\": {numerics}");
     assert!(text.contains(&written), "{text}");
     let other = text.replace(&hash, &"0".repeat(64));

@@ -5,7 +5,7 @@ use crate::campaign_report::bench::{Bench, CAMPAIGN};
 use crate::chain::{TOO_NEAR, run};
 use crate::common::program::{octant_in, program};
 use octant::campaign::case;
-use octant::score::numerics::NUMERICS;
+use octant_score::numerics::NUMERICS;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use tempfile::TempDir;

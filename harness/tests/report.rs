@@ -6,20 +6,20 @@ use octant::report::{
     GimbalPoint, HealthEvent, NisPoint, ParameterPoint, Provenance, ReportData, compare as page,
     run,
 };
-use octant::score::compare::{Claim, Comparison, Maxima, PairedRun, compare};
-use octant::score::drift::{DriftSample, DriftScorer};
-use octant::score::floor::{Floor, MaximumFloor};
-use octant::score::judge::judge;
-use octant::score::parameters;
-use octant::score::reference::{ReferenceInput, reference};
-use octant::score::summary::{
-    Baseline, Calibration, HealthCounts, HeightChannel, Navigation, SCHEMA, Summary,
-};
 use octant_earth::units::{ARCSEC, DEG, DEG_PER_SQRT_HOUR, MICRO_G};
 use octant_requirements::verdict::LimitCheck;
 use octant_requirements::{Comparison as Sign, Verdict};
 use octant_sample::Parameters;
 use octant_sample::parameters::{Group, NAMES, PARAMETER_COUNT};
+use octant_score::compare::{Claim, Comparison, Maxima, PairedRun, compare};
+use octant_score::drift::{DriftSample, DriftScorer};
+use octant_score::floor::{Floor, MaximumFloor};
+use octant_score::judge::judge;
+use octant_score::parameters;
+use octant_score::reference::{ReferenceInput, reference};
+use octant_score::summary::{
+    Baseline, Calibration, HealthCounts, HeightChannel, Navigation, SCHEMA, Summary,
+};
 
 const LATITUDE: f64 = 30.5 * DEG;
 const ARW: f64 = 7e-4 * DEG_PER_SQRT_HOUR;

@@ -1,14 +1,14 @@
 //! Scores against closed forms and golden numbers.
 
-use octant::score::drift::{DriftError, DriftSample, DriftScorer};
-use octant::score::ensemble;
-use octant::score::floor::Floor;
-use octant::score::reference::{isotropic_g_sigma, vertical_drift};
-use octant::score::summary::{HeightChannel, Navigation};
 use octant_earth::ellipsoid::{EARTH_RATE_RADPS, Ellipsoid};
 use octant_earth::units::{
     ARCMIN, ARCSEC, DEG, DEG_PER_HOUR, DEG_PER_HOUR_PER_G, DEG_PER_SQRT_HOUR, MICRO_G,
 };
+use octant_score::drift::{DriftError, DriftSample, DriftScorer};
+use octant_score::ensemble;
+use octant_score::floor::Floor;
+use octant_score::reference::{isotropic_g_sigma, vertical_drift};
+use octant_score::summary::{HeightChannel, Navigation};
 use std::f64::consts::PI;
 
 const LATITUDE: f64 = 30.5 * DEG;

@@ -2,18 +2,18 @@
 
 use octant::evidence::discrepancy::of_run;
 use octant::run::{Control, Recording, assemble, run_method};
-use octant::score::judge::{About, Finding, NO_REQUIREMENT, derive, judge, judge_by};
-use octant::score::junit::junit;
-use octant::score::summary::{
-    Calibration, ErrorScore, FaultResult, HealthCounts, HeightChannel, Navigation, RadialScore,
-    SCHEMA, Summary, SummaryError,
-};
-use octant::score::verdict::{evaluate, measure};
-use octant::score::work::Work;
 use octant_requirements::measures;
 use octant_requirements::verdict::LimitCheck;
 use octant_requirements::{Comparison, Verdict};
 use octant_scenario::{Method, Scenario};
+use octant_score::judge::{About, Finding, NO_REQUIREMENT, derive, judge, judge_by};
+use octant_score::junit::junit;
+use octant_score::summary::{
+    Calibration, ErrorScore, FaultResult, HealthCounts, HeightChannel, Navigation, RadialScore,
+    SCHEMA, Summary, SummaryError,
+};
+use octant_score::verdict::{evaluate, measure};
+use octant_score::work::Work;
 use proptest::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
 

@@ -10,11 +10,6 @@ use octant::campaign::requirements::Planned;
 use octant::campaign::{status, trace};
 use octant::run::realtime::Kept;
 use octant::run::{Control, Recording, assemble, run_method};
-use octant::score::judge::{About, Finding, besides, derive, judge};
-use octant::score::summary::{
-    Baseline, Calibration, ErrorScore, FaultResult, HealthCounts, HeightChannel, Lateness,
-    Navigation, Pacing, RadialScore, Summary,
-};
 use octant_realtime::schedule::{Granted, Outcome};
 use octant_requirements::requirement::{
     self as required, Check, Ensemble, Limit, Requirements, Verification,
@@ -22,6 +17,11 @@ use octant_requirements::requirement::{
 use octant_requirements::verdict::LimitCheck;
 use octant_requirements::{Comparison, Verdict};
 use octant_scenario::{Method, Scenario};
+use octant_score::judge::{About, Finding, besides, derive, judge};
+use octant_score::summary::{
+    Baseline, Calibration, ErrorScore, FaultResult, HealthCounts, HeightChannel, Lateness,
+    Navigation, Pacing, RadialScore, Summary,
+};
 use proptest::prelude::*;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -144,7 +144,7 @@ impl Parts {
         let slope_per_day = Some(f64::NAN);
         let score = ErrorScore { max: 0.75, rms: 0.4, r#final: -0.6, slope_per_day };
         let mut summary = Summary {
-            schema: octant::score::summary::SCHEMA,
+            schema: octant_score::summary::SCHEMA,
             octant: "0.1.0".to_owned(),
             numerics: None,
             scenario: "s".to_owned(),

@@ -8,8 +8,8 @@ use super::case;
 use super::plan::Plan;
 use super::results::{self, RESULT, Rows, TABLES};
 use super::table::{Table, TableError, Value, Values};
-use crate::score::rederive::stands;
 use octant_requirements::{Comparison, Verdict};
+use octant_score::rederive::stands;
 use std::collections::{BTreeMap, HashMap};
 use std::path::{Path, PathBuf};
 

@@ -4,7 +4,7 @@ use super::case::{self, CaseResult, file};
 use super::plan::{Case, Plan, PlannedScenario};
 use super::report::evidence::INPUTS;
 use crate::run::Control;
-use crate::score::numerics::differs;
+use octant_score::numerics::differs;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 

@@ -4,7 +4,7 @@
 use super::case::{self, CaseResult};
 use super::plan::{Case, FactorValue, Plan};
 use super::table::{Kind, TableError, Value, Values, write};
-use crate::score::summary::Summary;
+use octant_score::summary::Summary;
 use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;

@@ -4,10 +4,10 @@ use super::progress::with_progress;
 use super::{Failure, ScenarioArguments, load, print, print_json, write};
 use crate::run::Control;
 use crate::run::paired::{Side, paired};
-use crate::score::compare::Comparison;
 use clap::Args;
 use octant_requirements::Verdict;
 use octant_scenario::{Method, Scenario};
+use octant_score::compare::Comparison;
 use std::path::PathBuf;
 
 #[derive(Debug, Args)]

@@ -10,9 +10,6 @@ use crate::evidence::{Manifest, ManifestError, discrepancy};
 use crate::report::{Provenance, ReportData};
 use crate::run::done::Plan;
 use crate::run::{Watcher, unit};
-use crate::score::numerics::differs;
-use crate::score::rederive;
-use crate::score::summary::Summary;
 use crate::source::Epoch;
 use clap::Args;
 use octant_faults::rule::UnitEvent;
@@ -22,6 +19,9 @@ use octant_requirements::Verdict;
 use octant_sample::Parameters;
 use octant_sample::parameters::{Group, NAMES};
 use octant_scenario::Scenario;
+use octant_score::numerics::differs;
+use octant_score::rederive;
+use octant_score::summary::Summary;
 use std::path::{Path, PathBuf};
 
 #[derive(Debug, Args)]

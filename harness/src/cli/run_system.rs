@@ -8,11 +8,11 @@ use crate::fmu::master::order::Order;
 use crate::fmu::master::run::{PrepareError, Prepared, Request};
 use crate::fmu::master::summary::{Ended, FmuResult};
 use crate::run::Control;
-use crate::score::junit::junit_of;
 use clap::Args;
 use octant_fmu_host::instance::Place;
 use octant_requirements::Verdict;
 use octant_scenario::quantity::{Dimension, parse};
+use octant_score::junit::junit_of;
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 

@@ -2,13 +2,13 @@
 
 use super::{Failure, print, print_json};
 use crate::run::method::planned_of;
-use crate::score::parameters::{nees, score, worst_normalized_error};
-use crate::score::summary::{HeightChannel, Navigation, ParameterScore};
 use clap::Args;
 use octant_recorder::reader::Recording;
 use octant_requirements::Verdict;
 use octant_scenario::resolve::{Draws, Seeded};
 use octant_scenario::{Method, Scenario};
+use octant_score::parameters::{nees, score, worst_normalized_error};
+use octant_score::summary::{HeightChannel, Navigation, ParameterScore};
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};

@@ -4,9 +4,9 @@
 //! An id is made of what the discrepancy is, and of its cases: the same one has the same id in every
 //! report, and one more case that fails makes another one, which nobody has disposed of yet.
 
-use crate::score::judge;
-use crate::score::summary::Summary;
 use octant_requirements::Verdict;
+use octant_score::judge;
+use octant_score::summary::Summary;
 use serde::Serialize;
 
 /// Something that isn't a pass.

@@ -6,15 +6,15 @@
 
 use super::files;
 use super::manifest::Manifest;
-use crate::score::equipment;
-use crate::score::judge::{Finding, derive};
-use crate::score::numerics::{differs, in_words};
-use crate::score::rederive;
-use crate::score::summary::Summary;
 use octant_recorder::reader::{Recording, stream_hash};
 use octant_requirements::Verdict;
 use octant_requirements::equipment::Day;
 use octant_scenario::Scenario;
+use octant_score::equipment;
+use octant_score::judge::{Finding, derive};
+use octant_score::numerics::{differs, in_words};
+use octant_score::rederive;
+use octant_score::summary::Summary;
 use serde_json::Value;
 use std::path::Path;
 

@@ -1,7 +1,7 @@
 //! Verdicts of a stored folder, derived anew by the rules of this program and put beside those that it holds.
 //!
 //! Nothing in the folder is changed: it may be signed, and what was said stays what was said. Nothing is run
-//! either: [`crate::score::rederive`] has the rules, and says what was never stored.
+//! either: [`octant_score::rederive`] has the rules, and says what was never stored.
 
 use super::files;
 use super::inside::{SUMMARY, certified};
@@ -12,11 +12,11 @@ use crate::campaign::plan::{self, Plan};
 use crate::campaign::report::evidence::STATISTICS;
 use crate::campaign::status;
 use crate::nightly::night::{self, Night};
-use crate::score::numerics::{NUMERICS, differs};
-use crate::score::rederive;
-use crate::score::summary::Summary;
-use crate::score::verdict::RequirementResult;
 use octant_requirements::Verdict;
+use octant_score::numerics::{NUMERICS, differs};
+use octant_score::rederive;
+use octant_score::summary::Summary;
+use octant_score::verdict::RequirementResult;
 use serde::Serialize;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};

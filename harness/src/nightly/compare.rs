@@ -12,8 +12,8 @@
 use super::night::{CampaignNight, Night, Program};
 use super::results::CaseRow;
 use super::suite::SuiteResult;
-use crate::score::numerics::in_words;
 use octant_requirements::Verdict;
+use octant_score::numerics::in_words;
 use octant_statistics::multiple::holm;
 use octant_statistics::paired::{PassPairs, difference};
 use octant_statistics::power;

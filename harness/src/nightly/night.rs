@@ -3,8 +3,8 @@
 use super::suite::SuiteResult;
 use crate::evidence::manifest::{Git, Host, Manifest};
 use crate::evidence::{RunFacts, sha256};
-use crate::score::numerics::in_words;
 use octant_requirements::Verdict;
+use octant_score::numerics::in_words;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};

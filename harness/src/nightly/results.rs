@@ -2,9 +2,9 @@
 
 use crate::campaign::merge::merged;
 use crate::campaign::table::{Table, TableError, Value, Values};
-use crate::score::rederive::stands;
 use octant_requirements::{Comparison, Verdict};
 use octant_sample::parameters::{Group, NAMES};
+use octant_score::rederive::stands;
 use std::collections::BTreeMap;
 use std::path::Path;
 

@@ -3,9 +3,9 @@
 
 use super::night::write;
 use crate::campaign::process::{self, Ended, TRIES};
-use crate::score::summary::Summary;
 use octant_requirements::Verdict;
 use octant_scenario::suite::{Case, Suite};
+use octant_score::summary::Summary;
 use serde::{Deserialize, Serialize};
 use std::io::Read;
 use std::path::{Path, PathBuf};

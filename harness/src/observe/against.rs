@@ -7,9 +7,9 @@
 use super::ensemble::{Ensemble, EnsembleError, ensemble};
 use crate::campaign::case::{self, CaseResult};
 use crate::campaign::plan::{Case, Plan};
-use crate::score::summary::{Calibration, Navigation, Summary};
 use octant_sample::parameters::NAMES;
 use octant_scenario::Method;
+use octant_score::summary::{Calibration, Navigation, Summary};
 use octant_statistics::sample::{Interval, mean};
 use octant_statistics::{deviation, paired, power};
 use serde::{Deserialize, Serialize};

@@ -11,7 +11,7 @@ pub(super) fn calibration(data: &ReportData) -> Markup {
     let summary = &data.summary;
     let Some(calibration) = &summary.calibration else { return html! {} };
     let baseline = summary.baseline.as_ref();
-    let beyond = crate::score::parameters::beyond(&calibration.parameters, 3.0);
+    let beyond = octant_score::parameters::beyond(&calibration.parameters, 3.0);
     html! {
         h2 { "Calibrated parameters" }
         p.hint {

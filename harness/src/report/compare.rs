@@ -2,9 +2,9 @@
 
 use super::chart::{Chart, Line, Role};
 use super::page::page;
-use crate::score::compare::{Cell, Claim, Comparison, Refusals, interval, percent};
 use maud::{Markup, html};
 use octant_base::number;
+use octant_score::compare::{Cell, Claim, Comparison, Refusals, interval, percent};
 use octant_statistics::sample::Interval;
 
 /// The comparison as text for a terminal.

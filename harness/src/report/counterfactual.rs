@@ -1,11 +1,11 @@
 //! What the faults did: the run against its twin without them.
 
 use super::chart::{Chart, Line, Role};
-use crate::score::counterfactual::{Counterfactual, DriftDifference, HARMFUL_SHIFT_SIGMA};
-use crate::score::summary::{Calibration, Summary};
 use maud::{Markup, html};
 use octant_base::number;
 use octant_sample::parameters::NAMES;
+use octant_score::counterfactual::{Counterfactual, DriftDifference, HARMFUL_SHIFT_SIGMA};
+use octant_score::summary::{Calibration, Summary};
 
 /// Parameters listed at most: those that moved most.
 const LISTED: usize = 12;

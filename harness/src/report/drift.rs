@@ -1,10 +1,10 @@
 //! The navigation of a run: errors over time, scores beside their analytic references.
 
 use super::chart::{Band, Chart, Line, Role};
-use crate::score::reference::{Reference, VerticalDrift};
-use crate::score::summary::{Navigation, Summary};
 use maud::{Markup, html};
 use octant_base::number;
+use octant_score::reference::{Reference, VerticalDrift};
+use octant_score::summary::{Navigation, Summary};
 
 /// The navigations of a summary with their names.
 fn navigations(summary: &Summary) -> Vec<(&str, Role, &Navigation)> {

@@ -1,9 +1,9 @@
 //! How a run kept time.
 
 use super::chart::{Chart, Line, Role};
-use crate::score::summary::{Lateness, Pacing, Summary};
 use maud::{Markup, html};
 use octant_base::number;
+use octant_score::summary::{Lateness, Pacing, Summary};
 
 /// The section; nothing of a run that didn't go by the clock.
 pub(super) fn pacing(summary: &Summary) -> Markup {

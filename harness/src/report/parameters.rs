@@ -1,9 +1,9 @@
 //! Every parameter against truth: a table whose last column is the plot.
 
-use crate::score::summary::{Calibration, ParameterScore};
 use maud::{Markup, html};
 use octant_base::number;
 use octant_sample::parameters::{Group, NAMES};
+use octant_score::summary::{Calibration, ParameterScore};
 
 /// Width of the strip in σ on each side.
 const STRIP_SIGMA: f64 = 5.0;

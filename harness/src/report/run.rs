@@ -8,13 +8,13 @@ use super::pacing::pacing;
 use super::page::{badge, page};
 use crate::evidence::discrepancy;
 use crate::evidence::disposition::Dispositions;
-use crate::score::summary::{Calibration, HeightChannel, Summary};
-use crate::score::work::duration;
 use maud::{Markup, html};
 use octant_base::number;
 use octant_requirements::Verdict;
 use octant_sample::Parameters;
 use octant_sample::parameters::PARAMETER_COUNT;
+use octant_score::summary::{Calibration, HeightChannel, Summary};
+use octant_score::work::duration;
 
 /// Everything that the report shows. What isn't there is left out of the page, or said to be
 /// missing.

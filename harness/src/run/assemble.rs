@@ -6,13 +6,6 @@ use super::twin::difference;
 use crate::evidence::disposition::Dispositions;
 use crate::report::counterfactual::in_words;
 use crate::report::{Provenance, ReportData};
-use crate::score::equipment;
-use crate::score::judge::{Finding, judge_by};
-use crate::score::numerics::NUMERICS;
-use crate::score::reference::{ReferenceInput, reference};
-use crate::score::summary::{
-    AlteredStreams, Baseline, FaultResult, ParameterScore, SCHEMA, Summary,
-};
 use octant_base::number;
 use octant_earth::units::{DEG, DEG_PER_SQRT_HOUR, MICRO_G};
 use octant_requirements::Verdict;
@@ -20,6 +13,13 @@ use octant_requirements::decision::{Against, Rule};
 use octant_requirements::equipment::Day;
 use octant_sample::parameters::NAMES;
 use octant_scenario::{Endpoint, Motion, Scenario, Source};
+use octant_score::equipment;
+use octant_score::judge::{Finding, judge_by};
+use octant_score::numerics::NUMERICS;
+use octant_score::reference::{ReferenceInput, reference};
+use octant_score::summary::{
+    AlteredStreams, Baseline, FaultResult, ParameterScore, SCHEMA, Summary,
+};
 use octant_turntable::Axis;
 use std::collections::BTreeMap;
 
@@ -287,7 +287,7 @@ pub fn text(summary: &Summary) -> String {
             }
         }
         if let Some(n) = navigation {
-            let error = |e: &crate::score::summary::ErrorScore| {
+            let error = |e: &octant_score::summary::ErrorScore| {
                 let slope =
                     e.slope_per_day.map_or(String::new(), |s| format!(", {s:+.3} arcmin/day"));
                 format!("max {:.3}, rms {:.3} arcmin{slope}", e.max, e.rms)

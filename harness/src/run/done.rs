@@ -1,11 +1,11 @@
 //! What a run did, counted from its stream, and what it was to do, from its scenario.
 
 use crate::endpoint::Tells;
-use crate::score::work::Work;
 use octant_calibration::config::{Config, Estimator, StaticIntervals};
 use octant_calibration::schedule::{Cursor, dwell_s};
 use octant_sample::{GimbalAngles, Mode, Output};
 use octant_scenario::{Calibration, Method, Scenario};
+use octant_score::work::Work;
 
 /// How far a commanded angle may be from the planned one, rad: a device may keep degrees in
 /// single precision.

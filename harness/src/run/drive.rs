@@ -58,7 +58,7 @@ pub enum RunError {
     Recorder(#[from] RecorderError),
     /// A navigation can't be scored.
     #[error(transparent)]
-    Drift(#[from] crate::score::drift::DriftError),
+    Drift(#[from] octant_score::drift::DriftError),
 }
 
 impl RunError {

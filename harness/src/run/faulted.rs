@@ -237,7 +237,7 @@ pub(super) fn occurrence_event(id: &str, kind: &str, begins: bool, sample: u64) 
 /// The receipts of a run as an event.
 fn receipts_event(receipts: &[Receipt]) -> Event {
     let one = |receipt: &Receipt| {
-        serde_json::to_value(crate::score::summary::FaultResult::from(receipt))
+        serde_json::to_value(octant_score::summary::FaultResult::from(receipt))
             .unwrap_or(serde_json::Value::Null)
     };
     Event {

@@ -3,14 +3,14 @@
 
 use super::drive::Ended;
 use super::method::{MethodRun, planned_of};
-use crate::score::judge::Finding;
-use crate::score::summary::Pacing;
-use crate::score::work::{Part, duration};
 use octant_base::number;
 use octant_faults::Receipt;
 use octant_faults::catalogue::Acts;
 use octant_requirements::Verdict;
 use octant_scenario::{Calibration, Method, Realtime, Scenario};
+use octant_score::judge::Finding;
+use octant_score::summary::Pacing;
+use octant_score::work::{Part, duration};
 
 /// What bears on the verdict of a run of one or two methods.
 #[must_use]

@@ -2,9 +2,9 @@
 
 use super::drive::{Control, Ended};
 use super::method::{MethodError, Recording, label, run_method};
-use crate::score::compare::{Comparison, Maxima, PairedRun, compare};
-use crate::score::floor::Floor;
 use octant_scenario::{Method, Scenario};
+use octant_score::compare::{Comparison, Maxima, PairedRun, compare};
+use octant_score::floor::Floor;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 

@@ -3,8 +3,8 @@
 use super::drive::{Control, Ended};
 use super::method::{MethodError, MethodRun, Recording, run_method};
 use super::twin::between;
-use crate::score::counterfactual::HARMFUL_SHIFT_SIGMA;
 use octant_scenario::{Method, Scenario};
+use octant_score::counterfactual::HARMFUL_SHIFT_SIGMA;
 use serde::{Deserialize, Serialize};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};

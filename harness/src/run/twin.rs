@@ -2,9 +2,9 @@
 
 use super::drive::Ended;
 use super::method::MethodRun;
-use crate::score::counterfactual::{Counterfactual, Side, counterfactual};
 use octant_faults::Receipt;
 use octant_scenario::Scenario;
+use octant_score::counterfactual::{Counterfactual, Side, counterfactual};
 
 /// What the faults of a run did, where it has a twin and both came to their end.
 #[must_use]

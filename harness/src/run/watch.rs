@@ -8,14 +8,14 @@ use super::done::{Done, Plan};
 use super::follow::Follow;
 use crate::endpoint::answer::{AnswerCheck, Misbehaviour};
 use crate::report::{GimbalPoint, HealthEvent, NisPoint, ParameterPoint};
-use crate::score::drift::{DriftSample, DriftScorer};
-use crate::score::health::HealthMonitor;
-use crate::score::trace::Trace;
-use crate::score::work::Work;
 use crate::source::Epoch;
 use octant_plant::Truth;
 use octant_sample::parameters::ParameterEstimate;
 use octant_sample::{DeviceTime, Health, Mode, Output};
+use octant_score::drift::{DriftSample, DriftScorer};
+use octant_score::health::HealthMonitor;
+use octant_score::trace::Trace;
+use octant_score::work::Work;
 
 /// Grid on which truth is compared with the navigation solution, ns.
 const SCORE_PERIOD_NS: u64 = 1_000_000_000;

@@ -2,7 +2,7 @@
 
 use super::judge::Outcome;
 use crate::campaign::process::{self, Ended};
-use crate::score::summary::Summary;
+use octant_score::summary::Summary;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::process::Stdio;

@@ -4,11 +4,11 @@ use super::about::About;
 use super::place::Place;
 use super::state::State;
 use super::tail::{Reached, Tail, TailError};
-use crate::score::judge::derive;
-use crate::score::rederive;
-use crate::score::summary::Summary;
 use octant_recorder::reader::Item;
 use octant_requirements::Verdict;
+use octant_score::judge::derive;
+use octant_score::rederive;
+use octant_score::summary::Summary;
 use std::collections::VecDeque;
 use std::time::{Duration, Instant};
 

@@ -63,7 +63,7 @@ pub fn mode(state: &State) -> String {
 #[must_use]
 pub fn health(state: &State) -> String {
     let Some(output) = &state.output else { return "–".to_owned() };
-    let names: Vec<&str> = output.health.iter().map(crate::score::health::name).collect();
+    let names: Vec<&str> = output.health.iter().map(octant_score::health::name).collect();
     if names.is_empty() { "good".to_owned() } else { names.join(", ") }
 }
 

@@ -159,7 +159,7 @@ pub fn messages(state: &State, item: &Item, mut publish: impl FnMut(Channel, Val
                     "mode_number": output.mode as u8,
                     "stop": output.stop + 1,
                     "moving": output.moving,
-                    "health": output.health.iter().map(crate::score::health::name).collect::<Vec<_>>(),
+                    "health": output.health.iter().map(octant_score::health::name).collect::<Vec<_>>(),
                     "health_bits": output.health.bits(),
                 }),
             );

@@ -3,14 +3,14 @@
 use super::about::About;
 use super::series::Series;
 use crate::run::concluded;
-use crate::score::health;
-use crate::score::summary::{FaultResult, Pacing};
 use octant_earth::ellipsoid::Ellipsoid;
 use octant_earth::units::{ARCMIN, NAUTICAL_MILE_M};
 use octant_recorder::Event;
 use octant_recorder::reader::Item;
 use octant_sample::parameters::ParameterEstimate;
 use octant_sample::{GimbalAngles, Health, Mode, Output, Truth};
+use octant_score::health;
+use octant_score::summary::{FaultResult, Pacing};
 use serde::Deserialize;
 use std::collections::VecDeque;
 

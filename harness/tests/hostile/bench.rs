@@ -5,8 +5,8 @@ use super::unit::{SCENARIO, check, scenario, summary_of};
 use super::{Ends, Row, open};
 use octant::run::method::{Recording, run_as_far_as_it_goes};
 use octant::run::{Control, assemble};
-use octant::score::summary::Summary;
 use octant_scenario::{Method, Scenario};
+use octant_score::summary::Summary;
 use std::path::{Path, PathBuf};
 
 /// A full recording of the scenario, of so many bytes of a thousand.

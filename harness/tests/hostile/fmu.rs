@@ -3,8 +3,8 @@
 use super::unit::{check, summary_of};
 use super::{Ends, Row, breaks, fails, open};
 use crate::common::foreign;
-use octant::score::summary::Summary;
 use octant_scenario::Scenario;
+use octant_score::summary::Summary;
 use std::path::Path;
 
 const SCENARIO: &str = r#"

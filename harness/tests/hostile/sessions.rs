@@ -100,7 +100,7 @@ impl Peer {
 }
 
 /// Runs against a peer with a script.
-fn run(script: Script) -> Result<octant::score::summary::Summary, String> {
+fn run(script: Script) -> Result<octant_score::summary::Summary, String> {
     let clean = scenario("");
     let socket = UdpSocket::bind("127.0.0.1:0").unwrap();
     socket.set_read_timeout(Some(Duration::from_millis(10))).unwrap();

@@ -3,13 +3,13 @@
 use octant::endpoint::ServedCore;
 use octant::run::method::{Recording, core_of, run_as_far_as_it_goes};
 use octant::run::{Control, assemble};
-use octant::score::summary::Summary;
 use octant_link::device::{Device, Notice, Steps};
 use octant_link::port::{self, Bytes as _, Pty};
 use octant_link::{Uri, Wire};
 use octant_sample::parameters::PARAMETER_COUNT;
 use octant_sample::{Aiding, Output, Parameters, Sample};
 use octant_scenario::{Method, Scenario};
+use octant_score::summary::Summary;
 use octant_wire::Role;
 use std::path::Path;
 use std::sync::Arc;

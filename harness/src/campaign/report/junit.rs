@@ -4,8 +4,8 @@
 use super::Report;
 use super::discrepancy::checks_of;
 use super::rows::Row;
-use crate::score::junit::status;
 use octant_requirements::Verdict;
+use octant_score::junit::status;
 use quick_junit::{TestCase, TestSuite};
 
 /// The campaign as JUnit XML. What isn't a pass is no success, and neither is what hasn't run.

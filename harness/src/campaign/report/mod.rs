@@ -321,5 +321,5 @@ impl<'a> Report<'a> {
 fn json(what: &'static str, value: &impl Serialize) -> Result<String, ReportError> {
     let text = serde_json::to_string_pretty(value)
         .map_err(|error| ReportError::Format { what, reason: error.to_string() })?;
-    Ok(crate::score::summary::rows_on_one_line(&text) + "\n")
+    Ok(octant_score::summary::rows_on_one_line(&text) + "\n")
 }

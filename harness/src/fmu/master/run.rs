@@ -17,13 +17,13 @@ use super::summary::{Ended, FmuResult, LoopResult, SCHEMA, Summary};
 use super::system::System;
 use crate::fmu::mapping::settings::Starts;
 use crate::run::Control;
-use crate::score::judge::NO_REQUIREMENT;
-use crate::score::summary::FaultResult;
 use octant_fmu_host::description::Description;
 use octant_fmu_host::instance::{Instance, InterfaceKind, Options, Place, open};
 use octant_recorder::Event;
 use octant_requirements::Verdict;
 use octant_scenario::{ScenarioError, connection_faults, text_of};
+use octant_score::judge::NO_REQUIREMENT;
+use octant_score::summary::FaultResult;
 use std::path::{Path, PathBuf};
 
 /// Rows of a recording at most, where nobody says how often one is kept.

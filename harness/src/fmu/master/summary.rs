@@ -3,8 +3,8 @@
 //! Nothing of host or clock is in it: the same system and settings give the same bytes.
 
 use super::initialize::Loop;
-use crate::score::summary::FaultResult;
 use octant_requirements::Verdict;
+use octant_score::summary::FaultResult;
 use serde::Serialize;
 
 /// Version of the form of this summary.

@@ -16,13 +16,13 @@ use super::drive::{Control, Ended, RunError};
 use super::faulted::Faulted;
 use super::watch::Watcher;
 use crate::endpoint::{Endpoint, RemoteClock};
-use crate::score::summary::{DeviceClock, Lateness, Pacing};
 use crate::source::Source;
 use octant_realtime::lateness::Figures;
 use octant_realtime::pace::FrameClock;
 use octant_realtime::schedule::{self, Granted};
 use octant_recorder::Recorder;
 use octant_scenario::Realtime;
+use octant_score::summary::{DeviceClock, Lateness, Pacing};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Entries of the ring: at 1 kHz the recorder may stall for eight seconds.

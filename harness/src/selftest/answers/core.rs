@@ -3,7 +3,6 @@
 use super::Found;
 use crate::observe::covariance::PositionError;
 use crate::observe::ensemble::{band, state_unit};
-use crate::score::reference::{ReferenceInput, reference};
 use octant_calibration::config::{
     AidingMode, Base, BaseMotion, ErrorModel, Kalman, Noise, Prior, Screening, TurntableRates,
 };
@@ -13,6 +12,7 @@ use octant_calibration::strapdown::{Strapdown, Vertical};
 use octant_earth::ellipsoid::Ellipsoid;
 use octant_earth::units::{DEG, DEG_PER_HOUR_PER_G, DEG_PER_SQRT_HOUR, MICRO_G};
 use octant_earth::{UnitQuaternion, Vector3};
+use octant_score::reference::{ReferenceInput, reference};
 use std::hint::black_box;
 
 pub(super) fn found() -> Result<Found, String> {

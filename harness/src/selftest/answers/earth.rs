@@ -1,11 +1,11 @@
 //! Earth and rotations.
 
 use super::Found;
-use crate::score::reference::{isotropic_g_sigma, vertical_drift};
 use octant_earth::Vector3;
 use octant_earth::ellipsoid::Ellipsoid;
 use octant_earth::rotation;
 use octant_earth::units::{DEG, DEG_PER_HOUR_PER_G, DEG_PER_SQRT_HOUR};
+use octant_score::reference::{isotropic_g_sigma, vertical_drift};
 use std::hint::black_box;
 
 /// Sites as they are named, latitude in deg, height in m.

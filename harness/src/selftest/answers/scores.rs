@@ -2,10 +2,10 @@
 
 use super::Found;
 use crate::campaign::report::rows::Curve;
-use crate::score::drift::{DriftSample, DriftScorer};
-use crate::score::floor::Floor;
-use crate::score::summary::HeightChannel;
 use octant_earth::units::{DEG, DEG_PER_HOUR, DEG_PER_SQRT_HOUR, MICRO_G};
+use octant_score::drift::{DriftSample, DriftScorer};
+use octant_score::floor::Floor;
+use octant_score::summary::HeightChannel;
 use std::f64::consts::PI;
 use std::hint::black_box;
 

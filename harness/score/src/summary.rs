@@ -106,7 +106,7 @@ impl Summary {
 }
 
 /// Arrays of plain numbers on one line each: a pretty printer gives every point of a series five.
-pub(crate) fn rows_on_one_line(pretty: &str) -> String {
+pub fn rows_on_one_line(pretty: &str) -> String {
     let mut text = String::with_capacity(pretty.len());
     let mut rest = pretty;
     let mut in_string = false;

@@ -78,7 +78,7 @@ pub fn junit_of(
 }
 
 /// JUnit has no "inconclusive": it becomes an error of that type.
-pub(crate) fn status(verdict: Verdict, message: &str) -> TestCaseStatus {
+pub fn status(verdict: Verdict, message: &str) -> TestCaseStatus {
     let kind = match verdict {
         Verdict::None => {
             let mut skipped = TestCaseStatus::skipped();

@@ -60,12 +60,12 @@ impl Finding {
 pub const NO_REQUIREMENT: &str = "nothing was required";
 
 /// What is told of a calibration that was refused.
-pub(crate) fn refusal(method: &str, reason: &str) -> String {
+pub fn refusal(method: &str, reason: &str) -> String {
     format!("calibration of {method} refused: {reason}")
 }
 
 /// Faults of both methods that never fired, with what is told of them.
-pub(crate) fn unfired(summary: &Summary) -> impl Iterator<Item = (&FaultResult, String)> {
+pub fn unfired(summary: &Summary) -> impl Iterator<Item = (&FaultResult, String)> {
     let primary = summary.faults.iter().map(|fault| (fault, String::new()));
     let baseline = summary.baseline.iter().flat_map(|baseline| {
         baseline.faults.iter().map(|fault| (fault, format!(" in {}", baseline.label)))

@@ -260,7 +260,7 @@ fn noticed(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::score::summary::{HealthCounts, ParameterScore};
+    use crate::summary::{HealthCounts, ParameterScore};
     use octant_sample::{DeviceTime, Health};
 
     fn calibration(estimate: f64, refused: Option<&str>) -> Calibration {
