@@ -332,6 +332,14 @@ fn a_run_in_another_process_is_watched_to_its_verdict_and_does_not_notice() {
         .spawn()
         .unwrap();
     wait_for(&here.join("runs/watched.partial/recording.mcap"), &mut run);
+    // A file is there before anything is in it.
+    let page = loop {
+        let output = octant_in(here, &["watch", "--once"]);
+        if !String::from_utf8_lossy(&output.stderr).contains("nothing is recorded yet") {
+            break ended(output, 0).0;
+        }
+        std::thread::sleep(std::time::Duration::from_millis(20));
+    };
     // The newest that goes on is the only one that does.
     let watch = |arguments: &[&str]| {
         program(arguments)
@@ -344,7 +352,6 @@ fn a_run_in_another_process_is_watched_to_its_verdict_and_does_not_notice() {
     let newest = watch(&["watch", "--plain"]);
     let named = watch(&["watch", "runs/watched"]);
     let mut leaves = watch(&["watch", "runs/watched.partial", "--plain"]);
-    let (page, _) = ended(octant_in(here, &["watch", "--once"]), 0);
     shows(&page, &["by the clock", "spike-1"]);
     leaves.kill().unwrap();
     leaves.wait().unwrap();
