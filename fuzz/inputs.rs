@@ -3,7 +3,6 @@
 //! Nothing here may panic, run for long or take much memory, whatever the bytes are; and what is
 //! accepted has to keep its promises.
 
-use octant::source::{Epoch, Source, TextSource};
 use octant_calibration::table::CalibrationTable;
 use octant_fmu_check::{check_archive, check_description, show};
 use octant_fmu_host::archive::{Archive, Limits};
@@ -15,6 +14,7 @@ use octant_scenario::recorded::{
     Axis, Column, Delimiter, Quantity, TextFiles, TextMapping, TimeColumn, TimeUnit,
 };
 use octant_scenario::resolve::{Draws, Seeded};
+use octant_source::{Epoch, Source, TextSource};
 use std::path::Path;
 
 /// A scenario: refused, or resolved to a text that reads back as the same scenario.

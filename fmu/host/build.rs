@@ -1,4 +1,4 @@
-//! Compiles the one function that Rust can't define: a callback with variable arguments.
+//! Compiles the only function that Rust can't define: a callback with variable arguments.
 
 fn main() {
     cc::Build::new()

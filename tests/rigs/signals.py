@@ -253,7 +253,7 @@ def nightly(folder, rng):
         if failed:
             break
         night = json.loads((folder / "out").read_text())
-        expect(night["reasons"][0] == "nothing got worse", f"nightly: {night['reasons']}")
+        expect(night["reasons"][0] == "no regression found", f"nightly: {night['reasons']}")
         expect(tables(nights / night["night"] / "signals") == whole, "nightly: other bytes than undisturbed")
         expect(not left(folder / "h"), f"nightly: left over: {left(folder / 'h')}")
     return rounds, times

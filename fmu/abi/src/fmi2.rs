@@ -44,7 +44,7 @@ pub const CO_SIMULATION: i32 = 1;
 
 /// `fmi2StatusKind`: status of an asynchronous step.
 pub const DO_STEP_STATUS: i32 = 0;
-/// `fmi2StatusKind`: why a step is pending.
+/// `fmi2StatusKind`: reason why a step is pending.
 pub const PENDING_STATUS: i32 = 1;
 /// `fmi2StatusKind`: end of the last successful step.
 pub const LAST_SUCCESSFUL_TIME: i32 = 2;
@@ -68,11 +68,11 @@ pub struct CallbackFunctions {
     pub logger: Option<Logger>,
     /// Memory of the importer.
     pub allocate_memory: Option<AllocateMemory>,
-    /// Its end.
+    /// Release of such memory.
     pub free_memory: Option<FreeMemory>,
     /// End of an asynchronous step.
     pub step_finished: Option<StepFinished>,
-    /// Handed back to the logger.
+    /// Passed back to the logger.
     pub environment: Environment,
 }
 
@@ -88,7 +88,7 @@ pub struct EventInfo {
     pub nominals_of_continuous_states_changed: Boolean,
     /// States have changed.
     pub values_of_continuous_states_changed: Boolean,
-    /// `next_event_time` is one.
+    /// True if `next_event_time` is defined.
     pub next_event_time_defined: Boolean,
     /// The next time event, s.
     pub next_event_time: f64,

@@ -1,10 +1,10 @@
-//! Types and function signatures of the Functional Mock-up Interface, as C sees them.
+//! Types and function signatures of the Functional Mock-up Interface, as in C.
 //!
-//! [`fmi2`] is FMI 2.0 (2.0.5), [`fmi3`] is FMI 3.0 (3.0.2). There is no code here: what exports the
-//! functions and what imports them share these declarations, and can't disagree.
+//! [`fmi2`] is FMI 2.0 (2.0.5), [`fmi3`] is FMI 3.0 (3.0.2). There is no code here: exporter and
+//! importer of the functions share these declarations, and can't disagree.
 //!
-//! Booleans are integers here: what comes from C needn't be 0 or 1, and a Rust `bool` that is neither
-//! is undefined behaviour.
+//! Booleans are integers here: a value from C needn't be 0 or 1, and a Rust `bool` with any other
+//! value is undefined behaviour.
 #![no_std]
 
 pub mod fmi2;
@@ -37,11 +37,11 @@ macro_rules! functions {
         pub const NAMES: &[&str] = &[$($name),*];
 
         impl Functions {
-            /// The functions that `find` finds under their names.
+            /// Loads the functions that `find` finds under their names.
             ///
             /// # Safety
-            /// What `find` returns has to be null, or the address of a function with the signature
-            /// that the standard gives to this name, and has to stay valid for as long as the table
+            /// `find` has to return null, or the address of a function with the signature that the
+            /// standard gives to this name; the address has to stay valid for as long as the table
             /// is used.
             #[allow(unsafe_code, reason = "an address becomes a function")]
             pub unsafe fn load(mut find: impl FnMut(&str) -> *const core::ffi::c_void) -> Self {

@@ -1,5 +1,8 @@
-//! The shared libraries of an FMU, read without being run.
+//! The shared libraries of an FMU, read without running them.
 
+pub use super::binary::Binary;
+
+use super::binary::is_beside;
 use super::elf;
 use super::finding::{Findings, Place};
 use super::model::Model;
@@ -11,30 +14,12 @@ use object::{Architecture, BinaryFormat, Object, ObjectKind};
 use octant_fmu_host::archive::Archive;
 use octant_fmu_host::description::Standard;
 use octant_fmu_host::library::platforms;
-use serde::Serialize;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Names of functions that a message tells at most.
+/// Largest number of function names in a message.
 const NAMED: usize = 6;
 
-/// What a library is.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
-pub struct Binary {
-    /// The file inside the FMU.
-    pub entry: String,
-    /// `Elf`, `Pe`, `MachO`.
-    pub format: String,
-    /// `X86_64`, `Aarch64`, …
-    pub architecture: String,
-    /// Number of functions of the FMU's standard that it exports.
-    pub functions: usize,
-    /// Libraries that it needs.
-    pub libraries: Vec<String>,
-    /// Newest version of the C library that it needs: `2.17`.
-    pub glibc: Option<String>,
-}
-
-/// What a folder of binaries says by its name.
+/// Platform of a folder of binaries, by its name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Platform {
     format: BinaryFormat,
@@ -42,8 +27,8 @@ struct Platform {
     extension: &'static str,
 }
 
-/// The platform of a folder; `Err`: a name that the standard doesn't have, with the platform where
-/// it is that of the other standard.
+/// Finds the platform of a folder; `Err`: the name isn't in the standard, with the platform if it
+/// is in the other standard.
 fn platform(folder: &str, standard: Standard) -> Result<Platform, Option<Platform>> {
     use Architecture::{Aarch64, Arm, I386, PowerPc, PowerPc64, Riscv32, Riscv64, X86_64};
     let of = |system: &str, architecture| {
@@ -78,7 +63,7 @@ fn platform(folder: &str, standard: Standard) -> Result<Platform, Option<Platfor
     };
     let new = parts.next().zip(architecture).and_then(|(system, arch)| of(system, arch));
     match standard {
-        // FMI 2.0 has no names for other machines than a PC; tools take those of FMI 3.0.
+        // FMI 2.0 has names only for PCs; tools use those of FMI 3.0 for other machines.
         Standard::Fmi2 => {
             old.or(new.filter(|new| !matches!(new.architecture, I386 | X86_64))).ok_or(new)
         }
@@ -136,7 +121,7 @@ pub(super) fn check(
                 }
             }
         };
-        // Static libraries are for who links the sources.
+        // Static libraries are for importers that link the sources.
         let is_static = files.iter().any(|file| file.ends_with(".lib") || file.ends_with(".a"));
         for identifier in &identifiers {
             let name = format!("{identifier}.{}", platform.extension);
@@ -211,7 +196,7 @@ fn library(
     binary
 }
 
-/// The library, out of a fat file of macOS where it is one.
+/// Reads the library, out of a fat file of macOS if it is one.
 fn parse(bytes: &[u8], platform: Platform) -> Result<object::File<'_>, String> {
     use object::read::macho::{FatArch, MachOFatFile32, MachOFatFile64};
     let mut slices: Vec<(Architecture, Result<&[u8], object::Error>)> = Vec::new();
@@ -228,7 +213,7 @@ fn parse(bytes: &[u8], platform: Platform) -> Result<object::File<'_>, String> {
     object::File::parse(bytes).map_err(|error| format!("no library: {error}"))
 }
 
-/// The functions that it has to export.
+/// Checks the functions that the library has to export.
 fn symbols(
     model: &Model<'_, '_>,
     object: &object::File<'_>,
@@ -242,7 +227,7 @@ fn symbols(
             for export in exports.flatten() {
                 if let object::read::NameOrOrdinal::Name(name) = export.name() {
                     let name = String::from_utf8_lossy(name);
-                    // Mach-O puts an underscore before every name of C.
+                    // Mach-O has an underscore before every C name.
                     let name = match object.format() {
                         BinaryFormat::MachO => name.strip_prefix('_').unwrap_or(&name).to_owned(),
                         _ => name.into_owned(),
@@ -298,7 +283,7 @@ fn symbols(
     }
 }
 
-/// The libraries that it needs.
+/// Checks the libraries that the library needs.
 fn libraries(
     object: &object::File<'_>,
     place: Place<'_>,
@@ -327,13 +312,7 @@ fn libraries(
     }
 }
 
-/// A library with this name lies in the same folder.
-pub(super) fn is_beside(name: &str, beside: &BTreeSet<String>) -> bool {
-    let file = name.rsplit('/').next().unwrap_or(name);
-    beside.iter().any(|other| other.eq_ignore_ascii_case(file))
-}
-
-/// A library that every system has.
+/// Returns whether every system has a library of this name.
 fn is_usual(format: BinaryFormat, name: &str) -> bool {
     let lower = name.to_ascii_lowercase();
     match format {

@@ -1,7 +1,7 @@
-//! Layered standards: their manifests, and the rules of FMI-LS-BUS 1.0.0 for what is on a bus.
+//! Layered standards: their manifests, and the rules of FMI-LS-BUS 1.0.0 for FMUs on a bus.
 //!
-//! The network abstraction (low cut) is checked, for every kind of bus, and what CAN adds to it. Of the
-//! physical signal abstraction (high cut) nothing but the manifest is.
+//! The network abstraction (low cut) is checked, for every kind of bus, with the additions of CAN.
+//! For the physical signal abstraction (high cut) only the manifest is checked.
 
 use super::finding::{Findings, Place};
 use super::model::Model;
@@ -10,28 +10,29 @@ use super::rules::{
     BUS_STEP, BUS_VARIABLES, BUS_VERSION, LAYERED_MANIFEST,
 };
 use super::terminals;
+use super::text::text;
 use octant_fmu_host::archive::Archive;
 use octant_fmu_host::description::xml::{Element, File};
 use octant_fmu_host::description::{Causality, IntervalVariability, Kind, Variability, Variable};
 use std::collections::BTreeSet;
 
-/// The standard's name, and the folder of its manifest.
+/// Name of the standard, and the folder of its manifest.
 const NAME: &str = "org.fmi-standard.fmi-ls-bus";
 const MANIFEST_FILE: &str = "fmi-ls-manifest.xml";
 const NAMESPACE: &str = "http://fmi-standard.org/fmi-ls-manifest";
 const NETWORK: &str = "org.fmi-ls-bus.network-terminal";
 const CONFIGURATION: &str = "org.fmi-ls-bus.network-terminal.configuration";
 const TRANSCEIVER: &str = "org.fmi-ls-bus.transceiver";
-/// How the MIME types of all buses begin.
+/// Beginning of the MIME types of all buses.
 const MIME_TYPE: &str = "application/org.fmi-standard.fmi-ls-bus.";
 
-/// What a manifest of FMI-LS-BUS says.
+/// Content of a manifest of FMI-LS-BUS.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Manifest {
     is_bus_simulation: bool,
 }
 
-/// Reads the manifests of all layered standards; `Some`: the FMU is one of FMI-LS-BUS.
+/// Reads the manifests of all layered standards; `Some`: the FMU follows FMI-LS-BUS.
 pub(super) fn manifests(archive: &mut Archive, findings: &mut Findings) -> Option<Manifest> {
     let entries: Vec<String> = archive
         .entries()
@@ -47,7 +48,7 @@ pub(super) fn manifests(archive: &mut Archive, findings: &mut Findings) -> Optio
             findings.add(&LAYERED_MANIFEST, place, "it can't be unpacked", "the file");
             continue;
         };
-        let Some(text) = super::text(&entry, &bytes, findings) else { continue };
+        let Some(text) = text(&entry, &bytes, findings) else { continue };
         let file = File::new(&entry, &text);
         match file.parse(&text) {
             Ok(document) => {
@@ -107,7 +108,7 @@ fn manifest(
     Some(Manifest { is_bus_simulation })
 }
 
-/// Checks the bus terminals; `root`: of terminalsAndIcons.xml, where it is there.
+/// Checks the bus terminals; `root`: root element of terminalsAndIcons.xml, if the file exists.
 pub(super) fn check(
     model: &Model<'_, '_>,
     root: Option<Element<'_, '_>>,
@@ -144,7 +145,7 @@ pub(super) fn check(
     for bus in buses {
         let name = bus.text("name").unwrap_or_default();
         let place = Place { line: Some(bus.line()), subject: name, ..file };
-        // High cut has frame terminals in it, and is matched as a bus.
+        // High cut has nested frame terminals, and the matching rule `bus`.
         match bus.text("matchingRule") {
             Some("bus") => continue,
             Some(TRANSCEIVER) => {}
@@ -158,7 +159,7 @@ pub(super) fn check(
     }
 }
 
-/// The member of a terminal with this name, and its variable.
+/// Finds the member of a terminal with this name, and its variable.
 fn member<'m>(
     model: &'m Model<'_, '_>,
     terminal: Element<'_, '_>,
@@ -173,7 +174,7 @@ fn member<'m>(
     Some((found.line(), (!is_signal).then_some("another kind than signal"), variable))
 }
 
-/// The four variables of a network.
+/// Checks the four variables of a network.
 fn low_cut(
     model: &Model<'_, '_>,
     bus: Element<'_, '_>,
@@ -266,7 +267,7 @@ fn described(variable: &Variable) -> String {
     format!("{kind} and {}", super::variables::name(variable.causality))
 }
 
-/// The nested terminal with what the node is set up by.
+/// Checks the nested terminal with the configuration of the node.
 fn configuration(
     model: &Model<'_, '_>,
     bus: Element<'_, '_>,

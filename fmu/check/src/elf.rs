@@ -1,17 +1,18 @@
-//! What only libraries of Linux have: a search path, a stack that may be executable, versions of
+//! Checks specific to Linux libraries: a search path, a stack that may be executable, versions of
 //! symbols.
 
-use super::binaries::{Binary, is_beside};
+use super::binary::{Binary, is_beside};
 use super::finding::{Findings, Place};
 use super::rules::{BINARY_GLIBC, BINARY_RPATH, BINARY_STACK};
 use object::read::elf::FileHeader;
 use std::collections::BTreeSet;
 
-/// The newest C library that a library may need without a warning: that of Ubuntu 22.04 and of
-/// systems from 2022 on. What needs a newer one is made on a newer system than most have.
+/// Newest C library that a library may require without a warning: that of Ubuntu 22.04 and of
+/// systems from 2022 on. A library that requires a newer one was built on a newer system than most
+/// users have.
 const GLIBC: [u32; 2] = [2, 35];
 
-/// What only libraries of Linux have: a search path, an executable stack, versions of symbols.
+/// Checks search path, executable stack and versions of symbols of a Linux library.
 pub(super) fn check<'data, Elf: FileHeader<Endian = object::Endianness>>(
     elf: &object::read::elf::ElfFile<'data, Elf>,
     place: Place<'_>,
@@ -85,7 +86,7 @@ pub(super) fn check<'data, Elf: FileHeader<Endian = object::Endianness>>(
     }
 }
 
-/// `2.17`, `2.2.5`.
+/// Reads a version: `2.17`, `2.2.5`.
 fn glibc_version(text: &str) -> Option<[u32; 3]> {
     let mut version = [0; 3];
     for (number, part) in version.iter_mut().zip(text.split('.')) {

@@ -1,4 +1,4 @@
-//! The files of an FMU: documentation, licence, sources, and what doesn't belong there.
+//! The files of an FMU: documentation, licence, sources, and files that don't belong there.
 
 use super::finding::{Findings, Place};
 use super::head::of_file;
@@ -11,10 +11,10 @@ use octant_fmu_host::archive::Archive;
 use octant_fmu_host::description::xml::Element;
 use std::collections::BTreeSet;
 
-/// Where sources of FMI 3.0 are described.
+/// Description of the sources in FMI 3.0.
 pub(super) const BUILD_DESCRIPTION: &str = "sources/buildDescription.xml";
 
-/// Checks which files are there.
+/// Checks the list of files.
 pub(super) fn check(model: &Model<'_, '_>, archive: &Archive, findings: &mut Findings) {
     let binaries = archive.contains_below("binaries/");
     let sources = archive.contains_below("sources/");
@@ -69,7 +69,7 @@ pub(super) fn check(model: &Model<'_, '_>, archive: &Archive, findings: &mut Fin
     }
 }
 
-/// Source files that the description of FMI 2.0 lists.
+/// Checks the source files that the description of FMI 2.0 lists.
 fn listed_sources(model: &Model<'_, '_>, archive: &Archive, findings: &mut Findings) {
     for interface in model.root.children() {
         for file in interface.child("SourceFiles").into_iter().flat_map(Element::children) {

@@ -1,4 +1,4 @@
-//! What was found, collected.
+//! Collection of findings.
 
 use super::rules::{Rule, Severity};
 use octant_fmu_host::description::Standard;
@@ -6,26 +6,26 @@ use serde::Serialize;
 use serde::ser::{SerializeStruct, Serializer};
 use std::collections::BTreeMap;
 
-/// How many findings of a rule are kept; the others are counted. A generator that makes a mistake
-/// makes it for every variable.
+/// Number of findings of a rule that are kept; the others are counted. A generator makes a mistake
+/// for every variable.
 const KEPT: usize = 25;
 
-/// One thing that breaks a rule.
+/// A violation of a rule.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Finding {
-    /// The rule.
+    /// Rule that is broken.
     pub rule: &'static Rule,
-    /// The file inside the FMU; empty: the FMU itself.
+    /// File inside the FMU; empty: the FMU itself.
     pub entry: String,
-    /// The line, where it is about one.
+    /// Line, if the finding is about one.
     pub line: Option<u32>,
-    /// The variable, unit, element, … that it is about; empty where there is none.
+    /// Variable, unit, element, … of the finding; empty if there is none.
     pub subject: String,
-    /// What was found.
+    /// Text or value found.
     pub found: String,
-    /// What was expected.
+    /// Text or value expected.
     pub expected: String,
-    /// Where the standard says so: `FMI 2.0, 2.2.7`.
+    /// Clause of the standard: `FMI 2.0, 2.2.7`.
     pub clause: String,
 }
 
@@ -44,7 +44,7 @@ impl Serialize for Finding {
     }
 }
 
-/// Where something was found.
+/// Place of a finding.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Place<'a> {
     pub(super) entry: &'a str,
@@ -52,7 +52,7 @@ pub(super) struct Place<'a> {
     pub(super) subject: &'a str,
 }
 
-/// What was found so far.
+/// Findings so far.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Findings {
     kept: Vec<Finding>,
@@ -61,12 +61,12 @@ pub(super) struct Findings {
 }
 
 impl Findings {
-    /// From now on the FMU is of this standard.
+    /// Sets the standard of the FMU for later findings.
     pub(super) fn of(&mut self, standard: Standard) {
         self.standard = Some(standard);
     }
 
-    /// The rule is broken.
+    /// Adds a violation of a rule.
     pub(super) fn add(
         &mut self,
         rule: &'static Rule,
@@ -90,8 +90,8 @@ impl Findings {
         });
     }
 
-    /// All of them: worst first, each kind in the order of the file; and how many of each rule
-    /// weren't kept.
+    /// Returns all findings: worst first, each severity in the order of the file; and the number of
+    /// findings of each rule that weren't kept.
     pub(super) fn finish(mut self) -> (Vec<Finding>, BTreeMap<&'static str, usize>) {
         self.kept.sort_by_key(|finding| std::cmp::Reverse(finding.rule.severity));
         let more = self
@@ -103,13 +103,13 @@ impl Findings {
         (self.kept, more)
     }
 
-    /// There is an error among them.
+    /// Returns whether there is an error among the findings.
     pub(super) fn has_errors(&self) -> bool {
         self.kept.iter().any(|finding| finding.rule.severity == Severity::Error)
     }
 }
 
-/// Where the standard says so.
+/// Clause of a rule in a standard.
 fn clause(rule: &Rule, standard: Option<Standard>) -> String {
     let (name, section) = match standard {
         Some(Standard::Fmi3) => ("FMI 3.0", rule.fmi3),
@@ -118,7 +118,7 @@ fn clause(rule: &Rule, standard: Option<Standard>) -> String {
     };
     match section {
         "Octant" | "" => "Octant".into(),
-        // A standard of its own.
+        // A separate standard.
         _ if section.starts_with("FMI-LS-") => section.into(),
         _ => format!("{name}, {section}"),
     }

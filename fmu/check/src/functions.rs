@@ -1,4 +1,4 @@
-//! Which functions an FMU has to have: by its interfaces, its capabilities, and the types of its
+//! Functions that an FMU has to have: by its interfaces, its capabilities, and the types of its
 //! variables.
 
 use octant_fmu_host::description::{
@@ -13,7 +13,7 @@ enum Of {
     ScheduledExecution,
 }
 
-/// The interface that a function belongs to; none: all of them.
+/// Interface to which a function belongs; none: all of them.
 fn interface_of(function: &str) -> Option<Of> {
     match function {
         "fmi2EnterEventMode"
@@ -57,7 +57,7 @@ fn interface_of(function: &str) -> Option<Of> {
     }
 }
 
-/// The function belongs to an interface that the FMU has, or to all of them.
+/// Returns whether the function belongs to an interface of the FMU, or to all interfaces.
 pub(super) fn is_of_interface(description: &Description, function: &str) -> bool {
     match interface_of(function) {
         Some(Of::ModelExchange) => description.model_exchange.is_some(),
@@ -67,15 +67,15 @@ pub(super) fn is_of_interface(description: &Description, function: &str) -> bool
     }
 }
 
-/// Without the function something that the description promises can't be done. The standards ask for
-/// the others as well, but nobody calls them.
+/// Returns whether a promise of the description requires the function. The standards demand the
+/// other functions as well, but no importer calls them.
 pub(super) fn is_needed(description: &Description, function: &str) -> bool {
     let name = function.get(4..).unwrap_or(function);
     let can = |capability: fn(&Interface) -> bool| {
         let interfaces = description.co_simulation.iter().chain(&description.model_exchange);
         interfaces.into_iter().any(capability)
     };
-    // What nobody can set needs no function that sets it.
+    // Variables that can't be set need no function that sets them.
     let sets = name.starts_with("Set");
     let has = |kind: Kind| {
         description
@@ -83,7 +83,7 @@ pub(super) fn is_needed(description: &Description, function: &str) -> bool {
             .iter()
             .any(|variable| variable.kind == kind && (!sets || is_settable(variable)))
     };
-    // FMI 2.0 gets enumerations as integers.
+    // FMI 2.0 reads enumerations as integers.
     let of_type = |name: &str| match name {
         "Real" => has(Kind::Float64),
         "Integer" => has(Kind::Int32) || has(Kind::Enumeration),
@@ -105,7 +105,7 @@ pub(super) fn is_needed(description: &Description, function: &str) -> bool {
         "GetRealOutputDerivatives" | "GetOutputDerivatives" => {
             can(|interface| interface.output_derivative_order > 0)
         }
-        // No status that the standard has is an integer, and the one that is a text is for people.
+        // No status of the standard is an integer, and the only text is for users.
         "GetIntegerStatus" | "GetStringStatus" => false,
         "CancelStep" | "GetStatus" | "GetRealStatus" | "GetBooleanStatus" => {
             can(|interface| interface.asynchronous)
@@ -121,7 +121,7 @@ pub(super) fn is_needed(description: &Description, function: &str) -> bool {
         "GetNumberOfVariableDependencies" | "GetVariableDependencies" => false,
         "GetIntervalDecimal" => has_clock(description, |_| true),
         "GetIntervalFraction" => has_clock(description, |clock| clock.supports_fraction),
-        // Who doesn't ask for them has the values of the description.
+        // Importers that don't call these use the values of the description.
         "GetShiftDecimal"
         | "GetShiftFraction"
         | "SetIntervalDecimal"
@@ -141,7 +141,7 @@ pub(super) fn is_needed(description: &Description, function: &str) -> bool {
     }
 }
 
-/// It can be set at some time.
+/// Returns whether the variable can be set at some time.
 fn is_settable(variable: &Variable) -> bool {
     variable.variability != Variability::Constant
         && (matches!(
@@ -150,7 +150,7 @@ fn is_settable(variable: &Variable) -> bool {
         ) || matches!(variable.initial, Some(Initial::Exact | Initial::Approx)))
 }
 
-/// There is a clock whose interval the FMU tells, of which `and` is true.
+/// Returns whether there is a clock whose interval comes from the FMU, and for which `and` is true.
 fn has_clock(description: &Description, and: impl Fn(&Clock) -> bool) -> bool {
     use IntervalVariability::{Changing, Countdown, Tunable};
     description.variables.iter().filter_map(|variable| variable.clock.as_ref()).any(|clock| {

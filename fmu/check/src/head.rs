@@ -1,4 +1,4 @@
-//! What stands before the variables: interfaces, log categories, default experiment.
+//! The part before the variables: interfaces, log categories, default experiment.
 
 use super::finding::{Findings, Place};
 use super::model::Model;
@@ -74,7 +74,7 @@ fn interfaces(model: &Model<'_, '_>, findings: &mut Findings) {
         let place = model.at(model.root, "");
         findings.add(&INTERFACE_SAME_IDENTIFIER, place, several.join(" and "), "one library");
     }
-    // FMI 3.0 allows them for other interfaces, which ignore them.
+    // FMI 3.0 allows event indicators for other interfaces, which ignore them.
     if model.is_fmi2() && description.event_indicators > 0 && description.model_exchange.is_none() {
         let found =
             format!("{} event indicators without ModelExchange", description.event_indicators);
@@ -123,12 +123,12 @@ fn experiment(model: &Model<'_, '_>, findings: &mut Findings) {
     }
 }
 
-/// A place without line, of a file that isn't XML.
+/// Makes a place without line, for a file that isn't XML.
 pub(super) fn of_file<'a>(entry: &'a str, subject: &'a str) -> Place<'a> {
     Place { entry, line: None, subject }
 }
 
-/// It can be the name of a function in C.
+/// Returns whether a name can be that of a function in C.
 pub(super) fn is_c_identifier(name: &str) -> bool {
     const WORDS: [&str; 44] = [
         "auto",

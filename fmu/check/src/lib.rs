@@ -1,13 +1,13 @@
-//! What is wrong with an FMU, by the rules of FMI 2.0 and FMI 3.0.
+//! Checks an FMU by the rules of FMI 2.0 and FMI 3.0.
 //!
-//! [`check`] reads its archive, its descriptions and its libraries, and runs nothing of it.
-//! [`load::load`] runs it, in a process of its own.
+//! [`check`] reads its archive, its descriptions and its libraries, and runs no code of it.
+//! [`load::load`] runs its code, in a process of its own.
 //!
 //! | module | idea |
 //! |---|---|
 //! | [`rules`] | the rules, each with its severity and its clause |
-//! | [`finding`] | what was found, and where |
-//! | `model` | a description with what its file says word by word |
+//! | [`finding`] | findings and their places |
+//! | `model` | a description together with the text of its file |
 //! | `head` | interfaces, log categories, default experiment |
 //! | `units` | units, types, enumerations |
 //! | `names` | names and their grammar |
@@ -16,15 +16,16 @@
 //! | `clocks` | clocks |
 //! | `structure` | outputs, derivatives, initial unknowns, dependencies |
 //! | `terminals` | terminals and icons |
-//! | `bus` | layered standards, and what is on a bus |
+//! | `bus` | layered standards, and FMUs on a bus |
 //! | `files` | documentation, licence, sources |
-//! | [`binaries`] | shared libraries, read without being run |
-//! | `elf` | what only those of Linux have |
-//! | `functions` | which functions they have to export |
+//! | [`binaries`] | shared libraries, read without running them |
+//! | `elf` | checks specific to Linux libraries |
+//! | `functions` | functions that the libraries have to export |
 //! | [`load`] | the library loaded, an instance made and stepped |
 //! | [`show`] | findings as text |
 
 pub mod binaries;
+mod binary;
 mod bus;
 mod clocks;
 mod elf;
@@ -40,6 +41,7 @@ pub mod rules;
 pub mod show;
 mod structure;
 mod terminals;
+mod text;
 mod units;
 mod variables;
 
@@ -48,38 +50,39 @@ use finding::{Finding, Findings, Place};
 use model::Model;
 use octant_fmu_host::archive::{Archive, ArchiveError, Limits};
 use octant_fmu_host::description::schema::{self, Breaks, Node, Violation};
-use octant_fmu_host::description::xml::{Element, File, shortened};
-use octant_fmu_host::description::{Description, Standard, decode, read};
+use octant_fmu_host::description::xml::{Element, File};
+use octant_fmu_host::description::{Description, Standard, read};
 use octant_fmu_host::library::platforms;
 use rules::Severity;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::path::Path;
+use text::text;
 
-/// The description inside an FMU.
+/// Description inside an FMU.
 const DESCRIPTION: &str = "modelDescription.xml";
 
-/// What was found in an FMU.
+/// Result of a check.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Report {
-    /// The file.
+    /// File name of the FMU.
     pub file: String,
-    /// `fmiVersion`, where it can be read.
+    /// `fmiVersion`, if it can be read.
     pub fmi_version: Option<String>,
-    /// `modelName`, where it can be read.
+    /// `modelName`, if it can be read.
     pub model_name: Option<String>,
     /// Number of variables.
     pub variables: usize,
-    /// What the libraries are.
+    /// Properties of the libraries.
     pub binaries: Vec<Binary>,
-    /// Worst first.
+    /// Findings, worst first.
     pub findings: Vec<Finding>,
-    /// How many more findings there are of a rule of which there are many.
+    /// Number of further findings of each rule that has too many.
     pub more: BTreeMap<&'static str, usize>,
 }
 
 impl Report {
-    /// Number of findings that are so bad.
+    /// Number of findings of a severity.
     #[must_use]
     pub fn count(&self, severity: Severity) -> usize {
         let more: usize = rules::RULES
@@ -91,11 +94,11 @@ impl Report {
     }
 }
 
-/// An FMU that was looked at, so that it may be looked at further.
+/// An FMU that was checked, ready for further checks.
 pub struct Checked {
-    /// Its archive.
+    /// Archive.
     pub archive: Archive,
-    /// Its description, where it can be read.
+    /// Description, if it can be read.
     pub description: Option<Description>,
     file: String,
     binaries: Vec<Binary>,
@@ -103,7 +106,7 @@ pub struct Checked {
 }
 
 impl Checked {
-    /// It has a library for this machine, and nothing in its archive speaks against unpacking it.
+    /// Returns whether the FMU has a library for this machine, and its archive can be unpacked.
     #[must_use]
     pub fn can_be_loaded(&self) -> bool {
         let Some(description) = &self.description else { return false };
@@ -114,7 +117,7 @@ impl Checked {
         self.archive.problems().is_empty() && self.binaries.iter().any(is_here)
     }
 
-    /// All that was found.
+    /// Makes the report of all findings.
     #[must_use]
     pub fn report(self) -> Report {
         let (findings, more) = self.findings.finish();
@@ -131,7 +134,7 @@ impl Checked {
     }
 }
 
-/// Checks an FMU: a file, or a folder that was one. Nothing in it is run.
+/// Checks an FMU: a file, or a folder with its unpacked content. No code of it is run.
 ///
 /// # Errors
 /// If it is no archive, or has no description.
@@ -145,7 +148,7 @@ pub fn check(path: &Path) -> Result<Checked, ArchiveError> {
     Ok(checked)
 }
 
-/// Checks an FMU that is open.
+/// Checks an open FMU.
 ///
 /// # Errors
 /// If it has no description.
@@ -172,7 +175,7 @@ pub fn check_description(text: &str) -> (Option<Description>, Vec<Finding>) {
     (description, findings.finish().0)
 }
 
-/// Checks a description; `then` goes on with what belongs to it.
+/// Checks a description; `then` continues with the parts that depend on it.
 fn with_description(
     text: &str,
     findings: &mut Findings,
@@ -194,7 +197,7 @@ fn with_description(
         }
     };
     let root = Element::root(&file, &document);
-    // Without a version that is known nothing can be said of the rest.
+    // The rest depends on the version.
     let standard = match root.text("fmiVersion").map(str::trim) {
         Some(version) if version.starts_with("2.") => Some(Standard::Fmi2),
         Some(version) if version.starts_with("3.") => Some(Standard::Fmi3),
@@ -211,7 +214,7 @@ fn with_description(
     let description = match read(text, DESCRIPTION) {
         Ok(description) => description,
         Err(error) => {
-            // A value that breaks the schema is said once.
+            // A value that breaks the schema is reported only once.
             if !findings.has_errors() {
                 unreadable(findings, error);
             }
@@ -230,7 +233,7 @@ fn with_description(
     Some(description)
 }
 
-/// What doesn't follow a schema becomes findings.
+/// Turns violations of a schema into findings.
 fn follow_schema(entry: &str, root: Element<'_, '_>, node: &Node, findings: &mut Findings) {
     schema::walk(root, node, &mut |Violation { breaks, line, place, found, expected }| {
         let rule = match breaks {
@@ -247,25 +250,7 @@ fn follow_schema(entry: &str, root: Element<'_, '_>, node: &Node, findings: &mut
     });
 }
 
-/// The text of an XML file, where it can be decoded.
-fn text(entry: &str, bytes: &[u8], findings: &mut Findings) -> Option<String> {
-    let place = Place { entry, ..Place::default() };
-    match decode(bytes, entry) {
-        Ok((text, tolerated)) => {
-            // A mark before UTF-8 is legal in XML.
-            for found in tolerated.into_iter().filter(|found| !found.contains("byte order mark")) {
-                findings.add(&rules::DESCRIPTION_ENCODING, place, found, "UTF-8");
-            }
-            Some(text)
-        }
-        Err(error) => {
-            findings.add(&rules::DESCRIPTION_ENCODING, place, error.found, error.expected);
-            None
-        }
-    }
-}
-
-/// What is wrong with the archive itself.
+/// Turns problems of the archive itself into findings.
 fn archive_findings(archive: &Archive, findings: &mut Findings) {
     for problem in archive.problems() {
         let place = Place { entry: &problem.name, ..Place::default() };
@@ -301,7 +286,7 @@ fn archive_findings(archive: &Archive, findings: &mut Findings) {
     }
 }
 
-/// The other XML files, and which files there are.
+/// Checks the other XML files, and the list of files.
 fn others(model: &Model<'_, '_>, archive: &mut Archive, findings: &mut Findings) {
     files::check(model, archive, findings);
     let has = |archive: &Archive| archive.entries().iter().map(|e| e.name.clone()).collect();
@@ -337,7 +322,8 @@ fn others(model: &Model<'_, '_>, archive: &mut Archive, findings: &mut Findings)
     }
 }
 
-/// Reads another XML file by its schema, and goes on with its root; `None`: it isn't there.
+/// Reads another XML file, checks it by its schema, and continues with its root; `None`: the file
+/// is missing.
 fn xml(
     (entry, node, rule): (&str, &'static Node, &'static rules::Rule),
     archive: &mut Archive,

@@ -1,7 +1,7 @@
-//! The library of an FMU loaded, an instance made, initialized and stepped once.
+//! Loads the library of an FMU, makes an instance, initializes it and makes one step.
 //!
-//! This runs the FMU's code. In a process of its own it can crash and hang without harm to us; it
-//! can still do whatever the user may do.
+//! The check runs the FMU's code. In a process of its own the code can crash and hang without harm
+//! to this process; it still has all rights of the user.
 
 use super::Checked;
 use super::finding::Place;
@@ -15,11 +15,11 @@ use octant_fmu_host::instance::{Instance, InstanceError, InterfaceKind, Options,
 /// Step of an FMU whose description has none, s.
 const STEP_S: f64 = 0.01;
 
-/// How many variables are compared with their start values.
+/// Largest number of variables compared with their start values.
 const STARTS_MAX: usize = 100_000;
 
-/// Loads the FMU with each of its interfaces, and makes an instance; with `step` it is initialized,
-/// and does a first step. What fails becomes findings.
+/// Loads the FMU with each of its interfaces, and makes an instance; with `step` the instance is
+/// initialized, and makes a first step. Failures become findings.
 pub fn load(checked: &mut Checked, options: &Options, step: bool) {
     let Some(description) = checked.description.clone() else { return };
     let kinds = [
@@ -29,7 +29,7 @@ pub fn load(checked: &mut Checked, options: &Options, step: bool) {
     for (kind, name, interface) in kinds {
         let Some(interface) = interface else { continue };
         let place = Place { subject: name, ..Place::default() };
-        // What needs its tool isn't ours to judge without it.
+        // An FMU that needs its tool can't be judged without it.
         if interface.needs_execution_tool {
             let found = match &description.generation_tool[..] {
                 "" => "it needs the tool that made it".to_owned(),
@@ -45,14 +45,14 @@ pub fn load(checked: &mut Checked, options: &Options, step: bool) {
     }
 }
 
-/// A call that failed, and the rule that it breaks.
+/// A failed call, and the rule that it breaks.
 struct Failure {
     rule: &'static Rule,
     found: String,
 }
 
 impl Failure {
-    /// What an error says of the rule that the call is for.
+    /// Assigns an error to a rule: `rule` is that of the call.
     fn of(error: &InstanceError, rule: &'static Rule) -> Self {
         let rule = match error {
             InstanceError::Process { .. } => &LOAD_SURVIVES,
@@ -63,7 +63,7 @@ impl Failure {
     }
 }
 
-/// One interface.
+/// Loads one interface.
 fn one(
     checked: &mut Checked,
     description: &Description,
@@ -105,7 +105,8 @@ fn one(
     instance.terminate().map_err(steps)
 }
 
-/// A variable that is exact, but has another value than its start value before it was set.
+/// Finds a variable with `initial` exact that has another value than its start value before it was
+/// set.
 fn other_starts(
     instance: &mut dyn Instance,
     description: &Description,
@@ -119,7 +120,8 @@ fn other_starts(
     let variables: Vec<&Variable> =
         description.variables.iter().filter(is_exact).take(STARTS_MAX).collect();
     let plan = Plan::new(description, &variables)?;
-    // What can't be got is no start value that differs; that the function is missing is said there.
+    // Variables that can't be read don't count as different; another rule reports a missing
+    // function.
     let mut values = vec![None; plan.elements];
     let mut first = 0;
     for group in &plan.groups {
@@ -150,7 +152,7 @@ fn other_starts(
     Ok(None)
 }
 
-/// A start value as numbers travel.
+/// Reads a start value as f64, the form in which numbers are exchanged.
 fn start(kind: Kind, text: &str) -> Option<f64> {
     use octant_fmu_host::description::xml::{boolean, real};
     match kind {

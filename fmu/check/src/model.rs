@@ -1,4 +1,4 @@
-//! A description with what its file says word by word: rules ask for both.
+//! A description together with the text of its file: rules need both.
 
 use super::finding::{Findings, Place};
 use super::rules::Rule;
@@ -6,15 +6,15 @@ use octant_fmu_host::description::xml::Element;
 use octant_fmu_host::description::{Description, Kind, Standard, Variable};
 use std::collections::HashMap;
 
-/// A description and the tree that it was read from.
+/// A description and its XML tree.
 pub(super) struct Model<'a, 't> {
-    /// The file inside the FMU.
+    /// File inside the FMU.
     pub(super) entry: &'a str,
-    /// What it means.
+    /// Description.
     pub(super) description: &'a Description,
-    /// Its root element.
+    /// Root element.
     pub(super) root: Element<'a, 't>,
-    /// Its variables.
+    /// Variables.
     pub(super) variables: Vec<Declared<'a, 't>>,
     /// Index of the first variable with each value reference.
     pub(super) by_reference: HashMap<u32, usize>,
@@ -25,16 +25,16 @@ pub(super) struct Model<'a, 't> {
 /// A variable with its element.
 #[derive(Clone, Copy)]
 pub(super) struct Declared<'a, 't> {
-    /// Its element, with name and causality.
+    /// Element of the variable, with name and causality.
     pub(super) element: Element<'a, 't>,
-    /// The element with type, start and limits: in FMI 3.0 the same.
+    /// Element with type, start and limits: in FMI 3.0 the same one.
     pub(super) value: Element<'a, 't>,
-    /// What it means.
+    /// Variable of the description.
     pub(super) variable: &'a Variable,
 }
 
 impl<'a, 't: 'a> Model<'a, 't> {
-    /// Puts both together.
+    /// Combines description and tree.
     pub(super) fn new(entry: &'a str, description: &'a Description, root: Element<'a, 't>) -> Self {
         let elements = root.child("ModelVariables").into_iter().flat_map(Element::children);
         let variables: Vec<Declared<'a, 't>> = elements
@@ -56,22 +56,22 @@ impl<'a, 't: 'a> Model<'a, 't> {
         Self { entry, description, root, variables, by_reference, by_name }
     }
 
-    /// The standard.
+    /// Standard of the description.
     pub(super) fn standard(&self) -> Standard {
         self.description.standard
     }
 
-    /// It is of FMI 2.0.
+    /// Returns whether the description follows FMI 2.0.
     pub(super) fn is_fmi2(&self) -> bool {
         self.standard() == Standard::Fmi2
     }
 
-    /// The place of an element.
+    /// Place of an element.
     pub(super) fn at<'p>(&'p self, element: Element<'_, '_>, subject: &'p str) -> Place<'p> {
         Place { entry: self.entry, line: Some(element.line()), subject }
     }
 
-    /// A rule is broken by a variable.
+    /// Adds a finding at a variable.
     pub(super) fn broken(
         &self,
         findings: &mut Findings,
@@ -85,7 +85,8 @@ impl<'a, 't: 'a> Model<'a, 't> {
     }
 }
 
-/// The element with type, start and limits of a variable's element; `None`: it is no variable.
+/// Finds the element with type, start and limits of a variable's element; `None`: it is no
+/// variable.
 fn value<'a, 't: 'a>(element: Element<'a, 't>, standard: Standard) -> Option<Element<'a, 't>> {
     let known = |name: &str| Kind::ALL.iter().any(|kind| kind.name() == name);
     match standard {
@@ -98,7 +99,7 @@ fn value<'a, 't: 'a>(element: Element<'a, 't>, standard: Standard) -> Option<Ele
 }
 
 impl Declared<'_, '_> {
-    /// Name of its type, as its standard writes it.
+    /// Name of the type, as in its standard.
     pub(super) fn type_name(&self) -> &str {
         self.value.name()
     }

@@ -58,7 +58,7 @@ fn one(model: &Model<'_, '_>, declared: &Declared<'_, '_>, name: &str, findings:
     }
 }
 
-/// One note for all of them.
+/// Adds one note on all variables without description.
 fn without_description(model: &Model<'_, '_>, findings: &mut Findings) {
     let public = |declared: &&Declared<'_, '_>| {
         matches!(
@@ -81,14 +81,15 @@ fn without_description(model: &Model<'_, '_>, findings: &mut Findings) {
     }
 }
 
-/// Whether a name is in the grammar of structured names; else the byte at which it leaves it.
+/// Checks that a name follows the grammar of structured names; `Err`: the byte at which it
+/// deviates.
 pub(super) fn structured(name: &str) -> Result<(), usize> {
     let mut reader = Reader { name, at: 0 };
     if name.starts_with("der(") {
         reader.at = 4;
         reader.identifier()?;
         if reader.eat(b',') {
-            // The grammar has no blank here; its own example writes none either.
+            // The grammar has no blank here; nor has its own example.
             reader.digits()?;
         }
         reader.expect(b')')?;
@@ -182,10 +183,10 @@ impl Reader<'_> {
     }
 }
 
-/// Elements of arrays that are variables of their own: `a.b[1,2]`.
+/// Elements of arrays that are separate variables: `a.b[1,2]`.
 #[derive(Default)]
 struct Arrays {
-    /// Indices by the name before the last bracket.
+    /// Indices by the part of the name before the last bracket.
     indices: BTreeMap<String, BTreeSet<Vec<u32>>>,
 }
 
@@ -199,7 +200,7 @@ impl Arrays {
         }
     }
 
-    /// Arrays with gaps: name, the first missing indices, number of elements that are there.
+    /// Arrays with gaps: name, the first missing indices, number of existing elements.
     fn gaps(&self) -> Vec<(String, String, usize)> {
         let mut gaps = Vec::new();
         for (base, present) in &self.indices {
@@ -211,7 +212,7 @@ impl Arrays {
             let limit = |of: fn(u32, u32) -> u32, axis: usize| {
                 present.iter().map(|indices| indices[axis]).reduce(of).unwrap_or(0)
             };
-            // From 0 or from 1, as the tool counts.
+            // The indices start at 0 or at 1, depending on the tool.
             let low: Vec<u32> = (0..rank).map(|axis| limit(u32::min, axis).min(1)).collect();
             let high: Vec<u32> = (0..rank).map(|axis| limit(u32::max, axis)).collect();
             let sizes =
@@ -220,7 +221,7 @@ impl Arrays {
             if expected == present.len() as u64 {
                 continue;
             }
-            // The first gap comes at the latest after all that are there.
+            // The first gap comes at the latest after all existing elements.
             let mut indices = low.clone();
             while present.contains(&indices) {
                 for axis in (0..rank).rev() {

@@ -11,7 +11,7 @@ use octant_fmu_host::description::{
 };
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Checks what variables say of each other.
+/// Checks the references between variables.
 pub(super) fn check(model: &Model<'_, '_>, findings: &mut Findings) {
     if model.is_fmi2() {
         aliases(model, findings);
@@ -45,9 +45,9 @@ pub(super) fn check(model: &Model<'_, '_>, findings: &mut Findings) {
     }
 }
 
-/// Variables of FMI 2.0 that share a value reference are one.
+/// Checks aliases: variables of FMI 2.0 that share a value reference are one variable.
 fn aliases(model: &Model<'_, '_>, findings: &mut Findings) {
-    // Enumerations are got as integers.
+    // Enumerations are read as integers.
     let base = |kind: Kind| match kind {
         Kind::Enumeration => Kind::Int32,
         kind => kind,

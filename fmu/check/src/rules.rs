@@ -1,21 +1,21 @@
-//! The rules, each with where the standards say it.
+//! The rules, with their clauses in the standards.
 
 use serde::Serialize;
 
-/// How bad it is to break a rule.
+/// Severity of a violation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Severity {
-    /// Worth knowing.
+    /// Information.
     Note,
-    /// Legal or harmless, but somebody will stumble over it.
+    /// Legal or harmless, but likely to cause trouble.
     Warning,
-    /// The standard forbids it, or it can't work.
+    /// Forbidden by the standard, or unusable.
     Error,
 }
 
 impl Severity {
-    /// Its name.
+    /// Name of the severity.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -29,15 +29,15 @@ impl Severity {
 /// A rule.
 #[derive(Debug, PartialEq, Eq)]
 pub struct Rule {
-    /// Its name: `variable.start`.
+    /// Name of the rule: `variable.start`.
     pub id: &'static str,
-    /// How bad it is to break it.
+    /// Severity of a violation.
     pub severity: Severity,
-    /// What it says.
+    /// Text of the rule.
     pub says: &'static str,
-    /// Where FMI 2.0 says it; empty where it doesn't apply.
+    /// Clause in FMI 2.0; empty if the rule doesn't apply.
     pub fmi2: &'static str,
-    /// Where FMI 3.0 says it; empty where it doesn't apply.
+    /// Clause in FMI 3.0; empty if the rule doesn't apply.
     pub fmi3: &'static str,
 }
 
@@ -58,8 +58,8 @@ macro_rules! rules {
     };
 }
 
-// A reference to a section is of the standard; `Octant` is what the standards don't say, but what
-// importers need.
+// A section number refers to the standard; `Octant` marks rules that are not in the standards but
+// that importers need.
 rules! {
     ARCHIVE_NAME "archive.name" Error "2.3" "2.5"
         "Every entry has a name of its own that stays inside the folder, and is a plain file.";

@@ -5,7 +5,7 @@ use super::finding::Finding;
 use super::rules::{RULES, Severity};
 use std::fmt::Write;
 
-/// A report for people: what it is, what was found, and how much of it.
+/// Formats a report for users: the FMU, the findings, and their numbers.
 #[must_use]
 pub fn text(report: &Report) -> String {
     let mut text = String::new();

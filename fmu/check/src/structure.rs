@@ -13,7 +13,7 @@ use octant_fmu_host::description::xml::Element;
 use octant_fmu_host::description::{Causality, Initial, Variability};
 use std::collections::BTreeSet;
 
-/// Names of variables that a message tells at most.
+/// Largest number of variable names in a message.
 const NAMED: usize = 5;
 
 /// The lists of both standards.
@@ -27,7 +27,8 @@ enum List {
 }
 
 impl List {
-    /// By the element: that around the list in FMI 2.0, that of each entry in FMI 3.0.
+    /// Finds a list by an element: the one around the list in FMI 2.0, that of each entry in FMI
+    /// 3.0.
     fn of(name: &str) -> Option<Self> {
         Some(match name {
             "Outputs" | "Output" => Self::Outputs,
@@ -70,7 +71,7 @@ pub(super) fn check(model: &Model<'_, '_>, findings: &mut Findings) {
     initial_unknowns(model, root, &entries, &continuous, findings);
     indicators(model, of(List::EventIndicators), findings);
     clocked_states(model, root, of(List::ClockedStates), findings);
-    // By reference: an alias of a state is the state.
+    // By value reference: an alias of a state counts as the state.
     let states: BTreeSet<u32> = states
         .into_iter()
         .chain(of(List::ClockedStates).map(|entry| entry.index))
@@ -81,7 +82,7 @@ pub(super) fn check(model: &Model<'_, '_>, findings: &mut Findings) {
     }
 }
 
-/// All entries that are of a variable, each list without repetitions.
+/// Reads all entries that refer to a variable, each list without repetitions.
 fn entries<'a, 't: 'a>(
     model: &Model<'a, 't>,
     root: Element<'a, 't>,
@@ -99,7 +100,7 @@ fn entries<'a, 't: 'a>(
     let mut entries: Vec<Entry<'a, 't>> = Vec::new();
     let mut seen = BTreeSet::new();
     for (list, element) in elements {
-        // What isn't a number breaks the schema, and is said there.
+        // A value that isn't a number breaks the schema, which reports it.
         let Some(number) = number(model, element) else { continue };
         let Some(index) = index(model, number) else {
             let found = format!("{} {number} in {}", key(model), list.name());
@@ -117,7 +118,7 @@ fn entries<'a, 't: 'a>(
     entries
 }
 
-/// What an entry names its variable by.
+/// Attribute by which an entry refers to its variable.
 fn key(model: &Model<'_, '_>) -> &'static str {
     if model.is_fmi2() { "index" } else { "valueReference" }
 }
@@ -133,7 +134,7 @@ fn number(model: &Model<'_, '_>, element: Element<'_, '_>) -> Option<u32> {
     element.text(key(model))?.trim().parse().ok()
 }
 
-/// Index of the variable that an index of FMI 2.0, from 1, or a value reference of FMI 3.0 names.
+/// Index of the variable for an index of FMI 2.0, from 1, or a value reference of FMI 3.0.
 fn index(model: &Model<'_, '_>, number: u32) -> Option<usize> {
     if model.is_fmi2() {
         let index = (number as usize).checked_sub(1)?;
@@ -143,7 +144,7 @@ fn index(model: &Model<'_, '_>, number: u32) -> Option<usize> {
     }
 }
 
-/// Says what a list has too much and too little.
+/// Reports surplus and missing entries of a list.
 fn compare(
     model: &Model<'_, '_>,
     root: Element<'_, '_>,
@@ -201,7 +202,7 @@ fn outputs<'m, 'a: 'm, 't: 'a>(
     }
 }
 
-/// Returns the states.
+/// Checks the derivatives, and returns the states.
 fn derivatives<'m, 'a: 'm, 't: 'a>(
     model: &Model<'a, 't>,
     entries: impl Iterator<Item = &'m Entry<'a, 't>>,
@@ -219,7 +220,7 @@ fn derivatives<'m, 'a: 'm, 't: 'a>(
             continue;
         };
         let Some(&state) = model.by_reference.get(&reference) else { continue };
-        // FMI 2.0 names the state by index: an alias of the state is another variable.
+        // FMI 2.0 refers to the state by index: an alias of the state is another variable.
         let state =
             match declared.value.text("derivative").and_then(|text| text.trim().parse().ok()) {
                 Some(number) if model.is_fmi2() => index(model, number).unwrap_or(state),
@@ -287,7 +288,7 @@ fn initial_unknowns<'a, 't: 'a>(
         })
         .collect();
     expected.extend(continuous.iter().filter(|&&index| unknown(index)));
-    // An FMU may initialize what is clocked.
+    // An FMU may initialize clocked variables.
     let clocked = (0..model.variables.len()).filter(|&index| {
         let variable = model.variables[index].variable;
         !variable.clocks.is_empty() || variable.clock.is_some()
@@ -343,7 +344,7 @@ fn clocked_states<'m, 'a: 'm, 't: 'a>(
     compare(model, root, &STRUCTURE_CLOCKED, List::ClockedStates, sets, findings);
 }
 
-/// What an unknown depends on, and how.
+/// Checks the dependencies of an unknown, and their kinds.
 fn dependencies(
     model: &Model<'_, '_>,
     entry: &Entry<'_, '_>,
@@ -365,8 +366,8 @@ fn dependencies(
         let is_known = match (entry.list, known.causality) {
             (_, Causality::Input | Causality::Independent) => true,
             (List::InitialUnknowns, _) => is_parameter || known.initial == Some(Initial::Exact),
-            // FMI 2.0 has parameters among the knowns only while initializing; tools list tunable
-            // ones all the same, and importers can use them.
+            // FMI 2.0 has parameters among the knowns only during initialization; tools list
+            // tunable ones all the same, and importers can use them.
             _ if is_parameter => !model.is_fmi2() || known.variability == Variability::Tunable,
             _ => states.contains(&known.reference) || !known.clocks.is_empty(),
         };

@@ -1,4 +1,4 @@
-//! `terminalsAndIcons/terminalsAndIcons.xml`: of FMI 3.0, and in FMUs of FMI 2.0 by the same file.
+//! `terminalsAndIcons/terminalsAndIcons.xml` of FMI 3.0, used in FMUs of FMI 2.0 too.
 
 use super::finding::{Findings, Place};
 use super::model::Model;
@@ -10,10 +10,10 @@ use octant_fmu_host::description::Causality;
 use octant_fmu_host::description::xml::Element;
 use std::collections::BTreeSet;
 
-/// Where it is.
+/// Path in the FMU.
 pub(super) const FILE: &str = "terminalsAndIcons/terminalsAndIcons.xml";
 
-/// How deep terminals may be nested to be looked at.
+/// Largest depth of nested terminals that is checked.
 const DEPTH_MAX: usize = 32;
 
 /// Checks terminals and icons; `has` tells whether the FMU has a file.
@@ -26,7 +26,7 @@ pub(super) fn check(
     let place = Place { entry: FILE, line: Some(root.line()), subject: "" };
     let version = root.text("fmiVersion").unwrap_or_default();
     let wrong = match model.is_fmi2() {
-        // It was made for 3.0, and says so.
+        // The file was made for 3.0, and has its version.
         true => !version.starts_with('3'),
         false => version != model.description.fmi_version,
     };
@@ -39,7 +39,7 @@ pub(super) fn check(
     }
     let graphic = root.child("GraphicalRepresentation");
     let has_icon = graphic.is_some_and(|graphic| graphic.child("Icon").is_some());
-    // A drawing stands for a picture that has to be there as well.
+    // A drawing accompanies a picture, which has to exist as well.
     if has_icon || has("terminalsAndIcons/icon.svg") {
         icon(place, "icon", has, findings);
     }
@@ -48,7 +48,7 @@ pub(super) fn check(
     }
 }
 
-/// The terminals of a level.
+/// Checks the terminals of a level.
 fn level(
     model: &Model<'_, '_>,
     list: Element<'_, '_>,
@@ -82,7 +82,7 @@ fn members(
     findings: &mut Findings,
 ) {
     let rule = terminal.text("matchingRule").unwrap_or_default();
-    // The name of a domain has a dot.
+    // The name of a domain contains a dot.
     if !matches!(rule, "plug" | "bus" | "sequence" | "") && !rule.contains('.') {
         let found = format!("matching rule {rule:?}");
         findings.add(&TERMINALS_RULE, place, found, "plug, bus, sequence, or com.example.rule");
@@ -139,10 +139,10 @@ fn members(
     }
 }
 
-/// A picture: `base.png`, with or without `base.svg`.
+/// Checks a picture: `base.png`, with or without `base.svg`.
 fn icon(place: Place<'_>, base: &str, has: &dyn Fn(&str) -> bool, findings: &mut Findings) {
     let name = format!("{base}.png");
-    // As a URI: a scheme, a root and a step up leave the folder.
+    // The name is a URI: a scheme, a root and a step up lead out of the folder.
     if base.starts_with('/') || base.contains(':') || base.split('/').any(|part| part == "..") {
         let found = format!("icon {base:?}");
         findings.add(&TERMINALS_ICON, place, found, "a file in terminalsAndIcons/");

@@ -1,4 +1,4 @@
-//! Each rule is tripped by a change of a description, or of an FMU, that breaks nothing else.
+//! Each rule is broken by a change of a description, or of an FMU, that breaks no other rule.
 
 use super::rules::{self, RULES};
 use super::*;
@@ -15,7 +15,7 @@ mod dll;
 const GOOD2: &str = include_str!("tests/good_fmi2.xml");
 const GOOD3: &str = include_str!("tests/good_fmi3.xml");
 
-/// What is changed: the text that is there once, and what takes its place.
+/// Edit of a text: the original part, which occurs once, and its replacement.
 type Edit<'a> = (&'a str, &'a str);
 
 fn edited(text: &str, edits: &[Edit<'_>]) -> String {
@@ -32,7 +32,7 @@ fn ids(findings: &[Finding]) -> Vec<&'static str> {
     ids.into_iter().collect()
 }
 
-/// Rules of the description that a change breaks.
+/// Rules of the description that an edit breaks.
 fn broken(good: &str, edits: &[Edit<'_>]) -> (Vec<&'static str>, Vec<Finding>) {
     let (_, findings) = check_description(&edited(good, edits));
     (ids(&findings), findings)
@@ -115,7 +115,7 @@ fn packed(files: &[(&str, Vec<u8>)]) -> Vec<u8> {
     packed_by(SimpleFileOptions::default(), files)
 }
 
-/// Without compression, so that contents can be found in it.
+/// Packs without compression, so that contents can be found in the archive.
 fn stored(files: &[(&str, Vec<u8>)]) -> Vec<u8> {
     let options = SimpleFileOptions::default();
     packed_by(options.compression_method(zip::CompressionMethod::Stored), files)
@@ -145,11 +145,11 @@ fn good_fmus_have_no_finding() {
 
 /// A change of the files of an FMU.
 enum Change {
-    /// Another file.
+    /// Adds a file.
     Add(&'static str, &'static [u8]),
-    /// A file less.
+    /// Removes a file.
     Remove(&'static str),
-    /// A file with another text in it.
+    /// Edits a file.
     Edit(&'static str, &'static str, &'static str),
 }
 
@@ -228,7 +228,7 @@ fn a_change_of_a_file_is_found_by_one_rule() {
         let report = survey(packed(&files));
         let found: Vec<&str> = ids(&report.findings)
             .into_iter()
-            // Which platform it is on depends on where the test runs.
+            // The platform of the test machine decides about this rule.
             .filter(|id| *id != "binary.platform" || rule.id == *id)
             .collect();
         assert_eq!(found, [rule.id], "{:#?}", report.findings);
@@ -239,7 +239,7 @@ fn a_change_of_a_file_is_found_by_one_rule() {
     assert_eq!(found, ["files.implementation", "sources.files"]);
 }
 
-/// The zip with all places of `from` replaced.
+/// Replaces all occurrences of `from` in a zip.
 fn patched(mut bytes: Vec<u8>, from: &[u8], to: &[u8]) -> Vec<u8> {
     let mut at = 0;
     while let Some(found) = bytes[at..].windows(from.len()).position(|window| window == from) {
@@ -271,7 +271,7 @@ fn what_is_wrong_with_an_archive_is_found_and_the_rest_is_checked() {
     assert_eq!(finding(device), ["archive.name-windows"]);
     let unmarked = patched(good.clone(), b"resources/data.txt", "resources/dät.txt".as_bytes());
     assert_eq!(finding(unmarked), ["archive.name-encoding"]);
-    // A reader that goes by the headers before the entries sees another file.
+    // A reader that uses the headers before the entries sees another file.
     let place = good.windows(18).position(|w| w == b"resources/data.txt").expect("the first");
     let mut two_faced = good.clone();
     two_faced[place..place + 18].copy_from_slice(b"resources/evil.txt");
@@ -284,7 +284,7 @@ fn what_is_wrong_with_an_archive_is_found_and_the_rest_is_checked() {
     descriptor[at + 8] |= 1 << 3;
     let found = finding(descriptor);
     assert!(found.contains(&"archive.data-descriptor"), "{found:?}");
-    // A damaged entry is found when it is read.
+    // A damaged entry is detected when it is read.
     let damaged = patched(stored(&files(GOOD2)), b"iconBaseName", b"iconBaseNine");
     assert_eq!(finding(damaged), ["archive.readable"]);
 }

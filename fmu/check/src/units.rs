@@ -11,11 +11,11 @@ use octant_fmu_host::description::xml::Element;
 use octant_fmu_host::description::{BaseUnit, Kind};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// How far the factor of a common name may be from its common meaning, relative: the digits that
-/// tools write.
+/// Largest relative distance of the factor of a common name from its common meaning: the digits
+/// that tools write.
 const MEANING: f64 = 1e-4;
 
-/// Checks units, types and what variables say of them.
+/// Checks units, types, and their use in variables.
 pub(super) fn check(model: &Model<'_, '_>, findings: &mut Findings) {
     definitions(model, findings);
     let types = types(model, findings);
@@ -33,7 +33,7 @@ fn definitions(model: &Model<'_, '_>, findings: &mut Findings) {
             findings.add(&UNIT_UNIQUE, place, "the unit is there twice", "one of each name");
             continue;
         }
-        // A number without dimension needs none, and half exponents aren't to be had.
+        // A dimensionless number needs no base unit, and half exponents are impossible.
         let plain = known(name).first().is_some_and(|unit| unit.exponents == [0; 8]);
         let fraction = name.contains("sqrt(") || name.contains("/2)");
         if unit.child("BaseUnit").is_none() && !plain && !fraction {
@@ -70,7 +70,8 @@ fn definitions(model: &Model<'_, '_>, findings: &mut Findings) {
     }
 }
 
-/// A unit with a common name means something else: importers that know the name convert it wrongly.
+/// Reports a unit with a common name but another meaning: importers that know the name convert it
+/// wrongly.
 fn meaning(
     model: &Model<'_, '_>,
     element: Element<'_, '_>,
@@ -78,7 +79,7 @@ fn meaning(
     base: &BaseUnit,
     findings: &mut Findings,
 ) {
-    // Single letters mean too many things, and the standard itself has Hz as 2π rad/s.
+    // Single letters have too many meanings, and the standard itself has Hz as 2π rad/s.
     if (name.len() == 1 && !"msAKNWVJ".contains(name)) || name.contains("Hz") {
         return;
     }
@@ -86,7 +87,7 @@ fn meaning(
     let close = |a: f64, b: f64| (a - b).abs() <= MEANING * b.abs();
     let same = |known: &BaseUnit| {
         known.exponents[..7] == base.exponents[..7]
-            // Tools leave the radian out, which is no dimension in SI.
+            // Tools leave out the radian, which is no dimension in SI.
             && (known.exponents[7] == base.exponents[7] || base.exponents[7] == 0)
             && close(base.factor, known.factor)
             && close(base.offset, known.offset)
@@ -102,7 +103,7 @@ fn meaning(
     }
 }
 
-/// The types by name, with the element that has unit and limits.
+/// Reads the types by name, with the element that has unit and limits.
 fn types<'a, 't>(
     model: &Model<'a, 't>,
     findings: &mut Findings,
@@ -145,7 +146,7 @@ fn items(model: &Model<'_, '_>, element: Element<'_, '_>, name: &str, findings: 
     }
 }
 
-/// Unit and display unit of a type or a variable.
+/// Checks unit and display unit of a type or a variable.
 fn units(
     model: &Model<'_, '_>,
     element: Element<'_, '_>,
@@ -191,7 +192,7 @@ fn variable(
     let own = value.text("unit").filter(|unit| !unit.is_empty());
     let own_display = value.text("displayUnit").filter(|unit| !unit.is_empty());
     if own.is_some() || own_display.is_some() {
-        // What it has from its type was looked at there.
+        // The unit from its type was checked there.
         let unit = variable.unit.as_deref();
         let display = if own.is_some() { variable.display_unit.as_deref() } else { own_display };
         units(model, declared.element, &variable.name, unit, display, findings);
@@ -247,7 +248,7 @@ fn derivative(
         return;
     };
     let state = model.variables[of].variable;
-    // With another independent variable than time it is per that.
+    // With an independent variable other than time the derivative is by that variable.
     let time = model
         .variables
         .iter()
@@ -260,7 +261,7 @@ fn derivative(
     {
         let mut expected = value.exponents;
         expected[2] = expected[2].saturating_sub(1);
-        // The radian comes and goes.
+        // The radian may be left out.
         if rate.exponents[..7] != expected[..7] {
             let found =
                 format!("{} for the derivative of {:?}", dimension(rate.exponents), state.name);

@@ -1,4 +1,4 @@
-//! Each variable for itself: causality, variability, initial, start and limits.
+//! Each variable alone: causality, variability, initial, start and limits.
 
 use super::finding::Findings;
 use super::model::{Declared, Model};
@@ -8,7 +8,7 @@ use super::rules::{
     VARIABLE_NO_START, VARIABLE_NOMINAL, VARIABLE_NOMINAL_SIGN, VARIABLE_RANGE, VARIABLE_REINIT,
     VARIABLE_START, VARIABLE_START_FINITE, VARIABLE_START_RANGE,
 };
-use octant_fmu_host::description::xml::real;
+use octant_fmu_host::description::xml::{real, shortened};
 use octant_fmu_host::description::{Causality, Initial, Kind, Standard, Variability};
 use std::collections::BTreeSet;
 
@@ -50,7 +50,7 @@ pub(super) fn check(model: &Model<'_, '_>, findings: &mut Findings) {
     independent(model, findings);
 }
 
-/// `variability` by the letter: FMI 2.0 has one default for everything.
+/// Literal `variability`: FMI 2.0 has one default for all types.
 fn variability(model: &Model<'_, '_>, declared: &Declared<'_, '_>) -> Variability {
     match declared.element.text("variability") {
         None if model.is_fmi2() => Variability::Continuous,
@@ -58,7 +58,8 @@ fn variability(model: &Model<'_, '_>, declared: &Declared<'_, '_>) -> Variabilit
     }
 }
 
-/// Causality, variability and initial; false where they make no sense, so that nothing follows.
+/// Checks causality, variability and initial; false if they make no sense, so that no later check
+/// depends on them.
 fn causality(model: &Model<'_, '_>, declared: &Declared<'_, '_>, findings: &mut Findings) -> bool {
     let variable = declared.variable;
     let variability = variability(model, declared);
@@ -94,7 +95,7 @@ fn causality(model: &Model<'_, '_>, declared: &Declared<'_, '_>, findings: &mut 
     true
 }
 
-/// The table of causality and variability of both standards.
+/// Table of causality and variability of both standards.
 fn allowed_variability(causality: Causality) -> &'static [Variability] {
     use Variability::{Constant, Continuous, Discrete, Fixed, Tunable};
     match causality {
@@ -108,7 +109,7 @@ fn allowed_variability(causality: Causality) -> &'static [Variability] {
     }
 }
 
-/// The table of initial of both standards.
+/// Table of initial of both standards.
 fn allowed_initial(
     standard: Standard,
     causality: Causality,
@@ -152,14 +153,14 @@ fn start(model: &Model<'_, '_>, declared: &Declared<'_, '_>, findings: &mut Find
             Causality::Independent => "independent",
             _ => "calculated",
         };
-        let found = format!("start {:?}, but it is {what}", super::shortened(&variable.start[0]));
+        let found = format!("start {:?}, but it is {what}", shortened(&variable.start[0]));
         model.broken(findings, &VARIABLE_NO_START, declared, found, "no start value");
         return;
     }
     values(model, declared, findings);
 }
 
-/// The start values themselves.
+/// Checks the start values.
 fn values(model: &Model<'_, '_>, declared: &Declared<'_, '_>, findings: &mut Findings) {
     let variable = declared.variable;
     if matches!(variable.kind, Kind::String | Kind::Binary | Kind::Boolean | Kind::Clock) {
@@ -173,7 +174,7 @@ fn values(model: &Model<'_, '_>, declared: &Declared<'_, '_>, findings: &mut Fin
         } else {
             String::new()
         };
-        // What isn't a number breaks the schema, and is said there.
+        // A value that isn't a number breaks the schema, which reports it.
         let Some(value) = real(text) else { continue };
         if variable.kind == Kind::Enumeration
             && let (Some(items), Ok(value)) = (items, text.trim().parse::<i64>())
@@ -271,7 +272,7 @@ fn derivative(model: &Model<'_, '_>, declared: &Declared<'_, '_>, findings: &mut
     model.broken(findings, &VARIABLE_DERIVATIVE, declared, found, expected);
 }
 
-/// The independent variable: FMI 3.0 needs one, FMI 2.0 may have one.
+/// Checks the independent variable: FMI 3.0 needs one, FMI 2.0 may have one.
 fn independent(model: &Model<'_, '_>, findings: &mut Findings) {
     let all: Vec<&Declared<'_, '_>> =
         model.variables.iter().filter(|d| d.variable.causality == Causality::Independent).collect();
@@ -294,7 +295,7 @@ fn independent(model: &Model<'_, '_>, findings: &mut Findings) {
     }
 }
 
-/// A causality, as the standards write it.
+/// Name of a causality in the standards.
 pub(super) fn name(causality: Causality) -> &'static str {
     match causality {
         Causality::StructuralParameter => "structuralParameter",
@@ -307,7 +308,7 @@ pub(super) fn name(causality: Causality) -> &'static str {
     }
 }
 
-/// A variability, as the standards write it.
+/// Name of a variability in the standards.
 pub(super) fn word(variability: Variability) -> &'static str {
     match variability {
         Variability::Constant => "constant",

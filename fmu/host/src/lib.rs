@@ -1,12 +1,12 @@
-//! Functional Mock-up Units of others: opened, read, loaded and stepped.
+//! Import of Functional Mock-up Units: opening, reading, loading and stepping.
 //!
 //! | module | idea |
 //! |---|---|
-//! | [`archive`] | files of others opened and unpacked safely |
-//! | [`description`] | what a `modelDescription.xml` says, of both standards in one form |
-//! | `exchange` | model exchange as co-simulation, with our solver |
+//! | [`archive`] | foreign files opened and unpacked safely |
+//! | [`description`] | content of a `modelDescription.xml`, of both standards in one form |
+//! | `exchange` | model exchange as co-simulation, with Octant's solver |
 //! | [`library`] | the shared library of an unpacked FMU |
-//! | [`instance`] | an FMU that runs, of both standards and both kinds, behind one trait |
+//! | [`instance`] | a running FMU, of both standards and both kinds, behind one trait |
 //! | [`process`] | an FMU in a process of its own |
 
 pub mod archive;

@@ -4,12 +4,12 @@
 use super::archive::Unpacked;
 use super::description::Standard;
 use super::instance::InstanceError;
-use super::instance::open::Once;
+use super::instance::once::Once;
 use octant_fmi::{fmi2, fmi3};
 use std::ffi::CStr;
 use std::path::{Path, PathBuf};
 
-/// The functions of a library.
+/// Functions of a library.
 #[derive(Clone, Copy, Debug)]
 #[allow(clippy::large_enum_variant, reason = "there is one for each library")]
 pub(super) enum Functions {
@@ -17,16 +17,16 @@ pub(super) enum Functions {
     Fmi3(fmi3::Functions),
 }
 
-/// A loaded library. Its functions may be called for as long as this is there.
+/// A loaded library. Its functions may be called as long as this exists.
 pub(super) struct Library {
     pub(super) functions: Functions,
-    /// Before the folder that its file is in, and the right to be there.
+    /// Dropped before the folder of its file, and before the permission to exist once.
     _library: libloading::Library,
     _kept: (Unpacked, Option<Once>),
 }
 
-/// Names that folders of binaries for this platform have, the standard's first. Some tools use the
-/// names of FMI 3.0 in FMI 2.0 too, where it has none for a platform.
+/// Names of the folders of binaries for this platform, the standard's first. Some tools use the
+/// names of FMI 3.0 in FMI 2.0 too, if that has none for a platform.
 #[must_use]
 pub fn platforms(standard: Standard) -> &'static [&'static str] {
     let all: &[&str] = if cfg!(all(target_os = "linux", target_arch = "x86_64")) {
@@ -50,22 +50,22 @@ pub fn platforms(standard: Standard) -> &'static [&'static str] {
     };
     match standard {
         Standard::Fmi2 => all,
-        // FMI 3.0 has its own name alone.
+        // FMI 3.0 has only its own name.
         Standard::Fmi3 => all.split_at(all.len().saturating_sub(1)).1,
     }
 }
 
-/// The library of an unpacked FMU for this platform.
+/// Finds the library of an unpacked FMU for this platform.
 ///
 /// # Errors
-/// If there is none: where it was looked for, and for what platforms there are some.
+/// If there is none: the places searched, and the platforms for which there are libraries.
 pub fn binary(
     fmu: &str,
     folder: &Path,
     standard: Standard,
     model_identifier: &str,
 ) -> Result<PathBuf, InstanceError> {
-    // It should be an identifier of C; what names a file elsewhere is never one.
+    // The name should be a C identifier; a name of a file elsewhere is never one.
     let elsewhere = |c: char| matches!(c, '/' | '\\' | ':') || c.is_control();
     if model_identifier.is_empty()
         || model_identifier.starts_with('.')
@@ -103,10 +103,10 @@ pub fn binary(
 }
 
 impl Library {
-    /// Loads the library at `path` and looks its functions up.
+    /// Loads the library at `path` and looks up its functions.
     ///
     /// # Errors
-    /// If the system can't load it, or it lacks a function without which nothing goes.
+    /// If the system can't load it, or it lacks an indispensable function.
     pub(super) fn load(
         fmu: &str,
         path: &Path,
@@ -116,7 +116,7 @@ impl Library {
         // SAFETY: loading runs code of the FMU, which is what an importer is for; who doesn't trust
         // it has a process of its own for it.
         let library = unsafe { open(path) }.map_err(|error| {
-            // What the system says is the source: which symbol or library it is.
+            // The error's source has the text of the system: which symbol or library it is.
             let said = std::error::Error::source(&error).map(ToString::to_string);
             let said = said.unwrap_or_else(|| error.to_string());
             InstanceError::load(fmu, format!("{}: {said}", path.display()))
@@ -139,7 +139,7 @@ impl Library {
         Ok(library)
     }
 
-    /// Functions without which nothing goes are there, and the library is of this standard.
+    /// Checks that the indispensable functions exist, and that the library is of this standard.
     fn check(&self, fmu: &str, path: &Path) -> Result<(), InstanceError> {
         let (needed, version, expected): (&[(&str, bool)], _, _) = match &self.functions {
             Functions::Fmi2(f) => (
@@ -199,8 +199,8 @@ impl Library {
     }
 }
 
-/// Loads a library so that what it lacks is said now and not at a call, and so that its names stay
-/// its own.
+/// Loads a library so that missing symbols are reported now and not at a call, and so that its
+/// symbols stay local.
 #[cfg(unix)]
 unsafe fn open(path: &Path) -> Result<libloading::Library, libloading::Error> {
     use libloading::os::unix::{Library, RTLD_LOCAL, RTLD_NOW};
@@ -208,7 +208,7 @@ unsafe fn open(path: &Path) -> Result<libloading::Library, libloading::Error> {
     unsafe { Library::open(Some(path), RTLD_NOW | RTLD_LOCAL) }.map(Into::into)
 }
 
-/// Loads a library with the libraries that lie beside it.
+/// Loads a library together with the libraries beside it.
 #[cfg(windows)]
 unsafe fn open(path: &Path) -> Result<libloading::Library, libloading::Error> {
     use libloading::os::windows::{LOAD_WITH_ALTERED_SEARCH_PATH, Library};

@@ -1,15 +1,15 @@
-//! Processes that hear nothing of keys.
+//! Child processes that don't inherit the signing key.
 
 use std::ffi::OsStr;
 use std::process::Command;
 
-/// The variable that names the file of the secret key.
+/// Environment variable with the path of the secret key's file.
 pub const KEY: &str = "OCTANT_SIGNING_KEY";
-/// The variable with its password, where it has one.
+/// Environment variable with the key's password, if it has one.
 pub const PASSWORD: &str = "OCTANT_SIGNING_PASSWORD";
 
-/// A process to be started that hears nothing of the key: neither its file nor its password. Every process
-/// that the program starts is made here, those that hold the code of others above all.
+/// Makes a command without the path and password of the signing key in its environment. Every process
+/// that the program starts is made here, above all those that run foreign code.
 pub fn command(program: impl AsRef<OsStr>) -> Command {
     let mut command = Command::new(program);
     command.env_remove(KEY).env_remove(PASSWORD);
@@ -29,7 +29,7 @@ mod tests {
         assert_eq!(removed, [KEY, PASSWORD].map(std::ffi::OsStr::new));
     }
 
-    /// No file of the program starts a process otherwise.
+    /// No other file of the program starts a process.
     #[test]
     fn every_process_is_started_without_the_key() {
         let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
@@ -40,7 +40,7 @@ mod tests {
             for entry in std::fs::read_dir(folder).unwrap() {
                 let path = entry.unwrap().path();
                 if path.is_dir() {
-                    // Tests and benches start what they like.
+                    // Tests and benches may start processes directly.
                     if !["tests", "benches", "target"].iter().any(|name| path.ends_with(name)) {
                         open.push(path);
                     }
@@ -50,7 +50,7 @@ mod tests {
                     continue;
                 }
                 let text = std::fs::read_to_string(&path).unwrap_or_default();
-                // Of the program, not of its tests.
+                // Only the program counts, not its unit tests.
                 let program = text.split("#[cfg(test)]").next().unwrap();
                 let own = path.ends_with("base/src/child.rs");
                 let found = program.matches("Command::new(").count();

@@ -1,11 +1,17 @@
-//! What every part of the harness uses and no part owns.
+//! Small parts that the whole harness shares.
 //!
 //! | module | idea |
 //! |---|---|
 //! | [`names`] | the known name that is nearest to one that isn't known |
 //! | [`number`] | numbers as people read them |
+//! | [`control`] | progress of a run, and the request to end it |
+//! | [`pool`] | tasks on several threads, their results in order |
+//! | [`hash`] | SHA-256 of files |
 //! | [`child`] | processes that hear nothing of keys |
 
 pub mod child;
+pub mod control;
+pub mod hash;
 pub mod names;
 pub mod number;
+pub mod pool;

@@ -1,6 +1,6 @@
-//! The known name that is nearest to one that isn't known.
+//! The known name that is nearest to an unknown one.
 
-/// The name most like `found` among `known`, if any is like it.
+/// Known name most similar to `found`, if any is similar.
 #[must_use]
 pub fn nearest<'a>(found: &str, known: impl Iterator<Item = &'a str> + Clone) -> Option<&'a str> {
     let contained = known.clone().find(|name| name.starts_with(found) && found.len() > 2);
@@ -12,7 +12,7 @@ pub fn nearest<'a>(found: &str, known: impl Iterator<Item = &'a str> + Clone) ->
         .or(contained)
 }
 
-/// `did you mean X?` and the list of what is known.
+/// Text `did you mean "X"?`, if a name is similar, with the list of known names.
 #[must_use]
 pub fn suggestion<'a>(
     found: &str,

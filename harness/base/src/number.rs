@@ -1,6 +1,6 @@
-//! Numbers as people read them: a true minus sign, as many digits as mean something.
+//! Numbers formatted for people: with a true minus sign and only significant digits.
 
-/// With `decimals` digits after the point and a true minus sign; "–" if it is not finite.
+/// Formats with `decimals` digits after the point and a true minus sign; "–" if not finite.
 #[must_use]
 pub fn fixed(value: f64, decimals: usize) -> String {
     if !value.is_finite() {
@@ -14,13 +14,13 @@ pub fn fixed(value: f64, decimals: usize) -> String {
     }
 }
 
-/// As [`fixed`], "–" for nothing.
+/// Formats as [`fixed`] does; "–" for `None`.
 #[must_use]
 pub fn optional(value: Option<f64>, decimals: usize) -> String {
     value.map_or_else(|| "–".to_owned(), |v| fixed(v, decimals))
 }
 
-/// With `digits` significant digits, in powers of ten outside 0.0001 to 99999.
+/// Formats with `digits` significant digits, in powers of ten outside 0.0001 to 99999.
 #[must_use]
 pub fn significant(value: f64, digits: i32) -> String {
     if value == 0.0 || !value.is_finite() {
@@ -34,8 +34,8 @@ pub fn significant(value: f64, digits: i32) -> String {
     format!("{}e{exponent}", fixed(mantissa, (digits - 1).max(0) as usize))
 }
 
-/// As [`significant`], without zeros at the end that say nothing: for limits and lengths that
-/// somebody wrote down.
+/// Formats as [`significant`] does, without trailing zeros: for limits and lengths that somebody wrote
+/// down.
 #[must_use]
 pub fn plain(value: f64, digits: i32) -> String {
     let text = significant(value, digits);
@@ -49,7 +49,18 @@ pub fn plain(value: f64, digits: i32) -> String {
     format!("{}{exponent}", mantissa.trim_end_matches('0').trim_end_matches('.'))
 }
 
-/// Decimals that show `value` with `digits` significant digits, at most 8.
+/// Formats a number with its noun in the singular or the plural: "1 case", "2 cases".
+#[must_use]
+pub fn counted<N: Copy + std::fmt::Display + PartialEq + From<u8>>(
+    number: N,
+    one: &str,
+    many: &str,
+) -> String {
+    let noun = if number == N::from(1u8) { one } else { many };
+    format!("{number} {noun}")
+}
+
+/// Number of decimals that shows `value` with `digits` significant digits, at most 8.
 #[must_use]
 pub fn decimals_for(value: f64, digits: i32) -> usize {
     if value == 0.0 || !value.is_finite() {
@@ -73,6 +84,12 @@ mod tests {
         assert_eq!(fixed(-0.001, 2), "0.00");
         assert_eq!(fixed(f64::NAN, 2), "–");
         assert_eq!(optional(None, 2), "–");
+    }
+
+    #[test]
+    fn a_noun_agrees_with_its_number() {
+        let told = [0usize, 1, 2].map(|n| counted(n, "case", "cases"));
+        assert_eq!(told, ["0 cases", "1 case", "2 cases"]);
     }
 
     #[test]

@@ -1,4 +1,4 @@
-//! How fast streams of the protocols are decoded, in bytes of the line.
+//! Decoding speed of streams of the protocols, in bytes of the line.
 #![allow(missing_docs)]
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
@@ -9,7 +9,7 @@ use std::hint::black_box;
 
 const READINGS: u64 = 2000;
 
-/// A unit at rest at 200 Hz, on its back.
+/// Reading of a unit at rest on its back, at 200 Hz.
 fn reading(number: u64) -> Reading {
     let k = number as f64;
     Reading {
@@ -43,7 +43,7 @@ fn decode(c: &mut Criterion) {
     }
     for (name, protocol, bytes) in streams {
         group.throughput(Throughput::Bytes(bytes.len() as u64));
-        // In pieces as a port delivers them.
+        // Pieces as a port delivers them.
         for piece in [64, 4096] {
             group.bench_function(format!("{name}, {piece} bytes at a time"), |b| {
                 b.iter(|| {

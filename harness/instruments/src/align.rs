@@ -1,52 +1,52 @@
-//! The clock of a unit against that of the host, from what only comes one way.
+//! Alignment of a unit's clock with that of the host, from one-way traffic alone.
 //!
-//! A reading that was stamped `s` arrives at `a = s·(1 + skew) + offset + delay`, and the delay is never less
-//! than the least that the line takes. So the points (s, a − s) lie above a line, and touch it now and then:
-//! the lower envelope. Kept are the corners of the lower convex hull of all points, and the edge of it under
-//! the middle of the points is the line: of all lines below all points the one that lies closest to them.
-//! One late reading, or a thousand, doesn't move it.
+//! A reading with the stamp `s` arrives at `a = s·(1 + skew) + offset + delay`, and the delay is never
+//! less than the least that the line takes. So the points (s, a − s) lie above a line, and some of them
+//! touch it: the lower envelope. The estimator keeps the corners of the lower convex hull of all
+//! points. The hull's edge below the middle of the points is the line: of all lines below all points,
+//! the closest one. Late readings, be it one or a thousand, don't move it.
 //!
-//! A clock whose rate changes (with its temperature) has no such line: take a new [`Alignment`] for each
+//! A clock whose rate changes (with its temperature) has no such line: use a new [`Alignment`] for each
 //! stretch of time in which it is steady.
 //!
-//! What can't be known from one way is the least delay itself: it is part of the offset. For a serial line that
-//! is the time of a frame and what the unit takes to make it.
+//! The least delay itself can't be measured one-way: it is part of the offset. On a serial line it is
+//! the time of a frame plus the time that the unit takes to make it.
 
-/// Corners that are kept. A steady clock with jitter has about twenty.
+/// Number of corners kept. A steady clock with jitter has about twenty.
 const CORNERS: usize = 128;
 
-/// A point: seconds since the first stamp, and what the arrival was behind the stamp beyond that of the first
-/// one, in ns.
+/// A point of the hull: seconds since the first stamp, and delay of the arrival after the stamp, less
+/// that of the first reading, in ns.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Point {
     at_s: f64,
     behind_ns: f64,
 }
 
-/// What is known of a unit's clock.
+/// Estimate of a unit's clock.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Estimate {
-    /// Stamp to which the offset belongs: the first one.
+    /// Stamp that the offset refers to: the first one.
     pub origin_ns: u64,
-    /// Host time at that stamp, with the least delay, ns.
+    /// Host time at that stamp, including the least delay, ns.
     pub offset_ns: f64,
-    /// By how much host time goes faster than the unit's: 1e-6 is a microsecond a second. `None` until
-    /// there are two points far enough apart.
+    /// Relative rate by which host time is fast against the unit's: 1e-6 is a microsecond a second.
+    /// `None` until there are two points far enough apart.
     pub skew: Option<f64>,
     /// Time between the first and the last stamp, s.
     pub span_s: f64,
-    /// By how much readings came later than the line says: mean, and standard deviation, ns.
+    /// Mean lateness of readings against the line, ns. `late_sigma_ns` is its standard deviation.
     pub late_mean_ns: f64,
-    /// See `late_mean_ns`.
+    /// Standard deviation of the lateness, ns.
     pub late_sigma_ns: f64,
-    /// Readings that were taken.
+    /// Readings accepted.
     pub readings: u64,
-    /// Readings whose stamp wasn't after the one before, and were not.
+    /// Readings rejected because their stamp wasn't after the one before.
     pub behind: u64,
 }
 
 impl Estimate {
-    /// Host time of a stamp, ns: when its reading would have arrived at the earliest.
+    /// Host time of a stamp, ns: the earliest time at which its reading could have arrived.
     #[must_use]
     pub fn host_ns(&self, stamp_ns: u64) -> f64 {
         let since = stamp_ns as f64 - self.origin_ns as f64;
@@ -54,10 +54,10 @@ impl Estimate {
     }
 }
 
-/// Finds offset and skew of a unit's clock. It takes no memory while it does.
+/// Estimates offset and skew of a unit's clock, without allocating.
 #[derive(Clone, Debug)]
 pub struct Alignment {
-    /// First stamp, and how far its arrival was behind it.
+    /// First stamp, and the delay of its arrival.
     origin: Option<(u64, i128)>,
     last_ns: u64,
     /// Corners of the lower hull, from left to right.
@@ -80,7 +80,7 @@ impl Default for Alignment {
 }
 
 impl Alignment {
-    /// Before the first reading.
+    /// Makes an estimator without readings.
     #[must_use]
     pub const fn new() -> Self {
         Self {
@@ -98,7 +98,7 @@ impl Alignment {
         }
     }
 
-    /// Takes a stamp of the unit and the host's time of its arrival.
+    /// Adds a stamp of the unit with the host's time of its arrival.
     pub fn add(&mut self, stamp_ns: u64, arrival_ns: u64) {
         let behind = i128::from(arrival_ns) - i128::from(stamp_ns);
         if self.origin.is_some() && stamp_ns <= self.last_ns {
@@ -108,7 +108,7 @@ impl Alignment {
         let (first_ns, first_behind) = *self.origin.get_or_insert((stamp_ns, behind));
         self.last_ns = stamp_ns;
         self.readings += 1;
-        // Differences are small: exact in f64.
+        // Differences are small enough to be exact in f64.
         let at_s = (stamp_ns - first_ns) as f64 * 1e-9;
         let point = Point { at_s, behind_ns: (behind - first_behind) as f64 };
         self.sum_s += at_s;
@@ -128,7 +128,7 @@ impl Alignment {
         self.corners += 1;
     }
 
-    /// The corner that the hull misses least goes.
+    /// Drops the corner whose loss changes the hull least.
     fn drop_a_corner(&mut self) {
         let mut least = (f64::INFINITY, 1);
         for index in 1..self.corners - 1 {
@@ -143,7 +143,7 @@ impl Alignment {
         self.corners -= 1;
     }
 
-    /// What is known; `None` before the first reading.
+    /// Present estimate; `None` before the first reading.
     #[must_use]
     pub fn estimate(&self) -> Option<Estimate> {
         let (origin_ns, first_behind) = self.origin?;
@@ -153,12 +153,12 @@ impl Alignment {
         let (skew, behind_ns) = match edge {
             Some([from, to]) => {
                 let slope = (to.behind_ns - from.behind_ns) / (to.at_s - from.at_s);
-                // ns a second.
+                // The slope is in ns a second.
                 (Some(slope * 1e-9), from.behind_ns - slope * from.at_s)
             }
             _ => (None, hull.first()?.behind_ns),
         };
-        // Of all points above the line a + b·t, from the sums alone.
+        // Lateness of all points above the line a + b·t, from the sums alone.
         let (n, a, b) = (self.readings as f64, behind_ns, skew.unwrap_or(0.0) * 1e9);
         let [t, t2, d, d2, td] =
             [self.sum_s, self.sum_s2, self.sum_ns, self.sum_ns2, self.sum_s_ns].map(|s| s / n);
@@ -177,7 +177,7 @@ impl Alignment {
     }
 }
 
-/// From `a` over `b` to `c` the way turns up.
+/// True if the path from `a` over `b` to `c` turns up.
 fn turns_up(a: Point, b: Point, c: Point) -> bool {
     (b.at_s - a.at_s) * (c.behind_ns - a.behind_ns)
         > (c.at_s - a.at_s) * (b.behind_ns - a.behind_ns)
@@ -190,7 +190,7 @@ mod tests {
     const OFFSET_NS: i64 = 7_000_000_123;
     const LEAST_NS: i64 = 850_000;
 
-    /// Readings at 200 Hz by a clock that is slow by `skew`, delayed by what `delay` says beyond the least.
+    /// Aligns readings at 200 Hz of a clock that is slow by `skew`, with `delay` beyond the least one.
     fn align(skew: f64, seconds: u64, delay: impl Fn(u64) -> i64) -> Alignment {
         let mut alignment = Alignment::new();
         for number in 0..seconds * 200 {
@@ -213,7 +213,7 @@ mod tests {
     #[test]
     fn without_jitter_it_is_the_line_itself() {
         for skew in [0.0, 25e-6, -100e-6] {
-            // Nanoseconds are cut: a nanosecond over the span.
+            // Nanoseconds are truncated: the error is a nanosecond over the span.
             let estimate = align(skew, 600, |_| 0).estimate().unwrap();
             check(estimate, skew, 2.0, 2e-9 / 100.0);
             let stamp = 1_000_000_000 + 500_000_000_000;
@@ -223,8 +223,8 @@ mod tests {
         }
     }
 
-    /// One reading in seven takes the least delay; the others up to 30 ms, and a second of the time
-    /// everything is late by 100 ms: the line is the same.
+    /// One reading in seven has the least delay, the others up to 30 ms more, and for one second every
+    /// reading is late by 100 ms: the line stays the same.
     #[test]
     fn what_is_late_does_not_move_it() {
         let late = |number: u64| {
@@ -242,8 +242,8 @@ mod tests {
         assert!((estimate.span_s - 299.995).abs() < 1e-9);
     }
 
-    /// A delay of up to a millisecond, of which the least of many is small: the line is below all points, and
-    /// stays so when the clock isn't steady and there are more corners than are kept.
+    /// The delay is up to a millisecond, and the least of many is small. The line stays below all
+    /// points, also if the clock isn't steady and there are more corners than are kept.
     #[test]
     fn it_is_below_all_points() {
         let jitter = |number: u64| ((number.wrapping_mul(2_654_435_761) >> 9) % 1_000_000) as i64;
@@ -258,7 +258,7 @@ mod tests {
         }
     }
 
-    /// Of three readings one comes at once, one a millisecond and one two milliseconds later.
+    /// One reading in three has no delay, one is a millisecond late and one two milliseconds.
     #[test]
     fn it_says_how_late_readings_come() {
         let late = |number: u64| [0, 1_000_000, 2_000_000][(number % 3) as usize];
@@ -277,7 +277,7 @@ mod tests {
         alignment.add(5_000, 9_000);
         let estimate = alignment.estimate().unwrap();
         assert_eq!((estimate.offset_ns, estimate.skew), (9_000.0, None));
-        // A second one gives a skew: 2 µs less a millisecond later.
+        // A second reading gives a skew: 2 µs less, a millisecond later.
         alignment.add(1_005_000, 1_007_000);
         let estimate = alignment.estimate().unwrap();
         assert_eq!(estimate.offset_ns, 9_000.0);
@@ -289,12 +289,12 @@ mod tests {
     #[test]
     fn more_corners_than_are_kept() {
         let mut alignment = Alignment::new();
-        // A parabola: every point is a corner.
+        // On a parabola every point is a corner.
         for number in 0..1000u64 {
             alignment.add(number * 1_000_000_000, number * 1_000_000_000 + number * number);
         }
         let estimate = alignment.estimate().unwrap();
-        // The tangent in the middle: 2·499.5 ns a second.
+        // Slope of the tangent in the middle: 2·499.5 ns a second.
         assert!((estimate.skew.unwrap() - 999e-9).abs() < 20e-9, "{estimate:?}");
         assert_eq!(alignment.corners, CORNERS);
     }

@@ -1,4 +1,4 @@
-//! A protocol that is chosen by its name.
+//! Choice of a protocol by its name.
 
 use crate::encoding::CannotCarry;
 use crate::framing::{Counters, Event};
@@ -23,11 +23,11 @@ pub enum Protocol {
 }
 
 impl Protocol {
-    /// All of them.
+    /// All protocols.
     pub const ALL: [Self; 5] =
         [Self::VectorNav, Self::Xsens, Self::NovAtel, Self::Sbg, Self::Octant];
 
-    /// Its name in a scenario.
+    /// Name of the protocol in a scenario.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -39,29 +39,29 @@ impl Protocol {
         }
     }
 
-    /// The protocol of a name.
+    /// Protocol of a name.
     #[must_use]
     pub fn of_name(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|protocol| protocol.name() == name)
     }
 }
 
-/// A decoder of any protocol.
+/// Decoder of any protocol.
 #[derive(Clone, Debug)]
 #[expect(
     clippy::large_enum_variant,
     reason = "there is one for each port, and nothing to allocate"
 )]
 pub enum AnyDecoder {
-    /// VectorNav's.
+    /// VectorNav.
     VectorNav(vectornav::Decoder),
-    /// Xsens'.
+    /// Xsens.
     Xsens(xsens::Decoder),
-    /// NovAtel's.
+    /// NovAtel.
     NovAtel(novatel::Decoder),
-    /// SBG's.
+    /// SBG.
     Sbg(sbg::Decoder),
-    /// This project's.
+    /// Octant.
     Octant(own::Decoder),
 }
 
@@ -78,7 +78,7 @@ macro_rules! each {
 }
 
 impl AnyDecoder {
-    /// A decoder that has received nothing yet.
+    /// Makes a decoder that has received nothing.
     #[must_use]
     pub fn new(protocol: Protocol) -> Self {
         match protocol {
@@ -90,45 +90,45 @@ impl AnyDecoder {
         }
     }
 
-    /// Takes bytes up to the end of the next frame that says something, and says what it was. `None`
+    /// Takes bytes up to the end of the next frame with an event, and returns the event. Returns `None`
     /// when all bytes are taken: call it until then.
     #[inline]
     pub fn next(&mut self, bytes: &mut &[u8]) -> Option<Event> {
         each!(self, decoder => decoder.next(bytes))
     }
 
-    /// Nothing more comes, or nothing came for long. Call it until it says `None`.
+    /// Ends the input, also after a long silence. Call it until it returns `None`.
     pub fn end(&mut self) -> Option<Event> {
         each!(self, decoder => decoder.end())
     }
 
-    /// What came so far.
+    /// Counts of the traffic so far.
     #[must_use]
     pub fn counters(&self) -> &Counters {
         each!(self, decoder => decoder.counters())
     }
 }
 
-/// The kind of unit that [`AnyEncoder`] plays for NovAtel: HG4930, whose counts are the finest.
+/// Kind of unit that [`AnyEncoder`] uses for NovAtel: HG4930, which has the finest counts.
 const NOVATEL_KIND: u8 = 58;
 
-/// An encoder of any protocol.
+/// Encoder of any protocol.
 #[derive(Clone, Debug)]
 pub enum AnyEncoder {
-    /// VectorNav's.
+    /// VectorNav.
     VectorNav(vectornav::Encoder),
-    /// Xsens'.
+    /// Xsens.
     Xsens(xsens::Encoder),
-    /// NovAtel's, binary.
+    /// NovAtel, binary.
     NovAtel(novatel::Encoder),
-    /// SBG's.
+    /// SBG.
     Sbg(sbg::Encoder),
-    /// This project's.
+    /// Octant.
     Octant(own::Encoder),
 }
 
 impl AnyEncoder {
-    /// An encoder that has sent nothing yet.
+    /// Makes an encoder that has sent nothing.
     #[must_use]
     pub fn new(protocol: Protocol) -> Self {
         match protocol {
@@ -146,10 +146,10 @@ impl AnyEncoder {
         }
     }
 
-    /// The frame of a reading.
+    /// Encodes a reading as a frame.
     ///
     /// # Errors
-    /// If the reading lacks what the protocol has to say.
+    /// If the reading lacks a value that the protocol needs.
     pub fn encode(&mut self, reading: &Reading) -> Result<&[u8], CannotCarry> {
         match self {
             Self::VectorNav(encoder) => encoder.encode(reading),

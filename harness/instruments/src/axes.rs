@@ -1,47 +1,47 @@
-//! How a unit is mounted.
+//! Mounting of a unit.
 
-/// Which axes of the unit the axes of the body are.
+/// Mapping of the unit's axes to those of the body.
 ///
-/// A signed permutation, so that a count stays a count: a unit that is mounted a little askew has
-/// misalignments, which are for the calibration to find.
+/// The mapping is a signed permutation, so that counts stay counts. A unit mounted slightly askew has
+/// misalignments, which the calibration estimates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Axes {
-    /// Axis of the unit, and whether it points the other way, for each axis of the body.
+    /// Axis of the unit, and whether it is reversed, for each axis of the body.
     from: [(usize, bool); 3],
 }
 
-/// Why a text says no mounting.
+/// Error of a text that describes no mounting.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum AxesError {
-    /// Not three words.
+    /// The text doesn't have three words.
     #[error("axes are {found} words, expected are three of x, y, z, -x, -y, -z")]
     Count {
-        /// How many words there are.
+        /// Number of words.
         found: usize,
     },
-    /// A word is no axis.
+    /// A word names no axis.
     #[error("axis {number} is none of x, y, z, -x, -y, -z")]
     Word {
-        /// Which word, from 1.
+        /// Number of the word, from 1.
         number: usize,
     },
     /// An axis occurs twice.
     #[error("an axis of the unit occurs twice")]
     Twice,
-    /// A mirror image.
+    /// The axes are left-handed.
     #[error("the axes are left-handed: change a sign, or two axes")]
     LeftHanded,
 }
 
 impl Axes {
-    /// The axes of the unit are those of the body.
+    /// Mapping of a unit whose axes are those of the body.
     pub const SAME: Self = Self { from: [(0, false), (1, false), (2, false)] };
 
-    /// From a text like `"x -y -z"`: body x is the unit's x, body y the opposite of the unit's y, body z
-    /// the opposite of the unit's z.
+    /// Parses a text like `"x -y -z"`: body x is the unit's x, body y is opposite to the unit's y, body
+    /// z is opposite to the unit's z.
     ///
     /// # Errors
-    /// If it is none, or not right-handed.
+    /// If the text describes no mounting, or a left-handed one.
     pub fn parse(text: &str) -> Result<Self, AxesError> {
         let found = text.split_whitespace().count();
         if found != 3 {
@@ -65,7 +65,8 @@ impl Axes {
         if a.0 == b.0 || b.0 == c.0 || a.0 == c.0 {
             return Err(AxesError::Twice);
         }
-        // Even permutations, or odd ones with an odd number of signs.
+        // Right-handed are even permutations with an even number of reversals, and odd ones with an odd
+        // number.
         let even = (a.0 + 1) % 3 == b.0;
         let opposites = from.iter().filter(|axis| axis.1).count();
         if even == (opposites % 2 == 1) {
@@ -74,7 +75,7 @@ impl Axes {
         Ok(Self { from })
     }
 
-    /// A vector in axes of the unit, in those of the body.
+    /// Converts a vector from axes of the unit to axes of the body.
     #[must_use]
     #[inline]
     pub fn to_body(&self, unit: [f64; 3]) -> [f64; 3] {
@@ -102,7 +103,7 @@ mod tests {
                     let text = core::str::from_utf8(&text[..length]).unwrap();
                     let Ok(axes) = Axes::parse(text) else { continue };
                     right += 1;
-                    // The cross product stays one: that is what right-handed means.
+                    // In a right-handed frame, the cross product of x and y is z.
                     let columns =
                         [[1., 0., 0.], [0., 1., 0.], [0., 0., 1.]].map(|unit| axes.to_body(unit));
                     let [u, v, w] = columns;

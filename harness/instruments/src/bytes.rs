@@ -1,6 +1,6 @@
 //! Numbers in frames.
 
-/// Reads one after the other. Beyond the end, which a checked length excludes, there are zeros.
+/// Reads numbers in sequence. Beyond the end, which a checked length excludes, it reads zeros.
 #[derive(Clone, Copy)]
 pub(crate) struct Reader<'a> {
     rest: &'a [u8],
@@ -48,15 +48,15 @@ impl<'a> Reader<'a> {
         i32_le i32_be i32, u64_le u64_be u64, f32_le f32_be f32, f64_le f64_be f64
     );
 
-    /// Three values one after the other.
+    /// Reads three values in sequence.
     #[inline]
     pub(crate) fn three<T>(&mut self, read: impl Fn(&mut Self) -> T) -> [T; 3] {
         core::array::from_fn(|_| read(self))
     }
 }
 
-/// A frame that is written byte by byte. What doesn't fit is left out: the room of each encoder is that
-/// of its longest frame.
+/// A frame that is written byte by byte. Bytes beyond its capacity are dropped: each encoder has room
+/// for its longest frame.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Frame<const N: usize> {
     bytes: [u8; N],
@@ -79,7 +79,7 @@ impl<const N: usize> Frame<N> {
         }
     }
 
-    /// Writes a byte anew.
+    /// Overwrites a byte.
     pub(crate) fn set(&mut self, at: usize, byte: u8) {
         if let Some(room) = self.bytes[..self.length].get_mut(at) {
             *room = byte;

@@ -1,9 +1,9 @@
-//! What a protocol's resolution left over, carried to the next reading.
+//! Remainders of a protocol's resolution, carried to the next reading.
 
 /// Remainders of three axes.
 ///
-/// A number is sent as the nearest that the protocol has. What is left over goes into the next one,
-/// so that the sum of what was sent follows the sum of what was meant.
+/// A number is sent as the nearest one that the protocol has, and the remainder is added to the next
+/// number. So the sum of the numbers sent follows the sum of the true ones.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Carry {
     left: [f64; 3],
@@ -14,7 +14,7 @@ impl Carry {
         Self { left: [0.0; 3] }
     }
 
-    /// Sends `value`: `send` turns a number into what goes out, and into what the receiver reads.
+    /// Sends `value`: `send` turns a number into the form sent and the number that the receiver reads.
     pub(crate) fn send<T>(
         &mut self,
         value: [f64; 3],
@@ -24,13 +24,13 @@ impl Carry {
         let (sent, read) = send(meant);
         for axis in 0..3 {
             let left = meant[axis] - read[axis];
-            // What is out of range or no number is lost, as in a real unit.
+            // The remainder of a value out of range, or of a NaN, is dropped, as in a real unit.
             self.left[axis] = if left.abs() < 1.0 { left } else { 0.0 };
         }
         sent
     }
 
-    /// Sends floats of 32 bits in a unit of which one is worth `unit`.
+    /// Sends 32-bit floats in a unit that is worth `unit`.
     pub(crate) fn floats(&mut self, value: [f64; 3], unit: f64) -> [f32; 3] {
         self.send(value, |meant| {
             let sent = meant.map(|meant| (meant / unit) as f32);
@@ -38,10 +38,10 @@ impl Carry {
         })
     }
 
-    /// Sends integers of 32 bits, which saturate.
+    /// Sends 32-bit integers, which saturate.
     pub(crate) fn counts(&mut self, value: [f64; 3], lsb: f64) -> [i32; 3] {
         self.send(value, |meant| {
-            // The cast saturates, and a NaN is zero.
+            // The cast saturates, and turns NaN into zero.
             let sent = meant.map(|meant| libm::rint(meant / lsb) as i32);
             (sent, sent.map(|sent| f64::from(sent) * lsb))
         })

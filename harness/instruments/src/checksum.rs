@@ -1,9 +1,9 @@
-//! The checksums of the protocols.
+//! Checksums of the protocols.
 
 use crc::{Algorithm, CRC_16_KERMIT, CRC_16_XMODEM, Crc, Table};
 
-/// CRC-32 as NovAtel computes it: the polynomial of Ethernet reflected, begun with zero and not
-/// inverted. `check` is that of "123456789", `residue` that of a frame with its CRC.
+/// CRC-32 of NovAtel: the polynomial of Ethernet, reflected, with the initial value zero and no final
+/// XOR. `check` is the CRC of "123456789", `residue` that of a frame with its CRC.
 const NOVATEL: Algorithm<u32> = Algorithm {
     width: 32,
     poly: 0x04C1_1DB7,
@@ -15,18 +15,18 @@ const NOVATEL: Algorithm<u32> = Algorithm {
     residue: 0,
 };
 
-/// Sixteen tables each: they read sixteen bytes at a time.
+/// Each has sixteen tables, for sixteen bytes at a time.
 const CCITT: Crc<u16, Table<16>> = Crc::<u16, Table<16>>::new(&CRC_16_XMODEM);
 const KERMIT: Crc<u16, Table<16>> = Crc::<u16, Table<16>>::new(&CRC_16_KERMIT);
 const CRC32: Crc<u32, Table<16>> = Crc::<u32, Table<16>>::new(&NOVATEL);
 
-/// CRC-16 of VectorNav: polynomial 0x1021, begun with zero.
+/// CRC-16 of VectorNav: polynomial 0x1021, initial value zero.
 #[inline]
 pub(crate) fn vectornav(bytes: &[u8]) -> u16 {
     CCITT.checksum(bytes)
 }
 
-/// CRC-16 of SBG: polynomial 0x8408 reflected, begun with zero.
+/// CRC-16 of SBG: polynomial 0x8408 reflected, initial value zero.
 #[inline]
 pub(crate) fn sbg(bytes: &[u8]) -> u16 {
     KERMIT.checksum(bytes)
@@ -52,7 +52,7 @@ mod tests {
     fn check_values() {
         assert_eq!(vectornav(b"123456789"), CRC_16_XMODEM.check);
         assert_eq!(sbg(b"123456789"), CRC_16_KERMIT.check);
-        // Bit by bit, as the manual of the receiver describes it.
+        // Bit by bit, as in the receiver's manual.
         let slow = b"123456789".iter().fold(0u32, |crc, byte| {
             (0..8).fold(crc ^ u32::from(*byte), |crc, _| {
                 if crc & 1 == 1 { (crc >> 1) ^ 0xEDB8_8320 } else { crc >> 1 }

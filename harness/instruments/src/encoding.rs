@@ -1,18 +1,18 @@
-//! What encoders have in common.
+//! Shared parts of the encoders.
 
 use crate::{Kind, Measured};
 
-/// A reading has not what a frame needs, or more than it can hold.
+/// Error of a reading that lacks a value for a frame, or has one that doesn't fit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("a frame of {protocol} needs {what}")]
 pub struct CannotCarry {
     /// Name of the protocol.
     pub protocol: &'static str,
-    /// What it needs.
+    /// Missing or unsuitable value.
     pub what: &'static str,
 }
 
-/// What is demanded of a reading on the way into a frame.
+/// Requirements on a reading that is to be encoded.
 #[derive(Clone, Copy)]
 pub(crate) struct Needs(pub(crate) &'static str);
 
@@ -21,7 +21,7 @@ impl Needs {
         value.ok_or(CannotCarry { protocol: self.0, what })
     }
 
-    /// Increments, also made from means when the interval is known.
+    /// Requires increments, which are also made from means if the interval is known.
     pub(crate) fn increments(
         self,
         measured: Option<Measured>,
@@ -36,7 +36,7 @@ impl Needs {
         }
     }
 
-    /// Means, also made from increments when the interval is known.
+    /// Requires means, which are also made from increments if the interval is known.
     pub(crate) fn means(
         self,
         measured: Option<Measured>,

@@ -1,28 +1,28 @@
 //! Frames among other bytes.
 //!
-//! A protocol says where a frame may begin, how long the one that begins there is, and whether it is
-//! one. The [`Decoder`] does the rest: it takes bytes in pieces of any length, and where a frame turns
-//! out to be none it looks for the next one from the byte after its first, so that a sync by chance
-//! costs no frame that follows. What it says doesn't depend on how the bytes were cut.
+//! A protocol says where a frame may begin, how long a frame that begins there is, and whether it is
+//! valid. The [`Decoder`] does the rest: it takes bytes in pieces of any length. If a supposed frame
+//! turns out to be invalid, it searches on from the byte after the first, so that a sync by chance
+//! costs no frame after it. Its results don't depend on how the bytes were cut.
 
 use crate::Reading;
 use core::fmt::Debug;
 
-/// How long the frame is that begins with given bytes.
+/// Length of the frame that begins with given bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Extent {
-    /// No frame begins so.
+    /// No frame begins like this.
     None,
-    /// At least so many more bytes are needed to tell.
+    /// At least this many more bytes are needed to decide.
     Open(usize),
-    /// So many bytes, if it is one.
+    /// This many bytes, if the frame is valid.
     Bytes(usize),
 }
 
-/// Why bytes are no reading.
+/// Reason why bytes are no reading.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Cause {
-    /// The checksum is another one.
+    /// The checksum is wrong.
     #[error("the frame is damaged: checksum {found:#x}, computed {computed:#x}")]
     Checksum {
         /// Checksum in the frame.
@@ -30,104 +30,104 @@ pub enum Cause {
         /// Checksum of the frame.
         computed: u32,
     },
-    /// The bytes have the form of no frame.
+    /// The bytes don't have the form of a frame.
     #[error("this is no frame, or a piece of one")]
     Malformed,
-    /// Intact, but a field has a value without meaning here.
+    /// The frame is intact, but a field has an unknown value.
     #[error("the frame is intact, but its {field} {found} isn't known")]
     Unknown {
-        /// Which field.
+        /// Name of the field.
         field: &'static str,
-        /// Its value.
+        /// Value of the field.
         found: u32,
     },
-    /// Intact, but a field is no number.
+    /// The frame is intact, but a field is no number.
     #[error("the frame is intact, but its {field} is no such number")]
     NoNumber {
-        /// Which field.
+        /// Name of the field.
         field: &'static str,
     },
-    /// Intact, but no message of the wire of this project.
+    /// The frame is intact, but is no message of the Octant wire.
     #[error(transparent)]
     Unreadable(octant_wire::Unreadable),
 }
 
 impl Cause {
-    /// The frame itself was intact.
+    /// True if the frame itself was intact.
     #[must_use]
     pub fn is_intact(self) -> bool {
         !matches!(self, Self::Checksum { .. } | Self::Malformed)
     }
 }
 
-/// A protocol: what a frame looks like and says.
+/// A protocol: form and content of its frames.
 pub trait Framing {
-    /// Room for the longest frame.
+    /// Buffer for the longest frame.
     type Room: AsRef<[u8]> + AsMut<[u8]> + Clone + Debug;
-    /// That room, empty.
+    /// Empty buffer.
     const EMPTY: Self::Room;
 
-    /// A frame may begin with this byte.
+    /// True if a frame may begin with this byte.
     fn begins(byte: u8) -> bool;
 
-    /// How long the frame is that begins with these bytes, of which the first one passed
-    /// [`Framing::begins`]. Never longer than the room, and never more than
-    /// the room with [`Extent::Open`]. More bytes don't change an answer that isn't [`Extent::Open`].
+    /// Length of the frame that begins with these bytes, of which the first one passed
+    /// [`Framing::begins`]. Never longer than the buffer, and with [`Extent::Open`] never more than its
+    /// room. More bytes don't change an answer other than [`Extent::Open`].
     fn extent(bytes: &[u8]) -> Extent;
 
-    /// What a frame of that length says; `None`: it is intact and holds no reading.
+    /// Reads a frame of that length; `None`: it is intact and holds no reading.
     ///
     /// # Errors
-    /// If it is no intact frame, or one that isn't understood.
+    /// If the frame isn't intact or can't be decoded.
     fn read(&mut self, frame: &[u8]) -> Result<Option<Reading>, Cause>;
 }
 
-/// Bytes that were no reading.
+/// Bytes that are no reading.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Lost {
-    /// Why.
+    /// Reason.
     pub cause: Cause,
-    /// How many bytes the frame would have had.
+    /// Number of bytes that the frame would have had.
     pub bytes: usize,
 }
 
-/// What came.
+/// Event in a stream of bytes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Event {
     /// A reading.
     Reading(Reading),
-    /// What looked like a frame, and isn't one that can be read.
+    /// Bytes that looked like a frame, but can't be read.
     Lost(Lost),
 }
 
-/// What came so far.
+/// Counts of the traffic so far.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counters {
-    /// Bytes, all of them.
+    /// All bytes.
     pub bytes: u64,
     /// Bytes of intact frames.
     pub bytes_framed: u64,
-    /// Bytes that were part of no intact frame.
+    /// Bytes that belong to no intact frame.
     pub bytes_lost: u64,
     /// Readings.
     pub readings: u64,
     /// Intact frames that hold no reading.
     pub other: u64,
-    /// What looked like a frame and had another checksum. One damaged frame can count more than once:
-    /// in its rest there may be bytes that look like another one.
+    /// Supposed frames with a wrong checksum. One damaged frame can count more than once, because its
+    /// rest may contain bytes that look like another frame.
     pub checksum: u64,
-    /// What looked like a frame and had no such form.
+    /// Supposed frames with a wrong form.
     pub malformed: u64,
-    /// Intact frames that aren't understood.
+    /// Intact frames that can't be decoded.
     pub unknown: u64,
-    /// Readings that never came, by gaps in their sequence.
+    /// Missing readings, from gaps in their sequence.
     pub missing: u64,
-    /// Readings that came again or too late, or a unit that was switched on anew.
+    /// Readings repeated or too late, or restarts of the unit.
     pub behind: u64,
 }
 
 impl Counters {
-    /// Counts a reading by its sequence number.
+    /// Counts gaps and repetitions by a reading's sequence number.
     pub(crate) fn in_sequence(&mut self, last: &mut Option<u64>, sequence: Option<u64>) {
         let Some(sequence) = sequence else { return };
         match *last {
@@ -138,7 +138,7 @@ impl Counters {
         *last = Some(sequence);
     }
 
-    /// Counts what was no reading.
+    /// Counts bytes that are no reading.
     pub(crate) fn cause(&mut self, cause: Cause) {
         match cause {
             Cause::Checksum { .. } => self.checksum += 1,
@@ -149,7 +149,7 @@ impl Counters {
         }
     }
 
-    /// Nothing is lost, damaged, missing, doubled or not understood.
+    /// True if nothing was lost, damaged, missing, repeated or unknown.
     #[must_use]
     pub fn is_clean(&self) -> bool {
         let Self { bytes, bytes_framed, readings, other, .. } = *self;
@@ -157,11 +157,11 @@ impl Counters {
     }
 }
 
-/// Finds frames in bytes as they come.
+/// Finds frames in bytes as they arrive.
 #[derive(Clone, Debug)]
 pub struct Decoder<P: Framing> {
     protocol: P,
-    /// The beginning of a frame that has not come whole.
+    /// Beginning of an incomplete frame.
     held: P::Room,
     length: usize,
     last_sequence: Option<u64>,
@@ -169,7 +169,7 @@ pub struct Decoder<P: Framing> {
 }
 
 impl<P: Framing> Decoder<P> {
-    /// Nothing received yet.
+    /// Makes a decoder that has received nothing.
     #[must_use]
     pub fn new(protocol: P) -> Self {
         Self {
@@ -181,19 +181,19 @@ impl<P: Framing> Decoder<P> {
         }
     }
 
-    /// What came so far.
+    /// Counts of the traffic so far.
     #[must_use]
     pub fn counters(&self) -> &Counters {
         &self.counters
     }
 
-    /// Bytes of a frame that has not come whole yet.
+    /// Number of bytes held of an incomplete frame.
     #[must_use]
     pub fn held(&self) -> usize {
         self.length
     }
 
-    /// Takes bytes up to the end of the next frame that says something, and says what it was. `None`
+    /// Takes bytes up to the end of the next frame with an event, and returns the event. Returns `None`
     /// when all bytes are taken: call it until then.
     #[inline]
     pub fn next(&mut self, bytes: &mut &[u8]) -> Option<Event> {
@@ -226,7 +226,7 @@ impl<P: Framing> Decoder<P> {
                     self.take(bytes, 1);
                 }
                 Extent::Bytes(_) | Extent::Open(_) => {
-                    // Fewer bytes than the frame has, which fits the room.
+                    // Fewer bytes than the frame has, which fits the buffer.
                     self.hold(bytes, all);
                     return None;
                 }
@@ -234,8 +234,8 @@ impl<P: Framing> Decoder<P> {
         }
     }
 
-    /// Nothing more comes, or nothing came for long: what is held of a frame is none, and frames may
-    /// be behind its first byte. Call it until it says `None`.
+    /// Ends the input, also after a long silence: the incomplete frame is dropped, but frames may
+    /// follow its first byte. Call it until it returns `None`.
     pub fn end(&mut self) -> Option<Event> {
         while self.length > 0 {
             match self.complete(&mut &[][..]) {
@@ -247,7 +247,7 @@ impl<P: Framing> Decoder<P> {
         None
     }
 
-    /// One step on with what is held.
+    /// Makes one step with the bytes held.
     fn complete(&mut self, bytes: &mut &[u8]) -> Step {
         match P::extent(&self.held.as_ref()[..self.length]) {
             Extent::None => {
@@ -261,7 +261,8 @@ impl<P: Framing> Decoder<P> {
                 let room = self.held.as_ref().len() - self.length;
                 let more = more.max(1).min(bytes.len()).min(room);
                 if more == 0 {
-                    // Excluded by the contract of `extent`: nothing is stuck if it is broken.
+                    // The contract of `extent` excludes this case; dropping a byte avoids an endless
+                    // loop if it is broken.
                     self.drop_held(1);
                 }
                 self.hold(bytes, more);
@@ -279,7 +280,7 @@ impl<P: Framing> Decoder<P> {
                 if self.conclude(&outcome, length) {
                     self.remove_held(length);
                 } else {
-                    // Its byte is counted by `conclude`.
+                    // `conclude` has counted the dropped byte.
                     self.remove_held(1);
                 }
                 self.event(outcome, length).map_or(Step::Go, Step::Said)
@@ -287,7 +288,7 @@ impl<P: Framing> Decoder<P> {
         }
     }
 
-    /// Holds more bytes, for which there is room.
+    /// Moves bytes to those held; there must be room.
     fn hold(&mut self, bytes: &mut &[u8], count: usize) {
         let room = &mut self.held.as_mut()[self.length..self.length + count];
         room.copy_from_slice(&bytes[..count]);
@@ -300,13 +301,13 @@ impl<P: Framing> Decoder<P> {
         self.counters.bytes += count as u64;
     }
 
-    /// Loses bytes from what is held.
+    /// Drops bytes held, and counts them as lost.
     fn drop_held(&mut self, count: usize) {
         self.counters.bytes_lost += count as u64;
         self.remove_held(count);
     }
 
-    /// Takes bytes from what is held, and loses those behind them with which no frame begins.
+    /// Removes bytes held, and drops those after them up to a possible beginning of a frame.
     fn remove_held(&mut self, count: usize) {
         let held = &mut self.held.as_mut()[..self.length];
         let rest = held.get(count..).unwrap_or_default();
@@ -316,7 +317,7 @@ impl<P: Framing> Decoder<P> {
         self.counters.bytes_lost += lost as u64;
     }
 
-    /// Counts an outcome; whether the frame was intact.
+    /// Counts an outcome; returns true if the frame was intact.
     fn conclude(&mut self, outcome: &Result<Option<Reading>, Cause>, length: usize) -> bool {
         let counters = &mut self.counters;
         let intact = match outcome {
@@ -350,11 +351,11 @@ impl<P: Framing> Decoder<P> {
     }
 }
 
-/// What came of a step with held bytes.
+/// Result of a step with the bytes held.
 enum Step {
     /// An event.
     Said(Event),
-    /// Go on.
+    /// Another step is possible.
     Go,
     /// More bytes are needed.
     Wait,

@@ -1,24 +1,25 @@
-//! Readings of inertial units that exist, from the bytes of their protocols, and back.
+//! Decoders and encoders for the protocols of existing inertial units.
 //!
 //! Each protocol is a module: [`vectornav`], [`xsens`], [`novatel`], [`sbg`], and [`own`], the wire of
-//! this project. Each has a decoder, which takes bytes in pieces of any length, finds the frames
-//! among whatever else comes and counts what it could not use, and an encoder, for tests and for what
-//! plays an instrument. All give and take the same [`Reading`], in SI units: what a protocol doesn't
-//! tell is `None`, not a guess. [`any`] chooses one by name.
+//! this project. Each has a decoder, which takes bytes in pieces of any length, finds the frames among
+//! other bytes and counts everything that it can't use, and an encoder, for tests and simulated
+//! instruments. All use the same [`Reading`], in SI units: a value that a protocol doesn't send is
+//! `None`, not a guess. [`any`] chooses a protocol by name.
 //!
-//! [`Sampler`] makes [`octant_sample::Sample`]s of readings: the axes of the unit turned to those of
-//! the body, increments counted with their remainders carried, sequence and time without roll-over.
+//! [`Sampler`] converts readings to [`octant_sample::Sample`]s: it turns the axes of the unit to those
+//! of the body, counts increments and carries their remainders, and continues sequence and time across
+//! roll-overs.
 //!
-//! [`align`] finds how a unit's clock stands against the host's, from stamps and arrivals alone.
+//! [`align`] finds the offset between a unit's clock and the host's, from stamps and arrivals alone.
 //!
 //! # Axes
 //! A reading is in the axes of the unit, right-handed, as its maker marks them on the housing: a
 //! rotation is positive by the right-hand rule, and the velocity is the integral of specific force, so
-//! that a unit at rest with z down shows −g on z. Where a protocol sends another order or sign (NovAtel:
-//! z, −y, x) the codec has undone it. How the unit is mounted is said to the [`Sampler`] ([`Axes`]).
+//! that a unit at rest with z down shows −g on z. If a protocol sends another order or sign (NovAtel:
+//! z, −y, x), the codec corrects it. The mounting of the unit is set at the [`Sampler`] ([`Axes`]).
 //!
-//! Nothing here allocates, waits or knows a port, but for `dbc`: with the feature of that name
-//! any CAN database is read on a host, through a mapping of its signals.
+//! Nothing in this crate allocates, waits or depends on a port, except `dbc`: with the feature of that
+//! name, any CAN database is read on a host, through a mapping of its signals.
 #![no_std]
 
 #[cfg(feature = "dbc")]

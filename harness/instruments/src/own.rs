@@ -1,7 +1,7 @@
-//! The wire of this project: frames of `octant-wire` with samples in them.
+//! Octant's own protocol: frames of `octant-wire` with samples in them.
 //!
-//! Byte for byte what `harness/wire/README.md` describes. Of its messages an instrument's samples are
-//! readings; the others pass. Increments are the counts of [`octant_sample::counts`] and lose nothing.
+//! The bytes are those described in `harness/wire/README.md`. Samples of an instrument become readings;
+//! other messages pass. Increments are the counts of [`octant_sample::counts`] and lose nothing.
 
 use crate::encoding::{CannotCarry, Needs};
 use crate::framing::{Cause, Counters, Event, Lost};
@@ -20,19 +20,20 @@ pub struct Decoder {
 }
 
 impl Decoder {
-    /// Nothing received yet.
+    /// Makes a decoder that has received nothing.
     #[must_use]
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// What came so far. A zero is part of a frame, and so is what hasn't come whole yet.
+    /// Counts of the traffic so far. Zeros count as part of a frame, and so do the bytes of an
+    /// incomplete one.
     #[must_use]
     pub fn counters(&self) -> &Counters {
         &self.counters
     }
 
-    /// Takes bytes up to the end of the next frame that says something, and says what it was. `None`
+    /// Takes bytes up to the end of the next frame with an event, and returns the event. Returns `None`
     /// when all bytes are taken: call it until then.
     #[inline]
     pub fn next(&mut self, bytes: &mut &[u8]) -> Option<Event> {
@@ -45,7 +46,7 @@ impl Decoder {
         }
     }
 
-    /// Nothing more comes.
+    /// Ends the input.
     pub fn end(&mut self) -> Option<Event> {
         let event = self.line.end();
         self.count_bytes();
@@ -90,7 +91,7 @@ impl Decoder {
     }
 }
 
-/// Makes frames with a sample in each.
+/// Encodes readings as frames with a sample in each.
 #[derive(Clone, Debug, Default)]
 pub struct Encoder {
     line: serial::Encoder,
@@ -99,13 +100,13 @@ pub struct Encoder {
 }
 
 impl Encoder {
-    /// Nothing sent yet.
+    /// Makes an encoder that has sent nothing.
     #[must_use]
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// The frame of a reading. What the counts leave over is carried to the next one.
+    /// Encodes a reading as a frame, and carries the remainder of its counts to the next reading.
     ///
     /// # Errors
     /// If the reading lacks rotation, velocity, sequence or stamp, or has means without an interval.
@@ -146,7 +147,7 @@ impl Encoder {
             gimbal: reading.gimbal.unwrap_or_default(),
             status,
         };
-        // The step has 15 bits, and begins with the first sample at 0.
+        // The step has 15 bits, and is 0 for the first sample.
         let step = Step::new((sequence.wrapping_sub(1) & 0x7FFF) as u16);
         let message = Message::Sample(SampleMessage { step, aided: false, sample });
         Ok(self.line.encode(&message, ClockTime { ns }))

@@ -1,49 +1,49 @@
-//! What an inertial unit said, in SI units.
+//! A reading of an inertial unit, in SI units.
 
 use octant_sample::counts::{DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS};
 use octant_sample::{GimbalAngles, Sample, Status};
 
-/// Whether a value is an integral or a mean.
+/// Kind of a measured value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// Integral over the interval of the reading: rad, m/s.
     Increment,
-    /// Mean over the interval, or a value at its end: rad/s, m/s². Times the interval it is an
-    /// increment, without what coning and sculling inside the interval add.
+    /// Mean over the interval, or a value at its end: rad/s, m/s². Multiplied by the interval it is an
+    /// increment, without the contributions of coning and sculling inside the interval.
     Mean,
 }
 
-/// Three axes as they were measured.
+/// Measured values of three axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Measured {
     /// Increments or means.
     pub kind: Kind,
-    /// x, y, z.
+    /// Values of x, y, z.
     pub value: [f64; 3],
-    /// What one count is worth, where the protocol sends integers: `value` is a count times this.
+    /// Size of one count, if the protocol sends integers: `value` is a count times this.
     pub lsb: Option<f64>,
 }
 
 impl Measured {
-    /// Increments that came as numbers.
+    /// Increments sent as floating-point numbers.
     #[must_use]
     pub const fn increment(value: [f64; 3]) -> Self {
         Self { kind: Kind::Increment, value, lsb: None }
     }
 
-    /// Means that came as numbers.
+    /// Means sent as floating-point numbers.
     #[must_use]
     pub const fn mean(value: [f64; 3]) -> Self {
         Self { kind: Kind::Mean, value, lsb: None }
     }
 
-    /// Integers of which one is worth `lsb`.
+    /// Integers with counts of size `lsb`.
     #[must_use]
     pub fn counts(kind: Kind, counts: [i32; 3], lsb: f64) -> Self {
         Self { kind, value: counts.map(|count| f64::from(count) * lsb), lsb: Some(lsb) }
     }
 
-    /// The increments over an interval.
+    /// Increments over an interval.
     #[must_use]
     #[inline]
     pub fn over(&self, interval_s: f64) -> [f64; 3] {
@@ -54,49 +54,49 @@ impl Measured {
     }
 }
 
-/// Whose time a stamp is.
+/// Clock of a stamp.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Clock {
-    /// The unit's own, since it was switched on.
+    /// Clock of the unit, since it was switched on.
     Startup,
     /// GPS time since 6 January 1980.
     Gps,
 }
 
-/// When the interval of a reading ended.
+/// End of a reading's interval.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Stamp {
-    /// Nanoseconds of the clock. A counter that rolls over is continued.
+    /// Time of the clock, ns. A counter that rolls over is continued.
     pub ns: u64,
-    /// Whose time it is.
+    /// Clock of the time.
     pub clock: Clock,
 }
 
-/// One reading. What its protocol doesn't say is `None`.
+/// One reading. Values that its protocol doesn't send are `None`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reading {
     /// Rotation of the unit against inertial space.
     pub rotation: Option<Measured>,
     /// Specific force, or its integral.
     pub velocity: Option<Measured>,
-    /// Length of the interval, as the unit says it.
+    /// Length of the interval as reported by the unit, s.
     pub interval_s: Option<f64>,
     /// End of the interval.
     pub stamp: Option<Stamp>,
     /// Number of the reading. A counter that rolls over is continued.
     pub sequence: Option<u64>,
-    /// Angles of the gimbals, where the unit has them.
+    /// Angles of the gimbals, if the unit has them.
     pub gimbal: Option<GimbalAngles>,
-    /// What the unit says about the reading, as far as it has a meaning here.
+    /// Status reported by the unit, as far as Octant has a flag for it.
     pub status: Status,
-    /// The status as the protocol has it.
+    /// Status word of the protocol.
     pub status_word: Option<u32>,
     /// Temperature of the unit, °C.
     pub temperature_c: Option<f32>,
 }
 
 impl Reading {
-    /// Nothing is known.
+    /// A reading without any value.
     pub const NOTHING: Self = Self {
         rotation: None,
         velocity: None,
@@ -109,7 +109,7 @@ impl Reading {
         temperature_c: None,
     };
 
-    /// A sample as a unit with the resolution of this project would say it.
+    /// Converts a sample to the reading of a unit with Octant's resolution.
     #[must_use]
     pub fn of_sample(sample: &Sample) -> Self {
         let counts = |counts, lsb| Some(Measured::counts(Kind::Increment, counts, lsb));
@@ -126,7 +126,7 @@ impl Reading {
         }
     }
 
-    /// There is rotation or specific force in it.
+    /// True if it has rotation or specific force.
     #[must_use]
     pub fn is_inertial(&self) -> bool {
         self.rotation.is_some() || self.velocity.is_some()

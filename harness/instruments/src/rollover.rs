@@ -1,24 +1,24 @@
-//! Counters that begin anew.
+//! Counters that roll over.
 
 /// Continues a counter that rolls over.
 ///
-/// A step of less than half of its range is forward. A longer one is backward: what came again, or a
-/// unit that was switched on anew. Nobody can tell a gap of more than half of the range.
+/// A step of less than half of the range is forward. A longer one is backward: a repetition, or a unit
+/// that was restarted. A gap of more than half of the range can't be detected.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Rollover {
-    /// The greatest value.
+    /// Largest value.
     mask: u64,
     last: Option<u64>,
 }
 
 impl Rollover {
-    /// A counter of so many bits, 1 to 64.
+    /// Makes a counter of this many bits, 1 to 64.
     pub(crate) const fn new(bits: u32) -> Self {
         let unused = 64u32.saturating_sub(bits);
         Self { mask: u64::MAX >> unused, last: None }
     }
 
-    /// The continued counter.
+    /// Value of the continued counter.
     #[inline]
     pub(crate) fn continued(&mut self, counter: u64) -> u64 {
         let next = match self.last {
@@ -28,7 +28,7 @@ impl Rollover {
                 if ahead <= self.mask / 2 {
                     last.saturating_add(ahead)
                 } else {
-                    // Before its beginning there is nothing: it began anew.
+                    // A step back beyond the beginning means that the counter was restarted.
                     last.checked_sub((self.mask - ahead).saturating_add(1)).unwrap_or(counter)
                 }
             }

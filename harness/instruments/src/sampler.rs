@@ -1,40 +1,40 @@
-//! Readings to samples.
+//! Conversion of readings to samples.
 
 use crate::{Axes, Reading};
 use octant_sample::counts::{Accumulator, DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS};
 use octant_sample::{DeviceTime, GimbalAngles, Sample, Status};
 
-/// What is known of the unit beside its protocol.
+/// Settings of a unit beside its protocol.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Settings {
-    /// How it is mounted.
+    /// Mounting of the unit.
     pub axes: Axes,
-    /// The sample period that it is configured with.
+    /// Configured sample period, ns.
     pub period_ns: u64,
 }
 
-/// Why a reading is no sample.
+/// Reason why a reading makes no sample.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Unusable {
-    /// There is no rotation in it.
+    /// The reading has no rotation.
     #[error("the reading has no rotation: configure the unit to send it")]
     NoRotation,
-    /// There is no specific force in it.
+    /// The reading has no specific force.
     #[error("the reading has no velocity or specific force: configure the unit to send it")]
     NoVelocity,
-    /// It came again or too late, or the unit was switched on anew.
+    /// The reading is repeated or too late, or the unit was restarted.
     #[error("the reading isn't later than the one before it")]
     Behind,
 }
 
-/// What became of the readings.
+/// Counts of the readings.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SamplerCounters {
     /// Samples made.
     pub samples: u64,
-    /// Samples that never came, by gaps in sequence or stamps.
+    /// Missing samples, from gaps in sequence or stamps.
     pub missing: u64,
-    /// Readings that came again or too late.
+    /// Readings repeated or too late.
     pub behind: u64,
     /// Readings without rotation or velocity.
     pub incomplete: u64,
@@ -42,17 +42,17 @@ pub struct SamplerCounters {
     pub irregular: u64,
 }
 
-/// Makes samples of readings.
+/// Converts readings to samples.
 ///
-/// Increments become counts whose remainders are carried: the sum of the counts follows the sum of
-/// the increments within half a count. A lost reading's increments are lost: nothing is made up for
-/// them, and the sequence number shows the gap.
+/// Increments become counts whose remainders are carried: the sum of the counts follows the sum of the
+/// increments within half a count. A missing reading's increments are lost: they are not interpolated,
+/// and the sequence number shows the gap.
 #[derive(Clone, Debug)]
 pub struct Sampler {
     settings: Settings,
     rotation: [Accumulator; 3],
     velocity: [Accumulator; 3],
-    /// The last reading, and the sequence number of its sample.
+    /// Last reading, and the sequence number of its sample.
     last: Option<Last>,
     /// Stamp of the first reading.
     first_stamp_ns: Option<u64>,
@@ -67,7 +67,7 @@ struct Last {
 }
 
 impl Sampler {
-    /// Before the first reading.
+    /// Makes a sampler without readings.
     #[must_use]
     pub fn new(settings: Settings) -> Self {
         Self {
@@ -80,17 +80,17 @@ impl Sampler {
         }
     }
 
-    /// What became of the readings.
+    /// Counts of the readings.
     #[must_use]
     pub fn counters(&self) -> &SamplerCounters {
         &self.counters
     }
 
-    /// The sample of a reading. The angles of the gimbals are those of the unit, else the given ones,
-    /// for the end of the interval; without any the sample says so.
+    /// Makes the sample of a reading. The angles of the gimbals at the end of the interval are those of
+    /// the unit, else the given ones; without either, the sample's status marks them invalid.
     ///
-    /// Sequence number and time begin with the first reading: sample 1, which ends one period after
-    /// the start.
+    /// Sequence number and time begin with the first reading: sample 1, which ends one period after the
+    /// start.
     ///
     /// # Errors
     /// If the reading can't be used.
@@ -173,7 +173,8 @@ impl Sampler {
                 if passed == 0 {
                     return None;
                 }
-                // To the nearest; a reading that came early still is one more.
+                // Rounds to the nearest number of periods; a reading that came early still counts as
+                // one step.
                 ((passed + period_ns / 2) / period_ns).max(1)
             }
             _ => 1,

@@ -1,13 +1,13 @@
 //! SBG Systems' sbgECom: Ellipse, Ekinox, Apogee, Pulse.
 //!
 //! A frame is `0xFF 0x5A`, message, class, a length of two bytes, data, a CRC-16 over message to data,
-//! and `0x33`; everything is little-endian. Used are, of class 0, `SBG_ECOM_LOG_IMU_SHORT` (44) and the
-//! older `SBG_ECOM_LOG_IMU_DATA` (3).
+//! and `0x33`; everything is little-endian. The decoder uses, of class 0, `SBG_ECOM_LOG_IMU_SHORT` (44)
+//! and the older `SBG_ECOM_LOG_IMU_DATA` (3).
 //!
-//! What both call delta velocity and delta angle are the increments of the unit's coning and sculling
-//! divided by its interval: m/s² and rad/s. So a reading has means, with what coning and sculling add in
-//! them, and the interval, which isn't said, turns them into increments. Stamps are microseconds in 32
-//! bits, which begin anew every 71.6 minutes. There is no number of the reading.
+//! Delta velocity and delta angle of both are the increments of the unit's coning and sculling
+//! algorithm, divided by its interval: m/s² and rad/s. So a reading has means that include coning and
+//! sculling, and the interval, which isn't sent, turns them into increments. Stamps are microseconds in
+//! 32 bits, which roll over every 71.6 minutes. Readings have no number.
 
 use crate::bytes::{Frame, Reader};
 use crate::carry::Carry;
@@ -20,11 +20,11 @@ use octant_sample::Status;
 
 const SYNC: [u8; 2] = [0xFF, 0x5A];
 const END: u8 = 0x33;
-/// Sync, message, class, length.
+/// Size of sync, message, class and length.
 const HEADER_BYTES: usize = 6;
-/// CRC and end.
+/// Size of CRC and end.
 const TAIL_BYTES: usize = 3;
-/// The protocol has no longer data.
+/// Most data bytes of the protocol.
 const MAX_DATA_BYTES: usize = 4086;
 const MAX_BYTES: usize = HEADER_BYTES + MAX_DATA_BYTES + TAIL_BYTES;
 
@@ -34,13 +34,13 @@ const IMU_SHORT: u8 = 44;
 const IMU_DATA_BYTES: usize = 58;
 const IMU_SHORT_BYTES: usize = 32;
 
-/// What a count of `IMU_SHORT` is worth.
+/// Sizes of a count of `IMU_SHORT`.
 const ACCELERATION_LSB_MPS2: f64 = 1.0 / 1_048_576.0;
 const RATE_LSB_RADPS: f64 = 1.0 / 67_108_864.0;
 const RATE_HIGH_LSB_RADPS: f64 = 1.0 / 12_304_174.0;
 const TEMPERATURE_LSB_C: f32 = 1.0 / 256.0;
 
-// Bits of the status: set when all is well, but the last.
+// Bits of the status: all but the last are set in good condition.
 const COM_OK: u16 = 1 << 0;
 const STATUS_OK: u16 = 1 << 1;
 const ACCELEROMETERS_OK: u16 = 0b111 << 2;
@@ -48,10 +48,10 @@ const GYROS_OK: u16 = 0b111 << 5;
 const ACCELEROMETERS_IN_RANGE: u16 = 1 << 8;
 const GYROS_IN_RANGE: u16 = 1 << 9;
 const GYROS_USE_HIGH_SCALE: u16 = 1 << 10;
-/// The inertial values can be used.
+/// Bits that are set if the inertial values are valid.
 const USABLE: u16 = COM_OK | STATUS_OK | ACCELEROMETERS_OK | GYROS_OK;
 
-/// The protocol, with where its clock stands.
+/// SBG's protocol, with the state of its clock.
 #[derive(Clone, Copy, Debug)]
 pub struct Sbg {
     clock: Rollover,
@@ -128,7 +128,7 @@ impl Framing for Sbg {
                     return Err(unknown("length of IMU_DATA", data.len()));
                 }
                 let head = (fields.u32_le(), fields.u16_le());
-                // Accelerometers and gyros as they stood at the stamp: the means are better.
+                // The instantaneous values at the stamp are skipped, because the means are better.
                 fields.skip(24);
                 reading.temperature_c = Some(fields.f32_le());
                 let mut mean =
@@ -150,7 +150,7 @@ impl Framing for Sbg {
     }
 }
 
-/// Makes frames of `IMU_SHORT`.
+/// Encodes readings as frames of `IMU_SHORT`.
 #[derive(Clone, Debug)]
 pub struct Encoder {
     frame: Frame<{ HEADER_BYTES + IMU_SHORT_BYTES + TAIL_BYTES }>,
@@ -165,14 +165,14 @@ impl Default for Encoder {
 }
 
 impl Encoder {
-    /// Nothing sent yet.
+    /// Makes an encoder that has sent nothing.
     #[must_use]
     pub const fn new() -> Self {
         Self { frame: Frame::new(), rotation: Carry::new(), velocity: Carry::new() }
     }
 
-    /// The frame of a reading. What the counts leave over is carried to the next one; a stamp is cut
-    /// to a microsecond.
+    /// Encodes a reading as a frame, and carries the remainder of its counts to the next reading; the
+    /// stamp is truncated to a microsecond.
     ///
     /// # Errors
     /// If the reading lacks rotation, velocity or stamp, or has increments without an interval.
@@ -191,7 +191,7 @@ impl Encoder {
         clear(Status::GYRO_SATURATED, GYROS_IN_RANGE);
         clear(Status::ACCELEROMETER_SATURATED, ACCELEROMETERS_IN_RANGE);
         let mut rate_lsb = RATE_LSB_RADPS;
-        // Beyond 1833 °/s the unit changes the scale.
+        // Beyond 1833 °/s the unit uses another scale.
         let most = f64::from(i32::MAX) * RATE_LSB_RADPS;
         if rotation.iter().any(|rate| rate.abs() >= most) {
             status |= GYROS_USE_HIGH_SCALE;

@@ -1,18 +1,17 @@
-//! VectorNav's binary output: VN-100, VN-200, VN-300 and what speaks like them.
+//! VectorNav's binary output: VN-100, VN-200, VN-300 and compatible units.
 //!
 //! A frame is `0xFA`, a byte of groups, a 16-bit mask of fields for each group, the fields, and a
-//! CRC-16 with its high byte first; everything else is little-endian. What fields there are is
-//! configured in the unit (registers 75 to 77): any choice is read, as long as the common, time, IMU,
-//! GNSS, attitude and INS groups are asked for without the fields of variable length (satellites).
+//! CRC-16 with its high byte first; everything else is little-endian. The fields are configured in the
+//! unit (registers 75 to 77). Any choice is read, as long as the common, time, IMU, GNSS, attitude and
+//! INS groups are used without the fields of variable length (satellites).
 //!
-//! Used are, in this order: `DeltaTheta` (interval, rotation in degrees, velocity) of the common group;
-//! `DeltaTheta` and `DeltaVel` of the IMU group; `Imu` of the common group; `UncompAccel` and
-//! `UncompGyro` of the IMU group. `AngularRate` and `Accel` are not: the unit's own filter has taken its
-//! estimate of the biases out of them, and a calibration would look for what is gone. For the same reason
+//! The decoder uses, in this order: `DeltaTheta` (interval, rotation in degrees, velocity) of the
+//! common group; `DeltaTheta` and `DeltaVel` of the IMU group; `Imu` of the common group; `UncompAccel`
+//! and `UncompGyro` of the IMU group. `AngularRate` and `Accel` are not used: the unit's own filter has
+//! already subtracted its estimate of the biases, which a calibration has to find. For the same reason
 //! register 82 has to leave `DeltaTheta` uncompensated, in the body frame.
 //!
-//! Stamps are `TimeStartup`, else `TimeGps`. There is no number of the reading: a loss shows in the
-//! stamps alone.
+//! Stamps are `TimeStartup`, else `TimeGps`. Readings have no number: a loss shows in the stamps alone.
 
 use crate::bytes::{Frame, Reader};
 use crate::carry::Carry;
@@ -24,7 +23,7 @@ use octant_sample::Status;
 
 const SYNC: u8 = 0xFA;
 
-/// Bytes of each field of each group; zero: there is none, or its length varies.
+/// Size of each field of each group, bytes; zero: there is no such field, or its length varies.
 const FIELD_BYTES: [[u8; 15]; 7] = [
     // Common.
     [8, 8, 8, 12, 16, 12, 24, 12, 12, 24, 20, 28, 2, 4, 8],
@@ -42,12 +41,12 @@ const FIELD_BYTES: [[u8; 15]; 7] = [
     [8, 8, 2, 1, 1, 24, 24, 12, 12, 12, 4, 4, 2, 28, 0],
 ];
 
-/// All fields of all groups, the header and the CRC.
+/// Most bytes of a frame: all fields of all groups, the header and the CRC.
 const MAX_BYTES: usize = 1280;
 
 const _: () = assert!(longest() <= MAX_BYTES);
 
-/// Bytes of a frame with every field.
+/// Size of a frame with every field, bytes.
 const fn longest() -> usize {
     let (mut bytes, mut group) = (MAX_HEADER_BYTES + 2, 0);
     while group < FIELD_BYTES.len() {
@@ -61,7 +60,7 @@ const fn longest() -> usize {
     bytes
 }
 
-/// The longest header: every group.
+/// Size of the longest header, with every group, bytes.
 const MAX_HEADER_BYTES: usize = 2 + 2 * FIELD_BYTES.len();
 
 const DEGREE_RAD: f64 = core::f64::consts::PI / 180.0;
@@ -85,7 +84,7 @@ const IMU_SENS_SAT: u16 = 1 << 11;
 const SATURATED_ACCELEROMETER: u16 = 0b111 << 3;
 const SATURATED_GYRO: u16 = 0b111 << 6;
 
-/// The protocol.
+/// VectorNav's protocol.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct VectorNav;
 
@@ -98,14 +97,14 @@ struct Header {
     bytes: usize,
 }
 
-/// The header that bytes begin with.
+/// Reads the header at the beginning of bytes.
 fn header(bytes: &[u8]) -> Result<Header, Extent> {
     let groups = *bytes.get(1).ok_or(Extent::Open(1))?;
     // Bit 7 continues the groups with a second byte, which no unit has.
     if groups == 0 || groups & 0x80 != 0 {
         return Err(Extent::None);
     }
-    // The masks are there, or nothing can be said.
+    // Nothing can be said before all masks are there.
     let header_bytes = 2 + 2 * groups.count_ones() as usize;
     if bytes.len() < header_bytes {
         return Err(Extent::Open(header_bytes - bytes.len()));
@@ -118,7 +117,7 @@ fn header(bytes: &[u8]) -> Result<Header, Extent> {
         }
         let found = bytes.get(at..).and_then(|rest| rest.first_chunk::<2>()).ok_or(Extent::None)?;
         *mask = u16::from_le_bytes(*found);
-        // A group without a field, or with another word of fields.
+        // The group has no field, or a second word of fields.
         if *mask == 0 || *mask & 0x8000 != 0 {
             return Err(Extent::None);
         }
@@ -191,7 +190,7 @@ impl Framing for VectorNav {
                         means.common_velocity = Some(floats(&mut field));
                         means.common_rotation = Some(floats(&mut field));
                     }
-                    // What the common group says already is the same.
+                    // The field of the common group, if present, has the same values.
                     (IMU, IMU_DELTA_THETA) if reading.rotation.is_none() => {
                         reading.interval_s = Some(f64::from(field.f32_le()));
                         reading.rotation = Some(degrees(&mut field));
@@ -226,7 +225,7 @@ impl Framing for VectorNav {
     }
 }
 
-/// What is used when there are no increments.
+/// Values that are used if there are no increments.
 #[derive(Default)]
 struct Means {
     common_rotation: Option<[f64; 3]>,
@@ -243,7 +242,7 @@ fn degrees(field: &mut Reader<'_>) -> Measured {
     Measured::increment(floats(field).map(|degrees| degrees * DEGREE_RAD))
 }
 
-/// Makes frames as a unit does that is configured for `TimeStartup` and `DeltaTheta` of the common
+/// Encodes readings as a unit does that is configured for `TimeStartup` and `DeltaTheta` of the common
 /// group, `Temp` and `SensSat` of the IMU group.
 #[derive(Clone, Debug)]
 pub struct Encoder {
@@ -259,13 +258,14 @@ impl Default for Encoder {
 }
 
 impl Encoder {
-    /// Nothing sent yet.
+    /// Makes an encoder that has sent nothing.
     #[must_use]
     pub const fn new() -> Self {
         Self { frame: Frame::new(), rotation: Carry::new(), velocity: Carry::new() }
     }
 
-    /// The frame of a reading. What the 32-bit floats leave over is carried to the next one.
+    /// Encodes a reading as a frame, and carries the remainder of the 32-bit floats to the next
+    /// reading.
     ///
     /// # Errors
     /// If the reading lacks rotation, velocity, interval or stamp.

@@ -5,12 +5,13 @@
 //! an identifier of 16 bits, a length and data; the low bits of the identifier choose the precision:
 //! float, double, or fixed point with 12.20 or 16.32 bits.
 //!
-//! Used are `DeltaQ` and `DeltaV`, else `RateOfTurn` and `Acceleration`, else those with `HR`: packet
-//! counter, `SampleTimeFine` (0.1 ms), status word and temperature. `DeltaQ` becomes its rotation
-//! vector. The interval isn't said.
+//! The decoder uses `DeltaQ` and `DeltaV`, else `RateOfTurn` and `Acceleration`, else those with `HR`;
+//! packet counter, `SampleTimeFine` (0.1 ms), status word and temperature. `DeltaQ` becomes its
+//! rotation vector. The interval isn't sent.
 //!
-//! The checksum is a byte: of damaged frames one in 256 passes it. So the packets have to fill the frame
-//! exactly and each has to have the length of its kind, which leaves damage inside of one number.
+//! The checksum is one byte, so that one damaged frame in 256 passes it. So the packets have to fill
+//! the frame exactly, and each must have the length of its kind: only damage inside a number can go
+//! unnoticed.
 
 use crate::bytes::{Frame, Reader};
 use crate::carry::Carry;
@@ -22,7 +23,7 @@ use crate::{Clock, Measured, Reading, Stamp};
 use octant_sample::Status;
 
 const HEAD: [u8; 3] = [0xFA, 0xFF, 0x36];
-/// The protocol has no longer data.
+/// Most data bytes of the protocol.
 const MAX_DATA_BYTES: usize = 2048;
 const MAX_BYTES: usize = 6 + MAX_DATA_BYTES + 1;
 
@@ -39,14 +40,14 @@ const RATE_OF_TURN_HR: u16 = 0x8040;
 const STATUS_BYTE: u16 = 0xE010;
 const STATUS_WORD: u16 = 0xE020;
 
-/// Nanoseconds of a count of `SampleTimeFine`.
+/// Size of a count of `SampleTimeFine`, ns.
 const FINE_NS: u64 = 100_000;
 
-/// Bits of the status word: the accelerometers and the gyros that were out of range.
+/// Bits of the status word for accelerometers and gyros out of range.
 const CLIPPED_ACCELEROMETER: u32 = 0b111 << 8;
 const CLIPPED_GYRO: u32 = 0b111 << 11;
 
-/// The protocol, with where its counters stand.
+/// Xsens' protocol, with the state of its counters.
 #[derive(Clone, Copy, Debug)]
 pub struct Xsens {
     counter: Rollover,
@@ -62,7 +63,7 @@ impl Default for Xsens {
 /// Finds readings in a stream of bytes.
 pub type Decoder = crate::framing::Decoder<Xsens>;
 
-/// How the numbers of a packet are written.
+/// Format of a packet's numbers.
 #[derive(Clone, Copy)]
 enum Precision {
     Float,
@@ -167,7 +168,7 @@ impl Framing for Xsens {
     }
 }
 
-/// The packets of a frame that are used.
+/// Packets of a frame that the decoder uses.
 #[derive(Default)]
 struct Found {
     counter: Option<u16>,
@@ -184,7 +185,8 @@ struct Found {
 }
 
 impl Found {
-    /// `None` if the packets don't fill the data, or one hasn't the length of its kind.
+    /// Reads the packets; `None` if they don't fill the data, or one doesn't have the length of its
+    /// kind.
     fn read(mut rest: &[u8]) -> Option<Self> {
         let mut found = Self::default();
         while !rest.is_empty() {
@@ -237,20 +239,19 @@ impl Found {
     }
 }
 
-/// The rotation vector of a quaternion, scalar first, which rounding may have left a little longer or
-/// shorter than one.
+/// Rotation vector of a quaternion, scalar first, whose norm may differ from one by rounding.
 fn rotation(q: [f64; 4]) -> Measured {
     let [w, v @ ..] = q;
-    // q and −q are the same rotation: the shorter way.
+    // q and −q are the same rotation: take the shorter one.
     let sign = if w < 0.0 { -1.0 } else { 1.0 };
     let norm = libm::sqrt(v.iter().map(|v| v * v).sum());
-    // 2·atan2(n, w)/n, of which the limit is 2/w.
+    // 2·atan2(n, w)/n, whose limit is 2/w.
     let factor =
         if norm > 1e-9 { 2.0 * libm::atan2(norm, w * sign) / norm } else { 2.0 / (w * sign) };
     Measured::increment(v.map(|v| sign * factor * v))
 }
 
-/// The quaternion of a rotation vector, scalar first.
+/// Quaternion of a rotation vector, scalar first.
 fn quaternion(vector: [f64; 3]) -> [f64; 4] {
     let angle = libm::sqrt(vector.iter().map(|v| v * v).sum());
     let factor = if angle > 1e-9 { libm::sin(0.5 * angle) / angle } else { 0.5 };
@@ -258,8 +259,8 @@ fn quaternion(vector: [f64; 3]) -> [f64; 4] {
     [libm::cos(0.5 * angle), x, y, z]
 }
 
-/// Makes frames as a unit does that is configured for packet counter, `SampleTimeFine`, `DeltaQ` and
-/// `DeltaV` as floats, temperature and status word.
+/// Encodes readings as a unit does that is configured for packet counter, `SampleTimeFine`, `DeltaQ`
+/// and `DeltaV` as floats, temperature and status word.
 #[derive(Clone, Debug)]
 pub struct Encoder {
     frame: Frame<80>,
@@ -274,14 +275,14 @@ impl Default for Encoder {
 }
 
 impl Encoder {
-    /// Nothing sent yet.
+    /// Makes an encoder that has sent nothing.
     #[must_use]
     pub const fn new() -> Self {
         Self { frame: Frame::new(), rotation: Carry::new(), velocity: Carry::new() }
     }
 
-    /// The frame of a reading. What the 32-bit floats leave over is carried to the next one; a stamp
-    /// is cut to 0.1 ms.
+    /// Encodes a reading as a frame, and carries the remainder of the 32-bit floats to the next
+    /// reading; the stamp is truncated to 0.1 ms.
     ///
     /// # Errors
     /// If the reading lacks rotation, velocity, sequence or stamp, or has means without an interval.

@@ -1,10 +1,10 @@
-//! Damaged bytes never make a reading that wasn't sent, and cost only what they touch.
+//! Damaged bytes never make a reading that wasn't sent, and cost only the frames that they touch.
 
 use crate::common::{events, readings, streams};
 use octant_instruments::{AnyDecoder, Protocol, Reading};
 use proptest::prelude::*;
 
-/// The readings of a whole stream, to its end.
+/// Decodes a whole stream to its end.
 fn decode(protocol: Protocol, bytes: &[u8]) -> (Vec<Reading>, AnyDecoder) {
     let mut decoder = AnyDecoder::new(protocol);
     let mut all = events(&mut decoder, bytes);
@@ -17,8 +17,8 @@ fn decode(protocol: Protocol, bytes: &[u8]) -> (Vec<Reading>, AnyDecoder) {
     (readings(&all), decoder)
 }
 
-/// Every byte of a frame, with every other value: what is found is what was sent, and the frames before
-/// and after are all there.
+/// Replaces every byte of a frame by every other value: all readings found were sent, and the frames
+/// before and after are found.
 #[test]
 fn no_byte_of_a_frame_can_be_another_one() {
     for (protocol, frames) in streams(3) {
@@ -34,8 +34,8 @@ fn no_byte_of_a_frame_can_be_another_one() {
                 assert!(found.iter().all(|one| sent.contains(one)), "{context}: {found:?}");
                 assert!(found.contains(&sent[0]), "{context}: the one before is lost");
                 assert!(found.contains(&sent[2]), "{context}: the one after is lost");
-                // A capital letter in a hexadecimal number is the same number. And what follows a
-                // frame of ours is a zero, of which one is enough.
+                // A hexadecimal digit in the other case is the same number. And an Octant frame ends
+                // with a zero before another zero, one of which is enough.
                 if found.len() == 3 {
                     assert_eq!(found, sent, "{context}");
                 } else {
@@ -55,7 +55,7 @@ fn a_frame_that_is_cut_short_costs_itself() {
             let (found, _) = decode(protocol, &bytes);
             assert!(found.iter().all(|one| sent.contains(one)), "{protocol:?} {cut}");
             assert!(found.contains(&sent[0]), "{protocol:?} {cut}");
-            // Of our own frames the last byte is a zero, and the next one begins with one.
+            // An Octant frame ends with a zero, and the next one begins with one.
             assert!(found.contains(&sent[2]), "{protocol:?} {cut}: {found:?}");
             let tail = [&frames[1][cut..], &frames[2][..]].concat();
             assert!(decode(protocol, &tail).0.contains(&sent[2]), "{protocol:?} {cut}");
@@ -63,7 +63,7 @@ fn a_frame_that_is_cut_short_costs_itself() {
     }
 }
 
-/// The beginnings of long frames that never come, right before a frame.
+/// Beginnings of long frames that are never completed, right before a frame.
 #[test]
 fn a_sync_by_chance_costs_no_frame() {
     for (protocol, frames) in streams(40) {
@@ -92,7 +92,7 @@ fn a_sync_by_chance_costs_no_frame() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(200))]
 
-    /// Whatever happens to some bytes of a stream, the frames that it doesn't touch are read, in order.
+    /// Frames that the damage doesn't touch are read, in order.
     #[test]
     fn what_is_not_touched_is_read(
         strikes in proptest::collection::vec((any::<prop::sample::Index>(), 0..4u8, any::<u8>()), 0..6),
@@ -117,14 +117,14 @@ proptest! {
             for (sent, touched) in sent.iter().zip(&touched) {
                 prop_assert!(*touched || found.contains(sent), "{protocol:?}");
             }
-            // The checksum of one byte lets pass what two strikes in one frame balance.
+            // The one-byte checksum passes two errors in one frame that cancel each other.
             if protocol != Protocol::Xsens || strikes.len() < 2 {
                 prop_assert!(found.iter().all(|one| sent.contains(one)), "{protocol:?}");
             }
         }
     }
 
-    /// Bytes of no protocol at all: all are counted, and none makes a panic.
+    /// Arbitrary bytes are counted and cause no panic.
     #[test]
     fn any_bytes_are_counted(bytes in proptest::collection::vec(any::<u8>(), 0..3000)) {
         for protocol in Protocol::ALL {

@@ -21,7 +21,7 @@ sequence = { signal = "InstrumentSample_1.sequence" }
 stamp = { signal = "InstrumentSample_2.device_time_ns" }
 "#;
 
-/// A database as of a unit with two messages: one little-endian, one big-endian with floats beside.
+/// Database of a unit with two messages: one little-endian, one big-endian with floats.
 const UNIT_DBC: &str = r#"VERSION ""
 
 NS_ :
@@ -92,7 +92,8 @@ fn frame(frame: &can::Frame) -> CanFrame<'_> {
     CanFrame { id: frame.id().into(), extended: false, data: frame.data() }
 }
 
-/// Our own samples through our own database give the same readings as their decoder: bit for bit.
+/// Octant's samples, read through its own database, give the same readings as their decoder, bit for
+/// bit.
 #[test]
 fn our_own_database_reads_our_own_samples() {
     let mut gatherer = gatherer(OCTANT_DBC, OWN);
@@ -108,7 +109,7 @@ fn our_own_database_reads_our_own_samples() {
     assert_eq!((counters.readings, counters.missing, counters.other), (3, 2, 3));
 }
 
-/// Bits written one after the other, as the format's definition counts them.
+/// Writes bits in sequence, as the definition of the format counts them.
 fn put(data: &mut [u8], start: usize, size: usize, little_endian: bool, value: u64) {
     let mut bit = start;
     for i in 0..size {
@@ -117,7 +118,7 @@ fn put(data: &mut [u8], start: usize, size: usize, little_endian: bool, value: u
         bit = if little_endian {
             bit + 1
         } else if bit.is_multiple_of(8) {
-            // To the top of the next byte.
+            // Continues at the top of the next byte.
             bit + 15
         } else {
             bit - 1
@@ -174,7 +175,7 @@ proptest! {
         prop_assert_eq!(found[0].status, Status::empty());
     }
 
-    /// Whatever frames come: nothing panics, all are counted.
+    /// Arbitrary frames cause no panic, and all are counted.
     #[test]
     fn any_frames(bus in proptest::collection::vec(
         (prop_oneof![Just(291u32), Just(1060), any::<u32>()], any::<bool>(), proptest::collection::vec(any::<u8>(), 0..65)),
@@ -187,7 +188,7 @@ proptest! {
         prop_assert_eq!(gatherer.counters().frames, bus.len() as u64);
     }
 
-    /// A database with some bytes changed is read or refused, and so is its mapping.
+    /// A database with some changed bytes is read or refused, and so is a mapping that uses it.
     #[test]
     fn a_damaged_database(strikes in proptest::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..8)) {
         let mut bytes = UNIT_DBC.as_bytes().to_vec();
@@ -213,7 +214,7 @@ fn what_is_lost_makes_no_mixed_reading() {
     for number in 1..=40u64 {
         let (gyro, accel) = (gyro_of(number), accel_of(number));
         let found = match number {
-            // The second message lost, the first one, and the second together with the next first.
+            // Lost are the second message, the first one, and the second together with the next first.
             5 => send(&mut gatherer, Some(&gyro), None),
             9 => send(&mut gatherer, None, Some(&accel)),
             20 => send(&mut gatherer, Some(&gyro), None),
@@ -223,7 +224,7 @@ fn what_is_lost_makes_no_mixed_reading() {
         };
         expected += found.len();
         if let [reading] = found[..] {
-            // Continued across 15 of the counter, and 65535 of the clock.
+            // Both are continued, across 15 of the counter and 65535 of the clock.
             assert_eq!(reading.sequence, Some(number));
             assert_eq!(reading.stamp.unwrap().ns, number * 5_000_000);
             let ratio = reading.velocity.unwrap().value[0] / 0.01;
@@ -319,7 +320,7 @@ fn what_is_wrong_is_said_with_file_line_and_signal() {
         "{}",
         of("valid =", "walid =")
     );
-    // Rates beside increments.
+    // Rates are mixed with increments.
     let mixed = UNIT_DBC.replace(
         "rate_y : 26|18@1- (0.0025,0) [0|0] \"deg/s\"",
         "rate_y : 26|18@1- (0.0025,0) [0|0] \"deg\"",
@@ -339,7 +340,7 @@ fn a_file_that_is_no_database() {
     assert!(Database::parse("unit.dbc", "no database at all").is_err());
 }
 
-/// A signal of IEEE floats.
+/// Signals that are IEEE floats.
 #[test]
 fn floats() {
     let mapping = r#"
@@ -359,8 +360,7 @@ velocity = { x = "Float.choice", y = "Float.choice", z = "Float.choice", unit = 
     assert_eq!((velocity.kind, velocity.value), (Kind::Increment, [0.2; 3]));
 }
 
-/// The inputs that the fuzzer starts from and those it found; the former are written with
-/// `OCTANT_WRITE_FIXTURES=1`.
+/// Runs the fuzzer's seeds and findings; the seeds are written with `OCTANT_WRITE_FIXTURES=1`.
 #[test]
 fn the_corpus_of_the_fuzzer() {
     let mut seed = [UNIT_DBC, UNIT, ""].join("=====\n").into_bytes();

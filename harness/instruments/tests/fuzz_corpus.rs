@@ -1,5 +1,5 @@
-//! The inputs that the fuzzer starts from and those it found, through the same function without it. The
-//! former are written by this test with `OCTANT_WRITE_FIXTURES=1`.
+//! Runs the fuzzer's seeds and findings through the same function, without the fuzzer. The seeds are
+//! written by this test with `OCTANT_WRITE_FIXTURES=1`.
 #![allow(clippy::print_stdout, reason = "the last name printed is the file that fails")]
 
 #[path = "../../../fuzz/instruments.rs"]

@@ -1,4 +1,4 @@
-//! The tests of the protocols of inertial units, in one program.
+//! Tests of the protocols of inertial units, in one program.
 #![allow(clippy::unwrap_used)]
 
 mod common;

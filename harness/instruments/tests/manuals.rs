@@ -1,4 +1,4 @@
-//! Bytes that others wrote: examples from the makers' manuals, and recordings of their units.
+//! Bytes from other sources: examples in the makers' manuals, and recordings of their units.
 
 use crate::common::{events, only, readings, unhex};
 use octant_instruments::novatel::scale_of;
@@ -28,8 +28,8 @@ fn vectornav_examples_of_the_manual() {
     assert_eq!((decoder.counters().other, decoder.counters().checksum), (0, 1));
 }
 
-/// A frame after the tables of the manual (4.4, 4.6): interval, rotation in degrees and velocity of the common
-/// group, the CRC computed bit by bit as 3.8.3 does.
+/// A frame built from the tables of the manual (4.4, 4.6): interval, rotation in degrees and velocity
+/// of the common group, with the CRC computed bit by bit as in 3.8.3.
 #[test]
 fn vectornav_increments_after_the_tables() {
     let mut frame = unhex("FA 01 01 08");
@@ -54,8 +54,8 @@ fn vectornav_increments_after_the_tables() {
     assert_eq!((reading.sequence, reading.temperature_c), (None, None));
 }
 
-/// From the maker's own decoder library ("EDIE", its framer tests): the same epoch as a binary and as an
-/// ASCII log of an HG1700-AG58, made by a receiver.
+/// Logs from the maker's own decoder library ("EDIE", its framer tests): the same epoch as a binary and
+/// as an ASCII log of an HG1700-AG58, made by a receiver.
 #[test]
 fn novatel_binary_and_line_of_one_epoch() {
     let binary = unhex(
@@ -72,7 +72,7 @@ fn novatel_binary_and_line_of_one_epoch() {
     assert_eq!(reading.stamp, Some(Stamp { ns, clock: Clock::Gps }));
     assert_eq!(reading.status_word, Some(0x0080_1503));
     assert_eq!(reading.status, Status::empty());
-    // z, −y, x in the log; 2⁻³³ rad and 2⁻²⁷ ft/s a count.
+    // Axes are z, −y, x in the log; a count is 2⁻³³ rad and 2⁻²⁷ ft/s.
     let rad = 1.0 / (1u64 << 33) as f64;
     let mps = 0.3048 / (1u64 << 27) as f64;
     let rotation = reading.rotation.unwrap();
@@ -80,12 +80,12 @@ fn novatel_binary_and_line_of_one_epoch() {
     assert_eq!(rotation.value, [-9895.0, 41188.0, -215_194.0].map(|count| count * rad));
     let velocity = reading.velocity.unwrap().value;
     assert_eq!(velocity, [-202_184.0, 817_242.0, 43_110_635.0].map(|count| count * mps));
-    // At 100 Hz it shows gravity.
+    // At 100 Hz the increments show gravity.
     let g = velocity.iter().map(|v| (v * 100.0).powi(2)).sum::<f64>().sqrt();
     assert!((g - 9.81).abs() < 0.02, "{g}");
 }
 
-/// The ASCII example of the receiver's documentation (OEM7, log RAWIMUSX): type 41, which is an Epson G320
+/// ASCII example of the receiver's documentation (OEM7, log RAWIMUSX): type 41, which is an Epson G320
 /// at 125 Hz.
 #[test]
 fn novatel_example_of_the_documentation() {
@@ -107,21 +107,21 @@ fn novatel_example_of_the_documentation() {
     near(rotation[0], -1_000_837.0 * scale.rotation_rad);
     near(rotation[1], -417_138.0 * scale.rotation_rad);
     near(rotation[2], 196_192.0 * scale.rotation_rad);
-    // The documented units: (0.008/65536)/125 °, (0.200/65536)·(9.80665/1000)/125 m/s. It rested: gravity,
-    // and a MEMS gyro's bias of some hundredths of a degree a second.
+    // Documented units: (0.008/65536)/125 °, (0.200/65536)·(9.80665/1000)/125 m/s. The unit was at
+    // rest: gravity, and a MEMS gyro's bias of some hundredths of a degree a second.
     let g = velocity.iter().map(|v| (v * 125.0).powi(2)).sum::<f64>().sqrt();
     assert!((g - 9.8).abs() < 0.07, "{g}");
     let rate = rotation.map(|increment| (increment * 125.0).to_degrees());
     assert!(rate.iter().all(|rate| rate.abs() < 0.2), "{rate:?}");
-    // The sum of the line without its CRC and end is right to the letter: another one isn't.
+    // The CRC of the line is correct as printed; a changed line fails.
     let mut other = line.to_vec();
     other[60] = b'1';
     let mut decoder = AnyDecoder::new(Protocol::NovAtel);
     assert!(readings(&events(&mut decoder, &other)).is_empty());
 }
 
-/// A recording of an MTi at 400 Hz with increments, published with a decoder of others together with its
-/// values as the maker's software shows them.
+/// Recording of an MTi at 400 Hz with increments, published with a third-party decoder together with
+/// the values that the maker's software shows.
 #[test]
 fn xsens_increments_of_a_recorded_unit() {
     let bytes = unhex(
@@ -137,14 +137,14 @@ fn xsens_increments_of_a_recorded_unit() {
     let velocity = reading.velocity.unwrap();
     let expected = [8.416175842285156e-05, -0.00010259449481964111, 0.024537160992622375];
     assert_eq!((velocity.kind, velocity.value), (Kind::Increment, expected));
-    // Twice the vector part over the scalar, 1 + 2⁻²³: the next term is 1e-11 of it.
+    // Twice the vector part over the scalar, 1 + 2⁻²³: the next term is smaller by 1e-11.
     let rotation = reading.rotation.unwrap();
     let q = [-2.186745632570819e-06, -5.884096026420593e-06, -2.0600855350494385e-06];
     for (axis, q) in q.into_iter().enumerate() {
         let expected = 2.0 * q / 1.0000001192092896;
         assert!((rotation.value[axis] - expected).abs() < 1e-10 * q.abs(), "{axis}");
     }
-    // The frame has acceleration and rate of turn too: times 1/400 s they are the increments.
+    // The frame also has acceleration and rate of turn: times 1/400 s they equal the increments.
     let acceleration = [0.03378037363290787, -0.04108057916164398, 9.814864158630371];
     let rate = [-0.0017493965569883585, -0.0047072782181203365, -0.0016480687772855163];
     for axis in 0..3 {
@@ -153,7 +153,7 @@ fn xsens_increments_of_a_recorded_unit() {
     }
 }
 
-/// A recorded frame with quaternion, time, status and counter alone, and the smallest frame, which the
+/// A recorded frame with quaternion, time, status and counter only, and the smallest frame, which the
 /// maker's protocol document shows for other messages.
 #[test]
 fn xsens_frames_without_a_reading() {
@@ -168,7 +168,7 @@ fn xsens_frames_without_a_reading() {
     }
 }
 
-/// A recorded frame with rate and acceleration alone: means.
+/// A recorded frame with rate and acceleration only: means.
 #[test]
 fn xsens_means_of_a_recorded_unit() {
     let bytes = unhex(
@@ -184,9 +184,9 @@ fn xsens_means_of_a_recorded_unit() {
     assert_eq!(rotation.value[0], f64::from(f32::from_bits(0xBBAA_5C80)));
 }
 
-/// SBG publishes the layout of its frames (sbgECom, "Binary Protocol") without an example. This one is
-/// written here by hand from the table of `SBG_ECOM_LOG_IMU_SHORT`, its CRC computed bit by bit from the
-/// documented polynomial.
+/// SBG publishes the layout of its frames (sbgECom, "Binary Protocol") without an example. This frame
+/// is written by hand from the table of `SBG_ECOM_LOG_IMU_SHORT`, with its CRC computed bit by bit from
+/// the documented polynomial.
 #[test]
 fn sbg_frame_after_the_table() {
     let mut bare = unhex("2C 00 20 00");

@@ -1,4 +1,4 @@
-//! Decoding, encoding and sampling allocate nothing, damaged or not.
+//! Decoding, encoding and sampling allocate nothing, also for damaged input.
 #![allow(unsafe_code, reason = "an allocator that counts is unsafe by its trait")]
 
 use crate::common;
@@ -13,11 +13,11 @@ thread_local! {
 
 struct Counting;
 
-// SAFETY: every call goes on to the system's allocator as it came.
+// SAFETY: every call is passed on unchanged to the system's allocator.
 unsafe impl GlobalAlloc for Counting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         COUNT.with(|count| count.set(count.get() + 1));
-        // SAFETY: the caller keeps the contract of `alloc`, which is this one.
+        // SAFETY: the caller keeps the contract of `alloc`, which is the same here.
         unsafe { System.alloc(layout) }
     }
 
@@ -39,7 +39,7 @@ fn nothing_is_allocated() {
         let mut sampler = Sampler::new(Settings { axes: Axes::SAME, period_ns: 5_000_000 });
         for number in 1..=200 {
             let frame = encoder.encode(&common::reading(number)).unwrap();
-            // Each tenth is cut in two, each seventh has garbage before it.
+            // Each tenth frame is cut in two, each seventh has garbage before it.
             if number % 7 == 0 {
                 black_box(decoder.next(&mut &[0xFF, 0x5A, 0xFA, 0xAA, 0x44, 0][..]));
             }
@@ -61,7 +61,7 @@ fn nothing_is_allocated() {
     }
     assert_eq!(COUNT.with(Cell::get) - before, 0);
     assert_eq!(samples, 5 * 200);
-    // And it would have been noticed.
+    // The counter does notice an allocation.
     black_box(vec![0u8; 10]);
     assert!(COUNT.with(Cell::get) > before);
 }

@@ -1,4 +1,4 @@
-//! What goes in comes out, however the bytes are cut.
+//! A reading survives encoding and decoding, however the bytes are cut.
 
 use crate::common::{self, events, readings, streams};
 use octant_instruments::{
@@ -7,10 +7,11 @@ use octant_instruments::{
 use octant_sample::Status;
 use proptest::prelude::*;
 
-/// What a protocol's resolution may change in an increment over 5 ms, and in the sum of all.
+/// Largest error by a protocol's resolution, in an increment over 5 ms and in the sum of all.
 fn resolution(protocol: Protocol) -> (f64, f64) {
     match protocol {
-        // Floats with 24 bits, of up to 0.1 rad and 1 m/s; the carried remainder adds as much again.
+        // Floats with 24 bits, of up to 0.1 rad and 1 m/s; the carried remainder adds the same error
+        // again.
         Protocol::VectorNav | Protocol::Xsens => (1.2e-8, 1.2e-7),
         // 2⁻³³ rad and 2⁻²⁹ m/s.
         Protocol::NovAtel => (1.2e-10, 1.9e-9),
@@ -54,7 +55,7 @@ proptest! {
             let mut first = None;
             for (number, told) in told.iter().enumerate() {
                 let number = number as u64;
-                // On a grid that all of them have.
+                // Times on a grid that all protocols can represent.
                 let ns = (start + number) * 5_000_000;
                 let stamp = Some(Stamp { ns, clock: Clock::Startup });
                 let told = Reading { sequence: Some(start + number), stamp, ..*told };
@@ -70,11 +71,11 @@ proptest! {
                         let off = said[axis] - told[axis];
                         prop_assert!(off.abs() <= limit, "{protocol:?} {off}");
                         sums[which][axis] += off;
-                        // The sum follows: nothing is lost to the resolution.
+                        // The sum follows: the resolution loses nothing.
                         prop_assert!(sums[which][axis].abs() <= limit, "{protocol:?} {sums:?}");
                     }
                 }
-                // Time and number go on from wherever they began.
+                // Time and number continue from any start.
                 let stamp = said.stamp.unwrap();
                 let (number_first, ns_first) = *first.get_or_insert((said.sequence, stamp.ns));
                 prop_assert_eq!(stamp.ns - ns_first, number * 5_000_000);
@@ -148,7 +149,7 @@ fn names_are_those_of_protocols() {
     assert_eq!(Protocol::of_name("nmea"), None);
 }
 
-/// Fixed point of both widths and double, as the maker's document defines them.
+/// Fixed point of both widths and double, as defined in the maker's document.
 #[test]
 fn xsens_numbers_of_every_precision() {
     let frame = |identifier: u16, numbers: &[&[u8]]| {
@@ -167,7 +168,7 @@ fn xsens_numbers_of_every_precision() {
     let fixed12 = values.map(|v| ((v * f64::from(1 << 20)) as i32).to_be_bytes());
     let fixed16 = values.map(|v| {
         let all = ((v * (1u64 << 32) as f64) as i64).to_be_bytes();
-        // The fraction, then the whole.
+        // The fraction comes first, then the integer part.
         [all[4], all[5], all[6], all[7], all[2], all[3]]
     });
     let slices = |all: &[[u8; 4]; 3]| all.map(|one| one.to_vec());
@@ -183,7 +184,7 @@ fn xsens_numbers_of_every_precision() {
         assert_eq!((velocity.kind, velocity.value), (Kind::Increment, values), "{precision}");
         let reading = common::only(Protocol::Xsens, &frame(0x8020 | precision | 4, &numbers));
         assert_eq!(reading.rotation.unwrap().value, values);
-        // A length that isn't that of its kind is no frame.
+        // A packet whose length isn't that of its kind is no frame.
         let short = frame(0x4010 | precision, &numbers[..2]);
         let mut decoder = AnyDecoder::new(Protocol::Xsens);
         assert!(readings(&events(&mut decoder, &short)).is_empty());
@@ -191,7 +192,7 @@ fn xsens_numbers_of_every_precision() {
     }
 }
 
-/// A half turn either way, and a quaternion with the other sign.
+/// Rotations of up to nearly half a turn, and a quaternion with the other sign.
 #[test]
 fn xsens_rotations_of_any_size() {
     for angle in [1e-12, 1e-7, 0.3, 3.0] {
@@ -204,7 +205,7 @@ fn xsens_rotations_of_any_size() {
             let mut frame = encoder.encode(&told).unwrap().to_vec();
             let said = common::only(Protocol::Xsens, &frame).rotation.unwrap().value;
             assert!((said[axis] - angle).abs() <= 3e-7 * angle, "{angle} {said:?}");
-            // −q is the same rotation: the sign bits of the four floats.
+            // −q is the same rotation: flip the sign bits of the four floats.
             let at = frame.windows(3).position(|three| three == [0x80, 0x30, 16]).unwrap() + 3;
             for number in 0..4 {
                 frame[at + 4 * number] ^= 0x80;
@@ -219,7 +220,7 @@ fn xsens_rotations_of_any_size() {
     }
 }
 
-/// Clocks and counters begin anew, readings don't.
+/// Clocks and counters roll over, readings don't.
 #[test]
 fn counters_roll_over() {
     for (protocol, start) in [(Protocol::Xsens, 65_500), (Protocol::Sbg, 858_993_400)] {
@@ -238,7 +239,7 @@ fn counters_roll_over() {
     }
 }
 
-/// Beyond 1833 °/s SBG's scale changes.
+/// Beyond 1833 °/s, SBG uses another scale.
 #[test]
 fn sbg_high_range() {
     let told = Reading {

@@ -1,4 +1,4 @@
-//! Readings to samples: counts with remainders, axes, numbers and time.
+//! Conversion of readings to samples: counts with remainders, axes, numbers and time.
 
 use crate::common::{self, frames, only, reading};
 use octant_instruments::{Axes, Measured, Protocol, Reading, Sampler, Settings, Stamp, Unusable};
@@ -12,10 +12,11 @@ fn sampler(axes: &str) -> Sampler {
     Sampler::new(Settings { axes: Axes::parse(axes).unwrap(), period_ns: PERIOD_NS })
 }
 
-/// A constant rate far below a count: the sum of the counts is the closed form, within half a count.
+/// The rate is constant and far below a count: the sum of the counts equals the closed form within half
+/// a count.
 #[test]
 fn counts_follow_the_integral() {
-    // The rotation of the Earth at a latitude of 30°, down in the unit is z.
+    // Rotation of the Earth at a latitude of 30°; down is the unit's z.
     let (rate, g) = (7.292115e-5 * 0.5, -9.793);
     let mut sampler = sampler("x y z");
     let mut sums = [0i64; 2];
@@ -39,7 +40,7 @@ fn counts_follow_the_integral() {
 }
 
 proptest! {
-    /// A sample that goes out on our own wire comes back as it was, count for count.
+    /// A sample sent over the Octant wire is received unchanged, count for count.
     #[test]
     fn counts_are_exact_on_our_own_wire(
         all in proptest::collection::vec(any::<([i32; 3], [i32; 3], i32, i32)>(), 1..30),
@@ -65,7 +66,7 @@ proptest! {
 
 #[test]
 fn the_unit_is_turned_to_the_body() {
-    // Mounted upside down and a quarter turn: body x is the unit's −y.
+    // Mounted upside down with a quarter turn: body x is the unit's −y.
     let mut sampler = sampler("-y -x -z");
     let told = Reading {
         rotation: Some(Measured::increment([1e-3, 2e-3, 3e-3])),
@@ -86,9 +87,9 @@ fn the_unit_is_turned_to_the_body() {
 
 #[test]
 fn gaps_show_in_number_and_time() {
-    // By sequence number.
+    // Gaps found by sequence number.
     let mut with_number = sampler("x y z");
-    // By stamps alone.
+    // Gaps found by stamps alone.
     let mut with_stamp = sampler("x y z");
     for (told, expected) in [(100, 1), (101, 2), (105, 6), (106, 7)] {
         let told = reading(told);
@@ -114,7 +115,7 @@ fn gaps_show_in_number_and_time() {
         let told = Reading { sequence: None, stamp, ..reading(number) };
         assert_eq!(jittering.sample(&told, None).unwrap().sequence, number);
     }
-    // Neither: one after the other.
+    // Without number and stamp, readings are numbered consecutively.
     let mut blind = sampler("x y z");
     for number in 1..10 {
         let told = Reading { sequence: None, stamp: None, ..reading(number) };
@@ -146,7 +147,7 @@ fn what_cannot_be_used_is_said() {
     );
 }
 
-/// Through each protocol the sums of the counts agree with those of what was told.
+/// With each protocol, the sums of the counts agree with those of the true increments.
 #[test]
 fn every_protocol_makes_the_same_samples() {
     for protocol in Protocol::ALL {
@@ -163,7 +164,7 @@ fn every_protocol_makes_the_same_samples() {
             sums[1] += f64::from(sample.delta_velocity[2]) * DELTA_VELOCITY_LSB_MPS
                 - told.velocity.unwrap().value[2];
         }
-        // Half a count of the sample and a unit of the protocol's own resolution.
+        // Tolerance: half a count of the sample plus one unit of the protocol's resolution.
         assert!(sums[0].abs() < 2e-10 && sums[1].abs() < 1e-8, "{protocol:?} {sums:?}");
     }
 }

@@ -1,24 +1,24 @@
-//! After how long what wasn't answered is asked for again.
+//! Intervals at which an unanswered request is sent again.
 //!
-//! A question that is lost has to come again soon. One that isn't lost but late, of a device that is
-//! slow, on a host that is busy, lies on the line beside the repeated one, and both are answered: asked
-//! again always as soon, such a device gets further behind with each step until no answer comes in time.
-//! So each time it takes longer until it is asked again, and a device that was late each of the last
-//! steps is given twice the time that it took.
+//! A lost request must be repeated soon. A request that is only late, because the device is slow or the
+//! host busy, stays queued beside its repetition, and both are answered. Repeated at a constant
+//! interval, a slow device would fall further behind with each step until no answer came in time. So
+//! the interval doubles with each repetition, and a device that was late in all of the last steps gets
+//! twice the time that its fastest answer took.
 
 use std::time::Duration;
 
-/// Steps of which the fastest tells how slow a device is: of so many one got through at once, however
-/// bad the line is.
+/// Number of steps whose fastest answer is taken as the speed of the device: even on a bad line, one of
+/// so many gets through without loss.
 const STEPS: usize = 4;
 
-/// The least number of times that something is asked for before it is given up.
+/// Least number of times that a request is sent before the harness gives up.
 const TIMES: u32 = 16;
 
-/// No line is so slow that more of them helps.
+/// Longest interval: no line is so slow that a longer one helps.
 const LONGEST: Duration = Duration::from_secs(2);
 
-/// How long the last answers took.
+/// Durations of the last answers.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Taken {
     last: [Duration; STEPS],
@@ -26,22 +26,23 @@ pub(crate) struct Taken {
 }
 
 impl Taken {
-    /// An answer came.
+    /// Records the duration of an answer.
     pub(crate) fn add(&mut self, took: Duration) {
         self.last[self.next] = took;
         self.next = (self.next + 1) % STEPS;
     }
 
-    /// How the next one is asked for: after `repeat` or later, and given up after `answer`.
+    /// Intervals for the next request: the first is `repeat` or longer, and the harness gives up after
+    /// `answer`.
     pub(crate) fn ask(&self, repeat: Duration, answer: Duration) -> Intervals {
         let fastest = self.last.iter().min().copied().unwrap_or_default();
-        // Some times there have to be, whatever was before.
+        // The bound `answer / 4` leaves room for some repetitions, however slow the last steps were.
         let first = (2 * fastest).min(answer / 4).max(repeat);
         Intervals { now: first, longest: (answer / TIMES).min(LONGEST).max(first) }
     }
 }
 
-/// Times from one question to the next.
+/// Times from one request to its repetition.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Intervals {
     now: Duration,
@@ -49,12 +50,12 @@ pub(crate) struct Intervals {
 }
 
 impl Intervals {
-    /// After this long it is asked again.
+    /// Time until the request is repeated.
     pub(crate) fn now(&self) -> Duration {
         self.now
     }
 
-    /// It was asked again.
+    /// Records a repetition, which doubles the interval.
     pub(crate) fn again(&mut self) {
         self.now = (2 * self.now).min(self.longest);
     }
@@ -66,8 +67,9 @@ mod tests {
 
     const REPEAT: Duration = Duration::from_millis(200);
 
-    /// What a step takes of a device that works on each question for so long, the ones before it first;
-    /// and how many of its questions lie on the line when it is answered. `None`: it is given up.
+    /// Duration of a step on a device that works for `works` on each request, `before` earlier ones
+    /// first, and the number of requests still queued when the step is answered. `None`: the harness
+    /// gives up.
     fn step(
         mut intervals: Intervals,
         works: Duration,
@@ -84,7 +86,7 @@ mod tests {
         (took < answer).then_some((took, asked - 1))
     }
 
-    /// The longest that one of many steps took.
+    /// Longest duration among 100 steps.
     fn slowest(works: Duration, answer: Duration) -> Option<Duration> {
         let (mut taken, mut before, mut slowest) = (Taken::default(), 0, Duration::ZERO);
         for k in 0..100 {
@@ -104,7 +106,7 @@ mod tests {
             let slowest = slowest(works, answer);
             assert!(slowest.is_some_and(|slowest| slowest < answer), "{works:?}: {slowest:?}");
         }
-        // With what is waited by default.
+        // Uses the default patience.
         for works_ms in [100, 201, 300, 400] {
             let works = Duration::from_millis(works_ms);
             assert!(slowest(works, Duration::from_secs(5)).is_some(), "{works:?}");
@@ -115,7 +117,7 @@ mod tests {
     fn a_lossy_line_is_asked_as_often_as_ever() {
         let answer = Duration::from_secs(5);
         let mut taken = Taken::default();
-        // Three of four got lost: the fourth tells that the device is fast.
+        // Three of four answers are delayed by loss: the fourth shows that the device is fast.
         for took_ms in [900, 5, 700, 600, 1100, 6, 800] {
             taken.add(Duration::from_millis(took_ms));
             let mut intervals = taken.ask(REPEAT, answer);
@@ -132,7 +134,7 @@ mod tests {
 
     #[test]
     fn what_is_told_is_kept() {
-        // Longer than all that is computed.
+        // The configured interval is longer than any computed one.
         let repeat = Duration::from_secs(7);
         let mut intervals = Taken::default().ask(repeat, Duration::from_secs(5));
         assert_eq!(intervals.now(), repeat);

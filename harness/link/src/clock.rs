@@ -1,60 +1,60 @@
-//! How far two clocks are apart, and how fast they drift.
+//! Offset and drift of one clock against another.
 //!
-//! Each exchange of the time gives an offset, and a bound of its error: half of the time that was spent
-//! on the way. What was delayed least is wrong by least. So of each stretch of time the exchange with
-//! the least delay is kept, and a line is laid through those.
+//! Each exchange of the time gives an offset and a bound of its error: half of the round-trip delay.
+//! The exchange with the least delay has the least error. So the best exchange of each stretch of time
+//! is kept, and a line is fitted through those.
 
 use octant_wire::message::{ClockTime, TimeReply};
 
-/// The four stamps of an exchange.
+/// Four timestamps of one exchange.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Stamps {
-    /// Sent by the harness, received and sent back by the other end.
+    /// Timestamps of the harness's sending and of the other end's receiving and answering.
     pub reply: TimeReply,
-    /// Received by the harness, by its own clock.
+    /// Reception by the harness, by its own clock.
     pub harness_received: ClockTime,
 }
 
-/// What is known of the other clock.
+/// Estimate of the other clock.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Estimate {
-    /// How far the other clock is ahead, at the time of the last exchange, ns.
+    /// Offset by which the other clock is ahead at the time of the last exchange, ns.
     pub offset_ns: f64,
-    /// By how much the offset may be wrong, ns: half of the least delay.
+    /// Bound of the error of the offset, ns: half of the least delay.
     pub bound_ns: f64,
-    /// By how much the other clock goes faster, 1: with `skew` 1e-6 it gains a microsecond a second.
-    /// `None` until there are exchanges from two stretches of time.
+    /// Relative rate by which the other clock is fast, 1: with `skew` 1e-6 it gains a microsecond a
+    /// second. `None` until there are exchanges from two stretches of time.
     pub skew: Option<f64>,
-    /// Least delay of an exchange, both ways, without the time that the other end took, ns.
+    /// Least round-trip delay of an exchange, without the other end's processing time, ns.
     pub delay_min_ns: f64,
-    /// Exchanges that were taken.
+    /// Exchanges accepted.
     pub exchanges: u64,
-    /// Exchanges whose stamps contradict each other, and were not.
+    /// Exchanges rejected because their timestamps contradict each other.
     pub contradictory: u64,
 }
 
-/// Stretches of which the best exchange is kept.
+/// Number of stretches of which the best exchange is kept.
 const STRETCHES: usize = 64;
 
-/// The best exchange of a stretch.
+/// Best exchange of a stretch.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Best {
     /// Middle of the exchange by the harness's clock, ns since the first one.
     at_ns: f64,
-    /// Offset, ns since that of the first one.
+    /// Offset, ns, relative to that of the first exchange.
     offset_ns: f64,
     delay_ns: f64,
 }
 
-/// Finds offset and skew from exchanges. It takes no memory while it does.
+/// Estimates offset and skew from exchanges, without allocating.
 #[derive(Clone, Debug)]
 pub struct ClockEstimator {
     stretch_ns: f64,
     origin: Option<(u64, i128)>,
     best: [Best; STRETCHES],
-    /// How many of them are in use.
+    /// Number of entries of `best` in use.
     used: usize,
-    /// Number of the stretch that is filled now.
+    /// Number of the stretch being filled.
     current: u64,
     last: Best,
     exchanges: u64,
@@ -62,7 +62,7 @@ pub struct ClockEstimator {
 }
 
 impl ClockEstimator {
-    /// Keeps the best exchange of each `stretch_s`, of the last 64 of them.
+    /// Keeps the best exchange of each stretch of `stretch_s` seconds, for the last 64 stretches.
     #[must_use]
     pub fn new(stretch_s: f64) -> Self {
         Self {
@@ -77,7 +77,7 @@ impl ClockEstimator {
         }
     }
 
-    /// Takes an exchange.
+    /// Takes an exchange, and counts it as contradictory if its timestamps are.
     pub fn add(&mut self, stamps: &Stamps) {
         let found = stamps.reply.offset(stamps.harness_received);
         let there_and_back = stamps.harness_received >= stamps.reply.harness_sent
@@ -96,7 +96,7 @@ impl ClockEstimator {
             delay_ns: 2.0 * found.error_ns as f64,
         };
         self.last = exchange;
-        // Exchanges come in order, by the harness's own clock.
+        // Exchanges come in the order of the harness's own clock.
         let stretch = (exchange.at_ns.max(0.0) / self.stretch_ns) as u64;
         if self.used == 0 || stretch > self.current {
             if self.used == STRETCHES {
@@ -111,13 +111,13 @@ impl ClockEstimator {
         }
     }
 
-    /// What is known now; `None` before the first exchange.
+    /// Present estimate; `None` before the first exchange.
     #[must_use]
     pub fn estimate(&self) -> Option<Estimate> {
         let (_, origin_offset) = self.origin?;
         let best = &self.best[..self.used];
         let delay_min_ns = best.iter().map(|b| b.delay_ns).fold(f64::INFINITY, f64::min);
-        // Those with more than twice the least delay say little: their error is that of the way.
+        // Exchanges far above the least delay get a small weight: their error is that of the path.
         let weight = |b: &Best| {
             let excess = b.delay_ns - delay_min_ns;
             let scale = 0.5 * delay_min_ns + 1e3;
@@ -145,7 +145,8 @@ impl ClockEstimator {
 mod tests {
     use super::*;
 
-    /// An exchange at a time, s, of a clock that is ahead and faster, with delays there and back, ns.
+    /// Exchange at a time, s, with a clock that is ahead by `ahead_ns` and fast by `skew`, with the
+    /// delays there and back, ns.
     fn exchange(at_s: f64, ahead_ns: f64, skew: f64, there_ns: f64, back_ns: f64) -> Stamps {
         let start = 1e12;
         let t1 = start + at_s * 1e9;
@@ -195,7 +196,7 @@ mod tests {
 
     #[test]
     fn the_offset_is_within_its_bound() {
-        // All of the delay on one way: the worst case.
+        // Worst case: all of the delay is on one way.
         let mut clock = ClockEstimator::new(1.0);
         clock.add(&exchange(0.0, 1e6, 0.0, 200e3, 0.0));
         let found = clock.estimate().unwrap();

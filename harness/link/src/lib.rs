@@ -1,16 +1,16 @@
 //! Live endpoints: the ports that messages of [`octant_wire`] cross, and the two ends of a session.
 //!
-//! - [`uri`]: what a port is called: `serial:/dev/ttyUSB0?baud=921600`, `can:can0`, `udp:host:port`.
-//! - [`port`]: ports as they are: lines of bytes, datagrams, CAN frames.
-//! - [`wire`]: messages across a port, and counts of what was lost on it.
-//! - [`harness`]: the end that tests: it sends samples and gets outputs.
-//! - [`device`]: the end that is tested: it steps a core on each sample, and never twice.
-//! - [`clock`]: how far two clocks are apart, and how fast they drift.
-//! - [`fault`]: what can go wrong on a wire, done on purpose.
+//! - [`uri`]: names of ports: `serial:/dev/ttyUSB0?baud=921600`, `can:can0`, `udp:host:port`.
+//! - [`port`]: open ports: lines of bytes, datagrams, CAN frames.
+//! - [`wire`]: messages across a port, and counts of losses.
+//! - [`harness`]: the harness end: sends samples and receives outputs.
+//! - [`device`]: the device end: steps a core once for each sample, never twice.
+//! - [`clock`]: offset and drift of the other end's clock.
+//! - [`fault`]: faults injected on a wire.
 //! - [`load`]: whether a line or bus carries a sample rate, before anything is sent.
 //!
-//! In lock-step nothing is ever lost: what isn't answered is asked for again. So the outputs are the
-//! same to the last bit over every line, however bad it is.
+//! In lock-step no step is lost: an unanswered request is repeated. So the outputs are bit-identical
+//! over every line, however bad it is.
 
 mod asking;
 pub mod clock;

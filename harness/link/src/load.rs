@@ -5,21 +5,21 @@ use octant_wire::can::{self, Bus, Format};
 use octant_wire::serial::{Baud, LineLoad};
 use octant_wire::traffic::Traffic;
 
-/// Share of a line or bus that may be in use.
+/// Highest permitted utilization of a line or bus, 1.
 pub const LIMIT: f64 = 0.9;
 
-/// What the traffic makes of a port.
+/// Load of a port.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Load {
-    /// A serial line, both ways on wires of their own.
+    /// Load of a serial line, which has a wire for each direction.
     Line(LineLoad),
-    /// A bus.
+    /// Load of a bus.
     Bus(Bus, can::Load),
-    /// It has no bit rate: a pseudo terminal, UDP, a virtual bus.
+    /// The port has no bit rate: a pseudo terminal, UDP, a virtual bus.
     Unlimited,
 }
 
-/// Why a port can't carry what is asked for.
+/// Error of a port that is too slow.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum LoadError {
     /// The line is too slow.
@@ -30,13 +30,13 @@ pub enum LoadError {
         100.0 * load.to_harness, 100.0 * LIMIT
     )]
     Line {
-        /// Bits a second.
+        /// Bit rate of the line, bit/s.
         baud: u32,
-        /// Sample rate.
+        /// Sample rate, Hz.
         rate_hz: f64,
-        /// What it makes of the line.
+        /// Load of the line.
         load: LineLoad,
-        /// A rate that carries it.
+        /// Sufficient bit rate, bit/s.
         fits_baud: u32,
     },
     /// The bus is too slow.
@@ -44,17 +44,17 @@ pub enum LoadError {
     Bus(#[from] can::Overload),
 }
 
-/// The load that a session in real time makes, if the port carries it. `bus` is what the interface of
-/// `can:` says of itself, where the URI says nothing.
+/// Load of a session in real time, if the port can carry it. `bus` are the rates reported by the
+/// interface of `can:`, used where the URI names none.
 ///
 /// # Errors
-/// If it can't.
+/// If the port is too slow.
 pub fn real_time(uri: &Uri, sample_rate_hz: f64, bus: Option<Bus>) -> Result<Load, LoadError> {
     let traffic = Traffic::session(sample_rate_hz);
     let bus = match uri {
         Uri::Serial(serial) => return line(serial.baud, &traffic),
         Uri::Pty { .. } | Uri::Udp(_) => return Ok(Load::Unlimited),
-        // The line of an adapter is USB, whatever rate it was given.
+        // The line of an adapter is USB, whatever baud rate it was given.
         Uri::Slcan(slcan) => Some(slcan.bus),
         Uri::Can(can) => named_bus(can).or(bus),
     };
@@ -64,7 +64,7 @@ pub fn real_time(uri: &Uri, sample_rate_hz: f64, bus: Option<Bus>) -> Result<Loa
     }
 }
 
-/// The bus of a port: the one that its URI names, else what the interface says of itself.
+/// Bus of a port: as named by its URI, else as reported by the interface.
 #[must_use]
 pub fn bus(uri: &Uri) -> Option<Bus> {
     match uri {
@@ -79,7 +79,7 @@ pub fn bus(uri: &Uri) -> Option<Bus> {
     }
 }
 
-/// The bus that a URI names, where it names its rates.
+/// Bus as named by a URI, if it names its rates.
 #[must_use]
 pub fn named_bus(can: &crate::uri::Can) -> Option<Bus> {
     let nominal_bps = can.bitrate?;
@@ -89,7 +89,7 @@ pub fn named_bus(can: &crate::uri::Can) -> Option<Bus> {
     }
 }
 
-/// Common rates of serial lines.
+/// Common bit rates of serial lines, bit/s.
 const BAUDS: [u32; 10] = [
     115_200, 230_400, 460_800, 500_000, 921_600, 1_000_000, 1_500_000, 2_000_000, 3_000_000,
     4_000_000,
@@ -121,7 +121,7 @@ mod tests {
 
     #[test]
     fn a_line_that_is_too_slow_is_refused_with_one_that_isn_t() {
-        // 200 outputs of 150 bytes, ten bits each: 300 kbit/s and what goes beside them.
+        // 200 outputs of 150 bytes, ten bits each: 300 kbit/s and the traffic beside them.
         let refused = load("serial:/dev/ttyUSB0?baud=115200", 200.0).unwrap_err();
         assert!(refused.contains("expected 460800 baud or more"), "{refused}");
         assert!(load("serial:/dev/ttyUSB0?baud=460800", 200.0).is_ok());
@@ -146,7 +146,7 @@ mod tests {
         for uri in ["pty:", "udp:127.0.0.1:5005", "can:vcan0"] {
             assert_eq!(load(uri, 1000.0).unwrap(), Load::Unlimited);
         }
-        // Of the interface, where the URI says nothing.
+        // The URI names no rate, so that of the interface counts.
         let uri = "can:can0".parse().unwrap();
         assert!(real_time(&uri, 200.0, Some(Bus::classic(500_000))).is_err());
     }

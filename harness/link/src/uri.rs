@@ -1,18 +1,19 @@
-//! What a port is called.
+//! Names of ports.
 //!
-//! `SCHEME:NAME?OPTION=VALUE&OPTION=VALUE`. What is not known is refused, with the nearest that is.
+//! A name is `SCHEME:NAME?OPTION=VALUE&OPTION=VALUE`. Unknown names are refused, with the nearest known
+//! one.
 
 use octant_wire::can::{Bus, Format};
 use std::fmt;
 
-/// A port by its name.
+/// A port, by its name.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Uri {
     /// A serial line: `serial:/dev/ttyUSB0?baud=921600`.
     Serial(Serial),
     /// A new pseudo terminal, for the device end: `pty:`, or `pty:/tmp/device` with a link to it.
     Pty {
-        /// Where a link to the terminal is made; empty: nowhere.
+        /// Path of a link to the terminal; empty: no link.
         link: String,
     },
     /// A CAN interface of the kernel: `can:can0?fd=1`.
@@ -28,20 +29,20 @@ pub enum Uri {
 pub struct Serial {
     /// Name of the port.
     pub path: String,
-    /// Bits a second.
+    /// Bit rate, bit/s.
     pub baud: u32,
 }
 
 /// A CAN interface.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Can {
-    /// Its name.
+    /// Name of the interface.
     pub interface: String,
-    /// Which frames.
+    /// Format of the frames.
     pub format: Format,
-    /// Bits a second that the bus is said to have; `None`: what the interface says.
+    /// Nominal bit rate that the bus must have, bit/s; `None`: as the interface reports.
     pub bitrate: Option<u32>,
-    /// The same of the data of FD frames.
+    /// Bit rate of the data of FD frames, likewise, bit/s.
     pub data_bitrate: Option<u32>,
 }
 
@@ -54,27 +55,26 @@ pub struct Slcan {
     pub bus: Bus,
 }
 
-/// UDP.
+/// A UDP address.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Udp {
-    /// The other end's host or address; of the device end, the address that it listens at; empty:
-    /// loopback.
+    /// Host or address of the other end; at the device end, the address to listen at; empty: loopback.
     pub host: String,
-    /// Port there; 0: of the device end, any that is free.
+    /// Port; at the device end, 0 is any free port.
     pub port: u16,
 }
 
-/// Bit rate of a serial line that names none.
+/// Default bit rate of a serial line, bit/s.
 pub const DEFAULT_BAUD: u32 = 921_600;
 
-/// Bit rates that slcan has a command for.
+/// Bit rates that slcan has a command for, bit/s.
 pub const SLCAN_BITRATES: [u32; 9] =
     [10_000, 20_000, 50_000, 100_000, 125_000, 250_000, 500_000, 800_000, 1_000_000];
 
-/// Bit rates of FD data that slcan has a command for.
+/// Bit rates of FD data that slcan has a command for, bit/s.
 pub const SLCAN_DATA_BITRATES: [u32; 4] = [1_000_000, 2_000_000, 4_000_000, 5_000_000];
 
-/// Names of schemes, with what they stand for.
+/// Schemes, with a description and examples.
 pub const SCHEMES: [(&str, &str); 5] = [
     ("serial", "a serial line: serial:/dev/ttyUSB0?baud=921600"),
     ("can", "a CAN interface: can:can0, can:can0?fd=1"),
@@ -83,53 +83,53 @@ pub const SCHEMES: [(&str, &str); 5] = [
     ("pty", "a new pseudo terminal, for octant serve alone"),
 ];
 
-/// Why a text names no port.
+/// Error of a text that names no port.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum UriError {
-    /// Nothing before a colon.
+    /// The text has nothing before a colon.
     #[error("found {found:?}, expected SCHEME:NAME with a scheme of {}", names(&schemes()))]
     NoScheme {
         /// The text.
         found: String,
     },
-    /// A scheme that isn't known.
+    /// The scheme is unknown.
     #[error("found scheme {found:?}, {}", nearest(found, &schemes()))]
     Scheme {
         /// The scheme.
         found: String,
     },
-    /// No name after the scheme.
+    /// The name after the scheme is missing.
     #[error("found {found:?}, expected {expected}")]
     Name {
         /// The text.
         found: String,
-        /// What is expected.
+        /// Expected form.
         expected: &'static str,
     },
-    /// An option that the scheme doesn't have.
+    /// The scheme doesn't have this option.
     #[error("found option {option:?} of {scheme}:, {}", nearest(option, known))]
     Option {
         /// The scheme.
         scheme: &'static str,
         /// The option.
         option: String,
-        /// Those that it has.
+        /// Options of the scheme.
         known: &'static [&'static str],
     },
-    /// An option without a value, or given twice.
+    /// An option has no value, or is given twice.
     #[error("found {found:?} among the options, expected OPTION=VALUE, each once")]
     Form {
-        /// What was found.
+        /// Text found.
         found: String,
     },
-    /// A value that isn't one.
+    /// The value is invalid.
     #[error("found {option}={found}, expected {expected}")]
     Value {
         /// The option.
         option: &'static str,
-        /// Its value.
+        /// Value found.
         found: String,
-        /// What is expected.
+        /// Expected form.
         expected: String,
     },
 }
@@ -142,7 +142,7 @@ fn names(known: &[&str]) -> String {
     known.join(", ")
 }
 
-/// The nearest of some names, or all of them.
+/// Suggests the nearest of some names, or lists all of them.
 fn nearest(found: &str, known: &[&str]) -> String {
     let near = known
         .iter()
@@ -156,7 +156,7 @@ fn nearest(found: &str, known: &[&str]) -> String {
     }
 }
 
-/// Options as they are written.
+/// Options as written.
 struct Options<'a> {
     all: Vec<(&'a str, &'a str)>,
 }
@@ -199,7 +199,7 @@ impl<'a> Options<'a> {
         }
     }
 
-    /// `fd=1`, with the rates that go with it.
+    /// Format given by `fd`; `data_bitrate` requires `fd=1`.
     fn format(&self) -> Result<Format, UriError> {
         let format = match self.get("fd") {
             None | Some("0") => Format::Classic,
@@ -301,7 +301,7 @@ fn slcan_bus(options: &Options<'_>) -> Result<Bus, UriError> {
     Ok(Bus { nominal_bps, data_bps })
 }
 
-/// `host:port`, `[v6]:port`, `:port` or `port`.
+/// Parses `host:port`, `[v6]:port`, `:port` or `port`.
 fn udp(name: &str) -> Option<Uri> {
     let (host, port) = name.rsplit_once(':').unwrap_or(("", name));
     let host = host.strip_prefix('[').map_or(Some(host), |host| host.strip_suffix(']'))?;
@@ -310,7 +310,7 @@ fn udp(name: &str) -> Option<Uri> {
 }
 
 impl Uri {
-    /// The scheme.
+    /// Scheme of the URI.
     #[must_use]
     pub fn scheme(&self) -> &'static str {
         match self {
@@ -322,7 +322,7 @@ impl Uri {
         }
     }
 
-    /// Whether a text names a port by its scheme, rightly or not.
+    /// True if a text names a port by a known scheme, correctly or not.
     #[must_use]
     pub fn is_one(text: &str) -> bool {
         text.split_once(':').is_some_and(|(scheme, _)| schemes().contains(&scheme))
@@ -330,7 +330,7 @@ impl Uri {
 }
 
 impl fmt::Display for Uri {
-    /// As it is read.
+    /// Writes the URI in the form that is parsed.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Serial(Serial { path, baud }) => write!(f, "serial:{path}?baud={baud}"),

@@ -1,4 +1,4 @@
-//! Messages across a port, and counts of what was lost on it.
+//! Messages across a port, and counts of losses.
 
 use crate::port::{BusEvent, Bytes, Frames, Port, PortError, Trouble};
 use octant_faults::wire::Wired;
@@ -8,22 +8,22 @@ use octant_wire::serial::{self, Decoder, Encoder};
 use octant_wire::{Unreadable, message::Status};
 use std::time::{Duration, Instant};
 
-/// What came.
+/// A unit received.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[expect(clippy::large_enum_variant, reason = "the large variant is the one that comes")]
 pub enum Incoming {
     /// A message.
     Message(Message),
-    /// A hello of a version that isn't spoken here.
+    /// A hello of a protocol version unknown to this end.
     Newer(u16),
 }
 
-/// What went over a wire so far, seen from one end.
+/// Counts of the traffic on a wire, seen from one end.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Counts {
     /// Messages sent.
     pub sent: u64,
-    /// Messages that the port did not take whole.
+    /// Messages that the port did not accept in full.
     pub not_sent: u64,
     /// Messages received.
     pub received: u64,
@@ -35,23 +35,23 @@ pub struct Counts {
     pub missing: u64,
     /// Frames (CAN: segments) that arrived again, or after later ones.
     pub out_of_order: u64,
-    /// Undamaged frames (CAN: messages) that could not be understood.
+    /// Undamaged frames (CAN: messages) that could not be decoded.
     pub unreadable: u64,
-    /// Time that all CAN frames took, sent and received, in the worst case, s.
+    /// Time on the bus of all CAN frames, sent and received, in the worst case, s.
     pub bus_s: f64,
     /// CAN: error frames of any kind.
     pub error_frames: u64,
-    /// CAN: how often the controller went to error-passive.
+    /// CAN: number of times that the controller became error-passive.
     pub error_passive: u64,
-    /// CAN: how often the controller left the bus.
+    /// CAN: number of times that the controller went bus-off.
     pub bus_off: u64,
-    /// CAN: how often it came back.
+    /// CAN: number of times that the controller came back.
     pub restarted: u64,
-    /// CAN: arbitrations lost, as far as the controller tells.
+    /// CAN: arbitrations lost, as far as the controller reports them.
     pub arbitration_lost: u64,
 }
 
-/// Messages over a port.
+/// Messages over a port, with counts of losses.
 #[derive(Debug)]
 pub struct Wire {
     name: String,
@@ -60,9 +60,9 @@ pub struct Wire {
     last_sent: Option<Instant>,
     last_received: Option<Instant>,
     counts: Counts,
-    /// Rates of the bus, for its load.
+    /// Bit rates of the bus, for its load.
     bus: Option<Bus>,
-    /// The controller is off the bus: since when, or since it was last told to come back.
+    /// Time since which the controller is off the bus, or of the last attempt to restart it.
     off: Option<Instant>,
 }
 
@@ -78,10 +78,10 @@ struct ByteMedium {
     encoder: Encoder,
     decoder: Decoder,
     buffer: [u8; 4096],
-    /// What of the buffer isn't decoded yet.
+    /// Range of the buffer that isn't decoded yet.
     from: usize,
     to: usize,
-    /// A datagram was decoded to its last byte and is to be concluded.
+    /// True if a datagram is decoded to its last byte and must be concluded.
     concludes: bool,
 }
 
@@ -93,11 +93,11 @@ struct FrameMedium {
     format: Format,
 }
 
-/// Shortest time between two attempts to bring a controller back to its bus.
+/// Shortest interval between two attempts to restart a controller.
 const RESTART_EVERY: Duration = Duration::from_millis(100);
 
 impl Wire {
-    /// Messages over a port, seen from a role. `name` is how the port is called in errors.
+    /// Makes a wire for the end of a role. `name` is the port's name in errors.
     #[must_use]
     pub fn new(name: impl Into<String>, port: Port, role: Role) -> Self {
         let medium = match port {
@@ -132,51 +132,51 @@ impl Wire {
         }
     }
 
-    /// Opens the port of a name.
+    /// Opens the port named by a URI.
     ///
     /// # Errors
-    /// If it can't be opened.
+    /// If the port can't be opened.
     pub fn open(uri: &crate::Uri, role: Role) -> Result<Self, PortError> {
         Ok(Self::new(uri.to_string(), crate::port::open(uri, role)?, role))
     }
 
-    /// Rates of the bus, of which [`Counts::bus_s`] is computed.
+    /// Sets the bit rates of the bus, from which [`Counts::bus_s`] is computed.
     pub fn set_bus(&mut self, bus: Bus) {
         self.bus = Some(bus);
     }
 
-    /// How the port is called.
+    /// Name of the port.
     #[must_use]
     pub fn name(&self) -> &str {
         &self.name
     }
 
-    /// This end's clock.
+    /// Time of this end's clock.
     #[must_use]
     pub fn now(&self) -> ClockTime {
         self.at(Instant::now())
     }
 
-    /// This end's clock at an instant; 0 before the wire was there.
+    /// Time of this end's clock at an instant; 0 before the wire was made.
     #[must_use]
     pub fn at(&self, instant: Instant) -> ClockTime {
         let since = instant.saturating_duration_since(self.begun).as_nanos();
         ClockTime::from_ns(u64::try_from(since).unwrap_or(u64::MAX))
     }
 
-    /// How long nothing was sent.
+    /// Time since the last message was sent.
     #[must_use]
     pub fn quiet(&self) -> Duration {
         self.last_sent.unwrap_or(self.begun).elapsed()
     }
 
-    /// How long nothing intact was received.
+    /// Time since the last intact message was received.
     #[must_use]
     pub fn silence(&self) -> Duration {
         self.last_received.unwrap_or(self.begun).elapsed()
     }
 
-    /// Sends a message. False: the port did not take it whole within the time.
+    /// Sends a message. False: the port did not accept the whole message within the time.
     ///
     /// # Errors
     /// If the port is gone.
@@ -195,7 +195,7 @@ impl Wire {
         Ok(taken)
     }
 
-    /// The next message within a time; with no time, what is there already.
+    /// Receives the next message within a time; with a zero wait, only what is already there.
     ///
     /// # Errors
     /// If the port is gone.
@@ -227,7 +227,7 @@ impl Wire {
                     self.counts.received += 1;
                     return Ok(Some(incoming));
                 }
-                // A line that babbles doesn't hold up who wants to go on.
+                // A babbling line must not keep the caller beyond its time.
                 Next::Lost => {
                     lost += 1;
                     if lost % 64 == 0 && until.is_some_and(|until| Instant::now() >= until) {
@@ -247,7 +247,7 @@ impl Wire {
         }
     }
 
-    /// Something is wrong with the bus.
+    /// Counts a problem of the bus, and notes whether the controller is off.
     #[cold]
     fn trouble(&mut self, trouble: Trouble) {
         let counts = &mut self.counts;
@@ -257,7 +257,7 @@ impl Wire {
             Trouble::ArbitrationLost => counts.arbitration_lost += 1,
             Trouble::Off => {
                 counts.bus_off += 1;
-                // A controller that is switched on at once may break a bus that recovers.
+                // The restart waits: a controller restarted at once may break a bus that recovers.
                 self.off = Some(Instant::now());
             }
             Trouble::Restarted => {
@@ -268,7 +268,7 @@ impl Wire {
         }
     }
 
-    /// The controller left the bus: tries now and then to bring it back.
+    /// Tries at intervals to restart a controller that left the bus.
     #[cold]
     fn back_on_bus(&mut self, since: Instant) -> Result<(), PortError> {
         if since.elapsed() >= RESTART_EVERY
@@ -280,28 +280,29 @@ impl Wire {
         Ok(())
     }
 
-    /// The controller left the bus and is not back.
+    /// True while the controller is off the bus.
     #[must_use]
     pub fn is_off_bus(&self) -> bool {
         self.off.is_some()
     }
 
-    /// A session with the peer that was heard last begins or ends.
+    /// Binds the port to the peer that was heard last, for a session, or releases it.
     pub fn hold_peer(&mut self, hold: bool) {
         if let Medium::Bytes(medium) = &mut self.medium {
             medium.port.hold_peer(hold);
         }
     }
 
-    /// Opens the port again after it went away: numbers of frames and counts go on.
+    /// Opens the port again after it went away; frame numbers and counts continue.
     ///
     /// # Errors
-    /// If it isn't back.
+    /// If the port isn't back.
     pub fn reopen(&mut self) -> Result<(), PortError> {
         match &mut self.medium {
             Medium::Bytes(medium) => {
                 medium.port.reopen()?;
-                // What came last is a piece of a frame: a zero comes before the next.
+                // The bytes received last are a piece of a frame: the other end sends a zero before its
+                // next frame.
                 medium.from = 0;
                 medium.to = 0;
             }
@@ -311,7 +312,7 @@ impl Wire {
         Ok(())
     }
 
-    /// The name by which the other end reaches it.
+    /// Name under which the other end reaches this port.
     #[must_use]
     pub fn reached_at(&self) -> String {
         match &self.medium {
@@ -320,7 +321,7 @@ impl Wire {
         }
     }
 
-    /// Who does faults on the wire; `None`: it was opened without.
+    /// Fault injection of the port; `None`: the port was opened without.
     pub fn wired(&mut self) -> Option<&mut dyn Wired> {
         match &mut self.medium {
             Medium::Bytes(medium) => medium.port.wired(),
@@ -328,7 +329,7 @@ impl Wire {
         }
     }
 
-    /// What went over the wire so far.
+    /// Counts of the traffic so far.
     #[must_use]
     pub fn counts(&self) -> Counts {
         let mut counts = self.counts;
@@ -353,7 +354,7 @@ impl Wire {
         counts
     }
 
-    /// The part of a status that the wire knows, counted since `before`.
+    /// Fields of a status that the wire counts, since `before`.
     #[must_use]
     pub fn status(&self, before: &Counts) -> Status {
         let now = self.counts();
@@ -370,11 +371,11 @@ impl Wire {
     }
 }
 
-/// What a medium found.
+/// Result of reading a medium.
 #[expect(clippy::large_enum_variant, reason = "the large variant is the one that comes")]
 enum Next {
     Incoming(Incoming),
-    /// Something that is no message; there may be more.
+    /// Bytes or a frame that are no message; more may follow.
     Lost,
     Trouble(Trouble),
     Nothing,
@@ -414,7 +415,7 @@ impl ByteMedium {
     }
 }
 
-/// Time of a frame on a bus, at most.
+/// Longest time of a frame on a bus, s; 0 if its rates are unknown.
 fn frame_s(frame: &can::Frame, bus: Option<Bus>) -> f64 {
     let Some(bus) = bus else { return 0.0 };
     let bits: Bits = match frame.format() {
@@ -432,7 +433,7 @@ impl FrameMedium {
         bus: Option<Bus>,
         counts: &mut Counts,
     ) -> Result<bool, PortError> {
-        // Ends send what their role has identifiers for.
+        // A role has no identifier for the messages that it never sends.
         let Ok(segments) = can::segments(message, self.role, self.format) else { return Ok(false) };
         for frame in segments {
             if !self.port.send(&frame, wait)? {

@@ -1,5 +1,5 @@
-//! Sessions over a CAN interface of the kernel. `OCTANT_CAN` names one that is up, such as `vcan0`; without
-//! it these tests are skipped: an interface needs rights that a test doesn't have.
+//! Sessions over a CAN interface of the kernel. `OCTANT_CAN` names an interface that is up, such as
+//! `vcan0`; without it these tests are skipped, because setting up an interface needs privileges.
 #![allow(clippy::print_stdout, reason = "what is skipped is said")]
 
 use crate::common::{self, Served, drive, facts, options};
@@ -11,11 +11,11 @@ use octant_wire::message::Role;
 use std::sync::Mutex;
 use std::time::Duration;
 
-/// One bus, one session at a time.
+/// Lock that admits one session at a time to the bus.
 static BUS: Mutex<()> = Mutex::new(());
 
-/// The interface with options, where there is one; and that of the device, which is another one of the
-/// same bus where `OCTANT_CAN_FAR` names it.
+/// URIs of the interface with options, for the harness and the device. The device uses
+/// `OCTANT_CAN_FAR`, another interface on the same bus, if that is set.
 fn bus(options: &str) -> Option<[String; 2]> {
     match std::env::var("OCTANT_CAN") {
         Ok(near) => {
@@ -50,7 +50,7 @@ fn classic_can_carries_a_session() {
 
 #[test]
 fn can_fd_carries_a_session() {
-    // Controllers of classic CAN alone are told by `OCTANT_CAN_CLASSIC`.
+    // `OCTANT_CAN_CLASSIC` marks controllers that can't do CAN FD.
     if std::env::var_os("OCTANT_CAN_CLASSIC").is_some() {
         return;
     }

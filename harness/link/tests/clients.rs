@@ -1,6 +1,7 @@
-//! The reference clients in Python and C as devices: over a pseudo terminal and UDP, good lines and bad.
+//! The reference clients in Python and C as devices: over a pseudo terminal and UDP, on good lines and
+//! bad.
 //!
-//! Where there is no `python3` or no `cc` their part is skipped, unless `OCTANT_REQUIRE_PEERS` is set.
+//! Without `python3` or `cc` their part is skipped, unless `OCTANT_REQUIRE_PEERS` is set.
 #![allow(clippy::print_stdout, reason = "what is skipped is said")]
 
 use crate::common::{drive, options};
@@ -30,7 +31,7 @@ fn there_is(program: &str) -> bool {
     there
 }
 
-/// How each client is started, as far as it can be had here.
+/// Commands of the clients that are available here.
 fn clients() -> &'static [(&'static str, Vec<String>)] {
     static ALL: OnceLock<Vec<(&'static str, Vec<String>)>> = OnceLock::new();
     ALL.get_or_init(|| {
@@ -55,7 +56,7 @@ fn clients() -> &'static [(&'static str, Vec<String>)] {
     })
 }
 
-/// A client that is a device, stopped with the test.
+/// A client that serves as a device, stopped at the end of the test.
 struct Device(Child);
 
 impl Device {
@@ -65,7 +66,7 @@ impl Device {
         Self(device.spawn().unwrap())
     }
 
-    /// The first line that it says; the others go nowhere.
+    /// First line that the client writes to stderr; the others are discarded.
     fn first_line(&mut self) -> String {
         let mut stderr = BufReader::new(self.0.stderr.take().unwrap());
         let mut line = String::new();
@@ -82,7 +83,7 @@ impl Drop for Device {
     }
 }
 
-/// A port with frames lost, damaged and doubled on it, or as it is.
+/// Runs a session over a port, with frames lost, damaged and duplicated if `bad`.
 fn session(port: Port, bad: bool) {
     let patience = Patience { repeat: Duration::from_millis(20), ..options().patience };
     let options = if bad { Options { patience, ..options() } } else { options() };

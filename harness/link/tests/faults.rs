@@ -1,5 +1,5 @@
-//! Faults on a wire: in lock-step the answers are those of the core all the same, bit for bit, and what
-//! each fault altered is counted.
+//! Faults on a wire: in lock-step the answers equal those of the core bit for bit, and the frames that
+//! each fault altered are counted.
 
 use crate::common::{LONG, Served, drive, facts, options, sample};
 use octant_faults::wire::{Medium, Ways, WireAction, WireFault};
@@ -13,7 +13,7 @@ use std::time::{Duration, Instant};
 
 const BOTH: Ways = Ways { to_device: true, to_harness: true };
 
-/// Every action that a session in lock-step survives.
+/// Actions that a session in lock-step survives, each with its chance.
 fn actions() -> Vec<(WireAction, f64)> {
     vec![
         (WireAction::Flip, 0.2),
@@ -35,7 +35,7 @@ fn actions() -> Vec<(WireAction, f64)> {
         (WireAction::ErrorFrame, 0.5),
         (WireAction::ArbitrationLost, 0.5),
         (WireAction::BusOff { off_s: 0.05 }, 1.0),
-        // Each message is many frames: one that is spoilt costs all of it.
+        // Each message is many frames, and one damaged frame costs the whole message.
         (WireAction::Collision, 0.01),
         (WireAction::Overload { frames: 2, each_s: 2e-5 }, 0.2),
     ]
@@ -55,7 +55,7 @@ fn pair(medium: Medium) -> (Served, Port) {
             let port = port::open(&uri, Role::Harness).unwrap();
             (served, port)
         }
-        // Two adapters whose lines are each other's: what one sends the other receives.
+        // Two adapters with crossed lines: each receives what the other sends.
         Medium::Bus => {
             let pty = Pty::open("").unwrap();
             let uri = format!("slcan:{}?bitrate=500000", pty.name());
@@ -70,7 +70,7 @@ fn pair(medium: Medium) -> (Served, Port) {
     }
 }
 
-/// A harness with one fault on its wire, after the hello.
+/// Opens a session, then begins one fault on its wire.
 fn faulted(port: Port, fault: WireFault, options: Options) -> Harness {
     let wire = Wire::new("faulted", around(port), Role::Harness);
     let mut harness = Harness::open(wire, options).unwrap();
@@ -83,7 +83,8 @@ fn survives(medium: Medium) {
         if !action.happens_on(medium) {
             continue;
         }
-        // These last for a time of their own, in which a busy host may send nothing: then once more.
+        // These actions last for a time of their own, in which a busy host may send nothing: then try
+        // again.
         let passes = matches!(
             action,
             WireAction::Break { .. } | WireAction::SlowReader { .. } | WireAction::BusOff { .. }
@@ -99,11 +100,11 @@ fn survives(medium: Medium) {
     }
 }
 
-/// Whether it altered anything.
+/// Runs a session under a fault; true if the fault altered any frame.
 fn survives_one(medium: Medium, action: WireAction, chance: f64) -> bool {
     let (mut served, port) = pair(medium);
-    // A message is up to 17 frames on a bus, an answer with parameters 89: all of them have to
-    // come through.
+    // On a bus a message has up to 17 frames, and an answer with parameters 89: all of them have to
+    // arrive.
     let spoils = matches!(
         action,
         WireAction::Flip
@@ -166,7 +167,8 @@ fn where_all_is_lost_the_error_says_so() {
     let (_served, port) = pair(Medium::Datagrams);
     let mut options = patient();
     options.patience.answer = Duration::from_millis(100);
-    // Both ways: on a busy host the device's status comes before the harness gives up.
+    // In both directions: otherwise, on a busy host, a status of the device arrives before the harness
+    // gives up.
     let fault = WireFault { ways: BOTH, chance: 1.0, action: WireAction::Lose, key: [1, 2] };
     let mut harness = faulted(port, fault, options);
     let (one, aiding) = sample(1);
@@ -193,7 +195,7 @@ fn garbage_alone_is_told_from_silence() {
         if told.contains("no message was received, but") {
             break;
         }
-        // A busy host had no answer in this time, not even a damaged one.
+        // On a busy host no answer arrived in this time, not even a damaged one.
         assert!(told.contains("nothing at all was received") && begun.elapsed() < LONG, "{told}");
     }
 }
@@ -216,7 +218,7 @@ fn a_plug_that_was_pulled_ends_the_step_and_a_port_that_is_back_goes_on() {
         let error = harness.step(&two, aiding.as_ref(), &mut output).unwrap_err();
         assert!(matches!(error, SessionError::Port(PortError::Gone { .. })), "{error}");
         assert!(harness.reopen(Duration::ZERO).is_err(), "it is still away");
-        // From now on for that long, and not for less.
+        // Beginning the fault again replaces its time: away for 0.05 s from now, and no less.
         let begun = Instant::now();
         harness.wire().wired().unwrap().begin(0, &away(0.05));
         while let Err(error) = harness.reopen(Duration::from_millis(50)) {
@@ -249,7 +251,7 @@ fn what_was_held_back_goes_on_when_the_fault_ends() {
         .unwrap()
         .begin(7, &WireFault { ways: Ways { to_device: true, to_harness: false }, ..fault });
     harness.send_sample(&one, None).unwrap();
-    // What the device says of itself may come.
+    // Statuses of the device may arrive.
     let is_answer = |event: &Event| matches!(event, Event::Output(_));
     let mut said = std::iter::from_fn(|| harness.poll(Duration::from_millis(50)).unwrap());
     assert!(!said.any(|event| is_answer(&event)));

@@ -1,4 +1,4 @@
-//! A device that is sent anything at all: it goes on serving.
+//! A device that receives arbitrary bytes and messages: it continues to serve.
 
 use crate::common::{Echo, PERIOD_NS, facts, sample};
 use octant_link::device::{Device, Notice};
@@ -12,7 +12,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
-/// A line in memory: what is put on it comes in these pieces, and then it ends.
+/// A line in memory that delivers these pieces, and then stops the device.
 #[derive(Debug)]
 struct Line {
     pieces: VecDeque<Vec<u8>>,
@@ -54,7 +54,7 @@ impl Bytes for Line {
     }
 }
 
-/// What a device says to what comes; and how many steps it did.
+/// Messages that a device sends in answer to these pieces, and the number of its steps.
 fn serve(pieces: Vec<Vec<u8>>, datagrams: bool) -> (Vec<Message>, u64) {
     let (sent, stop) = (Arc::default(), Arc::new(AtomicBool::new(false)));
     let pieces = pieces.into_iter().filter(|piece| !piece.is_empty()).collect();
@@ -132,7 +132,7 @@ proptest! {
 
     #[test]
     fn no_step_is_done_twice(order in proptest::collection::vec(1..8u64, 1..60)) {
-        // Requests in any order, again and again: each step is done once, and in its turn.
+        // Requests in any order, repeatedly: each step is done once, and in its turn.
         let requests: Vec<Message> = order
             .iter()
             .map(|k| {

@@ -1,4 +1,4 @@
-//! The tests of ports and sessions, in one program.
+//! Tests of ports and sessions, in one program.
 #![allow(clippy::unwrap_used)]
 
 #[cfg(target_os = "linux")]

@@ -1,4 +1,4 @@
-//! A peer that does what no device should: late, twice, never, something else.
+//! Devices that break the protocol: late, repeated, missing and wrong answers.
 
 use crate::common::{LONG, PERIOD_NS, options, sample};
 use octant_link::harness::{Harness, Options, Patience, SessionError};
@@ -13,14 +13,14 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-/// A peer on UDP that answers each message with what a script says, as messages or bytes.
+/// A peer on UDP that answers each message as a script decides, with messages or bytes.
 struct Scripted {
     stop: Arc<AtomicBool>,
     thread: Option<JoinHandle<()>>,
     uri: Uri,
 }
 
-/// What a script says to a message.
+/// Reaction of a script to a message.
 #[allow(clippy::large_enum_variant)]
 enum Say {
     Message(Message),
@@ -86,7 +86,7 @@ fn output(step: Step, sequence: u64) -> Message {
     Message::Output(OutputMessage { step, parameters_follow: false, output, computing_ns: 0 })
 }
 
-/// Answers hello, and samples with what the script says.
+/// Answers a hello itself, and each sample as the script decides.
 fn device(mut on_sample: impl FnMut(&SampleMessage) -> Vec<Say> + Send + 'static) -> Scripted {
     Scripted::new(move |message| match message {
         Message::Hello(theirs) => vec![Say::Message(hello(theirs.session))],
@@ -95,10 +95,10 @@ fn device(mut on_sample: impl FnMut(&SampleMessage) -> Vec<Say> + Send + 'static
     })
 }
 
-/// How long is waited where nothing comes.
+/// Patience for an answer that never comes.
 const SHORT: Duration = Duration::from_millis(500);
 
-/// With so much patience for the hello and for an answer.
+/// Opens a session with given patience for the hello and for an answer.
 fn open_within(
     peer: &Scripted,
     hello: Duration,
@@ -113,12 +113,12 @@ fn open(peer: &Scripted) -> Result<Harness, SessionError> {
     open_within(peer, LONG, LONG)
 }
 
-/// With one that won't answer.
+/// Opens a session with a device that won't answer.
 fn open_impatient(peer: &Scripted) -> Harness {
     open_within(peer, LONG, SHORT).unwrap()
 }
 
-/// It waited for this as long as it should, and for nothing else.
+/// Checks that the harness waited for `expected`, long enough, and for nothing else.
 fn no_answer(error: &SessionError, expected: &str) {
     let SessionError::NoAnswer { waited_for, waited, .. } = error else { panic!("{error}") };
     assert_eq!(waited_for, expected);
@@ -126,7 +126,7 @@ fn no_answer(error: &SessionError, expected: &str) {
     assert!(error.to_string().contains(&format!("no {expected} within ")), "{error}");
 }
 
-/// Takes steps until one fails.
+/// Makes steps until one fails.
 fn steps(harness: &mut Harness, count: u64) -> Result<(), SessionError> {
     let mut output = Output::default();
     for k in 1..=count {
@@ -150,7 +150,7 @@ fn one_that_never_answers() {
 
 #[test]
 fn one_that_answers_late() {
-    // Each answer takes longer than it is waited for: it comes behind repeated requests.
+    // Each answer takes longer than the interval of repetition: it arrives after repeated requests.
     let peer = device(|sample| {
         let answer = output(sample.step, sample.sample.sequence);
         vec![Say::Wait(Duration::from_millis(35)), Say::Message(answer)]
@@ -162,8 +162,8 @@ fn one_that_answers_late() {
 
 #[test]
 fn one_that_is_slower_than_it_is_asked_is_asked_less_often() {
-    // A question that is repeated takes it as long as any other. Were it always asked again as soon, each
-    // step would leave more of them on the line than the one before.
+    // A repeated request takes the device as long as any other. With a constant interval each step
+    // would leave more of them on the line than the one before.
     let peer = device(|sample| {
         let answer = output(sample.step, sample.sample.sequence);
         vec![Say::Wait(Duration::from_millis(50)), Say::Message(answer)]
@@ -176,7 +176,7 @@ fn one_that_is_slower_than_it_is_asked_is_asked_less_often() {
 
 #[test]
 fn one_that_hears_of_a_harness_that_waits() {
-    // It gives up a harness that it doesn't hear of, and its answer takes longer than that.
+    // The device gives up a harness that is silent, and its answer takes longer than that.
     let mut waiting: Option<SampleMessage> = None;
     let mut heard = 0;
     let peer = Scripted::new(move |message| match message {
@@ -227,7 +227,7 @@ fn one_that_answers_other_steps() {
     loop {
         let error = steps(&mut harness, 1).unwrap_err();
         assert!(matches!(error, SessionError::NoAnswer { .. }), "{error}");
-        // In that time a busy host may hear less of it, or nothing.
+        // On a busy host, less of the traffic may arrive in this time, or none.
         if error.to_string().contains("other messages were received, and") {
             break;
         }
@@ -250,7 +250,8 @@ fn an_old_hello_that_comes_again_is_no_new_start() {
     let mut last = None;
     let peer = device(move |sample| {
         let answer = output(sample.step, sample.sample.sequence);
-        // Once a step, however often a busy host asks for it: one that says it each time has started anew.
+        // Once a step, however often a busy host repeats the request: a hello at each request would
+        // mean a restart.
         let old = (last.replace(sample.step) != Some(sample.step)).then(|| hello(0));
         old.into_iter().chain([answer]).map(Say::Message).collect()
     });

@@ -1,4 +1,4 @@
-//! A step allocates nothing: not in lock-step, and not in real time, where nothing came.
+//! A step allocates nothing, neither in lock-step nor in real time, also when nothing arrives.
 #![allow(unsafe_code, reason = "an allocator that counts is unsafe by its trait")]
 
 use crate::common::{Served, facts, harness, options, sample};
@@ -16,11 +16,11 @@ thread_local! {
 
 struct Counting;
 
-// SAFETY: every call goes on to the system's allocator as it came.
+// SAFETY: every call is passed on unchanged to the system's allocator.
 unsafe impl GlobalAlloc for Counting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         COUNT.with(|count| count.set(count.get() + 1));
-        // SAFETY: the caller keeps the contract of `alloc`, which is this one.
+        // SAFETY: the caller keeps the contract of `alloc`, which is the same here.
         unsafe { System.alloc(layout) }
     }
 
@@ -65,7 +65,8 @@ fn sending_and_polling_allocate_nothing() {
                 )
             {
                 k += 1;
-                // Once each: a flood of them would leave a busy device no room for samples.
+                // One request in ten steps: a flood of them would leave a busy device no room for
+                // samples.
                 if k % 10 == 0 {
                     harness.request_time().unwrap();
                 }

@@ -1,4 +1,4 @@
-//! Sessions over pseudo terminals and UDP: the answers are those of the core, bit for bit.
+//! Sessions over pseudo terminals and UDP: the answers equal those of the core, bit for bit.
 
 use crate::common::{self, LONG, Served, bits, drive, facts, harness, options, sample};
 use octant_link::device::Facts;
@@ -29,7 +29,7 @@ fn a_session_in_lock_step_is_the_core_itself() {
     }
 }
 
-/// Names go to terminals and into files.
+/// Names are printed to terminals and written into files.
 #[test]
 fn a_name_that_a_terminal_would_obey_is_refused() {
     for (name, firmware, field) in
@@ -46,7 +46,7 @@ fn a_name_that_a_terminal_would_obey_is_refused() {
         assert!(told.contains(field) && told.contains("control character"), "{told}");
         assert!(!told.chars().any(char::is_control), "{told:?}");
     }
-    // Any other text is a name.
+    // Any other text is a valid name.
     let good = Facts { name: Text::fitting("Gerät 7/β"), ..facts() };
     let (_served, uri) = Served::on("pty:", good);
     assert_eq!(harness(&uri).theirs().name.as_str(), "Gerät 7/β");
@@ -65,7 +65,7 @@ fn a_device_serves_one_harness_after_the_other() {
 #[test]
 fn a_harness_that_is_gone_without_a_word_is_given_up() {
     let short = Facts {
-        // Long for a busy host between two steps, and short enough to be waited for.
+        // Longer than a busy host takes between two steps, and short enough for a test.
         limits: octant_wire::message::Limits { silence_ms: 3000, ..facts().limits },
         ..facts()
     };
@@ -74,9 +74,9 @@ fn a_harness_that_is_gone_without_a_word_is_given_up() {
     let mut output = Output::default();
     let (one, aiding) = sample(1);
     first.step(&one, aiding.as_ref(), &mut output).unwrap();
-    // As after kill -9: nothing is said any more, nothing is closed in order.
+    // Like a kill -9: the harness sends nothing more, and closes nothing in order.
     std::mem::forget(first);
-    // The second one is not heard until the first is given up.
+    // The second harness is not served until the first is given up.
     drive(&mut harness(&uri), 40);
     let said = served.said().join("\n");
     assert!(said.contains("nothing heard for 3.0 s"), "{said}");
@@ -136,7 +136,7 @@ fn a_device_that_goes_in_the_middle_is_an_error_that_says_what_was_waited_for() 
         served.stop();
         let (two, aiding) = sample(2);
         let error = harness.step(&two, aiding.as_ref(), &mut output).unwrap_err();
-        // It said bye; its pseudo terminal went with it.
+        // The device said bye, or its pseudo terminal vanished first.
         let told = error.to_string();
         assert!(told.contains("bye") || told.contains("went away"), "{told}");
         if let SessionError::Bye { bye, .. } = error {
@@ -160,7 +160,8 @@ fn in_real_time_nothing_waits() {
                 match harness.send_sample(&sample, aiding.as_ref()).unwrap() {
                     Sending::Sent(_) => {
                         sent += 1;
-                        // Once each: a flood of them would leave a busy device no room for samples.
+                        // One request in 50 samples: a flood of them would leave a busy device no room
+                        // for samples.
                         if sent % 50 == 0 {
                             harness.request_time().unwrap();
                         }

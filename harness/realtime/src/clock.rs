@@ -3,24 +3,24 @@
 use serde::{Deserialize, Serialize};
 use std::time::Duration;
 
-/// A time of the host's monotonic clock, ns. Not device time, not simulated time: they have types
-/// of their own and don't mix with it.
+/// Time of the host's monotonic clock, ns. Device time and simulated time have types of their own, so
+/// that they can't be mixed with it.
 #[derive(
     Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize,
 )]
 pub struct HostTime {
-    /// Since a start that only this boot of the host knows, ns.
+    /// Time since a start that is arbitrary for each boot of the host, ns.
     pub ns: u64,
 }
 
 impl HostTime {
-    /// A duration later; at the end of time, which is 584 years after a boot, it stays there.
+    /// Adds a duration; the result stays at the end of time, which is 584 years after a boot.
     #[must_use]
     pub const fn after(self, duration_ns: u64) -> Self {
         Self { ns: self.ns.saturating_add(duration_ns) }
     }
 
-    /// How much later than another time, ns; 0 where it isn't.
+    /// Time by which this is later than another time, ns; 0 if it isn't later.
     #[must_use]
     pub const fn since(self, earlier: Self) -> u64 {
         self.ns.saturating_sub(earlier.ns)
@@ -43,7 +43,7 @@ mod system {
             tv_sec: (deadline.ns / 1_000_000_000) as i64,
             tv_nsec: (deadline.ns % 1_000_000_000) as i64,
         };
-        // A signal wakes it early: it goes to sleep again for the same deadline.
+        // A signal ends the sleep early: sleep again until the same deadline.
         while clock_nanosleep_absolute(ClockId::Monotonic, &at) == Err(rustix::io::Errno::INTR) {}
     }
 
@@ -61,7 +61,7 @@ mod system {
 
     pub(super) fn now() -> HostTime {
         static START: OnceLock<Instant> = OnceLock::new();
-        // From 1 s on, so that a deadline may lie before the first look at the clock.
+        // Times start at 1 s, so that a deadline may lie before the first reading of the clock.
         let since = START.get_or_init(Instant::now).elapsed() + Duration::from_secs(1);
         HostTime { ns: u64::try_from(since.as_nanos()).unwrap_or(u64::MAX) }
     }
@@ -74,7 +74,7 @@ mod system {
     }
 
     pub(super) fn resolution_ns() -> u64 {
-        // Not told by the system; what two looks at the clock differ by at least.
+        // The system doesn't report the resolution: take the least difference of two readings.
         let start = now();
         loop {
             let later = now().since(start);
@@ -85,15 +85,15 @@ mod system {
     }
 }
 
-/// The time now.
+/// Present time.
 #[must_use]
 #[inline]
 pub fn now() -> HostTime {
     system::now()
 }
 
-/// Sleeps until a deadline; returns at once where it has passed. On Linux the deadline is absolute
-/// in the kernel too, so that what happens between a look at the clock and the sleep costs nothing.
+/// Sleeps until a deadline; returns at once if it has passed. On Linux the kernel takes the absolute
+/// deadline too, so that a delay between reading the clock and sleeping costs nothing.
 #[inline]
 pub fn sleep_until(deadline: HostTime) {
     system::sleep_until(deadline);
@@ -105,8 +105,8 @@ pub fn resolution_ns() -> u64 {
     system::resolution_ns()
 }
 
-/// Looks at the clock until a deadline has passed; returns the time then. Takes the processor for
-/// all of that time.
+/// Reads the clock in a loop until a deadline has passed; returns the time of the last reading.
+/// Occupies the processor all that time.
 #[inline]
 pub fn spin_until(deadline: HostTime) -> HostTime {
     loop {
@@ -118,7 +118,7 @@ pub fn spin_until(deadline: HostTime) -> HostTime {
     }
 }
 
-/// A duration in ns, at most what 64 bits hold.
+/// Converts a duration to ns, at most the largest of 64 bits.
 #[must_use]
 pub fn nanoseconds(duration: Duration) -> u64 {
     u64::try_from(duration.as_nanos()).unwrap_or(u64::MAX)

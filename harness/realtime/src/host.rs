@@ -1,31 +1,31 @@
-//! What of a host matters to a bench: limits, clocks, processors, ports; and what to change.
+//! Properties of a host that matter to a bench: limits, clocks, processors, ports; with advice.
 
 use serde::{Deserialize, Serialize};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// How good a finding is.
+/// Grade of a finding.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Grade {
-    /// As it should be, or for information.
+    /// Good, or for information only.
     Good,
-    /// Runs will work, less punctually than they could.
+    /// Runs work, but less punctually than they could.
     Advice,
-    /// Something can't be done here.
+    /// Something isn't possible on this host.
     Missing,
 }
 
-/// One thing that was looked at.
+/// Finding about one property of the host.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Finding {
-    /// What was looked at.
+    /// Property examined.
     pub subject: String,
-    /// How good it is.
+    /// Grade.
     pub grade: Grade,
-    /// What was found.
+    /// Result.
     pub found: String,
-    /// What to change, where there is something.
+    /// Advice, if something should be changed.
     pub advice: Option<String>,
 }
 
@@ -40,7 +40,7 @@ impl Finding {
     }
 }
 
-/// Looks at the host.
+/// Examines the host.
 #[must_use]
 pub fn look() -> Vec<Finding> {
     let mut findings = limits::look();
@@ -48,14 +48,14 @@ pub fn look() -> Vec<Finding> {
     findings
 }
 
-/// The files in which a Linux kernel tells about itself, under some root.
+/// Files in which a Linux kernel describes itself, under some root.
 #[derive(Clone, Debug)]
 pub struct Tree {
     root: PathBuf,
 }
 
 impl Tree {
-    /// The tree under a root; `/` is the host's.
+    /// Makes the tree under a root; `/` is the host's own.
     #[must_use]
     pub fn of(root: impl AsRef<Path>) -> Self {
         Self { root: root.as_ref().to_owned() }
@@ -74,7 +74,7 @@ impl Tree {
         names
     }
 
-    /// All that the tree tells.
+    /// Examines everything that the tree describes.
     #[must_use]
     pub fn look(&self) -> Vec<Finding> {
         let mut findings = vec![self.kernel(), self.clock_source()];
@@ -98,18 +98,18 @@ impl Tree {
     fn clock_source(&self) -> Finding {
         let path = "sys/devices/system/clocksource/clocksource0/current_clocksource";
         match self.read(path) {
-            None => Finding::new("clock source", Grade::Advice, "not told by this system"),
+            None => Finding::new("clock source", Grade::Advice, "not reported by this system"),
             Some(source) if matches!(&*source, "tsc" | "kvm-clock" | "arch_sys_counter") => {
                 Finding::new("clock source", Grade::Good, source)
             }
             Some(source) => Finding::new("clock source", Grade::Advice, source).advice(
-                "every look at this clock is a system call, or slow: see dmesg for why the \
+                "every reading of this clock is a system call, or slow: see dmesg for why the \
                  processor's own counter isn't used",
             ),
         }
     }
 
-    /// The kernel takes real-time threads off the processor after a part of each second.
+    /// Finding about throttling: after a share of each period, the kernel stops real-time threads.
     fn throttling(&self) -> Option<Finding> {
         let runtime: i64 = self.read("proc/sys/kernel/sched_rt_runtime_us")?.parse().ok()?;
         let period: i64 = self.read("proc/sys/kernel/sched_rt_period_us")?.parse().ok()?;
@@ -117,7 +117,7 @@ impl Tree {
         Some(if runtime < 0 || runtime >= period {
             Finding::new("real-time throttling", Grade::Good, "off")
         } else {
-            // A thread that sleeps most of its period never gets there.
+            // A thread that sleeps for most of its period never reaches the limit.
             Finding::new("real-time throttling", Grade::Good, format!("{share}, enough"))
         })
     }
@@ -152,7 +152,7 @@ impl Tree {
             .lines()
             .any(|line| line.starts_with("flags") && line.split(' ').any(|f| f == "hypervisor"));
         let mut found = match processors {
-            0 => "processors not told".to_owned(),
+            0 => "number of processors unknown".to_owned(),
             1 => "1 processor".to_owned(),
             n => format!("{n} processors"),
         };
@@ -161,7 +161,7 @@ impl Tree {
         }
         if is_virtual {
             return Finding::new("machine", Grade::Advice, format!("virtual, {found}")).advice(
-                "the host of a virtual machine may stop it at any time: certify on a real one",
+                "the host of a virtual machine may stop it at any time: certify on a physical machine",
             );
         }
         if processors == 1 {
@@ -172,7 +172,7 @@ impl Tree {
     }
 
     fn serial_ports(&self) -> Finding {
-        // What a driver stands behind; the kernel makes ttyS0 to ttyS3 whether there is a chip or not.
+        // Only ports with a driver count: the kernel makes ttyS0 to ttyS3 even without a chip.
         let real = |name: &String| {
             name.starts_with("tty")
                 && fs::exists(self.root.join(format!("sys/class/tty/{name}/device/driver")))
@@ -182,7 +182,7 @@ impl Tree {
         let subject = "serial ports";
         if ports.is_empty() {
             return Finding::new(subject, Grade::Advice, "none").advice(
-                "plug the device in and look at dmesg; pseudo terminals and UDP work without",
+                "plug the device in and look at dmesg; pseudo terminals and UDP work without it",
             );
         }
         let closed: Vec<&str> = ports
@@ -294,7 +294,7 @@ mod limits {
         }
     }
 
-    /// A device that exists and that this user may not read and write.
+    /// True for a device that exists but may not be read and written by this user.
     pub(super) fn is_closed(path: &Path) -> bool {
         path.exists() && access(path, Access::READ_OK | Access::WRITE_OK).is_err()
     }
@@ -307,9 +307,8 @@ mod limits {
 
     pub(super) fn look() -> Vec<Finding> {
         vec![
-            Finding::new("system", Grade::Missing, std::env::consts::OS).advice(
-                "real-time scheduling, locked memory and SocketCAN are there on Linux only",
-            ),
+            Finding::new("system", Grade::Missing, std::env::consts::OS)
+                .advice("real-time scheduling, locked memory and SocketCAN exist on Linux only"),
         ]
     }
 

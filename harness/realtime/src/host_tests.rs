@@ -1,6 +1,6 @@
 use super::*;
 
-/// A tree with these files.
+/// Makes a tree with these files.
 fn tree(files: &[(&str, &str)]) -> (PathBuf, Tree) {
     use std::sync::atomic::{AtomicU32, Ordering};
     static NEXT: AtomicU32 = AtomicU32::new(0);
@@ -73,7 +73,7 @@ fn what_could_be_better_says_how() {
             "processor : 0\nflags : fpu hypervisor\n",
             "machine",
             "virtual, 1 processor",
-            "real one",
+            "physical machine",
         ),
         ("sys/class/net/eth0/type", "1", "CAN interfaces", "none", "modprobe vcan"),
         ("sys/class/tty/ttyS0/active", "", "serial ports", "none", "dmesg"),
@@ -101,7 +101,7 @@ fn a_can_interface_that_is_down_is_named() {
 fn nothing_is_needed_of_a_tree() {
     let (_, tree) = tree(&[]);
     assert!(!tree.look().is_empty());
-    // The host's own, whatever it is.
+    // Findings of the real host, whatever they are.
     for finding in look() {
         assert!(
             !finding.found.is_empty()

@@ -1,4 +1,4 @@
-//! How late this host wakes a thread: a short measurement, as cyclictest makes a long one.
+//! Wake-up latency of this host: a short measurement, where cyclictest makes a long one.
 
 use crate::clock::{HostTime, now};
 use crate::pace::{FrameClock, Pacing, Report};
@@ -6,36 +6,36 @@ use crate::schedule::{Granted, Wish, apply};
 use serde::{Deserialize, Serialize};
 use std::time::Duration;
 
-/// What is measured.
+/// Settings of a measurement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Trial {
     /// Period, ns.
     pub period_ns: u64,
-    /// How long, in all.
+    /// Total duration.
     pub duration: Duration,
-    /// The last part of each wait that is spent looking at the clock, ns.
+    /// Last part of each wait that is spent reading the clock, ns.
     pub spin_ns: u64,
-    /// What the thread would like to have.
+    /// Scheduling that the thread requests.
     pub wish: Wish,
 }
 
-/// What was found.
+/// Result of a measurement.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Found {
-    /// What the thread got.
+    /// Scheduling that the thread was granted.
     pub granted: Granted,
-    /// How late it was woken. Overruns are wakings later than a tenth of the period.
+    /// Lateness of the wake-ups. Overruns are later than a tenth of the period.
     pub report: Report,
 }
 
-/// Measures on a thread of its own.
+/// Measures on a separate thread.
 ///
 /// # Errors
-/// If the system gives no thread.
+/// If the system can't start a thread.
 pub fn measure(trial: Trial) -> std::io::Result<Found> {
     let thread = std::thread::Builder::new().name("latency".into()).spawn(move || {
         let granted = apply(&trial.wish);
-        // Spinning without a real-time priority is worse than sleeping, and nobody would run so.
+        // Spinning without a real-time priority is worse than sleeping, and no run would do it.
         let spin_ns = if granted.is_realtime() { trial.spin_ns } else { 0 };
         let period_ns = trial.period_ns.max(1);
         let pacing = Pacing { period_ns, spin_ns, overrun_ns: period_ns / 10 };
@@ -46,7 +46,7 @@ pub fn measure(trial: Trial) -> std::io::Result<Found> {
         }
         Found { granted, report: clock.report() }
     })?;
-    thread.join().map_err(|_| std::io::Error::other("the measurement ended by a panic"))
+    thread.join().map_err(|_| std::io::Error::other("the measuring thread panicked"))
 }
 
 #[cfg(test)]

@@ -1,17 +1,17 @@
-//! How late things were.
+//! Histogram of lateness.
 
 use hdrhistogram::Histogram;
 use serde::{Deserialize, Serialize};
 
-/// Largest lateness that is told apart from larger ones, ns: a minute.
+/// Largest lateness that is distinguished from larger ones, ns: a minute.
 const LARGEST_NS: u64 = 60_000_000_000;
 
-/// Durations, in a histogram of three significant digits from 1 ns to a minute; longer ones count
-/// as a minute. Recording one takes a few nanoseconds and allocates nothing.
+/// Histogram of durations with three significant digits, from 1 ns to a minute; longer ones count as a
+/// minute. Recording a duration takes a few nanoseconds and allocates nothing.
 #[derive(Clone, Debug)]
 pub struct Lateness {
     histogram: Histogram<u64>,
-    /// The largest, exactly.
+    /// Largest duration, exact, ns.
     max_ns: u64,
 }
 
@@ -22,7 +22,7 @@ impl Default for Lateness {
 }
 
 impl Lateness {
-    /// An empty histogram.
+    /// Makes an empty histogram.
     #[must_use]
     pub fn new() -> Self {
         #[allow(clippy::expect_used, reason = "the bounds are constants that a test makes one of")]
@@ -30,26 +30,26 @@ impl Lateness {
         Self { histogram, max_ns: 0 }
     }
 
-    /// Takes one.
+    /// Records a duration.
     #[inline]
     pub fn record(&mut self, lateness_ns: u64) {
         self.max_ns = self.max_ns.max(lateness_ns);
         self.histogram.saturating_record(lateness_ns);
     }
 
-    /// How many were taken.
+    /// Number of durations recorded.
     #[must_use]
     pub fn count(&self) -> u64 {
         self.histogram.len()
     }
 
-    /// The largest, ns.
+    /// Largest duration, ns.
     #[must_use]
     pub fn max_ns(&self) -> u64 {
         self.max_ns
     }
 
-    /// What a share of all doesn't exceed, ns, to three digits; 0 without any.
+    /// Quantile of the durations for a share from 0 to 1, ns, to three digits; 0 without any.
     #[must_use]
     pub fn quantile_ns(&self, share: f64) -> u64 {
         self.histogram.value_at_quantile(share.clamp(0.0, 1.0)).min(self.max_ns)
@@ -76,14 +76,14 @@ impl Lateness {
         }
     }
 
-    /// The histogram as rows: an upper edge in ns and how many are at most that and above the edge
-    /// before, ten rows to the decade, without empty ones at the ends. The counts sum up to
+    /// Rows of the histogram: an upper edge in ns, and the number of durations up to it and above the
+    /// edge before. There are at most ten rows to the decade, none of them empty. The counts add up to
     /// [`Self::count`].
     #[must_use]
     pub fn rows(&self) -> Vec<(u64, u64)> {
         let mut rows: Vec<(u64, u64)> = Vec::new();
         for step in self.histogram.iter_recorded() {
-            // Values are kept as the upper end of their cell, which is 0.1 % wide.
+            // A value is kept as the upper end of its cell, which is 0.1 % wide.
             let value = step.value_iterated_to().max(1) as f64;
             let edge = 10f64.powf((value.log10() * 10.0).ceil() / 10.0).round() as u64;
             match rows.last_mut() {
@@ -95,19 +95,19 @@ impl Lateness {
     }
 }
 
-/// The figures of a [`Lateness`] that are read first. The largest of many runs longer than the test
-/// did; the quantiles are what compares.
+/// Most important figures of a [`Lateness`]. The maximum grows with the length of a test; compare the
+/// quantiles.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Figures {
-    /// How many.
+    /// Number of durations.
     pub count: u64,
     /// Median, µs.
     pub p50_us: f64,
-    /// 99 %, µs.
+    /// 99 % quantile, µs.
     pub p99_us: f64,
-    /// 99.9 %, µs.
+    /// 99.9 % quantile, µs.
     pub p999_us: f64,
-    /// The largest, µs.
+    /// Maximum, µs.
     pub max_us: f64,
 }
 

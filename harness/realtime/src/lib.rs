@@ -1,23 +1,23 @@
-//! Samples at their time.
+//! Real-time pacing of samples.
 //!
-//! A run with a device at the other end of a wire goes by the clock: sample k leaves at the start
-//! of the run plus k periods. This crate has the parts of that, and knows nothing of samples:
+//! A run with a device at the other end of a wire follows the clock: sample k leaves at the start of
+//! the run plus k periods. This crate has the parts of that, and doesn't depend on samples:
 //!
 //! | module | |
 //! |---|---|
 //! | [`clock`] | host time as a type of its own, and sleep until an absolute deadline |
-//! | [`pace`] | the frame clock: waits for a deadline and tells how late it was |
-//! | [`lateness`] | the histogram of that |
+//! | [`pace`] | the frame clock: waits for a deadline and measures the lateness |
+//! | [`lateness`] | the histogram of the lateness |
 //! | [`schedule`] | real-time scheduling and locked memory, as far as the host permits them |
-//! | [`latency`] | how late this host wakes a thread that sleeps |
-//! | [`host`] | what of a host matters for all this, and what to change |
+//! | [`latency`] | wake-up latency of this host |
+//! | [`host`] | properties of a host that matter for all this, and advice |
 //!
-//! The frame clock is a monitor and not a scheduler: it doesn't call anything, and the time in a
-//! sample is the sample's number times the period, whatever the clock says. The same run goes
-//! paced or as fast as it can, and computes the same.
+//! The frame clock is a monitor and not a scheduler: it doesn't call anything, and the time in a sample
+//! is the sample's number times the period, whatever the clock shows. So a run gives the same results
+//! paced or as fast as possible.
 //!
-//! Linux has all of it. On other systems a thread sleeps and its lateness is measured; what isn't
-//! there is told as not granted.
+//! Linux supports all of it. On other systems a thread sleeps and its lateness is measured; missing
+//! functions are reported as not granted.
 
 pub mod clock;
 pub mod host;

@@ -1,47 +1,47 @@
-//! The frame clock.
+//! Frame clock.
 
 use crate::clock::{HostTime, now, sleep_until, spin_until};
 use crate::lateness::{Figures, Lateness};
 use serde::{Deserialize, Serialize};
 
-/// How frames are paced.
+/// Pacing of frames.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Pacing {
-    /// From one frame to the next, ns; not 0.
+    /// Period of the frames, ns; not 0.
     pub period_ns: u64,
-    /// The last part of each wait is spent looking at the clock, ns: punctual to a microsecond
-    /// where the thread has a real-time priority, worse than sleeping where it hasn't.
+    /// Last part of each wait that is spent reading the clock, ns. Punctual to a microsecond if the
+    /// thread has a real-time priority, worse than sleeping if it hasn't.
     pub spin_ns: u64,
-    /// A frame that starts later than this is an overrun, ns.
+    /// Lateness above which a frame is an overrun, ns.
     pub overrun_ns: u64,
 }
 
-/// Waits for the deadlines of frames and measures how late each began. It is a monitor: it calls
-/// nothing, skips nothing and never makes a frame shorter. Frames that are late follow each other
-/// without a wait until they have caught up.
+/// Waits for the deadlines of frames and measures their lateness. It is a monitor: it calls nothing,
+/// skips nothing and never shortens a frame. Late frames follow each other without a wait until they
+/// have caught up.
 #[derive(Clone, Debug)]
 pub struct FrameClock {
     pacing: Pacing,
     start: HostTime,
     frame: u64,
     lateness: Lateness,
-    /// Time that was left when a frame had been dealt with.
+    /// Time left before the next deadline when the work of a frame was done.
     slack: Lateness,
     overruns: u64,
-    /// Frames in a row that are late now, and most of them.
+    /// Present number of overruns in a row; `longest_row` is the largest.
     row: u64,
     longest_row: u64,
     first_overrun: Option<u64>,
 }
 
 impl FrameClock {
-    /// A clock whose frame 0 is due now; nothing waits for it.
+    /// Starts a clock whose frame 0 is due now, without waiting.
     #[must_use]
     pub fn start(pacing: Pacing) -> Self {
         Self::start_at(pacing, now())
     }
 
-    /// A clock whose frame 0 is due at `start`.
+    /// Starts a clock whose frame 0 is due at `start`.
     #[must_use]
     pub fn start_at(pacing: Pacing, start: HostTime) -> Self {
         Self {
@@ -57,20 +57,20 @@ impl FrameClock {
         }
     }
 
-    /// Lets frame 0 be due now. Nothing may have been waited for.
+    /// Makes frame 0 due now. To be called before the first wait.
     pub fn restart(&mut self) {
         self.start = now();
     }
 
-    /// When the next frame is due. From the start and the number of the frame, so that nothing
-    /// adds up.
+    /// Deadline of the next frame. Computed from the start and the frame number, so that no error
+    /// accumulates.
     #[must_use]
     #[inline]
     pub fn deadline(&self) -> HostTime {
         self.start.after((self.frame + 1).saturating_mul(self.pacing.period_ns))
     }
 
-    /// When frame 0 was due.
+    /// Time at which frame 0 was due.
     #[must_use]
     pub fn started(&self) -> HostTime {
         self.start
@@ -88,7 +88,7 @@ impl FrameClock {
             if before < sleep_to {
                 sleep_until(sleep_to);
             }
-            // Without spinning the clock has passed the deadline already, and this is one look.
+            // Without spinning the deadline has already passed, and this reads the clock once.
             time = spin_until(deadline);
         } else {
             self.slack.record(0);
@@ -97,7 +97,7 @@ impl FrameClock {
         time
     }
 
-    /// Takes note of a frame that begins.
+    /// Records the lateness of a frame that begins.
     #[inline]
     fn begin(&mut self, lateness_ns: u64) {
         self.frame += 1;
@@ -112,13 +112,13 @@ impl FrameClock {
         }
     }
 
-    /// Frames that have begun.
+    /// Number of frames that have begun.
     #[must_use]
     pub fn frames(&self) -> u64 {
         self.frame
     }
 
-    /// Frames that began too late.
+    /// Number of overruns.
     #[must_use]
     pub fn overruns(&self) -> u64 {
         self.overruns
@@ -130,7 +130,7 @@ impl FrameClock {
         &self.lateness
     }
 
-    /// What has been found so far.
+    /// Results so far.
     #[must_use]
     pub fn report(&self) -> Report {
         Report {
@@ -146,24 +146,24 @@ impl FrameClock {
     }
 }
 
-/// What a frame clock found.
+/// Results of a frame clock.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Report {
-    /// Frames that began.
+    /// Number of frames that began.
     pub frames: u64,
     /// Period, µs.
     pub period_us: f64,
-    /// Lateness from which on a frame is an overrun, µs.
+    /// Lateness above which a frame is an overrun, µs.
     pub overrun_us: f64,
-    /// Overruns.
+    /// Number of overruns.
     pub overruns: u64,
-    /// Most overruns in a row.
+    /// Largest number of overruns in a row.
     pub longest_row_of_overruns: u64,
-    /// Number of the first frame that was one, from 1.
+    /// Number of the first overrun frame, from 1.
     pub first_overrun: Option<u64>,
-    /// How late frames began.
+    /// Lateness of the frames.
     pub lateness: Figures,
-    /// 99 % of the frames left at least so much of their period unused, µs.
+    /// Part of the period that 99 % of the frames left unused at least, µs.
     pub slack_p1_us: f64,
 }
 
@@ -192,7 +192,7 @@ mod tests {
             let deadline = clock.deadline();
             assert!(clock.wait() >= deadline);
         }
-        // All of the wait spent at the clock.
+        // The whole wait is spent reading the clock.
         let mut clock = FrameClock::start(Pacing { spin_ns: u64::MAX, ..PACING });
         let deadline = clock.deadline();
         assert!(clock.wait() >= deadline);
@@ -200,7 +200,7 @@ mod tests {
 
     #[test]
     fn late_frames_are_counted_and_caught_up_without_a_wait() {
-        // Ten periods ago: the first ten frames are due already.
+        // The start was ten periods ago: the first ten frames are already due.
         let start = HostTime { ns: now().ns - 10_500_000 };
         let mut clock = FrameClock::start_at(PACING, start);
         let first = clock.wait();

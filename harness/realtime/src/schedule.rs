@@ -1,92 +1,92 @@
-//! What makes a thread punctual: a real-time priority, memory that stays in place, a processor of
-//! its own. A host may refuse each; then the run goes on without, and its manifest says so.
+//! Real-time scheduling of a thread: a real-time priority, locked memory, a processor of its own. A
+//! host may refuse each; then the run continues without it, and its manifest says so.
 
 use serde::{Deserialize, Serialize};
 
-/// What a thread would like to have.
+/// Scheduling that a thread requests.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Wish {
-    /// Priority of SCHED_FIFO, 1 to 99; `None`: none is asked for.
+    /// Priority of SCHED_FIFO, 1 to 99; `None`: no request.
     pub priority: Option<u8>,
-    /// All memory of the process stays in place.
+    /// True to lock all memory of the process.
     pub lock_memory: bool,
-    /// The only processor that the thread runs on, from 0.
+    /// Processor that the thread is pinned to, from 0.
     pub cpu: Option<u16>,
 }
 
-/// What became of one wish.
+/// Outcome of one request.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case", tag = "outcome")]
 pub enum Outcome {
-    /// It wasn't asked for.
+    /// The property wasn't requested.
     NotAsked,
-    /// It is so.
+    /// The request was granted.
     Granted {
-        /// What is so.
+        /// Property granted.
         what: String,
     },
-    /// It isn't.
+    /// The request was refused.
     Refused {
-        /// What was asked for.
+        /// Property requested.
         what: String,
-        /// Why it was refused, and what would help.
+        /// Reason of the refusal, and the remedy.
         why: String,
     },
 }
 
 impl Outcome {
-    /// It was granted.
+    /// True if the request was granted.
     #[must_use]
     pub fn is_granted(&self) -> bool {
         matches!(self, Self::Granted { .. })
     }
 
-    /// As a line for people.
+    /// Text of one line.
     #[must_use]
     pub fn text(&self) -> String {
         match self {
-            Self::NotAsked => "not asked for".to_owned(),
+            Self::NotAsked => "not requested".to_owned(),
             Self::Granted { what } => what.clone(),
             Self::Refused { what, why } => format!("no {what}: {why}"),
         }
     }
 }
 
-/// What a thread got.
+/// Outcome of all requests of a thread.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Granted {
-    /// Its scheduling.
+    /// Real-time priority.
     pub scheduling: Outcome,
-    /// Whether memory stays in place.
+    /// Locked memory.
     pub memory: Outcome,
-    /// Which processor it runs on.
+    /// Processor.
     pub cpu: Outcome,
 }
 
 impl Granted {
-    /// The thread has a real-time priority: only then does spinning help.
+    /// True if the thread has a real-time priority: only then does spinning help.
     #[must_use]
     pub fn is_realtime(&self) -> bool {
         self.scheduling.is_granted()
     }
 }
 
-/// Gives the calling thread what of a wish the host permits. It never fails: what isn't permitted
-/// is told. The priority and the processor are the thread's, the locked memory the process's; all
-/// stays until the thread, or the process, ends.
+/// Requests scheduling for the calling thread. A refusal is reported, not an error. Priority and
+/// processor belong to the thread, locked memory to the process; all last until the thread, or the
+/// process, ends.
 #[must_use]
 pub fn apply(wish: &Wish) -> Granted {
     system::prepare();
     Granted {
-        // First, so that a page fault of what follows is over before the thread is in a hurry.
+        // Memory comes first, so that page faults happen before the thread has a real-time priority.
         memory: if wish.lock_memory { system::lock_memory() } else { Outcome::NotAsked },
         cpu: wish.cpu.map_or(Outcome::NotAsked, system::pin),
         scheduling: wish.priority.map_or(Outcome::NotAsked, system::fifo),
     }
 }
 
-/// Processors that the calling thread may run on: on many hosts not all of them (`taskset`, a container).
-/// Where the system doesn't tell which, as many as there are for it, from 0 on.
+/// Processors that the calling thread may use: on many hosts not all of them (`taskset`, a container).
+/// If the system doesn't say which, as many as are available, from 0 on.
 #[must_use]
 pub fn processors() -> Vec<u16> {
     system::processors().unwrap_or_else(|| {
@@ -95,7 +95,8 @@ pub fn processors() -> Vec<u16> {
     })
 }
 
-/// Takes from the calling thread what it was granted, but for the memory: that is the process's.
+/// Takes back the priority and the processor granted to the calling thread; locked memory belongs to
+/// the process and stays.
 pub fn release(granted: &Granted) {
     system::release(granted);
 }
@@ -117,14 +118,14 @@ mod system {
     };
 
     thread_local! {
-        /// Processors of this thread before it was given one of its own.
+        /// Processors of this thread before it was pinned.
         static BEFORE: Cell<Option<CpuSet>> = const { Cell::new(None) };
     }
 
-    /// A thread without a real-time priority is woken up to 50 µs late on purpose, so that wakings
-    /// can be put together. Not this one.
+    /// Switches off the timer slack of the thread: without a real-time priority, the kernel otherwise
+    /// delays wake-ups by up to 50 µs to combine them.
     pub(super) fn prepare() {
-        // Where it is refused, the lateness tells.
+        // A refusal shows in the lateness.
         let _ = set_current_timer_slack(NonZeroU64::new(1));
     }
 
@@ -164,11 +165,11 @@ mod system {
     pub(super) fn release(granted: &super::Granted) {
         if granted.scheduling.is_granted() {
             let policy = ThreadSchedulePolicy::Normal(NormalThreadSchedulePolicy::Other);
-            // From a real-time policy back is always permitted.
+            // Returning from a real-time policy is always permitted.
             let _ = set_thread_priority_and_policy(thread_native_id(), ThreadPriority::Min, policy);
         }
         if granted.cpu.is_granted() {
-            // What it had may be less than all: `taskset`, a container.
+            // The former set may be less than all processors: `taskset`, a container.
             if let Some(before) = BEFORE.take() {
                 let _ = sched_setaffinity(None, &before);
             }
@@ -178,7 +179,7 @@ mod system {
     pub(super) fn lock_memory() -> Outcome {
         let what = "all memory locked".to_owned();
         let refused = |why| Outcome::Refused { what: "locked memory".to_owned(), why };
-        // Under a limit the lock may succeed, and an allocation fail an hour later.
+        // Under a limit the lock may succeed now, and an allocation fail an hour later.
         let limit = getrlimit(Resource::Memlock).current;
         if let Some(bytes) = limit
             && !has(CapabilitySet::IPC_LOCK)
@@ -210,7 +211,7 @@ mod system {
                 Outcome::Granted { what }
             }
             Err(rustix::io::Errno::INVAL) => Outcome::Refused {
-                why: "there is no such processor, or it isn't for this process".to_owned(),
+                why: "there is no such processor, or this process may not use it".to_owned(),
                 what,
             },
             Err(error) => Outcome::Refused { what, why: error.to_string() },
@@ -251,7 +252,7 @@ mod system {
 mod tests {
     use super::*;
 
-    /// On a thread of its own: what it gets doesn't stay with the test program's.
+    /// Applies a request on a thread of its own, so that the test program's thread stays unchanged.
     fn applied(wish: Wish) -> Granted {
         std::thread::spawn(move || apply(&wish)).join().unwrap_or_else(|_| panic!("it panicked"))
     }
@@ -303,7 +304,7 @@ mod tests {
         std::thread::spawn(|| {
             let granted = apply(&Wish { priority: Some(10), lock_memory: false, cpu: Some(0) });
             let status = std::fs::read_to_string("/proc/thread-self/stat").unwrap_or_default();
-            // Fields 40 and 41 of proc_pid_stat(5), counted behind the name in parentheses.
+            // Fields 40 and 41 of proc_pid_stat(5), counted after the name in parentheses.
             let fields: Vec<&str> = status.rsplit(") ").next().unwrap_or("").split(' ').collect();
             let (priority, policy) = (fields[37], fields[38]);
             if granted.is_realtime() {

@@ -1,3 +1,3 @@
-//! The tests of clocks and pacing from outside, in one program.
+//! Integration tests of clocks and pacing, in one program.
 
 mod no_allocation;

@@ -1,4 +1,4 @@
-//! The frame clock allocates nothing once it has started.
+//! The frame clock allocates nothing after its start.
 
 use octant_realtime::clock::now;
 use octant_realtime::pace::{FrameClock, Pacing};
@@ -6,18 +6,18 @@ use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 
 thread_local! {
-    /// Of this thread: those of other tests, and of the test runner, are on other ones.
+    /// Allocations of this thread: other tests and the test runner have other threads.
     static ALLOCATIONS: Cell<u64> = const { Cell::new(0) };
 }
 
 struct Counting;
 
 #[allow(unsafe_code, reason = "an allocator can't be written without")]
-// SAFETY: every call goes to the system's allocator as it came.
+// SAFETY: every call is passed on unchanged to the system's allocator.
 unsafe impl GlobalAlloc for Counting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         ALLOCATIONS.set(ALLOCATIONS.get() + 1);
-        // SAFETY: the caller's promises are those that the system's allocator wants.
+        // SAFETY: the caller keeps the contract of the system's allocator.
         unsafe { System.alloc(layout) }
     }
 
@@ -33,7 +33,7 @@ static ALLOCATOR: Counting = Counting;
 #[test]
 fn frames_allocate_nothing() {
     let pacing = Pacing { period_ns: 200_000, spin_ns: 20_000, overrun_ns: 50_000 };
-    // The first half is due already, and late: both ways are passed.
+    // The first half of the frames is already late, the second is waited for: both paths are tested.
     let start = octant_realtime::clock::HostTime { ns: now().ns - 20 * 200_000 };
     let mut clock = FrameClock::start_at(pacing, start);
     let before = ALLOCATIONS.get();

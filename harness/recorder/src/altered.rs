@@ -1,8 +1,7 @@
-//! Checksums of the two streams of a run with faults: what the source delivered, and what reached
-//! the core.
+//! Checksums of the two streams of a run with faults: of the source, and as received by the core.
 //!
-//! Both begin with the first epoch in which they differ and go to the end of the run: BLAKE3 over
-//! the canonical bytes of sample and aiding, epoch by epoch. Up to there the streams are one, and
+//! Both begin with the first epoch in which they differ and continue to the end of the run: BLAKE3 over
+//! the canonical bytes of sample and aiding, epoch by epoch. Before that the streams are equal, and
 //! nothing is computed.
 
 use super::StreamHash;
@@ -14,13 +13,13 @@ use octant_sample::{Aiding, Sample};
 pub struct AlteredStreams {
     /// Sequence number of the first sample that was altered, lost or added.
     pub first_sample: u64,
-    /// BLAKE3 of what the source delivered from then on, 64 hexadecimal digits.
+    /// BLAKE3 of the source's stream from then on, 64 hexadecimal digits.
     pub clean_blake3: String,
-    /// BLAKE3 of what reached the core from then on.
+    /// BLAKE3 of the core's stream from then on, 64 hexadecimal digits.
     pub faulted_blake3: String,
 }
 
-/// The two hashes so far.
+/// Both hashes so far.
 #[derive(Debug)]
 pub(super) struct Streams {
     first_sample: u64,
@@ -29,7 +28,7 @@ pub(super) struct Streams {
 }
 
 impl Streams {
-    /// Takes an epoch that is the same in both.
+    /// Adds an epoch that is the same in both streams.
     #[inline]
     pub(super) fn unaltered(&mut self, sample: &Sample, aiding: Option<&Aiding>) {
         self.clean.input(sample, aiding);
@@ -45,7 +44,7 @@ impl Streams {
     }
 }
 
-/// Takes a block; makes the hashes at the first difference.
+/// Adds a block; starts the hashes at the first difference.
 pub(super) fn take(streams: &mut Option<Streams>, block: &Block) {
     if streams.is_none() && block.altered.is_empty() && block.added.is_empty() {
         return;

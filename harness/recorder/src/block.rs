@@ -1,4 +1,4 @@
-//! A block of epochs: what the run loop collects and the recorder's thread works off.
+//! A block of epochs: filled by the run loop, processed by the recorder's thread.
 
 use super::{Event, Extra, Frame};
 use octant_sample::Epoch;
@@ -6,24 +6,24 @@ use octant_sample::Truth;
 use octant_sample::parameters::ParameterEstimate;
 use octant_sample::{Aiding, Output, Sample};
 
-/// Epochs in columns, what is rare in lists of its own: a plain epoch costs two short copies.
+/// Epochs in columns, with rare parts in lists of their own: a plain epoch costs two short copies.
 ///
-/// A position is the number of frames of this block that came before: what belongs to frame `i`
-/// stands at `i` ([`Block::aiding`], [`Block::altered`]) or, for what was said after it, at `i + 1`.
+/// A position is the number of earlier frames in this block: parts of frame `i` have position `i`
+/// ([`Block::aiding`], [`Block::altered`]), and parts added after it have `i + 1`.
 #[derive(Debug, Default)]
 pub(super) struct Block {
-    /// What reached the core; of a lost epoch what the source had delivered.
+    /// Samples that reached the core; for a lost epoch, the one that the source delivered.
     pub(super) samples: Vec<Sample>,
-    /// What it answered; of a lost epoch nothing of meaning.
+    /// Outputs of the core; for a lost epoch, without meaning.
     pub(super) outputs: Vec<Output>,
     /// Aiding that reached the core, by frame.
     pub(super) aiding: Vec<(u32, Aiding)>,
-    /// What the source had delivered, for frames where it differs from what reached the core.
+    /// Epochs of the source, for frames where they differ from those that reached the core.
     pub(super) altered: Vec<(u32, Epoch)>,
-    /// Frames of epochs that never reached the core in their step.
+    /// Frames whose epochs didn't reach the core in their step.
     pub(super) lost: Vec<u32>,
-    /// Frames that reached the core beside another of the same step of the source, with the time
-    /// of the step.
+    /// Frames that reached the core in a step of the source in which another one had, with the time of
+    /// the step.
     pub(super) added: Vec<(u32, u64)>,
     /// Frames on the recording grid.
     pub(super) due: Vec<u32>,
@@ -51,7 +51,7 @@ impl Block {
         }
     }
 
-    /// Frames in the block.
+    /// Number of frames in the block.
     #[inline]
     pub(super) fn len(&self) -> usize {
         self.samples.len()
@@ -81,12 +81,12 @@ impl Block {
         if due {
             self.due.push(position);
         }
-        // Not `push`: that copies by way of the stack.
+        // Unlike `push`, this doesn't copy by way of the stack.
         self.samples.extend_from_slice(std::slice::from_ref(&frame.faulted.sample));
         self.outputs.extend_from_slice(std::slice::from_ref(frame.output));
     }
 
-    /// Takes an epoch that didn't reach the core in its step.
+    /// Adds an epoch that didn't reach the core in its step.
     pub(super) fn lost(&mut self, clean: &Epoch, due: bool) {
         let position = self.position();
         self.altered.push((position, *clean));
@@ -98,7 +98,7 @@ impl Block {
         self.outputs.push(Output::default());
     }
 
-    /// Takes an epoch that reached the core in a step in which another one had.
+    /// Adds an epoch that reached the core in a step in which another one had.
     pub(super) fn added(&mut self, step_ns: u64, faulted: &Epoch, output: &Output, due: bool) {
         let position = self.position();
         self.added.push((position, step_ns));
@@ -132,14 +132,14 @@ impl Block {
 }
 
 impl Frame<'_> {
-    /// The core got something else than the source had delivered.
+    /// True if the core received another epoch than the source delivered.
     #[inline]
     pub(super) fn is_altered(&self) -> bool {
         !same(self.clean, self.faulted)
     }
 }
 
-/// Bit for bit the same: NaN is equal to itself and zero differs from minus zero.
+/// True if both have the same bits: NaN equals itself, and zero differs from minus zero.
 #[inline]
 fn same(a: &Epoch, b: &Epoch) -> bool {
     std::ptr::eq(a, b)

@@ -1,19 +1,17 @@
-//! The recorder as the run loop sees it: a place to put epochs, at a few nanoseconds each.
+//! The recorder's side in the run loop, which takes an epoch in a few nanoseconds.
 //!
-//! Epochs are collected in a block; a full block goes to the recorder's thread over a bounded
-//! queue, and an empty one comes back. Where hashes alone are wanted the loop makes them itself.
-//! Nothing is allocated in steady state. When all blocks are on their way the loop waits: in
-//! simulated time nothing is dropped. The thread asks for an unfinished block from time to time
-//! ([`FLUSH_INTERVAL`]), so that a slow run, too, gets into the file; the asking is one relaxed load
-//! of the loop.
+//! Epochs are collected in a block; a full block goes to the recorder's thread over a bounded queue,
+//! and an empty one comes back. If only hashes are wanted, the loop computes them itself. Nothing is
+//! allocated in steady state. When all blocks are in use the loop waits: in simulated time nothing is
+//! dropped. The thread asks for an unfinished block from time to time ([`FLUSH_INTERVAL`]), so that a
+//! slow run, too, is written to the file; checking for that costs the loop one relaxed load.
 
-use super::altered::{self, AlteredStreams};
 use super::block::Block;
+use super::digest::Digest;
+use super::summary::RecorderSummary;
 use super::trouble::{Disk, Trouble};
 use super::writer::{RecordingWriter, next_on_grid};
-use super::{
-    Counts, Event, Extra, FLUSH_INTERVAL, Frame, RecorderError, RecorderOptions, StreamHash,
-};
+use super::{Event, Extra, FLUSH_INTERVAL, Frame, RecorderError, RecorderOptions};
 use octant_sample::Epoch;
 use octant_sample::{Mode, Output};
 use std::fs::File;
@@ -24,28 +22,10 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, sync_channel};
 use std::thread::JoinHandle;
 
-/// What a recorder leaves.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct RecorderSummary {
-    /// Hash of the whole stream ([`StreamHash`]); empty from a recorder that does nothing.
-    pub stream_hash: String,
-    /// Epochs that passed.
-    pub epochs: u64,
-    /// Aiding messages that reached the core.
-    pub aiding: u64,
-    /// Epochs in which the core got something else than the source delivered.
-    pub altered: u64,
-    /// Checksums of what the source delivered and of what reached the core, where they differ.
-    pub altered_streams: Option<AlteredStreams>,
-    /// Messages in the file, by topic.
-    pub messages: Counts,
-    /// Bytes of the file.
-    pub bytes: u64,
-}
-
 /// Takes epochs from the run loop.
 ///
-/// Dropped without [`Recorder::finish`] it still writes what it was given; errors are then lost.
+/// If it is dropped without [`Recorder::finish`], it still writes the epochs that it has; errors are
+/// then lost.
 #[derive(Debug)]
 pub struct Recorder {
     /// The block being filled.
@@ -54,7 +34,7 @@ pub struct Recorder {
     next_due_ns: u64,
     period_ns: u64,
     truth_due: bool,
-    /// Mode of the last output, none before the first.
+    /// Mode of the last output; `None` before the first.
     mode: Option<Mode>,
     records_truth: bool,
     revision: u32,
@@ -62,12 +42,12 @@ pub struct Recorder {
     worker: Option<Worker>,
 }
 
-/// Who works off a full block.
+/// Place where full blocks are processed.
 #[derive(Debug)]
 enum Worker {
-    /// The loop's own thread: hashes alone are quicker made than handed over.
+    /// The loop's own thread: computing only hashes is faster than handing a block over.
     Here(Box<Digest>),
-    /// A thread, which writes too.
+    /// A separate thread, which also writes the file.
     Thread(Thread),
 }
 
@@ -85,7 +65,7 @@ impl Worker {
 struct Thread {
     full: SyncSender<Block>,
     empty: Receiver<Block>,
-    /// Set by the thread: it wants the unfinished block.
+    /// Set by the thread when it asks for the unfinished block.
     wanted: Arc<AtomicBool>,
     thread: JoinHandle<Result<RecorderSummary, RecorderError>>,
 }
@@ -106,7 +86,7 @@ impl Recorder {
         Self::start(options, writer, Some(kept))
     }
 
-    /// Records into anything that takes bytes.
+    /// Records into any writer.
     ///
     /// # Errors
     /// If the first bytes can't be written.
@@ -117,13 +97,13 @@ impl Recorder {
         Self::start(options, RecordingWriter::new(inner, options)?, None)
     }
 
-    /// Takes the stream hash, and those of altered streams, and writes no file.
+    /// Computes the stream hash and those of altered streams, and writes no file.
     #[must_use]
     pub fn hash_only(options: &RecorderOptions) -> Self {
         Self::digesting(options, Digest::new())
     }
 
-    /// Takes the stream hash alone: those of altered streams cost as much again.
+    /// Computes the stream hash only: those of altered streams cost as much again.
     #[must_use]
     pub fn stream_hash_only(options: &RecorderOptions) -> Self {
         Self::digesting(options, Digest { compares: false, ..Digest::new() })
@@ -135,7 +115,7 @@ impl Recorder {
         recorder
     }
 
-    /// Does nothing: what a run costs without a recorder.
+    /// Records nothing, to measure a run's cost without a recorder.
     #[must_use]
     pub fn none() -> Self {
         Self {
@@ -152,7 +132,7 @@ impl Recorder {
         }
     }
 
-    /// With an empty block, and nobody who works off full ones.
+    /// Makes a recorder with an empty block, and without a worker for full ones.
     fn with_blocks(options: &RecorderOptions) -> Self {
         let mut recorder = Self::none();
         recorder.epochs_per_block = options.epochs_per_block.clamp(1, 1 << 20);
@@ -173,7 +153,7 @@ impl Recorder {
         let (full, full_receiver) = sync_channel(blocks);
         let (empty_sender, empty) = sync_channel(blocks);
         for _ in 1..blocks {
-            // The queue has room for every block, so this can't wait.
+            // The queue has room for every block, so this never waits.
             let _ = empty_sender.send(Block::new(epochs_per_block));
         }
         let wanted = Arc::new(AtomicBool::new(false));
@@ -194,8 +174,8 @@ impl Recorder {
     /// Takes one epoch.
     ///
     /// # Errors
-    /// If the recorder failed (the error is that of its thread), or the parameters that the frame
-    /// before announced did not come.
+    /// If the recorder failed (with the error of its thread), or the parameters announced by the frame
+    /// before are missing.
     #[inline]
     pub fn push(&mut self, frame: Frame<'_>) -> Result<(), RecorderError> {
         let Some(worker) = &self.worker else { return Ok(()) };
@@ -205,8 +185,8 @@ impl Recorder {
                 revision: self.revision,
             });
         }
-        // Before the frame and not after it, so that truth and parameters, which come after their
-        // frame, are in the same block.
+        // The block is handed over before the frame and not after it, so that truth and parameters,
+        // which follow their frame, are in the same block.
         if self.block.len() >= self.epochs_per_block || worker.wants_block() {
             self.hand_over()?;
         }
@@ -215,7 +195,7 @@ impl Recorder {
         if on_grid {
             self.next_due_ns = next_on_grid(time_ns, self.period_ns);
         }
-        // Where the mode changes are the last parameters and the start of navigation.
+        // A change of mode marks the last parameters and the start of navigation.
         let due = on_grid || self.mode != Some(frame.output.mode);
         self.mode = Some(frame.output.mode);
         self.truth_due = due;
@@ -233,8 +213,8 @@ impl Recorder {
         Ok(())
     }
 
-    /// Takes an epoch that the source delivered and that didn't reach the core in its step: it was
-    /// lost, or is late, or the unit was off.
+    /// Takes an epoch of the source that didn't reach the core in its step: it was lost, or is late, or
+    /// the unit was off.
     ///
     /// # Errors
     /// As [`Recorder::push`].
@@ -252,8 +232,8 @@ impl Recorder {
         Ok(())
     }
 
-    /// Takes an epoch that reached the core in a step of the source in which another one had:
-    /// `step_ns` is the stamp of what the source delivered in it.
+    /// Takes an epoch that reached the core in a step of the source in which another one had: `step_ns`
+    /// is the stamp of the source's epoch in that step.
     ///
     /// # Errors
     /// As [`Recorder::push`].
@@ -277,7 +257,7 @@ impl Recorder {
         Ok(())
     }
 
-    /// What has to be before a frame is taken.
+    /// Checks that no parameters are missing, and hands over a full block.
     fn make_room(&mut self, sequence: u64) -> Result<(), RecorderError> {
         let Some(worker) = &self.worker else { return Ok(()) };
         if self.parameters_due {
@@ -290,22 +270,21 @@ impl Recorder {
         Ok(())
     }
 
-    /// Truth at the frame just given will be kept: ask the source for it.
+    /// True if truth at the last frame will be kept: ask the source for it.
     #[must_use]
     #[inline]
     pub fn truth_due(&self) -> bool {
         self.truth_due && self.records_truth
     }
 
-    /// The output just given announced new parameters: they have to come before the next frame.
+    /// True if the last output announced new parameters, which have to come before the next frame.
     #[must_use]
     #[inline]
     pub fn parameters_due(&self) -> bool {
         self.parameters_due
     }
 
-    /// Takes what rides along with the frame just given. Parameters that the frame did not announce
-    /// are not recorded.
+    /// Takes an addition to the last frame. Parameters that the frame didn't announce are not recorded.
     pub fn extra(&mut self, extra: &Extra) {
         if self.worker.is_none() {
             return;
@@ -322,14 +301,14 @@ impl Recorder {
         self.block.extra(extra);
     }
 
-    /// Takes an event at the time of the frame just given.
+    /// Takes an event at the time of the last frame.
     pub fn event(&mut self, event: Event) {
         if self.worker.is_some() {
             self.block.event(event);
         }
     }
 
-    /// Has the unfinished block worked off. Of use before a long wait.
+    /// Hands over the unfinished block. Useful before a long wait.
     ///
     /// # Errors
     /// If the recorder failed.
@@ -368,7 +347,7 @@ impl Recorder {
         self.join()
     }
 
-    /// Why the thread ended before it was told to.
+    /// Reason why the thread ended early.
     fn failure(&mut self) -> RecorderError {
         match self.join() {
             Err(error) => error,
@@ -390,75 +369,13 @@ impl Recorder {
 
 impl Drop for Recorder {
     fn drop(&mut self) {
-        // Errors can't be told from here; `finish` tells them.
+        // Errors can't be returned here; `finish` returns them.
         let _ = self.hand_over();
         let _ = self.join();
     }
 }
 
-/// What is told of the epochs that passed.
-#[derive(Debug)]
-struct Digest {
-    hash: StreamHash,
-    /// Whether what the source delivered is held against what reached the core.
-    compares: bool,
-    streams: Option<altered::Streams>,
-    summary: RecorderSummary,
-}
-
-impl Digest {
-    fn new() -> Self {
-        Self {
-            hash: StreamHash::new(),
-            compares: true,
-            streams: None,
-            summary: RecorderSummary::default(),
-        }
-    }
-
-    /// Takes a frame in which the core got what the source had delivered.
-    #[inline]
-    fn epoch(&mut self, frame: &Frame<'_>) {
-        let (sample, aiding) = (&frame.faulted.sample, frame.faulted.aiding.as_ref());
-        self.hash.epoch(sample, aiding, frame.output);
-        if let Some(streams) = &mut self.streams {
-            streams.unaltered(sample, aiding);
-        }
-        self.summary.epochs += 1;
-        self.summary.aiding += u64::from(aiding.is_some());
-    }
-
-    /// Takes what waits in a block, which is empty then.
-    #[inline]
-    fn take_up(&mut self, block: &mut Block) {
-        if !block.is_empty() {
-            self.take(block);
-            block.clear();
-        }
-    }
-
-    #[inline(never)]
-    fn take(&mut self, block: &Block) {
-        hash_block(&mut self.hash, block);
-        if self.compares {
-            altered::take(&mut self.streams, block);
-        }
-        let summary = &mut self.summary;
-        summary.epochs += (block.len() - block.lost.len()) as u64;
-        summary.aiding += block.aiding.len() as u64;
-        summary.altered += (block.altered.len() + block.added.len()) as u64;
-    }
-
-    fn finish(mut self) -> RecorderSummary {
-        RecorderSummary {
-            stream_hash: self.hash.hex(),
-            altered_streams: self.streams.map(altered::Streams::finish),
-            ..self.summary
-        }
-    }
-}
-
-/// The recorder's thread.
+/// Main function of the recorder's thread.
 fn work<W: Write>(
     mut writer: RecordingWriter<W>,
     sync: Option<File>,
@@ -477,7 +394,7 @@ fn work<W: Write>(
                 digest.take(&block);
                 writer.block(&block)?;
                 block.clear();
-                // The loop may be gone already; then nobody needs the block.
+                // The loop may already be gone; then nobody needs the block.
                 let _ = empty.try_send(block);
             }
             Err(RecvTimeoutError::Timeout) => {}
@@ -496,23 +413,4 @@ fn work<W: Write>(
             .map_err(|source| RecorderError::Write { written_bytes: summary.bytes, source })?;
     }
     Ok(summary)
-}
-
-fn hash_block(hash: &mut StreamHash, block: &Block) {
-    let mut aiding = block.aiding.iter().peekable();
-    let mut parameters = block.parameters.iter().peekable();
-    let mut lost = block.lost.iter().peekable();
-    for position in 0..=block.len() as u32 {
-        while let Some((_, estimate)) = parameters.next_if(|(at, _)| *at == position) {
-            hash.parameters(estimate);
-        }
-        if lost.next_if(|at| **at == position).is_some() {
-            continue;
-        }
-        let index = position as usize;
-        if let (Some(sample), Some(output)) = (block.samples.get(index), block.outputs.get(index)) {
-            let aiding = aiding.next_if(|(at, _)| *at == position).map(|(_, aiding)| aiding);
-            hash.epoch(sample, aiding, output);
-        }
-    }
 }

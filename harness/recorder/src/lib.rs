@@ -1,23 +1,27 @@
-//! What is kept of a run: the recording and the hash of its stream.
+//! Recording of a run, and the hash of its stream.
 //!
-//! The run loop hands every epoch to a [`Recorder`], which collects them in blocks; a thread of its
-//! own hashes the stream, decimates and writes `recording.mcap`. A [`reader`] gives it all back,
-//! bit for bit.
+//! The run loop hands every epoch to a [`Recorder`], which collects them in blocks; a separate thread
+//! hashes the stream, decimates and writes `recording.mcap`. A [`reader`] returns everything bit for
+//! bit.
 
 mod altered;
 mod block;
+mod cdr;
+mod digest;
 mod handle;
 pub mod message;
 pub mod reader;
 pub mod records;
 mod sink;
 mod stream_hash;
+mod summary;
 mod trouble;
 mod writer;
 
 pub use altered::AlteredStreams;
-pub use handle::{Recorder, RecorderSummary};
+pub use handle::Recorder;
 pub use stream_hash::StreamHash;
+pub use summary::RecorderSummary;
 pub use trouble::Trouble;
 
 use octant_sample::Epoch;
@@ -27,57 +31,57 @@ use octant_sample::parameters::ParameterEstimate;
 use std::collections::BTreeMap;
 use std::time::Duration;
 
-/// Version of what stands in a recording: topics, layouts, metadata.
+/// Version of the recording format: topics, layouts, metadata.
 pub const FORMAT_VERSION: u32 = 1;
 
-/// Wall time after which what the recorder was given is handed to the operating system.
+/// Wall time after which recorded data is handed to the operating system.
 pub const FLUSH_INTERVAL: Duration = Duration::from_millis(250);
 
-/// Messages in a file, by topic.
+/// Number of messages in a file, by topic.
 pub type Counts = BTreeMap<&'static str, u64>;
 
-/// Everything of one epoch, as it passes the recorder.
+/// All parts of one epoch.
 #[derive(Clone, Copy, Debug)]
 pub struct Frame<'a> {
-    /// What the source delivered.
+    /// Epoch that the source delivered.
     pub clean: &'a Epoch,
-    /// What reached the endpoint.
+    /// Epoch that reached the core.
     pub faulted: &'a Epoch,
-    /// What the core answered.
+    /// Output of the core.
     pub output: &'a Output,
 }
 
-/// What rides along with some frames only.
+/// Additions of some frames.
 #[derive(Clone, Copy, Debug)]
-// Passed by reference and copied into its own list: a box would be an allocation per second.
+// The value is passed by reference and copied into its own list: a box would be an allocation a second.
 #[allow(clippy::large_enum_variant)]
 pub enum Extra {
-    /// Truth at the stamp of the frame just given.
+    /// Truth at the stamp of the last frame.
     Truth(Truth),
-    /// The parameters have changed with the frame just given.
+    /// Parameters that changed with the last frame.
     Parameters(ParameterEstimate),
 }
 
 /// A rare event, recorded as JSON.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Event {
-    /// What happened: `mode`, `fault`, `verdict`, ...
+    /// Kind of event: `mode`, `fault`, `verdict`, ...
     pub kind: String,
-    /// Its details.
+    /// Details.
     pub detail: serde_json::Value,
 }
 
-/// Which samples and outputs are kept.
+/// Selection of samples and outputs that are kept.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Samples {
-    /// Those on the grid of [`Policy::period_ns`].
+    /// Samples on the grid of [`Policy::period_ns`].
     Decimated,
-    /// Every one: a replay gives the core's outputs bit for bit.
+    /// All samples: a replay gives the core's outputs bit for bit.
     Full,
 }
 
 impl Samples {
-    /// The name used in scenarios and recordings.
+    /// Name used in scenarios and recordings.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -87,16 +91,17 @@ impl Samples {
     }
 }
 
-/// What is kept of a run. Aiding and epochs in which the mode changes are kept always.
+/// Selection of a run's data that is kept. Aiding, and epochs in which the mode changes, are always
+/// kept.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Policy {
-    /// Which samples and outputs are kept.
+    /// Selection of samples and outputs.
     pub samples: Samples,
     /// Period of the grid on which truth, and decimated samples and outputs, are kept, ns. The
     /// first epoch is kept, then the first at or after each multiple of the period.
     pub period_ns: u64,
-    /// Period in which the parameters are kept, ns, and at every change of mode and at the end.
-    /// With [`Samples::Full`] every change of them is kept.
+    /// Period in which the parameters are kept, ns; they are also kept at every change of mode and at
+    /// the end. With [`Samples::Full`] every change of them is kept.
     pub parameters_period_ns: u64,
 }
 
@@ -111,20 +116,20 @@ impl Default for Policy {
     }
 }
 
-/// How a recorder is set up.
+/// Options of a recorder.
 #[derive(Clone, Debug)]
 pub struct RecorderOptions {
-    /// What is kept.
+    /// Selection of data that is kept.
     pub policy: Policy,
     /// The resolved scenario, stored inside the recording as the attachment `scenario.toml`.
     pub scenario: String,
-    /// More to say about the run, stored as metadata `octant.run`.
+    /// Further information about the run, stored as metadata `octant.run`.
     pub metadata: BTreeMap<String, String>,
-    /// Epochs handed over at a time.
+    /// Number of epochs in a block.
     pub epochs_per_block: usize,
-    /// Blocks in circulation; when all are full the run loop waits.
+    /// Number of blocks; when all are full the run loop waits.
     pub blocks: usize,
-    /// What faults do to disk and thread.
+    /// Faults of disk and thread.
     pub trouble: Trouble,
 }
 
@@ -141,15 +146,15 @@ impl Default for RecorderOptions {
     }
 }
 
-/// Why a recorder could not go on. What was written before stays readable.
+/// Error of a recorder that can't continue. Data written before stays readable.
 #[derive(Debug, thiserror::Error)]
 pub enum RecorderError {
     /// The recording could not be written: disk full, device gone.
     #[error("write the recording after {written_bytes} bytes: {source}")]
     Write {
-        /// Bytes that the file took before.
+        /// Number of bytes written before.
         written_bytes: u64,
-        /// What the system said.
+        /// Error of the system.
         source: std::io::Error,
     },
     /// The recording could not be created.
@@ -157,26 +162,26 @@ pub enum RecorderError {
     Create {
         /// The file.
         path: String,
-        /// What the system said.
+        /// Error of the system.
         source: std::io::Error,
     },
     /// The container format refused a record.
     #[error("write the recording: {reason}")]
     Format {
-        /// What it said.
+        /// Error of the container's writer.
         reason: String,
     },
-    /// The run loop did not hand over the parameters that came with an output.
+    /// The run loop didn't hand over the parameters that an output announced.
     #[error(
         "record epoch {sequence}: parameters revision {revision} was announced and did not come"
     )]
     ParametersMissing {
         /// Sequence number of the epoch.
         sequence: u64,
-        /// The revision announced.
+        /// Revision announced.
         revision: u32,
     },
-    /// The thread of the recorder ended by itself.
+    /// The thread of the recorder ended unexpectedly.
     #[error("hand over to the recorder: its thread is gone")]
     Gone,
 }

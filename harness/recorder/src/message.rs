@@ -1,10 +1,13 @@
 //! The messages of a recording: topics, schemas and byte layouts.
 //!
-//! CDR, little-endian, the way ROS 2 stores it (OMG DDS-XTypes, plain CDR version 1): four bytes of
-//! encapsulation, then the fields, each aligned to its size. The fields are in an order that needs
-//! no padding, so a message is a fixed number of bytes. Numbers travel as their bits: NaN payloads
+//! Messages are CDR, little-endian, as ROS 2 stores them (OMG DDS-XTypes, plain CDR version 1): four
+//! bytes of encapsulation, then the fields, each aligned to its size. The order of the fields needs no
+//! padding, so a message has a fixed number of bytes. Numbers are stored as their bits: NaN payloads
 //! and signed zeros survive.
 
+pub use super::cdr::MessageError;
+
+use super::cdr::{Decoder, Encoder};
 use octant_sample::Truth;
 use octant_sample::parameters::ParameterEstimate;
 use octant_sample::parameters::{NAMES, PARAMETER_COUNT};
@@ -14,21 +17,21 @@ use octant_sample::{
     Reference, Sample, Status,
 };
 
-/// What a channel of a recording carries.
+/// Content of a recording's channel.
 ///
-/// The order is that of the messages of one epoch in the file: an item of lower or equal rank
-/// begins the next epoch.
+/// The order is that of the messages of one epoch in the file: an item of lower or equal rank begins
+/// the next epoch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Topic {
-    /// The sample that the source delivered, only where it differs from [`Topic::Imu`].
+    /// Sample that the source delivered, only if it differs from [`Topic::Imu`].
     ImuClean,
-    /// The aiding that the source delivered, only where it differs from [`Topic::Aiding`].
+    /// Aiding that the source delivered, only if it differs from [`Topic::Aiding`].
     AidingClean,
-    /// The aiding that reached the core.
+    /// Aiding that reached the core.
     Aiding,
-    /// The sample that reached the core.
+    /// Sample that reached the core.
     Imu,
-    /// What the core answered.
+    /// Output of the core.
     Output,
     /// Estimated parameters with their σ.
     Parameters,
@@ -66,7 +69,7 @@ impl Topic {
         }
     }
 
-    /// The topic of this name.
+    /// Topic of a name.
     #[must_use]
     pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|topic| topic.name() == name)
@@ -179,7 +182,7 @@ const EVENT_SCHEMA: &str = r#"{
 }
 "#;
 
-/// One field per parameter, so that a plotting tool shows them by name.
+/// Schema with one field for each parameter, so that a plotting tool shows them by name.
 fn parameters_schema() -> String {
     let mut text = String::from(
         "# Coefficients of the error, measured minus true, SI: rad/s, rad, (rad/s)/(m/s^2), m/s^2.\n\
@@ -195,119 +198,6 @@ fn parameters_schema() -> String {
     }
     text.push_str("uint32 revision\n");
     text
-}
-
-/// Encapsulation of little-endian plain CDR.
-const ENCAPSULATION: [u8; 4] = [0, 1, 0, 0];
-
-/// Appends fields to a message.
-struct Encoder<'a>(&'a mut Vec<u8>);
-
-impl<'a> Encoder<'a> {
-    fn new(bytes: &'a mut Vec<u8>) -> Self {
-        bytes.clear();
-        bytes.extend_from_slice(&ENCAPSULATION);
-        Self(bytes)
-    }
-
-    #[inline]
-    fn put<const N: usize>(&mut self, bytes: [u8; N]) {
-        self.0.extend_from_slice(&bytes);
-    }
-
-    #[inline]
-    fn f64s(&mut self, values: &[f64]) {
-        for value in values {
-            self.put(value.to_bits().to_le_bytes());
-        }
-    }
-}
-
-/// Takes fields from a message.
-struct Decoder<'a>(&'a [u8]);
-
-/// A message whose bytes are not what its topic promises.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum MessageError {
-    /// The message has another length than its layout.
-    #[error("message of {found} bytes, expected {expected}")]
-    Length {
-        /// Bytes found.
-        found: usize,
-        /// Bytes of the layout.
-        expected: usize,
-    },
-    /// The message is not little-endian plain CDR.
-    #[error("message begins with {found:02x?}, expected little-endian CDR (00, 01)")]
-    Encapsulation {
-        /// The first two bytes.
-        found: [u8; 2],
-    },
-    /// A field has a value that has no meaning.
-    #[error("field {field} is {found}, expected {expected}")]
-    Value {
-        /// The field.
-        field: &'static str,
-        /// The value found.
-        found: u64,
-        /// What it may be.
-        expected: &'static str,
-    },
-    /// JSON that can't be read.
-    #[error("event is not the expected JSON: {reason}")]
-    Json {
-        /// What the parser said.
-        reason: String,
-    },
-}
-
-impl<'a> Decoder<'a> {
-    fn new(bytes: &'a [u8], expected: usize) -> Result<Self, MessageError> {
-        if bytes.len() != expected {
-            return Err(MessageError::Length { found: bytes.len(), expected });
-        }
-        match bytes.split_first_chunk::<4>() {
-            Some(([0, 1, _, _], rest)) => Ok(Self(rest)),
-            _ => {
-                let first = |i: usize| bytes.get(i).copied().unwrap_or(0);
-                Err(MessageError::Encapsulation { found: [first(0), first(1)] })
-            }
-        }
-    }
-
-    /// The next `N` bytes. The length was checked as a whole; a layout error reads zeros.
-    #[inline]
-    fn take<const N: usize>(&mut self) -> [u8; N] {
-        match self.0.split_first_chunk::<N>() {
-            Some((head, rest)) => {
-                self.0 = rest;
-                *head
-            }
-            None => {
-                debug_assert!(false, "layout and length disagree");
-                [0; N]
-            }
-        }
-    }
-
-    fn u16(&mut self) -> u16 {
-        u16::from_le_bytes(self.take())
-    }
-    fn u32(&mut self) -> u32 {
-        u32::from_le_bytes(self.take())
-    }
-    fn i32(&mut self) -> i32 {
-        i32::from_le_bytes(self.take())
-    }
-    fn u64(&mut self) -> u64 {
-        u64::from_le_bytes(self.take())
-    }
-    fn f64(&mut self) -> f64 {
-        f64::from_bits(self.u64())
-    }
-    fn f64s<const N: usize>(&mut self) -> [f64; N] {
-        std::array::from_fn(|_| self.f64())
-    }
 }
 
 const IMU_LENGTH: usize = 4 + 16 + 24 + 8 + 2;
@@ -341,7 +231,7 @@ pub fn decode_sample(bytes: &[u8]) -> Result<Sample, MessageError> {
         delta_theta: std::array::from_fn(|_| d.i32()),
         delta_velocity: std::array::from_fn(|_| d.i32()),
         gimbal: GimbalAngles { azimuth: d.i32(), roll: d.i32() },
-        // Bits that this version has no name for are kept.
+        // Bits that this version doesn't know are kept.
         status: Status::from_bits_retain(d.u16()),
     })
 }
@@ -350,7 +240,7 @@ const KIND_VELOCITY: u8 = 0;
 const KIND_POSITION: u8 = 1;
 const KIND_NONE: u8 = 255;
 
-/// Stamp, kind and the bits of the values.
+/// Stamp, kind and bits of the values.
 pub(super) fn aiding_bits(aiding: &Aiding) -> (u64, u8, [u64; 3]) {
     let (kind, values) = match aiding.reference {
         Reference::Velocity(velocity) => (KIND_VELOCITY, velocity),
@@ -361,7 +251,7 @@ pub(super) fn aiding_bits(aiding: &Aiding) -> (u64, u8, [u64; 3]) {
     (aiding.device_time.ns, kind, values.map(f64::to_bits))
 }
 
-/// Encodes aiding; `None` says that there was none.
+/// Encodes aiding; `None` means that there was none.
 pub fn encode_aiding(aiding: Option<&Aiding>, bytes: &mut Vec<u8>) {
     let (ns, kind, values) = aiding.map_or((0, KIND_NONE, [0; 3]), aiding_bits);
     let mut e = Encoder::new(bytes);

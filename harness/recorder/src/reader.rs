@@ -1,4 +1,4 @@
-//! Reads recordings back: message by message, or epoch by epoch for replay and scoring.
+//! Reading of recordings: message by message, or epoch by epoch for replay and scoring.
 
 use super::message::{self, MessageError, Topic};
 use super::records::{End, Records, RecordsError};
@@ -13,22 +13,22 @@ use std::fs::File;
 use std::io::{BufReader, Read};
 use std::path::Path;
 
-/// Why a recording could not be read.
+/// Error of reading a recording.
 #[derive(Debug, thiserror::Error)]
 pub enum ReadError {
     /// The file can't be opened.
     #[error("{0}")]
     Open(std::io::Error),
-    /// The container is broken, or none.
+    /// The container is damaged, or is no MCAP file.
     #[error(transparent)]
     Records(#[from] RecordsError),
-    /// An MCAP file of somebody else.
+    /// The file is an MCAP file of another program.
     #[error(
         "MCAP file without the metadata `{FORMAT_METADATA}`: not a recording of octant (to use its \
          messages as a source, name topic and fields in a mapping)"
     )]
     Foreign,
-    /// A recording of a later octant.
+    /// The recording was written by a later version of Octant.
     #[error(
         "recording of format version {found}, this octant reads versions up to {FORMAT_VERSION}: \
          read it with the octant that wrote it or a later one"
@@ -37,36 +37,36 @@ pub enum ReadError {
         /// The version found.
         found: u32,
     },
-    /// The metadata lacks something.
+    /// The metadata lacks a value, or has an invalid one.
     #[error("metadata `{FORMAT_METADATA}`: {key} is {found}, expected {expected}")]
     Metadata {
         /// The key.
         key: &'static str,
-        /// What stands there.
+        /// Value found.
         found: String,
-        /// What should.
+        /// Value expected.
         expected: &'static str,
     },
-    /// A message is not what its topic promises.
+    /// A message doesn't fit its topic.
     #[error("message on {topic} at {log_time_ns} ns: {source}")]
     Message {
         /// The topic.
         topic: &'static str,
         /// Log time of the message.
         log_time_ns: u64,
-        /// What is wrong.
+        /// Error in the message.
         source: MessageError,
     },
 }
 
-/// What a recording says about itself.
+/// Head of a recording.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Info {
     /// Version of the format.
     pub version: u32,
-    /// Version of the octant that wrote it.
+    /// Version of the Octant that wrote it.
     pub octant: String,
-    /// Which samples and outputs it keeps.
+    /// Selection of samples and outputs that it keeps.
     pub samples: Samples,
     /// Period of truth and of decimated samples and outputs, ns.
     pub period_ns: u64,
@@ -79,9 +79,9 @@ pub struct Info {
 /// One message of a recording.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Item {
-    /// The sample that the source delivered, where it differs from the one that reached the core.
+    /// Sample that the source delivered, if it differs from the one that reached the core.
     CleanSample(Sample),
-    /// The aiding that the source delivered, where it differs from what reached the core.
+    /// Aiding that the source delivered, if it differs from that which reached the core.
     CleanAiding(Option<Aiding>),
     /// Aiding that reached the core.
     Aiding(Aiding),
@@ -126,7 +126,7 @@ impl Item {
         })
     }
 
-    /// The topic that it came on.
+    /// Topic of the message.
     #[must_use]
     pub const fn topic(&self) -> Topic {
         match self {
@@ -142,7 +142,7 @@ impl Item {
     }
 }
 
-/// What one record of the container means here.
+/// Meaning of one record of the container.
 enum Step {
     Nothing,
     Metadata(BTreeMap<String, String>),
@@ -158,7 +158,7 @@ pub struct Recording<R> {
     records: Records<R>,
     info: Info,
     channels: HashMap<u16, Option<Topic>>,
-    /// A message read while looking for the head.
+    /// Message that was read while looking for the head.
     pending: Option<(u64, Item)>,
 }
 
@@ -166,7 +166,7 @@ impl Recording<BufReader<File>> {
     /// Opens a recording and reads its head.
     ///
     /// # Errors
-    /// If it isn't one, or of a newer version.
+    /// If it is no recording, or has a newer version.
     pub fn open(path: &Path) -> Result<Self, ReadError> {
         Self::new(BufReader::new(File::open(path).map_err(ReadError::Open)?))
     }
@@ -176,7 +176,7 @@ impl<R: Read> Recording<R> {
     /// Reads the head of a recording.
     ///
     /// # Errors
-    /// If it isn't one, or of a newer version.
+    /// If it is no recording, or has a newer version.
     pub fn new(source: R) -> Result<Self, ReadError> {
         let mut recording = Self::of(Records::new(source));
         // The head ends with the first message, or with the file.
@@ -187,9 +187,9 @@ impl<R: Read> Recording<R> {
         Ok(recording)
     }
 
-    /// Reads a recording that somebody is writing, from its first byte on. Its head is there as soon
-    /// as [`Recording::info`] has a version other than 0. [`Recording::next_item`] returns `None`
-    /// where there is no whole message more at the moment, and goes on when it is called again;
+    /// Reads a recording while it is being written, from its first byte on. Its head is complete as
+    /// soon as [`Recording::info`] has a version other than 0. [`Recording::next_item`] returns `None`
+    /// while there is no complete further message, and continues when it is called again;
     /// [`Recording::ended`] tells the end.
     pub fn growing(source: R) -> Self {
         Self::of(Records::growing(source))
@@ -211,31 +211,31 @@ impl<R: Read> Recording<R> {
         }
     }
 
-    /// Where the bytes come from.
+    /// Source of the bytes.
     pub fn source(&mut self) -> &mut R {
         self.records.source()
     }
 
-    /// It was read to its end, and that is as it should be.
+    /// True if the recording was read to a proper end.
     pub fn ended(&self) -> bool {
         self.records.end() == Some(End::Whole)
     }
 
-    /// What the recording says about itself.
+    /// Head of the recording.
     pub fn info(&self) -> &Info {
         &self.info
     }
 
-    /// The recording ends in the middle (killed, or a copy that isn't complete). Known once
+    /// True if the recording ends in the middle (killed, or an incomplete copy). Known once
     /// [`Recording::next_item`] has returned `None`.
     pub fn truncated(&self) -> bool {
         self.records.end() == Some(End::Truncated)
     }
 
-    /// The next message with its log time (simulated time, ns), `None` at the end.
+    /// Reads the next message with its log time (simulated time, ns); `None` at the end.
     ///
     /// # Errors
-    /// If the file is damaged or a message is not what its topic promises.
+    /// If the file is damaged or a message doesn't fit its topic.
     pub fn next_item(&mut self) -> Result<Option<(u64, Item)>, ReadError> {
         match self.pending.take() {
             Some(item) => Ok(Some(item)),
@@ -266,7 +266,7 @@ impl<R: Read> Recording<R> {
                 }
                 Some(Step::Message { time_ns, item }) => match item {
                     Ok(Some(item)) => return Ok(Some((time_ns, item))),
-                    // A topic that somebody added.
+                    // The topic was added by another program.
                     Ok(None) => {}
                     Err((topic, source)) => {
                         return Err(ReadError::Message {
@@ -287,7 +287,7 @@ impl<R: Read> Recording<R> {
             found: metadata.get(key).map_or("missing".into(), |found| format!("{found:?}")),
             expected,
         };
-        // The version first: nothing else can be relied on in a newer one.
+        // The version is checked first: nothing else can be relied on in a newer one.
         let version: u32 =
             get("version").parse().map_err(|_| wrong("version", "a number from 1"))?;
         if version > FORMAT_VERSION {
@@ -310,7 +310,7 @@ impl<R: Read> Recording<R> {
 }
 
 fn read_step(channels: &HashMap<u16, Option<Topic>>, opcode: u8, data: &[u8]) -> Step {
-    // The indexes repeat what was read; only these kinds matter, and messages are most of them.
+    // The indexes repeat other records; only these kinds matter, and most records are messages.
     match opcode {
         op::MESSAGE | op::METADATA | op::ATTACHMENT | op::CHANNEL => {}
         _ => return Step::Nothing,
@@ -343,35 +343,35 @@ fn read_step(channels: &HashMap<u16, Option<Topic>>, opcode: u8, data: &[u8]) ->
     }
 }
 
-/// What a recording has of one epoch. With decimation any part can be missing.
+/// Recorded data of one epoch. With decimation any part can be missing.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct RecordedEpoch {
     /// Simulated time, ns.
     pub time_ns: u64,
-    /// The sample that reached the core.
+    /// Sample that reached the core.
     pub sample: Option<Sample>,
-    /// The aiding that reached the core.
+    /// Aiding that reached the core.
     pub aiding: Option<Aiding>,
-    /// The sample that the source delivered, where it differs from `sample`; alone where it never
-    /// reached the core in its step.
+    /// Sample that the source delivered, if it differs from `sample`; without `sample` if it didn't
+    /// reach the core in its step.
     pub clean_sample: Option<Sample>,
-    /// The aiding that the source delivered (`Some(None)`: none), where it differs from `aiding`.
+    /// Aiding that the source delivered (`Some(None)`: none), if it differs from `aiding`.
     pub clean_aiding: Option<Option<Aiding>>,
-    /// The output.
+    /// Output.
     pub output: Option<Output>,
-    /// The parameters that are recorded with this epoch.
+    /// Parameters recorded with this epoch.
     pub parameters: Option<ParameterEstimate>,
     /// Truth.
     pub truth: Option<Truth>,
-    /// What was told since the epoch before, and before this one reached the core.
+    /// Events since the epoch before, up to this one.
     pub events: Vec<Event>,
 }
 
-/// The epochs of a recording in order: time, truth, output and parameters for scoring, samples and
-/// aiding for replay. Of events the last one is kept.
+/// Epochs of a recording in order: time, truth, output and parameters for scoring, samples and aiding
+/// for replay. Events after the last epoch are available as [`Epochs::last_event`] only.
 pub struct Epochs<R> {
     recording: Recording<R>,
-    /// The first message of the next epoch.
+    /// First message of the next epoch.
     next: Option<(u64, Item)>,
     last_event: Option<Event>,
     /// Events of the next epoch.
@@ -384,18 +384,18 @@ impl<R: Read> Epochs<R> {
         Self { recording, next: None, last_event: None, events: Vec::new() }
     }
 
-    /// The recording behind.
+    /// Recording that the epochs are read from.
     pub fn recording(&self) -> &Recording<R> {
         &self.recording
     }
 
-    /// The last event so far: at the end of a run how its calibration was concluded, where it was
-    /// concluded by the end of the stream.
+    /// Last event so far: at the end of a run the conclusion of its calibration, if the end of the
+    /// stream concluded it.
     pub fn last_event(&self) -> Option<&Event> {
         self.last_event.as_ref()
     }
 
-    /// The next epoch of which anything is recorded, `None` at the end.
+    /// Reads the next epoch that has recorded data; `None` at the end.
     ///
     /// # Errors
     /// As [`Recording::next_item`].
@@ -438,30 +438,30 @@ impl<R: Read> Epochs<R> {
     }
 }
 
-/// What a recording holds, counted.
+/// Counts of a recording's contents.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Contents {
-    /// What it says about itself.
+    /// Head of the recording.
     pub info: Info,
-    /// Messages by topic.
+    /// Number of messages, by topic.
     pub messages: BTreeMap<&'static str, u64>,
-    /// It ends in the middle.
+    /// True if the recording ends in the middle.
     pub truncated: bool,
 }
 
-/// Reads a recording from memory to its end, checking every CRC and message. Never panics, and
-/// allocates no more than a constant and a small multiple of the bytes given.
+/// Reads a recording from memory to its end, and checks every CRC and message. Never panics, and
+/// allocates at most a constant and a small multiple of the bytes given.
 ///
 /// # Errors
-/// If it isn't a recording, or damaged.
+/// If it is no recording, or damaged.
 pub fn read_bytes(bytes: &[u8]) -> Result<Contents, ReadError> {
     contents(Recording::new(bytes)?)
 }
 
-/// Reads a recording to its end, checking every CRC and message.
+/// Reads a recording to its end, and checks every CRC and message.
 ///
 /// # Errors
-/// If it is damaged.
+/// If the recording is damaged.
 pub fn contents<R: Read>(mut recording: Recording<R>) -> Result<Contents, ReadError> {
     let mut counts = [0u64; Topic::ALL.len()];
     while let Some((_, item)) = recording.next_item()? {
@@ -474,8 +474,8 @@ pub fn contents<R: Read>(mut recording: Recording<R>) -> Result<Contents, ReadEr
     })
 }
 
-/// The stream hash of a full recording, computed again from its messages; `None` for a decimated
-/// one, which doesn't hold the stream.
+/// Stream hash of a full recording, computed from its messages; `None` for a decimated one, which
+/// doesn't contain the stream.
 ///
 /// # Errors
 /// If the recording is damaged.

@@ -3,45 +3,57 @@
 use mcap::sans_io::linear_reader::{LinearReadEvent, LinearReader, LinearReaderOptions};
 use std::io::Read;
 
-/// Largest record or chunk that is read, compressed or not. Files that claim more are refused
-/// before anything of that size is allocated.
+/// Largest record or chunk that is read, compressed or not. Files that claim larger ones are refused
+/// before memory of that size is allocated.
 pub const RECORD_BYTES_MAX: usize = 32 * 1024 * 1024;
-/// Bytes asked of the file at a time: memory grows with what is there, not with what is claimed.
+/// Number of bytes read from the file at a time: memory grows with the data that exists, not with the
+/// size that is claimed.
 const READ_BYTES: usize = 64 * 1024;
 
-/// Why a file could not be read on.
+/// Error of a file that can't be read further.
 #[derive(Debug, thiserror::Error)]
 pub enum RecordsError {
     /// The system failed to read.
     #[error("{0}")]
     Io(std::io::Error),
-    /// The file does not begin as MCAP does.
+    /// The file doesn't begin like an MCAP file.
     #[error("not an MCAP file: it does not begin with the magic bytes of MCAP")]
     NotMcap,
     /// A record is damaged.
     #[error("damaged after byte {offset}: {reason}")]
     Damaged {
-        /// Bytes read up to the damage.
+        /// Number of bytes read up to the damage.
         offset: u64,
-        /// What is wrong.
+        /// Description of the damage.
         reason: String,
     },
+}
+
+/// Damage of a record.
+#[derive(Debug, thiserror::Error)]
+pub enum RecordError {
+    /// An attachment has no place for its CRC.
+    #[error("an attachment ends within its head")]
+    Attachment,
+    /// The content can't be parsed.
+    #[error(transparent)]
+    Content(#[from] mcap::McapError),
 }
 
 /// Parses a record.
 ///
 /// # Errors
-/// If it is damaged. `mcap` 0.26 slices an attachment without looking whether its CRC is still
-/// there, and panics where it isn't: that is looked at here.
-pub fn parse(opcode: u8, body: &[u8]) -> Result<mcap::records::Record<'_>, String> {
+/// If it is damaged. `mcap` 0.26 slices an attachment without checking that its CRC is still there, and
+/// panics if it isn't: so that is checked here.
+pub fn parse(opcode: u8, body: &[u8]) -> Result<mcap::records::Record<'_>, RecordError> {
     if opcode == mcap::records::op::ATTACHMENT && !attachment_has_its_crc(body) {
-        return Err("an attachment ends within its head".to_owned());
+        return Err(RecordError::Attachment);
     }
-    mcap::parse_record(opcode, body).map_err(|error| error.to_string())
+    Ok(mcap::parse_record(opcode, body)?)
 }
 
-/// An attachment is log time u64, creation time u64, name and media type (u32 length each), data
-/// (u64 length), CRC u32.
+/// Checks that an attachment is long enough for its CRC. It consists of log time u64, creation time
+/// u64, name and media type (u32 length each), data (u64 length), CRC u32.
 fn attachment_has_its_crc(body: &[u8]) -> bool {
     let mut at = 16usize;
     for _ in ["name", "media type"] {
@@ -53,25 +65,25 @@ fn attachment_has_its_crc(body: &[u8]) -> bool {
     at.saturating_add(8 + 4) <= body.len()
 }
 
-/// Reads record by record. Chunks are unpacked, and their CRC is checked before any of their
-/// records is given out.
+/// Reads a file record by record. Chunks are decompressed, and their CRC is checked before any of their
+/// records is passed on.
 pub struct Records<R> {
     source: R,
     reader: LinearReader,
     offset: u64,
     started: bool,
-    /// What the file ended with, once it has.
+    /// End of the file, once it was reached.
     end: Option<End>,
-    /// Where nothing more is there, somebody may still write.
+    /// True if the file may still grow.
     grows: bool,
 }
 
-/// How a file ended.
+/// Kind of a file's end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum End {
-    /// As it should.
+    /// Proper end.
     Whole,
-    /// In the middle: the writer was killed, or the copy is not complete.
+    /// The file ends in the middle: the writer was killed, or the copy is incomplete.
     Truncated,
 }
 
@@ -88,29 +100,29 @@ impl<R: Read> Records<R> {
         Self { source, reader, offset: 0, started: false, end: None, grows: false }
     }
 
-    /// Reads a file that somebody is writing: where it ends in the middle, [`Records::next`] returns
-    /// `None` without an end, and goes on there when it is called again.
+    /// Reads a file while it is being written: if it ends in the middle, [`Records::next`] returns
+    /// `None` without an end, and continues there when it is called again.
     pub fn growing(source: R) -> Self {
         Self { grows: true, ..Self::new(source) }
     }
 
-    /// Where the bytes come from.
+    /// Source of the bytes.
     pub fn source(&mut self) -> &mut R {
         &mut self.source
     }
 
-    /// How the file ended, once [`Records::next`] has returned `None`.
+    /// Kind of the file's end, once [`Records::next`] has returned `None`.
     pub fn end(&self) -> Option<End> {
         self.end
     }
 
-    /// Bytes read from the file so far.
+    /// Number of bytes read from the file so far.
     pub fn offset(&self) -> u64 {
         self.offset
     }
 
-    /// Gives the next record (opcode and content) to `take`; `None` at the end of the file, and where
-    /// a file that grows has no whole record more at the moment.
+    /// Passes the next record (opcode and content) to `take`; `None` at the end of the file, and while
+    /// a growing file has no complete further record.
     ///
     /// # Errors
     /// If the file can't be read or is damaged. After an error there are no more records.
@@ -154,13 +166,13 @@ impl<R: Read> Records<R> {
         Ok(None)
     }
 
-    /// Reads from the file into the reader's buffer; false where a file that grows has nothing more
-    /// at the moment.
+    /// Reads from the file into the reader's buffer; false if a growing file has no more bytes at the
+    /// moment.
     fn fill(&mut self, wanted: usize) -> Result<bool, RecordsError> {
         let buffer = self.reader.insert(wanted.clamp(1, READ_BYTES));
         loop {
             match self.source.read(buffer) {
-                // Not told to the reader, for which it would be the end.
+                // The reader isn't told, because it would take this for the end.
                 Ok(0) if self.grows => return Ok(false),
                 Ok(n) => {
                     self.reader.notify_read(n);

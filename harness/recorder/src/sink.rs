@@ -1,11 +1,11 @@
-//! The end of the pipe: counts what was written, and writes nothing after a failure.
+//! End of the pipe, which counts written bytes and writes nothing after a failure.
 
 use std::io::{self, Write};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// Writes through to `inner` until it fails once. After that every write fails: a summary behind a
-/// torn record would look like a whole file.
+/// Writes through to `inner` until it fails once. Every later write fails: a summary after a torn
+/// record would look like a complete file.
 pub(super) struct Sink<W: Write> {
     inner: W,
     written: Arc<AtomicU64>,

@@ -1,19 +1,20 @@
-//! The stream hash: one number that says whether two runs were the same.
+//! The stream hash, which tells whether two runs were the same.
 //!
-//! BLAKE3 over the canonical bytes ([`octant_sample::canonical`]) of what the core got and gave,
-//! epoch by epoch: the faulted sample, the aiding if there was any, the output, and the parameters
-//! with their σ when the output's revision changed. It is taken at full rate, before any
-//! decimation, and holds no host time: recording policy, block size and realisation don't move it.
+//! BLAKE3 over the canonical bytes ([`octant_sample::canonical`]) of the core's input and output, epoch
+//! by epoch: the faulted sample, the aiding if there was any, the output, and the parameters with their
+//! σ when the output's revision changed. It is computed at full rate, before any decimation, and
+//! contains no host time: recording policy, block size and realisation don't change it.
 
 use octant_sample::canonical::{self, AIDING_BYTES, OUTPUT_BYTES, PARAMETERS_BYTES, SAMPLE_BYTES};
 use octant_sample::parameters::ParameterEstimate;
 use octant_sample::{Aiding, Output, Sample};
 
-/// Bytes gathered before the hash function is called: BLAKE3 is several times faster on pieces of
-/// many kilobytes (it hashes up to sixteen blocks of 1 KiB side by side) than on the 50 bytes of a
-/// sample. A power of two, and never more or less: a piece is then a whole subtree of its own.
+/// Number of bytes gathered before the hash function is called: BLAKE3 is several times faster on
+/// pieces of many kilobytes (it hashes up to sixteen blocks of 1 KiB in parallel) than on the 50 bytes
+/// of a sample. It is a power of two, and each piece has exactly this size: so a piece is a whole
+/// subtree of its own.
 const PIECE_BYTES: usize = 64 * 1024;
-/// Room for what reaches into the next piece.
+/// Capacity for bytes that reach into the next piece.
 const GATHER_BYTES: usize = PIECE_BYTES + 1024;
 
 /// Hash of a stream so far.
@@ -30,20 +31,20 @@ impl Default for StreamHash {
 }
 
 impl StreamHash {
-    /// Hash of an empty stream.
+    /// Makes the hash of an empty stream.
     #[must_use]
     pub fn new() -> Self {
         Self { hasher: blake3::Hasher::new(), gathered: Vec::with_capacity(GATHER_BYTES) }
     }
 
-    /// Adds one epoch: what reached the core and what it answered.
+    /// Adds one epoch: the core's input and its output.
     #[inline]
     pub fn epoch(&mut self, sample: &Sample, aiding: Option<&Aiding>, output: &Output) {
         self.input(sample, aiding);
         self.put::<OUTPUT_BYTES>(|bytes| canonical::output(output, bytes));
     }
 
-    /// Adds a sample and its aiding alone.
+    /// Adds only a sample and its aiding.
     #[inline]
     pub(super) fn input(&mut self, sample: &Sample, aiding: Option<&Aiding>) {
         self.put::<SAMPLE_BYTES>(|bytes| canonical::sample(sample, bytes));
@@ -52,14 +53,14 @@ impl StreamHash {
         }
     }
 
-    /// Adds the parameters that changed with the epoch just added.
+    /// Adds the parameters that changed with the last epoch.
     pub fn parameters(&mut self, estimate: &ParameterEstimate) {
         self.put::<PARAMETERS_BYTES>(|bytes| {
             canonical::parameters(&estimate.parameters, &estimate.sigma, bytes);
         });
     }
 
-    /// The hash of everything added, 64 hexadecimal digits.
+    /// Hash of everything added, 64 hexadecimal digits.
     #[must_use]
     pub fn hex(&mut self) -> String {
         self.hasher.update(&self.gathered);

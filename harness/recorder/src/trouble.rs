@@ -1,12 +1,12 @@
-//! What can go wrong below a recorder and inside it, raised from another thread.
+//! Faults of a recorder and its disk, raised from another thread.
 
 use std::io::{self, Write};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::Duration;
 
-/// A handle to the disk and the thread of a recorder, for faults. By default nothing goes wrong.
-/// Raising something is a store: it takes no lock and allocates nothing.
+/// Handle to the disk and the thread of a recorder, for faults. By default there are none. Raising a
+/// fault is a store: it takes no lock and allocates nothing.
 #[derive(Clone, Debug, Default)]
 pub struct Trouble(Arc<Raised>);
 
@@ -17,17 +17,17 @@ struct Raised {
 }
 
 impl Trouble {
-    /// The disk is full from now on.
+    /// Makes the disk full from now on.
     pub fn fill_disk(&self) {
         self.0.full.store(true, Ordering::Relaxed);
     }
 
-    /// The recorder's thread is to stand still for a time, once it looks.
+    /// Asks the recorder's thread to pause for a time.
     pub fn stall(&self, pause_ns: u64) {
         self.0.pause_ns.fetch_add(pause_ns, Ordering::Relaxed);
     }
 
-    /// Stands still for as long as was asked for since the last time.
+    /// Pauses for the time that was asked for since the last pause.
     pub(super) fn stand_still(&self) {
         if self.0.pause_ns.load(Ordering::Relaxed) > 0 {
             std::thread::sleep(Duration::from_nanos(self.0.pause_ns.swap(0, Ordering::Relaxed)));
@@ -35,7 +35,7 @@ impl Trouble {
     }
 }
 
-/// A file on a disk that can be full.
+/// File on a disk that can be full.
 pub(super) struct Disk<W> {
     inner: W,
     trouble: Trouble,
@@ -60,7 +60,7 @@ impl<W: Write> Write for Disk<W> {
     }
 }
 
-/// What a system says of a full disk.
+/// Error that the system gives for a full disk.
 fn no_space() -> io::Error {
     #[cfg(target_os = "linux")]
     return rustix::io::Errno::NOSPC.into();

@@ -1,19 +1,19 @@
-//! Writes blocks of epochs into an MCAP file. Runs on the recorder's thread.
+//! Writing of blocks of epochs to an MCAP file, on the recorder's thread.
 //!
 //! # Recovery model
 //!
 //! - The file is append-only: header, metadata (`octant.recording`, `octant.run`), the scenario,
 //!   then chunks, and at the end of a run the summary with its indexes.
-//! - A chunk is built in memory and handed to the operating system whole, with a CRC over its
-//!   content. What a kill leaves is therefore a run of whole records and at most one torn one at
-//!   the end; a reader takes everything before it.
+//! - A chunk is built in memory and handed to the operating system whole, with a CRC over its content.
+//!   So a killed process leaves a sequence of whole records and at most one torn one at the end; a
+//!   reader takes everything before it.
 //! - The open chunk is closed when it is large, and whenever [`FLUSH_INTERVAL`] of wall time has
-//!   passed: what the run loop handed over earlier than that is in the file. The loop is asked for
-//!   its unfinished block as often (see the handle), so that a kill costs less than a second of a
-//!   loop that steps.
-//! - The operating system's cache survives the kill of a process, not of the machine: the file is
+//!   passed: data that the run loop handed over earlier than that is in the file. The loop is asked for
+//!   its unfinished block at the same interval (see the handle), so that a kill costs less than a
+//!   second of a stepping loop.
+//! - The operating system's cache survives the kill of a process, but not of the machine: the file is
 //!   synced to the disk once, at the end.
-//! - After a write failed nothing more is written; what stands before the failure is readable.
+//! - After a failed write nothing more is written; data before the failure is readable.
 
 use super::block::Block;
 use super::message::{self, Topic};
@@ -41,7 +41,7 @@ pub(super) const SCENARIO_ATTACHMENT: &str = "scenario.toml";
 /// Size at which a chunk is closed, uncompressed.
 const CHUNK_BYTES: u64 = 512 * 1024;
 
-/// The file side of a recorder.
+/// File side of a recorder.
 pub(super) struct RecordingWriter<W: Write> {
     mcap: mcap::Writer<NoSeek<BufWriter<Sink<W>>>>,
     written: Arc<AtomicU64>,
@@ -51,20 +51,20 @@ pub(super) struct RecordingWriter<W: Write> {
     bytes: Vec<u8>,
     last_flush: Instant,
     dirty: bool,
-    /// Mode of the last output, none before the first.
+    /// Mode of the last output; `None` before the first.
     mode: Option<Mode>,
     /// Revision of the parameters in the last output.
     revision: u32,
     /// Log time and sequence number of the last frame.
     last_time_ns: u64,
     last_sequence: u64,
-    /// The last parameters, while they are not in the file.
+    /// Last parameters, until they are in the file.
     unwritten_parameters: Option<(u64, ParameterEstimate)>,
     next_parameters_ns: u64,
 }
 
 impl<W: Write> RecordingWriter<W> {
-    /// Writes everything that stands before the first epoch.
+    /// Writes everything that comes before the first epoch.
     pub(super) fn new(inner: W, options: &RecorderOptions) -> Result<Self, RecorderError> {
         let (sink, written) = Sink::new(inner);
         let policy = options.policy;
@@ -72,13 +72,13 @@ impl<W: Write> RecordingWriter<W> {
         let mut mcap = mcap::WriteOptions::new()
             .profile("octant")
             .library(concat!("octant ", env!("CARGO_PKG_VERSION")))
-            // At level 1 it takes 15 % more time than LZ4 for files 15 % smaller.
+            // At level 1, Zstandard takes 15 % more time than LZ4 for files that are 15 % smaller.
             .compression(Some(mcap::Compression::Zstd))
             .compression_level(1)
-            // The bytes differ with the number of threads; none keeps them on this thread.
+            // The bytes differ with the number of threads; 0 compresses on this thread.
             .compression_threads(0)
             .chunk_size(Some(CHUNK_BYTES))
-            // Without seeking a chunk is buffered and written whole: see the recovery model.
+            // Without seeking, a chunk is buffered and written whole: see the recovery model.
             .disable_seeking(true)
             .create(NoSeek::new(BufWriter::new(sink)))
             .map_err(fail)?;
@@ -141,7 +141,7 @@ impl<W: Write> RecordingWriter<W> {
         })
     }
 
-    /// Writes what the policy keeps of a block.
+    /// Writes the data of a block that the policy keeps.
     pub(super) fn block(&mut self, block: &Block) -> Result<(), RecorderError> {
         let mut aiding = block.aiding.iter().peekable();
         let mut altered = block.altered.iter().peekable();
@@ -152,7 +152,7 @@ impl<W: Write> RecordingWriter<W> {
         let mut lost = block.lost.iter().peekable();
         let mut added = block.added.iter().peekable();
         for position in 0..=block.len() as u32 {
-            // First what was said after the frame before, in the order of the topics.
+            // First the additions to the frame before, in the order of the topics.
             while let Some((_, estimate)) = parameters.next_if(|(at, _)| *at == position) {
                 self.parameters_changed(estimate)?;
             }
@@ -234,7 +234,7 @@ impl<W: Write> RecordingWriter<W> {
         if output.parameters_revision == self.revision {
             self.write_parameters()?;
         } else {
-            // The change itself brings new ones: they are kept in place of those before.
+            // The change of mode brings new parameters, which are kept instead of those before.
             self.unwritten_parameters = None;
             self.next_parameters_ns = 0;
         }
@@ -259,7 +259,7 @@ impl<W: Write> RecordingWriter<W> {
     fn put(&mut self, topic: Topic) -> Result<(), RecorderError> {
         let header = MessageHeader {
             channel_id: self.channels[topic as usize],
-            // The sequence number of MCAP is of 32 bits and only informs.
+            // The sequence number of MCAP has 32 bits and is only informative.
             sequence: self.last_sequence as u32,
             log_time: self.last_time_ns,
             publish_time: self.last_time_ns,
@@ -272,7 +272,7 @@ impl<W: Write> RecordingWriter<W> {
         Ok(())
     }
 
-    /// Hands the open chunk to the operating system if it was open for long.
+    /// Hands the open chunk to the operating system if it has been open for long.
     pub(super) fn flush_if_due(&mut self) -> Result<(), RecorderError> {
         if self.last_flush.elapsed() >= FLUSH_INTERVAL {
             if self.dirty {
@@ -284,7 +284,7 @@ impl<W: Write> RecordingWriter<W> {
         Ok(())
     }
 
-    /// Writes the summary. Returns the messages by topic, the bytes of the file, and the file.
+    /// Writes the summary. Returns the number of messages by topic, and the size of the file in bytes.
     pub(super) fn finish(mut self) -> Result<(Counts, u64), RecorderError> {
         self.write_parameters()?;
         self.mcap.finish().map_err(|error| error_of(error, &self.written))?;

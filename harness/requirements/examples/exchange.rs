@@ -1,4 +1,4 @@
-//! Turns requirements from one format into another, and shows a campaign in StrictDoc.
+//! Converts requirements from one format to another, and shows a campaign in StrictDoc.
 //!
 //! ```text
 //! exchange convert FROM TO              .toml, .sdoc, .reqif, by their endings

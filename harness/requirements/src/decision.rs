@@ -1,48 +1,48 @@
-//! The decision rule: what a value near its limit comes to, where what it was measured against is itself
-//! uncertain (JCGM 106:2012, guarded acceptance and rejection).
+//! The decision rule: the verdict on a value near its limit, if the reference it was measured against
+//! is itself uncertain (JCGM 106:2012, guarded acceptance and rejection).
 
 use octant_earth::ellipsoid::{meridian_radius_m, transverse_radius_m};
 use serde::{Deserialize, Serialize};
 
-/// Metres of a nautical mile.
+/// Length of a nautical mile, m.
 const NMI_M: f64 = 1852.0;
 
-/// What a value within the uncertainty of its reference comes to.
+/// Rule for a value within the uncertainty of its reference.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Rule {
-    /// Within the uncertainty of a limit nothing is shown: the guard band is as wide as the expanded uncertainty
-    /// on both sides (JCGM 106, 8.3.2).
+    /// Within the uncertainty of a limit the result is inconclusive: the guard band is as wide as the
+    /// expanded uncertainty on both sides (JCGM 106, 8.3.2).
     #[default]
     GuardBand,
-    /// A value is held against its limit as it is (JCGM 106, 8.2.1).
+    /// A value is compared with its limit as it is (JCGM 106, 8.2.1).
     SimpleAcceptance,
 }
 
-/// An uncertainty that is stated for one measure.
+/// Uncertainty stated for one measure.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Uncertainty {
-    /// The measure, by its path without bars.
+    /// Path of the measure, without bars.
     pub measure: String,
     /// Expanded uncertainty (coverage of 95 %), in the measure's unit.
     pub uncertainty: f64,
 }
 
-/// The rule of a scenario with what it says of its references.
+/// Decision rule of a scenario, with the uncertainties of its references.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Decision {
-    /// The rule; `None`: it isn't named.
+    /// Rule; `None`: not stated.
     pub rule: Option<Rule>,
     /// Expanded uncertainty (95 %) of the reference position, m, in each direction.
     pub position_m: Option<f64>,
-    /// Uncertainties of single measures, which go before what follows from others.
+    /// Uncertainties of single measures, which take precedence over derived ones.
     pub uncertainties: Vec<Uncertainty>,
 }
 
-/// Where and how long was navigated, and against what.
+/// Place and length of a navigation, and its reference.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Against {
-    /// The truth is simulated: it is exact.
+    /// True if the truth is simulated, and thus exact.
     pub simulated: bool,
     /// Geodetic latitude, rad.
     pub latitude_rad: f64,
@@ -52,21 +52,29 @@ pub struct Against {
     pub navigation_s: f64,
 }
 
-/// How it is decided, for whoever reads the result.
+/// Description of the decision rule for the readers of a result.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Decided {
-    /// The rule.
+    /// Rule.
     pub rule: Rule,
-    /// In words: the rule, and what the references are uncertain by.
+    /// Text of the rule and of the references' uncertainties.
     pub text: String,
 }
 
+/// A reference whose uncertainty isn't stated.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error(
+    "nobody says how uncertain its reference is: expected decision.position, an uncertainty of the \
+     measure in [[decision.uncertainties]], or decision.rule = \"simple-acceptance\""
+)]
+pub struct UnknownUncertainty;
+
 impl Decision {
-    /// The expanded uncertainty of what a measure is held against, in the measure's unit.
+    /// Expanded uncertainty of a measure's reference, in the measure's unit.
     ///
     /// # Errors
-    /// In words, if a reference is not exact, and nobody has said how good it is.
-    pub fn uncertainty(&self, measure: &str, against: &Against) -> Result<f64, String> {
+    /// If a reference is not exact and its uncertainty is not stated.
+    pub fn uncertainty(&self, measure: &str, against: &Against) -> Result<f64, UnknownUncertainty> {
         let bare = measure.trim_matches('|');
         if let Some(stated) = self.uncertainties.iter().find(|stated| stated.measure == bare) {
             return Ok(stated.uncertainty);
@@ -79,20 +87,17 @@ impl Decision {
                 Ok(of_position(bare, position_m, against))
             }
             _ if against.simulated || self.rule == Some(Rule::SimpleAcceptance) => Ok(0.0),
-            _ => Err("nobody says how uncertain its reference is: expected decision.position, an \
-                 uncertainty of the measure in [[decision.uncertainties]], or decision.rule = \
-                 \"simple-acceptance\""
-                .to_owned()),
+            _ => Err(UnknownUncertainty),
         }
     }
 
-    /// The rule by which it is decided.
+    /// Rule that applies.
     #[must_use]
     pub fn rule(&self) -> Rule {
         self.rule.unwrap_or_default()
     }
 
-    /// How it is decided.
+    /// Description of the rule and the uncertainties.
     #[must_use]
     pub fn decided(&self, against: &Against) -> Decided {
         let rule = self.rule();
@@ -122,8 +127,8 @@ impl Decision {
     }
 }
 
-/// Whether a measure is a difference from a reference. Counts, σ, innovations and the difference between a run and
-/// its twin are not.
+/// True if a measure is a difference from a reference. Counts, σ, innovations and the difference
+/// between a run and its twin are not.
 fn is_referred(bare: &str) -> bool {
     let own = bare.strip_prefix("baseline.").unwrap_or(bare);
     let name = own.rsplit('.').next().unwrap_or(own);
@@ -137,7 +142,7 @@ fn is_referred(bare: &str) -> bool {
     }
 }
 
-/// What an uncertainty of the position makes of a measure of the navigation.
+/// Uncertainty of a measure of the navigation that follows from that of the position.
 fn of_position(bare: &str, position_m: f64, against: &Against) -> f64 {
     let (sin, cos) = (libm::sin(against.latitude_rad), libm::cos(against.latitude_rad));
     let arcmin = |radius_m: f64| (position_m / radius_m).to_degrees() * 60.0;
@@ -149,8 +154,9 @@ fn of_position(bare: &str, position_m: f64, against: &Against) -> f64 {
     } else {
         arcmin(meridian_radius_m(sin) + against.height_m)
     };
-    // A reference that is wrong by the whole at one end and by the whole the other way at the other; of a
-    // regression through the origin, a constant error c leaves 3c/2T.
+    // Slope: the reference is wrong by the whole uncertainty at one end, and by the same in the other
+    // direction at the other end. Rate: in a regression through the origin, a constant error c leaves
+    // 3c/2T.
     match bare.rsplit('.').next() {
         Some("slope_per_day") => 2.0 * band / (hours / 24.0),
         Some("rate_per_h") => 1.5 * band / hours,
@@ -158,7 +164,7 @@ fn of_position(bare: &str, position_m: f64, against: &Against) -> f64 {
     }
 }
 
-/// Whether a value lies within the band of its limit, where nothing is shown.
+/// True if a value is so close to its limit that the result is inconclusive.
 #[must_use]
 pub fn in_band(value: f64, limit: f64, uncertainty: f64) -> bool {
     uncertainty > 0.0 && (value - limit).abs() < uncertainty
@@ -194,7 +200,7 @@ mod tests {
         let slope = uncertainty("navigation.latitude_error_arcmin.slope_per_day");
         assert!((slope - 2.0 * latitude).abs() < 1e-12);
         assert_eq!(uncertainty("baseline.navigation.marks.24h.radial_nmi"), 1.0);
-        // What isn't held against a position isn't made wider by it.
+        // Measures without a position as reference don't get a band.
         assert_eq!(uncertainty("calibration.nis_mean"), 0.0);
         assert_eq!(uncertainty("counterfactual.navigation.radial_max_nmi"), 0.0);
     }
@@ -204,7 +210,7 @@ mod tests {
         let measure = "navigation.radial_error_nmi.max";
         let simulated = Against { simulated: true, ..HERE };
         assert_eq!(decision(None).uncertainty(measure, &simulated), Ok(0.0));
-        let error = decision(None).uncertainty(measure, &HERE).unwrap_err();
+        let error = decision(None).uncertainty(measure, &HERE).unwrap_err().to_string();
         assert!(error.contains("decision.position") && error.contains("simple-acceptance"));
         let simple = Decision { rule: Some(Rule::SimpleAcceptance), ..Decision::default() };
         assert_eq!(simple.uncertainty(measure, &HERE), Ok(0.0));

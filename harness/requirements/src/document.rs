@@ -1,11 +1,11 @@
-//! Tables of a TOML file that know where they stand, and collect what is wrong with them.
+//! Tables of a TOML file that know their place in it, and collect problems.
 
 use crate::error::{Problem, suggestion};
 use std::cell::RefCell;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-/// Turns byte offsets into lines and columns, from 1; columns in characters.
+/// Converts byte offsets to lines and columns, from 1; columns are counted in characters.
 pub(crate) struct Lines<'a> {
     text: &'a str,
     starts: Vec<usize>,
@@ -24,18 +24,18 @@ impl<'a> Lines<'a> {
     }
 }
 
-/// What a text is inside: without space around it, and with plain line breaks.
+/// Normalizes a text: without surrounding space, and with plain line breaks.
 pub(crate) fn normal(text: &str) -> String {
     text.replace("\r\n", "\n").replace('\r', "\n").trim().to_owned()
 }
 
-/// What no format of others could hold.
+/// First character that other formats can't hold.
 pub(crate) fn control(text: &str) -> Option<char> {
     let legal = |c: char| matches!(c, '\n' | '\t') || !c.is_control();
     text.chars().find(|c| !legal(*c) || matches!(c, '\u{fffe}' | '\u{ffff}'))
 }
 
-/// What a value is, for "found …".
+/// Describes a value, for "found …".
 pub(crate) fn describe(value: &DeValue<'_>) -> String {
     match value {
         DeValue::String(text) => format!("{text:?}"),
@@ -48,7 +48,7 @@ pub(crate) fn describe(value: &DeValue<'_>) -> String {
     }
 }
 
-/// Everything that is wrong with a file.
+/// All problems of a file.
 pub(crate) struct Problems<'a> {
     pub(crate) lines: Lines<'a>,
     pub(crate) all: RefCell<Vec<Problem>>,
@@ -58,7 +58,7 @@ pub(crate) struct Problems<'a> {
 #[derive(Clone)]
 pub(crate) struct Reader<'a> {
     table: &'a DeTable<'a>,
-    /// Where the table begins.
+    /// Offset of the table's beginning.
     at: usize,
     path: String,
     problems: &'a Problems<'a>,
@@ -87,13 +87,13 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Something is wrong at an offset of the file.
+    /// Reports a problem at an offset of the file.
     fn problem_at(&self, offset: usize, key: &str, message: impl Into<String>) {
         let place = self.problems.lines.place(offset);
         self.problems.all.borrow_mut().push(Problem::new(place, self.path_of(key), message));
     }
 
-    /// Something is wrong with the value of a key, or with the table where the key isn't there.
+    /// Reports a problem with the value of a key, or with the table if the key is missing.
     pub(crate) fn problem(&self, key: &str, message: impl Into<String>) {
         let at = self.get(key).map_or(self.at, |value| value.span().start);
         self.problem_at(at, key, message);
@@ -115,7 +115,7 @@ impl<'a> Reader<'a> {
         self.get(key).is_some()
     }
 
-    /// Keys and values in the order in which they were written.
+    /// Keys and values in the order of writing.
     pub(crate) fn entries(&self) -> Vec<(&'a str, &'a Spanned<DeValue<'a>>)> {
         let mut entries: Vec<_> =
             self.table.iter().map(|(k, v)| (k.span().start, k.get_ref().as_ref(), v)).collect();
@@ -123,7 +123,7 @@ impl<'a> Reader<'a> {
         entries.into_iter().map(|(_, key, value)| (key, value)).collect()
     }
 
-    /// Refuses keys that aren't among these.
+    /// Refuses keys that are not among `known`.
     pub(crate) fn known(&self, known: &[&str]) {
         for (key, _) in self.table.iter() {
             if !known.contains(&key.get_ref().as_ref()) {
@@ -133,7 +133,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// The text of a value; problems are told of `key`.
+    /// Text of a value; problems are reported for `key`.
     pub(crate) fn text_of(&self, key: &str, value: &Spanned<DeValue<'_>>) -> Option<String> {
         let DeValue::String(text) = value.get_ref() else {
             let found = describe(value.get_ref());
@@ -153,13 +153,12 @@ impl<'a> Reader<'a> {
         Some(text)
     }
 
-    /// A text that may be left out; not empty.
+    /// Optional text; not empty.
     pub(crate) fn optional(&self, key: &str) -> Option<String> {
         self.text_of(key, self.get(key)?)
     }
 
-    /// As [`Reader::optional`], on one line. A tab, which no name of other formats could hold, is a
-    /// space.
+    /// Optional text on one line. A tab, which names in other formats can't hold, becomes a space.
     pub(crate) fn line_of(&self, key: &str) -> Option<String> {
         let text = self.optional(key)?;
         if text.contains('\n') {
@@ -169,7 +168,7 @@ impl<'a> Reader<'a> {
         Some(text.replace('\t', " "))
     }
 
-    /// A text that has to be there.
+    /// Required text.
     pub(crate) fn required(&self, key: &str, what: &str) -> Option<String> {
         if !self.has(key) {
             self.problem_at(self.at, key, format!("missing, expected {what}"));
@@ -177,7 +176,7 @@ impl<'a> Reader<'a> {
         self.optional(key)
     }
 
-    /// A text, or an array of texts.
+    /// Text, or array of texts.
     pub(crate) fn texts_of(&self, key: &str, value: &Spanned<DeValue<'_>>) -> Vec<String> {
         match value.get_ref() {
             DeValue::Array(entries) => {
@@ -187,7 +186,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// The tables of an array of tables, or of an array with inline tables.
+    /// Tables of an array of tables, or of an array with inline tables.
     pub(crate) fn tables(&self, key: &str) -> Vec<Reader<'a>> {
         let Some(value) = self.get(key) else { return Vec::new() };
         let DeValue::Array(entries) = value.get_ref() else {
@@ -212,7 +211,7 @@ impl<'a> Reader<'a> {
         tables
     }
 
-    /// A table in this one.
+    /// Table inside this one.
     pub(crate) fn table(&self, key: &str) -> Option<Reader<'a>> {
         let value = self.get(key)?;
         match value.get_ref() {

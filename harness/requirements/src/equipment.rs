@@ -1,7 +1,7 @@
-//! Equipment of the bench: what a run was measured with, and until when its certificate holds.
+//! Equipment of the bench with which a run was measured, and the validity of its certificates.
 //!
-//! A certificate is held against the day on which the run ended, which stands in its manifest: judged again years
-//! later, the run comes to the same.
+//! A certificate is compared with the day on which the run ended, from its manifest: so the result
+//! stays the same when the run is judged again years later.
 
 use serde::{Deserialize, Serialize};
 use std::time::SystemTime;
@@ -11,13 +11,41 @@ use std::time::SystemTime;
 #[serde(try_from = "String", into = "String")]
 pub struct Day(String);
 
+/// Reason why a text is no day.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum DayError {
+    /// The text has another form, or the calendar has no such day.
+    #[error("found {found:?}, expected a day such as 2027-03-31")]
+    Day {
+        /// Text found.
+        found: String,
+    },
+    /// Month or day are out of range.
+    #[error("found {found:?}, expected a day such as 2027-03-31: {error}")]
+    OutOfRange {
+        /// Text found.
+        found: String,
+        /// Reason.
+        error: humantime::TimestampError,
+    },
+    /// The text is no time of RFC 3339.
+    #[error("found {found:?}, expected a time of RFC 3339: {error}")]
+    Time {
+        /// Text found.
+        found: String,
+        /// Reason.
+        error: humantime::TimestampError,
+    },
+}
+
 impl Day {
-    /// Reads a day.
+    /// Parses a day.
     ///
     /// # Errors
-    /// In words, if it isn't one that the calendar has.
-    pub fn parse(text: &str) -> Result<Self, String> {
-        let wrong = || format!("found {text:?}, expected a day such as 2027-03-31");
+    /// If the calendar has no such day.
+    pub fn parse(text: &str) -> Result<Self, DayError> {
+        let found = || text.to_owned();
+        let wrong = || DayError::Day { found: found() };
         let is_form = text.len() == 10
             && text.bytes().enumerate().all(|(place, byte)| match place {
                 4 | 7 => byte == b'-',
@@ -27,33 +55,33 @@ impl Day {
             return Err(wrong());
         }
         let at_midnight = humantime::parse_rfc3339(&format!("{text}T00:00:00Z"));
-        let time = at_midnight.map_err(|error| format!("{}: {error}", wrong()))?;
-        // What isn't in the calendar comes back as another day.
+        let time = at_midnight.map_err(|error| DayError::OutOfRange { found: found(), error })?;
+        // A day that isn't in the calendar is converted back to another one.
         if Self::of(time).0 == text { Ok(Self(text.to_owned())) } else { Err(wrong()) }
     }
 
-    /// The day of a time of the host.
+    /// Day of a time of the host.
     #[must_use]
     pub fn of(time: SystemTime) -> Self {
         let text = humantime::format_rfc3339_seconds(time).to_string();
         Self(text.get(..10).unwrap_or_default().to_owned())
     }
 
-    /// The day of a time as a manifest has it, RFC 3339.
+    /// Day of a time of a manifest, RFC 3339.
     ///
     /// # Errors
-    /// In words, if it isn't one.
-    pub fn of_text(text: &str) -> Result<Self, String> {
+    /// If it is no such time.
+    pub fn of_text(text: &str) -> Result<Self, DayError> {
         let time = humantime::parse_rfc3339(text)
-            .map_err(|error| format!("found {text:?}, expected a time of RFC 3339: {error}"))?;
+            .map_err(|error| DayError::Time { found: text.to_owned(), error })?;
         Ok(Self::of(time))
     }
 }
 
 impl TryFrom<String> for Day {
-    type Error = String;
+    type Error = DayError;
 
-    fn try_from(text: String) -> Result<Self, String> {
+    fn try_from(text: String) -> Result<Self, DayError> {
         Self::parse(&text)
     }
 }
@@ -73,19 +101,19 @@ impl std::fmt::Display for Day {
 /// A piece of equipment: a turntable, a reference, a counter.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Equipment {
-    /// Its name.
+    /// Name.
     pub name: String,
-    /// Its serial number.
+    /// Serial number.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub serial: Option<String>,
-    /// Number of its certificate of calibration.
+    /// Number of the certificate of calibration.
     pub certificate: String,
-    /// The last day on which the certificate holds.
+    /// Last day on which the certificate is valid.
     pub expires: Day,
 }
 
 impl Equipment {
-    /// It with its serial number.
+    /// Name with the serial number.
     #[must_use]
     pub fn named(&self) -> String {
         match &self.serial {
@@ -107,7 +135,7 @@ mod tests {
         for bad in
             ["2027-02-29", "2027-13-01", "2027-00-10", "2027-3-31", "31.03.2027", "", "2027-03-31 "]
         {
-            assert!(Day::parse(bad).unwrap_err().contains("2027-03-31"), "{bad}");
+            assert!(Day::parse(bad).unwrap_err().to_string().contains("2027-03-31"), "{bad}");
         }
         assert!(Day::parse("2027-03-31").unwrap() < Day::parse("2027-04-01").unwrap());
         let midnight = Day::of_text("2027-03-31T23:59:59.999Z").unwrap();

@@ -1,18 +1,18 @@
-//! What is wrong with a file of requirements, and where; what an import left out.
+//! Problems of a file of requirements, with their places, and notes of an import.
 
 use crate::requirement::Requirements;
 use std::fmt;
 
-/// One thing that is wrong.
+/// One problem.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Problem {
     /// Line in the file, from 1.
     pub line: usize,
     /// Column in characters, from 1.
     pub column: usize,
-    /// The field, `requirements.NAV-1.limit`; empty where it isn't in one.
+    /// Path of the field, `requirements.NAV-1.limit`; empty if the problem isn't in a field.
     pub path: String,
-    /// What was found and what was expected.
+    /// Value found and value expected.
     pub message: String,
 }
 
@@ -26,7 +26,7 @@ impl Problem {
     }
 }
 
-/// Why a file of requirements can't be used: at least one problem, in the order of the file.
+/// Error of a file of requirements: at least one problem, in the order of the file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct RequirementsError {
     /// Name of the file.
@@ -59,33 +59,33 @@ impl fmt::Display for RequirementsError {
 
 impl std::error::Error for RequirementsError {}
 
-/// Why requirements can't be written in a format: a requirement has what it has no place for.
+/// Error of requirements that a format can't hold.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("failed to write {format}: requirement {id}: {message}")]
 pub struct ExportError {
     /// The format.
     pub format: &'static str,
-    /// The requirement; `(all)` where it isn't one alone.
+    /// Id of the requirement; `(all)` if it isn't a single one.
     pub id: String,
-    /// What has no place.
+    /// Part that the format can't hold.
     pub message: String,
 }
 
-/// Requirements from a file of another tool, and what of it has no place here.
+/// Requirements from a file of another tool, with notes on the parts that were not taken over.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Imported {
     /// The requirements.
     pub requirements: Requirements,
-    /// What was left out, or has to be completed by hand, with its line.
+    /// Parts that were left out, or have to be completed by hand, with their lines.
     pub notes: Vec<Note>,
 }
 
-/// Something that an import didn't take over as it stood.
+/// Part that an import didn't take over unchanged.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Note {
     /// Line in the file, from 1.
     pub line: usize,
-    /// What, in plain words.
+    /// Description, in plain words.
     pub message: String,
 }
 
@@ -95,7 +95,7 @@ impl fmt::Display for Note {
     }
 }
 
-/// `did you mean X?` and the list of what is known.
+/// Text `did you mean "X"?`, if a name is similar, with the list of known names.
 pub(crate) fn suggestion(found: &str, known: &[&str]) -> String {
     let list = known.join(", ");
     let nearest = known

@@ -1,4 +1,4 @@
-//! Fields by which the requirement's own keys are known in the formats of others.
+//! Fields for Octant's keys of a requirement in other formats.
 
 use crate::requirement::{Check, Ensemble, Limit, Requirement, Verification, percent, probability};
 use crate::verdict::Comparison;
@@ -9,17 +9,17 @@ pub(crate) const LIMIT: &str = "LIMIT";
 pub(crate) const PASS: &str = "PASS";
 pub(crate) const CONFIDENCE: &str = "CONFIDENCE";
 pub(crate) const VERIFICATION: &str = "VERIFICATION";
-/// Names of tests, with `; ` between them.
+/// Names of tests, separated by `; `.
 pub(crate) const TESTS: &str = "TESTS";
 pub(crate) const CLAUSE: &str = "CLAUSE";
 pub(crate) const RATIONALE: &str = "RATIONALE";
-/// Those that every format names in its own way.
+/// Fields that every format names in its own way.
 pub(crate) const OF_FORMATS: [&str; 4] = ["MID", "UID", "TITLE", "STATEMENT"];
-/// All, in the order in which they are written.
+/// All fields, in the order of writing.
 pub(crate) const ALL: [&str; 9] =
     [MEASURE, COMPARISON, LIMIT, PASS, CONFIDENCE, VERIFICATION, TESTS, CLAUSE, RATIONALE];
 
-/// The fields of a requirement beside id, title and text, as names and values.
+/// Fields of a requirement beside id, title and text, as names and values.
 pub(crate) fn own_fields(requirement: &Requirement) -> Vec<(&'static str, String)> {
     let mut fields = Vec::new();
     match &requirement.verification {
@@ -46,7 +46,7 @@ pub(crate) fn own_fields(requirement: &Requirement) -> Vec<(&'static str, String
     fields
 }
 
-/// Why these can't be the names of tests.
+/// Reason why these can't be names of tests.
 pub(crate) fn misnamed(tests: &[String]) -> Option<String> {
     if tests.is_empty() {
         return Some("found no test, expected at least one".to_owned());
@@ -57,16 +57,16 @@ pub(crate) fn misnamed(tests: &[String]) -> Option<String> {
     Some(format!("found {bad:?}, expected the name of a test: one line without \";\""))
 }
 
-/// Line and value of a field, if it is there.
+/// Function that finds the line and value of a field.
 pub(crate) type Lookup<'a> = dyn Fn(&str) -> Option<(usize, &'a str)> + 'a;
 
-/// A verification, and the fields that say it.
+/// A verification, and the fields that describe it.
 pub(crate) type Said = (Verification, Vec<&'static str>);
 
-/// How a requirement says that it is verified, and the fields that say it; `None`: it doesn't say.
+/// Verification of a requirement, and the fields that describe it; `None`: there are none.
 ///
 /// # Errors
-/// Line and reason, if what it says is incomplete or isn't understood.
+/// Line and reason, if the fields are incomplete or invalid.
 pub(crate) fn verification(of: &Lookup<'_>) -> Result<Option<Said>, (usize, String)> {
     if let Some((line, measure)) = of(MEASURE) {
         let limit = of(LIMIT).ok_or_else(|| (line, format!("{MEASURE} without {LIMIT}")))?;
@@ -80,7 +80,7 @@ pub(crate) fn verification(of: &Lookup<'_>) -> Result<Option<Said>, (usize, Stri
             None => Ok(None),
             Some((line, text)) => match probability(text) {
                 Ok(probability) => Ok(Some(probability)),
-                Err(message) => Err((line, format!("{name}: {message}"))),
+                Err(error) => Err((line, format!("{name}: {error}"))),
             },
         };
         let ensemble = match (part(PASS)?, part(CONFIDENCE)?) {
@@ -94,11 +94,11 @@ pub(crate) fn verification(of: &Lookup<'_>) -> Result<Option<Said>, (usize, Stri
             measure: measure.to_owned(),
             comparison,
             limit: Limit::of_text(limit.1)
-                .map_err(|message| (limit.0, format!("{LIMIT}: {message}")))?,
+                .map_err(|error| (limit.0, format!("{LIMIT}: {error}")))?,
             ensemble,
         };
         let mut used = vec![MEASURE, COMPARISON, LIMIT, PASS, CONFIDENCE];
-        // Beside a measure it says nothing more.
+        // Beside a measure this field adds nothing.
         if of(VERIFICATION).is_some_and(|(_, how)| how.eq_ignore_ascii_case("test")) {
             used.push(VERIFICATION);
         }

@@ -1,14 +1,14 @@
-//! Requirements of a campaign, and what became of them.
+//! Requirements of a campaign and their results.
 //!
-//! - [`requirement`] is what a requirement is, [`file`](mod@file) is `requirements.toml`
-//! - [`verdict`] is what anything comes to, and how a measure is held against a limit
-//! - [`measures`] are the numbers that can be required, [`signed`] which of them have a sign, [`decision`] is what a value
-//!   near its limit comes to, [`equipment`] what a run was measured with
-//! - [`sdoc`] and [`reqif`] are the formats of others: StrictDoc's documents, and ReqIF
-//! - [`trace`] goes from requirements to cases, results and recordings, and back; [`strictdoc`] shows it
-//!   in StrictDoc
+//! - [`requirement`] defines requirements, [`file`](mod@file) reads and writes `requirements.toml`
+//! - [`verdict`] defines verdicts and the comparison of a measure with a limit
+//! - [`measures`] lists the numbers that can be required, [`signed`] those that have a sign;
+//!   [`decision`] defines the verdict on a value near its limit, [`equipment`] the equipment of a run
+//! - [`sdoc`] and [`reqif`] are formats of other tools: StrictDoc's documents, and ReqIF
+//! - [`trace`] links requirements to cases, results and recordings, in both directions; [`strictdoc`]
+//!   shows the trace in StrictDoc
 //!
-//! Nothing here knows units: who does gives a [`file::Checker`].
+//! Nothing in this crate knows units: the caller passes a [`file::Checker`] that does.
 
 pub mod decision;
 mod document;

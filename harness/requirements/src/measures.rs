@@ -1,20 +1,20 @@
-//! What a requirement can measure: the numbers of the summary, by their paths.
+//! Measures that a requirement can have: the numbers of the summary, by their paths.
 
 use octant_sample::parameters::{Group, NAMES};
 
-/// What stands at a place of the summary.
+/// Content at a place of the summary.
 enum Shape {
     /// A number.
     Number,
-    /// A table, and its keys.
+    /// A table with its keys.
     Table(Vec<&'static str>),
 }
 
-/// Says why no run can have the measure at this path (without bars).
+/// Checks that a run can have the measure at this path (without bars).
 ///
 /// # Errors
-/// The part of the path that leads nowhere with what there is in its place: in parts, the part and
-/// the keys to choose from; no part where the path ends at a table.
+/// The place in the path up to which it is valid, the part after it that is unknown (`None` if the path
+/// ends at a table), and the keys to choose from.
 pub fn check(path: &str) -> Result<(), (String, Option<String>, Vec<&'static str>)> {
     let mut walked: Vec<&str> = Vec::new();
     let mut parts = path.split('.');
@@ -32,7 +32,7 @@ pub fn check(path: &str) -> Result<(), (String, Option<String>, Vec<&'static str
     }
 }
 
-/// The shape at a place that is there.
+/// Content at an existing place.
 fn shape(path: &[&str]) -> Shape {
     let error = ["max", "rms", "final", "slope_per_day"];
     let table = |keys: &[&'static str]| Shape::Table(keys.to_vec());

@@ -1,9 +1,9 @@
-//! What a requirement is: a statement with an id, and how it is verified.
+//! Definition of a requirement: a statement with an id and a verification.
 
 use crate::verdict::Comparison;
 use serde::{Deserialize, Serialize};
 
-/// A limit as it was written. What it is worth is known to who knows the units.
+/// A limit as it was written. Its value is known to the code that knows the units.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Limit {
     /// A quantity, `3 arcmin`.
@@ -12,8 +12,16 @@ pub enum Limit {
     Number(f64),
 }
 
+/// Reason why a text is neither a quantity nor a number.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("found {found:?}, expected a quantity such as \"3 arcmin\", or a number")]
+pub struct LimitError {
+    /// Text found.
+    pub found: String,
+}
+
 impl Limit {
-    /// The limit as text; [`Limit::of_text`] takes it back.
+    /// Text of the limit; [`Limit::of_text`] parses it.
     #[must_use]
     pub fn text(&self) -> String {
         match self {
@@ -22,31 +30,30 @@ impl Limit {
         }
     }
 
-    /// A number, or a number with what follows it.
+    /// Parses a number, or a number with a unit.
     ///
     /// # Errors
-    /// In plain words, if it doesn't begin with a number, or that isn't finite.
-    pub fn of_text(text: &str) -> Result<Self, String> {
+    /// If it doesn't begin with a number, or the number isn't finite.
+    pub fn of_text(text: &str) -> Result<Self, LimitError> {
         let text = text.trim();
-        let expected = "expected a quantity such as \"3 arcmin\", or a number";
         if let Ok(number) = text.parse::<f64>() {
             return if number.is_finite() {
                 Ok(Self::Number(number))
             } else {
-                Err(format!("found {text:?}, {expected}"))
+                Err(LimitError { found: text.to_owned() })
             };
         }
         let first = text.trim_start_matches(['+', '-']).trim_start_matches('.');
         if first.starts_with(|c: char| c.is_ascii_digit()) && !text.contains('\n') {
             Ok(Self::Quantity(text.to_owned()))
         } else {
-            Err(format!("found {text:?}, {expected}"))
+            Err(LimitError { found: text.to_owned() })
         }
     }
 }
 
-/// What has to hold of an ensemble of runs: a run passes with at least this probability, shown with
-/// this confidence.
+/// Required probability for an ensemble of runs: a run passes with at least this probability, shown
+/// with this confidence.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Ensemble {
     /// Probability that a run passes, above 0 and below 1.
@@ -55,23 +62,47 @@ pub struct Ensemble {
     pub confidence: f64,
 }
 
-/// A probability as it is written, `95 %`.
+/// Reason why a text is no probability.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum ProbabilityError {
+    /// The text is no percentage.
+    #[error("found {found:?}, expected a percentage such as \"95 %\"")]
+    Percentage {
+        /// Text found.
+        found: String,
+    },
+    /// The percentage is out of range.
+    #[error("found {found:?}, expected more than 0 % and less than 100 %")]
+    Range {
+        /// Text found.
+        found: String,
+    },
+    /// The number can't be shifted by two digits.
+    #[error("found {found:?}")]
+    Number {
+        /// Text found.
+        found: String,
+    },
+}
+
+/// Parses a probability in percent, `95 %`.
 ///
 /// # Errors
-/// In plain words, if it isn't one, or not between 0 and 100 %.
-pub fn probability(text: &str) -> Result<f64, String> {
+/// If it is no probability, or not between 0 and 100 %.
+pub fn probability(text: &str) -> Result<f64, ProbabilityError> {
+    let found = || text.to_owned();
     let percent = text.trim().strip_suffix('%').and_then(|n| n.trim_end().parse::<f64>().ok());
     match percent {
-        // Shifted as a decimal: 86.4 % is the double that is written 0.864.
+        // The decimal point is shifted in the text, so that 86.4 % is the double written as 0.864.
         Some(percent) if percent > 0.0 && percent < 100.0 => {
-            format!("{percent}e-2").parse().map_err(|_| format!("found {text:?}"))
+            format!("{percent}e-2").parse().map_err(|_| ProbabilityError::Number { found: found() })
         }
-        Some(_) => Err(format!("found {text:?}, expected more than 0 % and less than 100 %")),
-        None => Err(format!("found {text:?}, expected a percentage such as \"95 %\"")),
+        Some(_) => Err(ProbabilityError::Range { found: found() }),
+        None => Err(ProbabilityError::Percentage { found: found() }),
     }
 }
 
-/// A probability above 0 and below 1 as [`probability`] takes it back, to the same number.
+/// Text of a probability above 0 and below 1, which [`probability`] parses to the same number.
 #[must_use]
 pub fn percent(probability: f64) -> String {
     let decimal = probability.to_string();
@@ -85,36 +116,37 @@ pub fn percent(probability: f64) -> String {
     if part.is_empty() { format!("{whole} %") } else { format!("{whole}.{part} %") }
 }
 
-/// A measure, and the limit that it has to keep.
+/// A measure with its limit.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Check {
     /// Path of the measure in the summary of a run.
     pub measure: String,
-    /// How it is held against the limit.
+    /// Comparison with the limit.
     pub comparison: Comparison,
     /// The limit.
     pub limit: Limit,
-    /// What has to hold of many runs; without it every run has to pass.
+    /// Required probability for many runs; without it every run has to pass.
     pub ensemble: Option<Ensemble>,
 }
 
-/// How a requirement is verified.
+/// Verification of a requirement.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Verification {
-    /// By runs.
+    /// Verified by runs.
     Test(Check),
-    /// By tests outside of this program's runs, by their names: at least one, none with `;` in it.
+    /// Verified by tests outside of this program's runs, by their names: at least one, none with `;` in
+    /// it.
     Tests(Vec<String>),
-    /// By reasoning outside of this program.
+    /// Verified by analysis outside of this program.
     Analysis,
-    /// By looking at it.
+    /// Verified by inspection.
     Inspection,
-    /// Nobody has said yet. Imports have it; `requirements.toml` is refused with it.
+    /// Not yet decided. Imports can have it; a `requirements.toml` with it is refused.
     Open,
 }
 
 impl Verification {
-    /// The name used in files.
+    /// Name used in files.
     #[must_use]
     pub const fn name(&self) -> &'static str {
         match self {
@@ -126,53 +158,53 @@ impl Verification {
     }
 }
 
-/// The requirement that another one is derived from.
+/// Requirement that another one is derived from.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Parent {
-    /// Its id.
+    /// Id of the parent.
     pub id: String,
-    /// What kind of relation it is, where that is said.
+    /// Kind of the relation, if stated.
     pub role: Option<String>,
 }
 
-/// An attribute that this program doesn't know, of the tool where the requirement is at home.
+/// An attribute of another tool, which this program doesn't interpret.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Attribute {
-    /// Its name.
+    /// Name.
     pub name: String,
-    /// Its values; several of a multiple choice, or of a field that is there several times.
+    /// Values: several for a multiple choice, or for a field that occurs several times.
     pub values: Vec<String>,
 }
 
 /// A requirement.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Requirement {
-    /// Id that people use, unique: checks and reports name it.
+    /// Id for people, unique: checks and reports name it.
     pub id: String,
-    /// What is required, as a sentence.
+    /// Statement of the requirement, a sentence.
     pub text: String,
-    /// A short name.
+    /// Short name.
     pub title: Option<String>,
-    /// How it is verified.
+    /// Verification.
     pub verification: Verification,
-    /// Document and clause where it comes from.
+    /// Document and clause of its origin.
     pub clause: Option<String>,
-    /// Why it is required.
+    /// Reason for the requirement.
     pub rationale: Option<String>,
-    /// What it is derived from.
+    /// Requirements that it is derived from.
     pub parents: Vec<Parent>,
-    /// Titles of the sections that it stands in, from the outermost.
+    /// Titles of its sections, from the outermost.
     pub section: Vec<String>,
-    /// What it is called where it is not plainly a requirement: `SYSTEM_REQUIREMENT`.
+    /// Type, if it is not simply a requirement: `SYSTEM_REQUIREMENT`.
     pub kind: Option<String>,
-    /// Identifier that machines use: the MID of StrictDoc, the IDENTIFIER of ReqIF.
+    /// Identifier for machines: the MID of StrictDoc, the IDENTIFIER of ReqIF.
     pub identifier: Option<String>,
     /// Attributes of other tools.
     pub attributes: Vec<Attribute>,
 }
 
 impl Requirement {
-    /// A requirement with nothing but what it has to have.
+    /// Makes a requirement with only the mandatory parts.
     #[must_use]
     pub fn new(id: &str, text: &str, verification: Verification) -> Self {
         Self {
@@ -190,7 +222,7 @@ impl Requirement {
         }
     }
 
-    /// How it is verified by runs, if it is.
+    /// Check by which runs verify it, if there is one.
     #[must_use]
     pub const fn check(&self) -> Option<&Check> {
         match &self.verification {
@@ -200,7 +232,7 @@ impl Requirement {
     }
 }
 
-/// What an attribute of another tool takes.
+/// Kind of an attribute's values.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// Text, with or without formatting.
@@ -211,7 +243,7 @@ pub enum Kind {
     Real,
     /// True or false.
     Boolean,
-    /// A date, as XML Schema writes it.
+    /// A date in the form of XML Schema.
     Date,
     /// One of several options.
     Choice(Vec<String>),
@@ -220,7 +252,7 @@ pub enum Kind {
 }
 
 impl Kind {
-    /// The name used in files.
+    /// Name used in files.
     #[must_use]
     pub const fn name(&self) -> &'static str {
         match self {
@@ -234,7 +266,7 @@ impl Kind {
         }
     }
 
-    /// The options, of a choice.
+    /// Options of a choice.
     #[must_use]
     pub fn options(&self) -> Option<&[String]> {
         match self {
@@ -244,14 +276,14 @@ impl Kind {
     }
 }
 
-/// An attribute of other tools, for all requirements.
+/// Definition of an attribute of other tools, for all requirements.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Definition {
-    /// Its name.
+    /// Name.
     pub name: String,
-    /// What it takes.
+    /// Kind of its values.
     pub kind: Kind,
-    /// Its name in StrictDoc, where only capitals, digits and `_` are legal, if that is another one.
+    /// Name in StrictDoc, which allows only capitals, digits and `_`, if it is another one.
     pub field: Option<String>,
 }
 
@@ -260,28 +292,28 @@ pub struct Definition {
 pub struct Requirements {
     /// Title of the document.
     pub title: String,
-    /// What else the head of the document says: `VERSION`, `OPTIONS.MARKUP`.
+    /// Other fields in the head of the document: `VERSION`, `OPTIONS.MARKUP`.
     pub document: Vec<(String, String)>,
-    /// Attributes of other tools that aren't plain text; one that isn't here is.
+    /// Definitions of attributes of other tools; an attribute without one is plain text.
     pub definitions: Vec<Definition>,
     /// The requirements.
     pub requirements: Vec<Requirement>,
 }
 
 impl Requirements {
-    /// The requirement of an id.
+    /// Requirement with an id.
     #[must_use]
     pub fn get(&self, id: &str) -> Option<&Requirement> {
         self.requirements.iter().find(|r| r.id == id)
     }
 
-    /// What an attribute takes.
+    /// Kind of an attribute's values.
     #[must_use]
     pub fn kind(&self, name: &str) -> Kind {
         self.definitions.iter().find(|d| d.name == name).map_or(Kind::Text, |d| d.kind.clone())
     }
 
-    /// Names of all attributes that are used or defined, in the order in which they come.
+    /// Names of all attributes used or defined, in the order of their occurrence.
     #[must_use]
     pub fn attribute_names(&self) -> Vec<&str> {
         let mut names: Vec<&str> = self.definitions.iter().map(|d| d.name.as_str()).collect();

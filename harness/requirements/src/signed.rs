@@ -1,14 +1,14 @@
-//! Measures that have a sign: a limit on one side of one lets everything on the other side through.
+//! Measures with a sign: a limit on only one side of them lets any value on the other side pass.
 
 use crate::verdict::Comparison;
 
-/// Whether a measure, by its path without bars, can be negative in a good run.
+/// True if a measure, by its path without bars, can be negative in a good run.
 #[must_use]
 pub fn is_signed(path: &str) -> bool {
     let mut parts = path.rsplit('.');
     let name = parts.next().unwrap_or(path);
     match name {
-        // Distances are not; `radial_error_nmi.final` is one.
+        // Distances have no sign, and `radial_error_nmi.final` is one.
         "final" | "slope_per_day" => !path.contains("radial"),
         "error" | "estimate" | "true" | "normalized" | "shift" => path.contains("parameters"),
         "latitude_arcmin" | "longitude_arcmin" => path.contains(".marks."),
@@ -17,8 +17,9 @@ pub fn is_signed(path: &str) -> bool {
     }
 }
 
-/// Says what is wrong with a limit on one side of a measure that has a sign; `None`: nothing. `all` are the
-/// limits that are set together with it: one on the other side makes two of them.
+/// Finds a limit on only one side of a measure that has a sign, and returns the error text; `None` if
+/// there is no error. `all` are the limits set together with it: one on the other side makes the pair
+/// complete.
 #[must_use]
 pub fn one_sided<'a>(
     (measure, comparison): (&str, Comparison),

@@ -1,9 +1,9 @@
-//! The trace as StrictDoc shows it: results as a document beside that of the requirements.
+//! The trace in StrictDoc: results as a document beside that of the requirements.
 //!
 //! StrictDoc reads test reports in JUnit XML, but links a result to a requirement only through the
-//! source file of the test, and refuses a report with an error in it. Results are therefore written as
-//! a document of its own, a `TEST_RESULT` for each case with a relation to each requirement that it
-//! verifies: whatever the verdict is.
+//! source file of the test, and refuses a report with an error in it. So results are written as a
+//! document of their own, with a `TEST_RESULT` for each case and a relation to each requirement that it
+//! verifies, whatever the verdict is.
 
 use crate::error::ExportError;
 use crate::requirement::Requirements;
@@ -16,7 +16,7 @@ use std::fmt::Write as _;
 /// Role of the relation from a result to its requirement.
 pub const VERIFIES: &str = "Verifies";
 
-/// The cases of a trace with their requirements, in the order in which requirements name them.
+/// Cases of a trace with their requirements, in the order in which requirements name them.
 fn cases(trace: &Trace) -> Vec<(&str, Vec<(&Row, &Link)>)> {
     let mut cases: Vec<(&str, Vec<(&Row, &Link)>)> = Vec::new();
     let mut index: HashMap<&str, usize> = HashMap::new();
@@ -36,7 +36,7 @@ fn word(verdict: Option<Verdict>) -> &'static str {
     verdict.map_or("not run", Verdict::name)
 }
 
-/// What a case came to; none, if no check of it ran. A check that is missing leaves nothing shown.
+/// Verdict of a case; `None` if none of its checks ran. A missing check makes it at least inconclusive.
 fn worst(links: &[(&Row, &Link)]) -> Option<Verdict> {
     let missing = links.iter().any(|(_, link)| link.verdict.is_none());
     let worst = links.iter().filter_map(|(_, link)| link.verdict).max()?;
@@ -47,7 +47,7 @@ fn worst(links: &[(&Row, &Link)]) -> Option<Verdict> {
 /// requirements.
 ///
 /// # Errors
-/// If a case has an id that StrictDoc doesn't take.
+/// If StrictDoc doesn't accept the id of a case.
 pub fn results(
     trace: &Trace,
     requirements: &Requirements,
@@ -93,19 +93,19 @@ pub fn results(
     Ok(out)
 }
 
-/// Name of the test report: StrictDoc tells the flavour by it.
+/// Name of the test report, by which StrictDoc recognizes its flavour.
 const REPORT: &str = "campaign.lit.junit.xml";
 
-/// Everything that StrictDoc needs to show a campaign, as paths and texts: a project of it, the
-/// requirements, the results, one file for each case that names its requirements, and a test report.
+/// Files that StrictDoc needs to show a campaign, as paths and texts: its project, the requirements,
+/// the results, one file for each case that names its requirements, and a test report.
 ///
-/// The report is JUnit XML in the flavour of LLVM's lit, the one whose tests are files: so StrictDoc
-/// finds the way from the requirement over the case's file to its result. It refuses reports with
-/// errors in them: what is inconclusive or an error is a failure there, of that type. `results.sdoc`
-/// has the verdict by its name.
+/// The report is JUnit XML in the flavour of LLVM's lit, in which tests are files: so StrictDoc links
+/// the requirement through the case's file to its result. StrictDoc refuses reports with errors in
+/// them: inconclusive cases and errors are failures in it, with that type. `results.sdoc` has the
+/// verdict by its name.
 ///
 /// # Errors
-/// If a requirement or a case has what StrictDoc has no place for.
+/// If StrictDoc can't hold a part of a requirement or case.
 pub fn folder(
     requirements: &Requirements,
     trace: &Trace,
@@ -118,7 +118,7 @@ pub fn folder(
     ];
     let cases = cases(trace);
     for (case, links) in &cases {
-        // A path of its own for each, and none out of the folder.
+        // Each case has a path of its own, and none leads out of the folder.
         let plain = |c: char| c.is_ascii_alphanumeric() || "-_.".contains(c);
         if case.starts_with('.') || !case.chars().all(plain) {
             let message = "its id is no name of a file: letters, digits, -, _ and .".to_owned();
@@ -137,7 +137,7 @@ pub fn folder(
     Ok(files)
 }
 
-/// The configuration of the project.
+/// Configuration of the project.
 fn config(title: &str) -> String {
     let title = serde_json::Value::from(title).to_string();
     format!(
@@ -151,7 +151,7 @@ fn config(title: &str) -> String {
     )
 }
 
-/// The test report. A case that hasn't run is skipped.
+/// Test report. A case that hasn't run is skipped.
 fn report(title: &str, cases: &[(&str, Vec<(&Row, &Link)>)]) -> std::io::Result<String> {
     use quick_xml::events::{BytesDecl, Event};
     let bad = |verdict: Option<Verdict>| verdict.is_some_and(|v| v != Verdict::Pass);

@@ -1,4 +1,4 @@
-//! From requirements to cases, results and recordings, and back.
+//! Links from requirements to cases, results and recordings, and back.
 
 use crate::requirement::{Ensemble, Requirement, Requirements, Verification};
 use crate::verdict::Verdict;
@@ -7,26 +7,26 @@ use octant_statistics::proportion;
 use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
 
-/// A case of a campaign: what it is there to verify, and what it came to.
+/// A case of a campaign, with the requirements that it verifies and its result.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Case {
     /// Id of the case.
     pub id: String,
     /// Ids of the requirements that it verifies.
     pub verifies: Vec<String>,
-    /// The independent draw that it is of: cases of one draw share their instrument and its noise.
+    /// Number of its independent draw: cases of one draw share their instrument and its noise.
     pub draw: usize,
-    /// What came of it; without it, the case hasn't run.
+    /// Result; `None` if the case hasn't run.
     pub result: Option<CaseResult>,
 }
 
-/// What came of a case.
+/// Result of a case.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct CaseResult {
-    /// What the case as a whole came to.
+    /// Verdict of the case as a whole.
     pub verdict: Verdict,
-    /// What each check came to, by the id of the requirement. A requirement that the case is there to
-    /// verify and that isn't here was not checked.
+    /// Verdict of each check, by the id of the requirement. A requirement that the case should verify
+    /// and that is missing here was not checked.
     pub checks: Vec<(String, Verdict)>,
     /// The recording.
     pub recording: Option<String>,
@@ -39,9 +39,9 @@ pub struct CaseResult {
 pub struct Link {
     /// The case.
     pub case: String,
-    /// The independent draw that it is of.
+    /// Number of its independent draw.
     pub draw: usize,
-    /// What the check came to; none, if the case hasn't run, or ran without this check.
+    /// Verdict of the check; `None` if the case hasn't run, or ran without this check.
     pub verdict: Option<Verdict>,
     /// The recording.
     pub recording: Option<String>,
@@ -49,12 +49,12 @@ pub struct Link {
     pub folder: Option<String>,
 }
 
-/// How many checks came to what.
+/// Numbers of checks by verdict.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Counts {
     /// Passed.
     pub pass: u64,
-    /// Came to nothing.
+    /// Inconclusive.
     pub inconclusive: u64,
     /// Failed.
     pub fail: u64,
@@ -69,7 +69,7 @@ impl Counts {
         *match verdict {
             None => &mut self.missing,
             Some(Verdict::Pass) => &mut self.pass,
-            // Where nothing was required nothing is shown.
+            // If nothing was required, nothing is shown.
             Some(Verdict::None | Verdict::Inconclusive) => &mut self.inconclusive,
             Some(Verdict::Fail) => &mut self.fail,
             Some(Verdict::Error) => &mut self.error,
@@ -77,44 +77,44 @@ impl Counts {
     }
 }
 
-/// What became of one requirement.
+/// Result of one requirement.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Row {
-    /// Its id.
+    /// Id.
     pub id: String,
-    /// How it is verified: `test`, `analysis`, `inspection`, `open`.
+    /// Verification: `test`, `analysis`, `inspection`, `open`.
     pub verification: String,
-    /// Its cases, in the order of the campaign.
+    /// Cases, in the order of the campaign.
     pub cases: Vec<Link>,
-    /// How many of its checks came to what.
+    /// Numbers of its checks by verdict.
     pub counts: Counts,
-    /// How many of its independent draws came to what.
+    /// Numbers of its independent draws by result.
     pub draws: Draws,
-    /// What it comes to; none where a run can't tell: it is verified by other tests, analysis or inspection.
+    /// Verdict; `None` if a run can't give one: it is verified by other tests, analysis or inspection.
     pub verdict: Option<Verdict>,
-    /// Why, in plain words.
+    /// Reason, in plain words.
     pub reason: String,
 }
 
-/// A case that names a requirement that there isn't.
+/// A case that names an unknown requirement.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Unknown {
     /// The case.
     pub case: String,
-    /// What it names.
+    /// Id that it names.
     pub requirement: String,
 }
 
-/// The trace of a campaign, both ways.
+/// Trace of a campaign, in both directions.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Trace {
     /// Every requirement with its cases, in the order of the document.
     pub requirements: Vec<Row>,
-    /// Requirements that are verified by test, or that nobody has said of, and have no case.
+    /// Requirements without a case, whose verification is by test or open.
     pub without_case: Vec<String>,
-    /// Cases that verify no requirement that there is.
+    /// Cases that verify no known requirement.
     pub without_requirement: Vec<String>,
-    /// Requirements that cases name, and that there aren't.
+    /// Unknown requirements that cases name.
     pub unknown: Vec<Unknown>,
 }
 
@@ -133,7 +133,7 @@ impl Trace {
                 let slot = worst.entry(id).or_insert(*verdict);
                 *slot = (*slot).max(*verdict);
             }
-            // What was checked counts, whether it was announced or not.
+            // Checks count, whether they were announced or not.
             let mut ids: Vec<&str> = Vec::new();
             let checked = case.result.iter().flat_map(|r| &r.checks).map(|(id, _)| id);
             for id in case.verifies.iter().chain(checked) {
@@ -168,8 +168,8 @@ impl Trace {
         Self { requirements: rows, without_case, without_requirement, unknown }
     }
 
-    /// The worst of all requirements that runs can tell of. None at all is inconclusive: nothing is
-    /// shown by nothing.
+    /// Worst verdict of all requirements that runs can verify. Without any it is inconclusive, because
+    /// nothing was shown.
     #[must_use]
     pub fn verdict(&self) -> Verdict {
         let worst = self.requirements.iter().filter_map(|row| row.verdict).max();
@@ -177,7 +177,7 @@ impl Trace {
         worst.unwrap_or(Verdict::Inconclusive).max(unknown)
     }
 
-    /// The requirements that a case verifies, with what each check came to.
+    /// Requirements that a case verifies, with the verdict of each check.
     #[must_use]
     pub fn of_case(&self, case: &str) -> Vec<(&str, Option<Verdict>)> {
         let of = |row: &Row| row.cases.iter().find(|link| link.case == case).map(|l| l.verdict);
@@ -219,13 +219,13 @@ fn row(requirement: &Requirement, cases: Vec<Link>) -> Row {
     }
 }
 
-/// What the checks of a requirement come to together.
+/// Combines the checks of a requirement.
 ///
-/// Without a statement on the ensemble the worst check wins. With one, independent draws are counted, not
-/// checks: a draw passes if all of its checks did, and whatever came to nothing (a calibration that was
-/// refused, a run that came short) counts as not passed. It passes if the lower bound of the probability
-/// that a draw passes (Clopper and Pearson) reaches what is required, fails if the upper one doesn't, and
-/// is inconclusive between. Errors, and checks that are missing, never end in pass.
+/// Without a required probability the worst check decides. With one, independent draws are counted, not
+/// checks: a draw passes if all of its checks did, and inconclusive checks (a calibration that was
+/// refused, a run that ended early) count as not passed. The verdict is pass if the lower bound of the
+/// probability that a draw passes (Clopper and Pearson) reaches the required one, fail if the upper
+/// bound doesn't, and inconclusive between. Errors and missing checks never result in a pass.
 #[must_use]
 pub fn judge(ensemble: Option<Ensemble>, counts: Counts, draws: Draws) -> (Verdict, String) {
     let Counts { pass, inconclusive, fail, error, missing } = counts;
@@ -251,7 +251,7 @@ pub fn judge(ensemble: Option<Ensemble>, counts: Counts, draws: Draws) -> (Verdi
     };
     let Draws { passed, not_passed, open, .. } = draws;
     let lower = proportion::success_lower_bound(not_passed, draws.known(), confidence);
-    // A draw that is open might pass: failure is shown where that wouldn't help.
+    // A draw without a result might pass: the verdict is fail only if that wouldn't help.
     let upper = proportion::success_upper_bound(not_passed, draws.all(), confidence);
     let percent = |p: f64| format!("{:.2} %", 100.0 * p);
     if upper < required {
@@ -276,7 +276,7 @@ pub fn judge(ensemble: Option<Ensemble>, counts: Counts, draws: Draws) -> (Verdi
     }
 }
 
-/// What draws show, as a sentence that names what it rests on: `lower` is the bound at this one-sided
+/// Sentence about the result of draws that names its basis: `lower` is the bound at this one-sided
 /// confidence.
 #[must_use]
 pub fn claim(draws: Draws, lower: f64, confidence: f64) -> String {
@@ -284,7 +284,7 @@ pub fn claim(draws: Draws, lower: f64, confidence: f64) -> String {
         rows if rows > draws.all() => format!(" in all of their {rows} checks"),
         _ => String::new(),
     };
-    // Rounded down: a bound isn't to be better than it is.
+    // Rounded down, so that the bound isn't overstated.
     let down = (1e4 * lower).floor() / 1e2;
     format!(
         "{} of {} passed{all_of}: with {:.2} % confidence a draw passes with a probability of at \

@@ -1,18 +1,19 @@
-//! Verdicts: none < pass < inconclusive < fail < error, and the worst wins; and how a measure is held against a limit.
+//! Verdicts: none < pass < inconclusive < fail < error, of which the worst decides; and the comparison
+//! of a measure with a limit.
 
 use serde::{Deserialize, Serialize};
 
-/// What a run, a requirement or a finding comes to. The order is the order of badness.
+/// Verdict on a run, a requirement or a finding, in the order from best to worst.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Verdict {
-    /// Nothing was required, so nothing is shown: the least of all, which changes no other.
+    /// Nothing was required, so nothing is shown: the lowest verdict, which changes no other.
     None,
-    /// It is shown to be good.
+    /// The requirement is shown to be met.
     Pass,
     /// Nothing is shown: a measure is missing, a fault never fired, a record was dropped.
     Inconclusive,
-    /// It is shown to be bad.
+    /// The requirement is shown not to be met.
     Fail,
     /// The bench failed: device gone, disk full.
     Error,
@@ -23,13 +24,13 @@ impl Verdict {
     pub const ALL: [Self; 5] =
         [Self::None, Self::Pass, Self::Inconclusive, Self::Fail, Self::Error];
 
-    /// The worse of the two.
+    /// Worse one of two verdicts.
     #[must_use]
     pub fn worst(self, other: Self) -> Self {
         self.max(other)
     }
 
-    /// Exit status of the program; 2 is bad input or usage and no verdict.
+    /// Exit status of the program; 2 is reserved for bad input or usage.
     #[must_use]
     pub const fn exit_code(self) -> u8 {
         match self {
@@ -40,7 +41,7 @@ impl Verdict {
         }
     }
 
-    /// The name used in files and on the screen.
+    /// Name used in files and on the screen.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -53,7 +54,7 @@ impl Verdict {
     }
 }
 
-/// How a measure is held against a limit.
+/// Comparison of a measure with a limit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Comparison {
     /// The measure may not be above the limit.
@@ -71,10 +72,10 @@ pub enum Comparison {
 }
 
 impl Comparison {
-    /// All of them.
+    /// All comparisons.
     pub const ALL: [Self; 4] = [Self::AtMost, Self::Below, Self::AtLeast, Self::Above];
 
-    /// The sign as it is written.
+    /// Sign of the comparison.
     #[must_use]
     pub const fn sign(self) -> &'static str {
         match self {
@@ -85,13 +86,13 @@ impl Comparison {
         }
     }
 
-    /// The comparison that is written so.
+    /// Comparison with a sign.
     #[must_use]
     pub fn of_sign(sign: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|c| c.sign() == sign)
     }
 
-    /// Room to the limit, positive on the good side.
+    /// Margin to the limit, positive on the good side.
     #[must_use]
     pub fn margin(self, value: f64, limit: f64) -> f64 {
         match self {
@@ -100,7 +101,7 @@ impl Comparison {
         }
     }
 
-    /// Whether a value keeps a limit; NaN keeps none.
+    /// True if a value keeps a limit; NaN keeps none.
     #[must_use]
     pub fn holds(self, value: f64, limit: f64) -> bool {
         match self {
@@ -117,11 +118,11 @@ impl Comparison {
 pub struct LimitCheck {
     /// Id of the requirement that this check verifies.
     pub id: String,
-    /// Path of the measure in the summary, with dots:
-    /// `navigation.longitude_error_arcmin.max`, `calibration.parameters.g_zz.error`. With bars
-    /// around it the magnitude is meant: `|calibration.parameters.g_zz.error|`.
+    /// Path of the measure in the summary, with dots: `navigation.longitude_error_arcmin.max`,
+    /// `calibration.parameters.g_zz.error`. Bars around it take the magnitude:
+    /// `|calibration.parameters.g_zz.error|`.
     pub measure: String,
-    /// How it is held against the limit.
+    /// Comparison with the limit.
     pub comparison: Comparison,
     /// The limit, in the unit of the measure.
     pub limit: f64,

@@ -1,4 +1,4 @@
-//! What is said of files that aren't: place, path, found, expected.
+//! Error texts of invalid files: place, path, found, expected.
 
 use octant_requirements::file::{Anything, Checker};
 use octant_requirements::requirement::{
@@ -9,7 +9,7 @@ use octant_requirements::{file, reqif, sdoc};
 
 const HEAD: &str = "schema = 1\n[[requirements]]\nid = \"N-1\"\ntext = \"x\"\n";
 
-/// The problems of a text, each as one line.
+/// Problems of a text, one line each.
 fn problems(text: &str) -> Vec<String> {
     let error = file::read(text, "r.toml", &Anything).unwrap_err();
     error.to_string().lines().map(str::to_owned).collect()
@@ -298,7 +298,7 @@ fn what_an_import_leaves_out_is_told() {
             "line 18: B: VERIFICATION is \"Review\": how it is verified has to be added",
         ]
     );
-    // Nothing of it is lost, and requirements.toml asks for what is missing.
+    // Nothing is lost, and requirements.toml asks for the missing parts.
     let back = sdoc::read(&sdoc::write(&read.requirements).unwrap(), "r.sdoc").unwrap();
     assert_eq!(back.requirements, read.requirements);
     let error = file::read(&file::write(&read.requirements), "r.toml", &Anything).unwrap_err();
@@ -371,7 +371,7 @@ fn what_a_format_has_no_place_for_is_refused() {
     });
     let error = sdoc::write(&choice).unwrap_err().to_string();
     assert!(error.contains("the option \"a, b\" of P has a comma"), "{error}");
-    // What StrictDoc has no name for stands where it has a place.
+    // Parts unknown to StrictDoc are written where it has a place for them.
     let mut foreign = of("A", "x");
     foreign.document.push(("Author".to_owned(), "B".to_owned()));
     foreign.requirements[0].kind = Some("Requirement type 2".to_owned());

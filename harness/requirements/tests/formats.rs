@@ -1,4 +1,4 @@
-//! Any requirements go through every format and come back the same.
+//! Any requirements survive every format unchanged.
 
 use octant_requirements::Comparison;
 use octant_requirements::requirement::{
@@ -10,7 +10,7 @@ use proptest::collection::vec;
 use proptest::option::of as maybe;
 use proptest::prelude::*;
 
-/// One line as people write it, without space around it.
+/// One line as people write it, without surrounding space.
 fn line() -> impl Strategy<Value = String> {
     prop_oneof![
         "[A-Za-z0-9µ°§≤<>&\"'\\\\\\[\\]]([ -~µ√é]{0,20}[a-z.;])?",
@@ -22,13 +22,13 @@ fn line() -> impl Strategy<Value = String> {
     ]
 }
 
-/// A line as titles are.
+/// A line for titles.
 fn name() -> impl Strategy<Value = String> {
     line().prop_map(|line| line.replace('\t', " "))
 }
 
 fn text() -> impl Strategy<Value = String> {
-    // A paragraph may be empty in the middle.
+    // A paragraph in the middle may be empty.
     vec(prop_oneof![4 => line(), 1 => Just(String::new())], 1..4).prop_map(|lines| {
         let text = lines.join("\n").trim().to_owned();
         if text.is_empty() { "x".to_owned() } else { text }
@@ -116,7 +116,7 @@ fn requirement(index: usize) -> impl Strategy<Value = Requirement> {
                 title,
                 clause,
                 rationale,
-                // By index: the ids are known when all are made.
+                // Parents are given by index: the ids are known when all are made.
                 parents: parents
                     .into_iter()
                     .map(|(at, role)| Parent { id: at.to_string(), role })
@@ -155,7 +155,7 @@ fn requirements() -> impl Strategy<Value = Requirements> {
     })
 }
 
-/// Without definitions that a format doesn't keep, and in the order of their names.
+/// Removes definitions that a format doesn't keep, and sorts the rest by name.
 fn sorted(mut requirements: Requirements, keep: impl Fn(&Definition) -> bool) -> Requirements {
     let used: Vec<String> = requirements
         .requirements
@@ -170,7 +170,7 @@ fn sorted(mut requirements: Requirements, keep: impl Fn(&Definition) -> bool) ->
     requirements
 }
 
-/// Parents in any order: relations of ReqIF are a set.
+/// Sorts parents: relations of ReqIF are a set.
 fn unordered(mut requirements: Requirements) -> Requirements {
     for requirement in &mut requirements.requirements {
         requirement.parents.sort_by(|a, b| a.id.cmp(&b.id));
@@ -193,7 +193,7 @@ proptest! {
         let text = sdoc::write(&all).unwrap();
         let back = sdoc::read(&text, "test.sdoc").map_err(|e| format!("{e}\n{text}")).unwrap();
         prop_assert_eq!(&back.notes, &[]);
-        // StrictDoc knows text and choices, no numbers and dates.
+        // StrictDoc knows text and choices, but no numbers and dates.
         let choice = |d: &Definition| d.kind.options().is_some();
         prop_assert_eq!(sorted(back.requirements, choice), sorted(all, choice), "{}", text);
     }

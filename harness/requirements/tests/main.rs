@@ -1,4 +1,4 @@
-//! The tests of requirements and their trace, in one program.
+//! Tests of requirements and their trace, in one program.
 #![allow(clippy::unwrap_used)]
 
 mod errors;

@@ -1,4 +1,4 @@
-//! The trace both ways, and that nothing ends in pass that wasn't shown.
+//! Trace in both directions, and that nothing passes that wasn't shown.
 
 use octant_requirements::Comparison;
 use octant_requirements::Verdict;
@@ -84,24 +84,24 @@ fn nothing_shows_nothing() {
     assert_eq!(Trace::new(&document(vec![]), &[]).verdict(), Verdict::Inconclusive);
     let analysed = document(vec![Requirement::new("D", "x", Verification::Analysis)]);
     assert_eq!(Trace::new(&analysed, &[]).verdict(), Verdict::Inconclusive);
-    // Nor does a run tell of tests outside of it.
+    // A run tells nothing about tests outside of it, either.
     let tests = Verification::Tests(vec!["a.rs::b".to_owned(), "c".to_owned()]);
     let trace = Trace::new(&document(vec![Requirement::new("T", "x", tests)]), &[]);
     assert_eq!((trace.verdict(), trace.requirements[0].verdict), (Verdict::Inconclusive, None));
     assert!(trace.requirements[0].reason.ends_with("no run can tell: a.rs::b; c"));
     assert_eq!(trace.requirements[0].verification, "test");
-    // A requirement that isn't there was meant to be verified by something.
+    // An unknown requirement was meant to be verified by something.
     let one = document(vec![tested("A", None)]);
     let cases = [case("c1", &[("A", Verdict::Pass), ("B", Verdict::Pass)])];
     assert_eq!(Trace::new(&one, &cases).verdict(), Verdict::Inconclusive);
     assert_eq!(Trace::new(&one, &[case("c1", &[("A", Verdict::Pass)])]).verdict(), Verdict::Pass);
     assert_eq!(one.get("A").map(|found| found.id.as_str()), Some("A"));
     assert_eq!(one.get("B"), None);
-    // Said to verify, and not checked.
+    // The case should verify the requirement, but didn't check it.
     let mut unchecked = case("c1", &[]);
     unchecked.verifies.push("A".to_owned());
     assert_eq!(Trace::new(&one, &[unchecked]).verdict(), Verdict::Inconclusive);
-    // Checked twice in a case: the worst counts.
+    // If a requirement is checked twice in a case, the worst check counts.
     let twice = case("c1", &[("A", Verdict::Fail), ("A", Verdict::Pass)]);
     assert_eq!(Trace::new(&one, &[twice]).verdict(), Verdict::Fail);
 }
@@ -118,12 +118,12 @@ fn an_ensemble_passes_by_its_bound() {
     let verdict = |pass, fail| judged(pass, fail, 0, 0).0;
     assert_eq!(verdict(59, 0), Verdict::Pass);
     assert_eq!(verdict(58, 0), Verdict::Inconclusive);
-    // One failure takes 93 runs: 0.95^93 + 93 · 0.05 · 0.95^92 is the first below 5 %.
+    // One failure takes 93 runs: 0.95^93 + 93 · 0.05 · 0.95^92 is the first sum below 5 %.
     assert_eq!(verdict(91, 1), Verdict::Inconclusive);
     assert_eq!(verdict(92, 1), Verdict::Pass);
     assert_eq!(verdict(50, 10), Verdict::Fail);
     assert_eq!(verdict(0, 1), Verdict::Inconclusive);
-    // What came to nothing counts as not passed: it neither blocks a pass for ever nor helps one.
+    // Inconclusive runs count as not passed: they neither block a pass for ever nor support one.
     assert_eq!(judged(91, 0, 1, 0).0, Verdict::Inconclusive);
     assert_eq!(judged(92, 0, 1, 0).0, Verdict::Pass);
     assert_eq!(judged(50, 0, 10, 0).0, Verdict::Fail);
@@ -158,7 +158,7 @@ fn rows_are_not_draws() {
             .starts_with("5 of 5 independent draws passed in all of their 60 checks: with 95.00 %"),
         "{reason}"
     );
-    // The honest neighbour: 59 instruments at twelve longitudes.
+    // A valid counterpart: 59 instruments at twelve longitudes.
     assert_eq!(judged(59 * 12, &|i| i as usize / 12).0, Verdict::Pass);
 }
 
@@ -185,13 +185,14 @@ proptest! {
         if trace.verdict() == Verdict::Pass {
             prop_assert!(!all.is_empty());
             let worst = all.iter().map(|v| v.unwrap_or(Verdict::Error)).max();
-            // With a demand on the ensemble some may fail, and nothing else.
+            // With a required probability some may be inconclusive or fail, but no error or missing
+            // check is allowed.
             prop_assert!(worst == Some(Verdict::Pass) || (ensemble.is_some() && worst <= Some(Verdict::Fail)));
         }
         if all.contains(&Some(Verdict::Error)) {
             prop_assert_eq!(trace.verdict(), Verdict::Error);
         }
-        // One more failure never makes it better.
+        // A further failure never improves the verdict.
         let mut more = cases;
         more.push(case("more", &[("A", Verdict::Fail)]));
         prop_assert!(Trace::new(&requirements, &more).verdict() >= trace.verdict().max(Verdict::Pass)

@@ -1,37 +1,37 @@
-//! Channels: what crosses between the harness and an FMU, with dimension and number of elements.
+//! Channels between the harness and an FMU, with dimension and number of elements.
 //!
-//! The names are those of the variables of our own FMUs; a scenario maps them to the variables of
-//! others.
+//! Channels have the names of the variables of Octant's own FMUs; a scenario maps them to the variables
+//! of others.
 
-use crate::Dimension;
+use crate::quantity::Dimension;
 
-/// What the elements of a channel are.
+/// Class of a channel's elements.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Class {
-    /// A quantity of a dimension; travels in SI.
+    /// A quantity of a dimension; transmitted in SI.
     Quantity(Dimension),
     /// A real number without unit.
     Number,
     /// A whole number: counters, flags in bits.
     Whole,
-    /// A whole number of nanoseconds; a variable with a unit of time is converted.
+    /// A whole number of nanoseconds; a variable in another unit of time is converted.
     Nanoseconds,
     /// True or false.
     Flag,
-    /// One of some named values, told apart by their numbers.
+    /// One of some named values, distinguished by their numbers.
     Code,
 }
 
 /// A channel.
 #[derive(Debug, PartialEq, Eq)]
 pub struct Channel {
-    /// Its name, as in `gyro.rate`.
+    /// Name, as in `gyro.rate`.
     pub name: &'static str,
-    /// What its elements are.
+    /// Class of the elements.
     pub class: Class,
     /// Number of elements.
     pub elements: usize,
-    /// What it is: one sentence.
+    /// Meaning, in one sentence.
     pub doc: &'static str,
 }
 
@@ -48,7 +48,7 @@ const fn of(name: &'static str, class: Class, elements: usize, doc: &'static str
     Channel { name, class, elements, doc }
 }
 
-/// Channels of samples and references: what a source gives, and what a core takes.
+/// Channels of samples and references: outputs of a source, and inputs of a core.
 pub mod sample {
     use super::{Channel, Class, Dimension, of, quantity};
 
@@ -94,7 +94,7 @@ pub mod sample {
         1,
         "Angle of the outer gimbal at the stamp, cumulative.",
     );
-    /// A sample is there.
+    /// Validity of the sample.
     pub static VALID: Channel = of(
         "imu.valid",
         Class::Flag,
@@ -118,14 +118,14 @@ pub mod sample {
         1,
         "Stamp of the sample, ns since the start of the first interval.",
     );
-    /// What the reference measured.
+    /// Kind of the reference.
     pub static REFERENCE_KIND: Channel = of(
         "reference.kind",
         Class::Code,
         1,
         "Whether a reference goes with the sample: 0 none, 1 velocity, 2 position.",
     );
-    /// A reference goes with the sample.
+    /// Validity of the reference.
     pub static REFERENCE_VALID: Channel =
         of("reference.valid", Class::Flag, 1, "Whether a reference goes with the sample.");
     /// Velocity of the reference.
@@ -235,13 +235,13 @@ pub mod case {
     /// Roll.
     pub static ROLL: Channel =
         quantity("case.roll", Dimension::ANGLE, 1, "Roll of the case, starboard down positive.");
-    /// North of the site.
+    /// Distance north of the site.
     pub static NORTH: Channel =
         quantity("case.north", Dimension::LENGTH, 1, "Distance of the case north of the site.");
-    /// East of the site.
+    /// Distance east of the site.
     pub static EAST: Channel =
         quantity("case.east", Dimension::LENGTH, 1, "Distance of the case east of the site.");
-    /// Below the site.
+    /// Distance below the site.
     pub static DOWN: Channel =
         quantity("case.down", Dimension::LENGTH, 1, "Distance of the case below the site.");
     /// Latitude.
@@ -263,7 +263,7 @@ pub mod case {
     );
 }
 
-/// Channels of what a core answers, beside its gimbal command.
+/// Channels of a core's outputs, beside its gimbal command.
 pub mod answer {
     use super::{Channel, Class, Dimension, of, quantity};
     use octant_sample::parameters::Group;
@@ -275,10 +275,10 @@ pub mod answer {
         1,
         "Mode of the core: 0 aligning, 1 calibrating, 2 refused, 3 navigating, 4 done, or as the codes of modes say.",
     );
-    /// Stop.
+    /// Number of the stop.
     pub static STOP: Channel =
         of("stop", Class::Whole, 1, "Stop that the gimbals are at or move to, from 0.");
-    /// Moving.
+    /// True while the gimbals move.
     pub static MOVING: Channel =
         of("moving", Class::Flag, 1, "Whether the gimbals are on their way.");
     /// Latitude.
@@ -323,7 +323,7 @@ pub mod answer {
         1,
         "Normalized innovation squared of the measurement (three axes).",
     );
-    /// A measurement was made.
+    /// True if there is a measurement.
     pub static MEASURED: Channel =
         of("filter.measured", Class::Flag, 1, "Whether there is a measurement with this sample.");
     /// Health.
@@ -383,7 +383,7 @@ pub mod answer {
         ),
     ];
 
-    /// Their standard deviations, in the order of [`Group::ALL`].
+    /// Standard deviations of the estimates, in the order of [`Group::ALL`].
     pub static SIGMA: [Channel; 7] = [
         quantity("sigma.gyro_bias", Dimension::GYRO_BIAS, 3, "1σ of the gyro biases."),
         of("sigma.gyro_scale", Class::Number, 3, "1σ of the gyro scale factor errors."),
@@ -409,7 +409,7 @@ pub mod answer {
         ),
     ];
 
-    /// The estimates of a group, with their standard deviations.
+    /// Estimates of a group, with their standard deviations.
     #[must_use]
     pub fn group(group: Group) -> (&'static Channel, &'static Channel) {
         (&PARAMETERS[group as usize], &SIGMA[group as usize])

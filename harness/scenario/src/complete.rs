@@ -1,18 +1,20 @@
 //! Checks a document against the table of keys and writes the defaults into it.
 //!
-//! Every problem of a single value is found here, so that all are told at once; what concerns
-//! several values together is found when the scenario is read.
+//! Every problem of a single value is found here, so that all are reported at once; problems of several
+//! values together are found when the scenario is read.
+
+pub use super::document::join;
 
 use super::condition;
-use super::document::{Node, Table, Value, parse_default};
+use super::document::{Node, Table, Value, number, parse_default};
 use super::error::{Place, Problem};
 use super::keys::{Bounds, Default, Key, Kind, Section, Variants};
 use super::ports;
-use super::quantity::{self, Dimension, NotAQuantity};
-use octant_base::names::{nearest, suggestion};
+use super::quantity::{self, Dimension, explain};
+use octant_base::names::suggestion;
 use octant_faults::Channels;
 
-/// Checks the table and fills in its defaults; problems are added to `problems`.
+/// Checks a table and adds its defaults; problems are added to `problems`.
 pub fn complete(
     table: &mut Table,
     section: &'static Section,
@@ -59,7 +61,7 @@ pub fn complete(
     }
 }
 
-/// Checks one value against what its key takes.
+/// Checks one value against the kind of its key.
 pub fn check(
     node: &mut Node,
     key: &'static Key,
@@ -264,7 +266,7 @@ pub fn check(
     }
 }
 
-/// Checks a table against the keys of the form that it has.
+/// Checks a table against the keys of its form.
 fn complete_variant(
     table: &mut Table,
     variants: &'static Variants,
@@ -345,33 +347,12 @@ fn quantity_words(dimensions: &[Dimension]) -> String {
     dimensions.iter().map(each).collect::<Vec<_>>().join(" or ")
 }
 
-/// What is wrong with a text that is no quantity, after "found …".
-pub fn explain(error: &NotAQuantity) -> String {
-    match error {
-        NotAQuantity::NoNumber => "which doesn't start with a finite number".to_owned(),
-        NotAQuantity::NoUnit => "a number without unit".to_owned(),
-        NotAQuantity::UnknownUnit(unit) => match nearest(unit, quantity::unit_names()) {
-            Some(name) => format!("with the unknown unit {unit:?} (did you mean {name:?}?)"),
-            None => format!("with the unknown unit {unit:?}"),
-        },
-    }
-}
-
-/// A plain number, whole or not.
-pub fn number(value: &Value) -> Option<f64> {
-    match value {
-        Value::Integer(number) => Some(*number as f64),
-        Value::Number(number) => Some(*number),
-        _ => None,
-    }
-}
-
 fn is_names(node: &Node) -> bool {
     let Value::Array(entries) = &node.value else { return false };
     entries.iter().all(|entry| matches!(entry.value, Value::Text(_)))
 }
 
-/// Whether a kind is meant by a TOML value of this type.
+/// True if a TOML value of this type is meant for this kind.
 fn takes(kind: &Kind, value: &Value) -> bool {
     matches!(
         (kind, value),
@@ -385,7 +366,7 @@ fn takes(kind: &Kind, value: &Value) -> bool {
     )
 }
 
-/// What a kind takes, in words.
+/// Description of the values of a kind.
 pub fn expected(kind: &Kind) -> String {
     let names = |choices: &[(&str, &str)]| {
         choices.iter().map(|(name, _)| format!("{name:?}")).collect::<Vec<_>>().join(", ")
@@ -440,9 +421,4 @@ pub fn expected(kind: &Kind) -> String {
         Kind::Either(kinds) => kinds.iter().map(expected).collect::<Vec<_>>().join(", or "),
         Kind::Refused(reason) => (*reason).to_owned(),
     }
-}
-
-/// A key's dotted path.
-pub fn join(path: &str, key: &str) -> String {
-    if path.is_empty() { key.to_owned() } else { format!("{path}.{key}") }
 }

@@ -1,15 +1,14 @@
-//! Conditions of triggers: `"nis above 25"`, a signal, which side, and a value.
+//! Conditions of triggers, such as `"nis above 25"`: a signal, a side, and a value.
 
-use super::complete::explain;
-use super::quantity::{self, Dimension};
+use super::quantity::{self, Dimension, explain};
 use octant_base::names::suggestion;
 use octant_faults::trigger::{Comparison, Signal};
 use octant_sample::Health;
 
-/// A condition, for messages.
+/// Example of a condition, for messages.
 pub(crate) const EXAMPLE: &str = "nis above 25";
 
-/// Names of signals, and what their values measure; `None`: a plain number.
+/// Names of signals, with the dimension of their values; `None`: a plain number.
 const SIGNALS: [(&str, Signal, Option<Dimension>); 11] = [
     ("nis", Signal::Nis, None),
     ("velocity north", Signal::Velocity(0), Some(Dimension::VELOCITY)),
@@ -64,7 +63,7 @@ pub(crate) fn parse(text: &str) -> Result<(Signal, Comparison, f64), String> {
     Ok((*signal, side, value))
 }
 
-/// Flags of the core's health by name.
+/// Health flag of the core, by its name.
 fn health(name: &str) -> Result<Health, String> {
     let names: Vec<(String, Health)> = Health::all()
         .iter_names()

@@ -5,8 +5,8 @@ use super::error::Problem;
 use super::keys::{Default, ENDPOINT_FMU, ENDPOINT_LINK, SOURCE_FMU, SOURCE_LIVE, Section};
 use super::quantity::{self, Dimension};
 
-/// Writes the defaults that depend on other keys into a document that hasn't been checked yet:
-/// values of a wrong kind are left for the check.
+/// Adds the defaults that depend on other keys to a document that isn't checked yet: values of a wrong
+/// kind are left for the check.
 pub(crate) fn derive(document: &mut Table) {
     if text(document, "motion.kind") == Some("dockside") {
         let own = ["roll", "pitch", "yaw", "surge", "sway", "heave", "spectrum"]
@@ -64,8 +64,7 @@ pub(crate) fn derive(document: &mut Table) {
     }
 }
 
-/// The table of an FMU with its defaults, also where the scenario leaves it out.
-/// The core is at the other end of a wire.
+/// True if the core is at the other end of a wire.
 fn is_live(document: &Table) -> bool {
     text(document, "endpoint.uri").is_some_and(octant_link::Uri::is_one)
 }
@@ -102,7 +101,7 @@ fn calibration(document: &mut Table) {
     };
     let prior = match (drawn("normal"), drawn("uniform")) {
         (Some((_, text)), _) => text,
-        // Standard deviation of an even distribution of this half width.
+        // Standard deviation of a uniform distribution of this half width.
         (None, Some((half_width, _))) => Dimension::G_DEPENDENT.write(half_width / libm::sqrt(3.0)),
         (None, None) => "0.0005 deg/h/g".to_owned(),
     };
@@ -116,7 +115,7 @@ fn text<'a>(document: &'a Table, path: &str) -> Option<&'a str> {
     }
 }
 
-/// Sets a default, unless there is a value or something that isn't a table is in the way.
+/// Sets a default, unless there is a value or something other than a table is in the way.
 fn set(document: &mut Table, path: &str, value: &str) {
     let parents = path.match_indices('.').map(|(index, _)| &path[..index]);
     let blocked = parents.into_iter().any(|parent| {
@@ -127,8 +126,8 @@ fn set(document: &mut Table, path: &str, value: &str) {
     }
 }
 
-/// Keys without effect in a completed document, with the reason: refused where the scenario gives
-/// them, and left out of the resolved scenario.
+/// Keys without effect in a completed document, with the reason: refused if the scenario gives them,
+/// and omitted from the resolved scenario.
 pub(crate) fn without_effect(document: &Table) -> Vec<(String, &'static str)> {
     let is = |path: &str, value: &str| text(document, path) == Some(value);
     let mut all = Vec::new();
@@ -214,7 +213,7 @@ pub(crate) fn without_effect(document: &Table) -> Vec<(String, &'static str)> {
     all
 }
 
-/// Problems with keys that are given and have no effect.
+/// Problems of keys that are given and have no effect.
 pub(crate) fn refuse_without_effect(document: &Table) -> Vec<Problem> {
     let given = |(path, reason): (String, &'static str)| {
         let node = document.at(&path)?;
@@ -223,7 +222,7 @@ pub(crate) fn refuse_without_effect(document: &Table) -> Vec<Problem> {
     without_effect(document).into_iter().filter_map(given).collect()
 }
 
-/// The first value of a tree that isn't a default.
+/// First value of a tree that isn't a default.
 fn first_given(node: &Node) -> Option<&Node> {
     if node.place != super::error::Place::Default {
         return Some(node);

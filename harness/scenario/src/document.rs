@@ -1,19 +1,19 @@
-//! A scenario as it was written: a tree of values that know where they stand.
+//! A scenario as it was written: a tree of values with their places.
 
 use super::error::{Place, Problem};
 use std::fmt::Write as _;
 use toml::de::{DeTable, DeValue};
 
-/// A value and where it was written.
+/// A value with its place.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Node {
     /// The value.
     pub value: Value,
-    /// Where it stands.
+    /// Place of the value.
     pub place: Place,
 }
 
-/// A value of the kinds that TOML has.
+/// A value of one of the kinds of TOML.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Value {
     /// A text.
@@ -24,7 +24,7 @@ pub enum Value {
     Number(f64),
     /// True or false.
     Boolean(bool),
-    /// A date or time, which no key takes; as it was written.
+    /// A date or time, as written; no key accepts it.
     Date(String),
     /// An array.
     Array(Vec<Node>),
@@ -33,7 +33,7 @@ pub enum Value {
 }
 
 impl Value {
-    /// What it is, for "found …".
+    /// Describes the value, for "found …".
     pub fn describe(&self) -> String {
         match self {
             Self::Text(text) => format!("{text:?}"),
@@ -47,12 +47,12 @@ impl Value {
     }
 }
 
-/// A key of a table, where it stands, and its value.
+/// A key of a table, with its place and value.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Entry {
     /// The key.
     pub key: String,
-    /// Where it stands.
+    /// Place of the key.
     pub place: Place,
     /// The value.
     pub node: Node,
@@ -61,17 +61,17 @@ pub struct Entry {
 /// A table.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Table {
-    /// The keys in the order in which they were written.
+    /// Keys in the order of writing.
     pub entries: Vec<Entry>,
 }
 
 impl Table {
-    /// The value of a key.
+    /// Value of a key.
     pub fn get(&self, key: &str) -> Option<&Node> {
         self.entries.iter().find(|entry| entry.key == key).map(|entry| &entry.node)
     }
 
-    /// The value of a key, to be changed.
+    /// Mutable value of a key.
     pub fn get_mut(&mut self, key: &str) -> Option<&mut Node> {
         self.entries.iter_mut().find(|entry| entry.key == key).map(|entry| &mut entry.node)
     }
@@ -86,12 +86,12 @@ impl Table {
         }
     }
 
-    /// Removes a key, if it is there.
+    /// Removes a key, if it exists.
     pub fn remove(&mut self, key: &str) {
         self.entries.retain(|entry| entry.key != key);
     }
 
-    /// The value at a dotted path.
+    /// Value at a dotted path.
     pub fn at(&self, path: &str) -> Option<&Node> {
         let (first, rest) = path.split_once('.').map_or((path, None), |(a, b)| (a, Some(b)));
         match (self.get(first)?, rest) {
@@ -113,8 +113,8 @@ impl Table {
         }
     }
 
-    /// Sets the value at a dotted path and makes the tables on the way. A value in the way that is
-    /// not a table is replaced by one.
+    /// Sets the value at a dotted path and makes missing tables. A value in the way that is not a table
+    /// is replaced by one.
     pub fn set_at(&mut self, path: &str, node: Node) {
         let Some((first, rest)) = path.split_once('.') else { return self.set(path, node) };
         if !matches!(self.get(first), Some(Node { value: Value::Table(_), .. })) {
@@ -144,11 +144,11 @@ pub fn parse(text: &str) -> Result<Table, Vec<Problem>> {
     }
 }
 
-/// Keys whose texts are names: on one line.
+/// Keys whose texts are names, which have one line.
 const NAMES: [&str; 6] = ["title", "id", "name", "label", "serial", "certificate"];
 
-/// Control characters in texts and keys: what a terminal would obey, and no file of others can hold. A line
-/// break or a tab may be in what isn't a name.
+/// Finds control characters in texts and keys, which a terminal would execute and other file formats
+/// can't hold. A text that isn't a name may have line breaks and tabs.
 fn controls(table: &Table, path: &str) -> Vec<Problem> {
     let mut found = Vec::new();
     for entry in &table.entries {
@@ -182,15 +182,15 @@ fn problem_of(c: char, place: &Place, path: String) -> Problem {
     Problem { place: place.clone(), path, message }
 }
 
-/// The first control character of a text.
+/// First control character of a text.
 fn control(text: &str, is_name: bool) -> Option<char> {
-    // Those that turn the direction of text around them hide what stands there.
+    // Characters that reverse the direction of text can hide text around them.
     let turns = |c: char| matches!(c, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
     let is_bad = |c: char| turns(c) || (c.is_control() && (is_name || !"\n\r\t".contains(c)));
     text.chars().find(|c| is_bad(*c))
 }
 
-/// The control characters of what an argument sets.
+/// First problem of a control character in the value of an argument.
 pub fn controls_of_argument(path: &str, node: &Node) -> Option<Problem> {
     let mut found = Vec::new();
     let name = path.rsplit('.').next().unwrap_or(path);
@@ -198,7 +198,7 @@ pub fn controls_of_argument(path: &str, node: &Node) -> Option<Problem> {
     found.into_iter().next()
 }
 
-/// Parses the value of a `--set KEY=VALUE`: TOML, or a text without its quotes.
+/// Parses the value of a `--set KEY=VALUE`: TOML, or a text without quotes.
 pub fn parse_argument(value: &str, argument: &str) -> Node {
     let place = Place::Argument(argument.to_owned());
     let value = value.trim();
@@ -217,7 +217,7 @@ pub fn parse_default(value: &str) -> Node {
 }
 
 fn parse_value(value: &str) -> Option<Node> {
-    // A line break would let further keys in.
+    // A line break would allow further keys.
     let table = (!value.contains('\n')).then(|| parse(&format!("x = {value}")).ok())??;
     table.entries.into_iter().next().map(|entry| entry.node)
 }
@@ -244,7 +244,7 @@ fn replace_places(mut node: Node, place: &Place) -> Node {
     node
 }
 
-/// Turns byte offsets into lines and columns.
+/// Converts byte offsets to lines and columns.
 struct Lines<'a> {
     text: &'a str,
     starts: Vec<usize>,
@@ -278,7 +278,7 @@ impl<'a> Lines<'a> {
                 (at, entry)
             })
             .collect();
-        // In the order in which they were written, so that problems are told in that order.
+        // Sorted in the order of writing, so that problems are reported in that order.
         entries.sort_by_key(|(at, _)| *at);
         Table { entries: entries.into_iter().map(|(_, entry)| entry).collect() }
     }
@@ -290,11 +290,11 @@ impl<'a> Lines<'a> {
             DeValue::Integer(number) => {
                 match i64::from_str_radix(number.as_str(), number.radix()) {
                     Ok(integer) => Value::Integer(integer),
-                    // Beyond 64 bits: no key takes it, and as a number it is told so.
+                    // Beyond 64 bits the number becomes a float, which every key for integers refuses.
                     Err(_) => Value::Number(number.as_str().parse().unwrap_or(f64::INFINITY)),
                 }
             }
-            // `nan`, `inf` and what doesn't parse all end as not finite, which every key refuses.
+            // `nan`, `inf` and invalid numbers all become not finite, which every key refuses.
             DeValue::Float(number) => Value::Number(number.as_str().parse().unwrap_or(f64::NAN)),
             DeValue::Boolean(value) => Value::Boolean(value),
             DeValue::Datetime(date) => Value::Date(date.to_string()),
@@ -340,13 +340,13 @@ pub fn write_value(value: &Value, out: &mut String) {
     }
 }
 
-/// JSON escapes what a basic string of TOML must, except DEL.
+/// Quotes a text: JSON escapes everything that a basic string of TOML must escape, except DEL.
 fn write_quoted(text: &str, out: &mut String) {
     let quoted = serde_json::Value::from(text).to_string();
     out.push_str(&quoted.replace('\u{7f}', "\\u007f"));
 }
 
-/// Writes a key, in quotes where it has to have them.
+/// Writes a key, in quotes if necessary.
 fn write_key(key: &str, out: &mut String) {
     let bare = |c: char| c.is_ascii_alphanumeric() || c == '-' || c == '_';
     if !key.is_empty() && key.chars().all(bare) {
@@ -356,7 +356,7 @@ fn write_key(key: &str, out: &mut String) {
     }
 }
 
-/// A value as JSON.
+/// Converts a value to JSON.
 pub fn json(value: &Value) -> serde_json::Value {
     match value {
         Value::Text(text) | Value::Date(text) => serde_json::Value::from(text.as_str()),
@@ -368,4 +368,18 @@ pub fn json(value: &Value) -> serde_json::Value {
             table.entries.iter().map(|entry| (entry.key.clone(), json(&entry.node.value))).collect()
         }
     }
+}
+
+/// Value of a plain number, whole or not.
+pub fn number(value: &Value) -> Option<f64> {
+    match value {
+        Value::Integer(number) => Some(*number as f64),
+        Value::Number(number) => Some(*number),
+        _ => None,
+    }
+}
+
+/// Dotted path of a key.
+pub fn join(path: &str, key: &str) -> String {
+    if path.is_empty() { key.to_owned() } else { format!("{path}.{key}") }
 }

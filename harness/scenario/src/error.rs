@@ -1,45 +1,63 @@
-//! What is wrong with a scenario, and where.
+//! Problems of a scenario, with their places.
 
 use std::fmt;
+use std::path::Path;
 
-/// Where a value was written.
+/// Place of a value.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Place {
-    /// In the file, from 1.
+    /// Position in the file, from 1.
     File {
         /// Line.
         line: usize,
         /// Column, in characters.
         column: usize,
     },
-    /// In the argument of a `--set`.
+    /// Argument of a `--set`.
     Argument(String),
-    /// In the argument of a `--fire`.
+    /// Argument of a `--fire`.
     Fire(String),
-    /// The file as a whole: it can't be read.
+    /// The file as a whole, which can't be read.
     Unread,
-    /// Nowhere: the default of a key that the scenario leaves out.
+    /// No place: the default of a key that the scenario omits.
     Default,
 }
 
-/// One thing that is wrong with a scenario.
+/// One problem of a scenario.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Problem {
-    /// Where.
+    /// Place.
     pub place: Place,
     /// Dotted path of the field, `procedure.calibration.duration`; empty at the root.
     pub path: String,
-    /// What was found and what was expected.
+    /// Value found and value expected.
     pub message: String,
 }
 
-/// Why a scenario can't be run: every problem that was found, in the order of the file.
+/// Error of a scenario that can't be run: all problems found, in the order of the file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ScenarioError {
     /// Name of the file.
     pub file: String,
     /// The problems, at least one.
     pub problems: Vec<Problem>,
+}
+
+impl ScenarioError {
+    /// Reads a file of scenarios, suites or campaigns.
+    ///
+    /// # Errors
+    /// If it can't be read.
+    pub fn text_of(path: &Path) -> Result<String, Self> {
+        std::fs::read_to_string(path).map_err(|error| Self {
+            file: path.display().to_string(),
+            problems: vec![Problem {
+                place: Place::Unread,
+                path: String::new(),
+                message: error.to_string(),
+            }],
+        })
+    }
 }
 
 impl fmt::Display for ScenarioError {

@@ -1,4 +1,4 @@
-//! What examples of faults are made of, where the form of a key alone says too little.
+//! Example values for faults, for keys whose form alone doesn't give a useful one.
 
 /// Kind, key, value as TOML.
 pub(super) const FAULTS: &[(&str, &str, &str)] = &[

@@ -1,104 +1,17 @@
-//! What scenarios say about the variables of FMUs: ports of channels, values that are set, codes.
+//! Reading of the variables of FMUs: ports of channels, settings, codes.
 //!
 //! A port is the name of a variable, `{ variable = "imu.w", unit = "deg/s", scale = 2.0 }`, or
 //! `{ constant = "90 deg" }`; a channel of several elements takes an array of them, or the name of
 //! an array variable.
 
-use super::complete::{explain, join, number};
-use super::document::{Node, Table, Value, parse_argument};
+use super::document::{Node, Table, Value, join, number, parse_argument};
 use super::error::{Place, Problem};
-use super::quantity;
+use super::model::{Code, Made, Port, Set, Setting, Written};
+use super::quantity::{self, explain};
 use crate::channel::{Channel, Class};
 use octant_base::names::suggestion;
 
-/// Where a scenario says something, for messages that come later than its reading.
-///
-/// It makes no difference between two scenarios.
-#[derive(Clone)]
-pub struct Written {
-    /// Where.
-    pub place: Place,
-    /// Dotted path of the key.
-    pub path: String,
-}
-
-impl PartialEq for Written {
-    fn eq(&self, _other: &Self) -> bool {
-        true
-    }
-}
-
-impl std::fmt::Debug for Written {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str("Written")
-    }
-}
-
-impl Written {
-    /// A problem with what is written here.
-    #[must_use]
-    pub fn problem(&self, message: impl Into<String>) -> Problem {
-        Problem { place: self.place.clone(), path: self.path.clone(), message: message.into() }
-    }
-}
-
-/// One or all elements of a channel.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Port {
-    /// What it is made of.
-    pub what: Made,
-    /// Where it was written.
-    pub at: Written,
-}
-
-/// What an element of a channel is made of.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Made {
-    /// A variable of the FMU.
-    Variable {
-        /// Its name; after a minus sign: negated.
-        name: String,
-        /// Its unit, where the description doesn't tell.
-        unit: Option<String>,
-        /// Value in the unit = scale · value of the variable.
-        scale: f64,
-    },
-    /// A constant, SI.
-    Constant(f64),
-}
-
-/// A value that is set in an FMU.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Setting {
-    /// Name of the variable.
-    pub name: String,
-    /// Its elements; of a scalar one.
-    pub values: Vec<Set>,
-    /// Where it was written.
-    pub at: Written,
-}
-
-/// One value.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Set {
-    /// A number in the variable's own unit.
-    Number(f64),
-    /// True or false.
-    Flag(bool),
-    /// A text, the name of an enumeration's item, or a quantity.
-    Text(String),
-}
-
-/// A value of a variable that means something.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Code {
-    /// The number.
-    Number(i64),
-    /// The name of an enumeration's item.
-    Name(String),
-}
-
-/// What a port takes, in words.
+/// Description of the values of a port.
 pub(super) fn expected_port(channel: &Channel) -> String {
     let one = "the name of a variable, or a table with variable (and unit, scale) or constant";
     if channel.elements == 1 {
@@ -108,7 +21,7 @@ pub(super) fn expected_port(channel: &Channel) -> String {
     }
 }
 
-/// The ports of a channel; an example in TOML.
+/// Example of the ports of a channel, in TOML.
 pub(super) fn example_port(channel: &Channel) -> String {
     if channel.elements == 1 {
         return format!("{:?}", channel.name);
@@ -235,14 +148,14 @@ fn made(table: &Table, channel: &Channel, at: &Written) -> Result<Made, Problem>
     }
 }
 
-/// A quantity of a dimension, SI; the error is what is expected.
+/// Parses a quantity of a dimension, SI; the error is the expected form.
 fn constant(text: &str, dimension: quantity::Dimension) -> Result<f64, String> {
     let expected = || format!("{} such as {:?}", dimension.name, dimension.example);
     let found = quantity::parse(text).map_err(|e| format!("{} ({})", expected(), explain(&e)))?;
     if found.is(dimension) { Ok(found.si) } else { Err(expected()) }
 }
 
-/// Reads the values that are set in an FMU. Tables in tables are parts of a name.
+/// Reads the settings of an FMU. Nested tables are parts of a name.
 pub(super) fn settings(table: &Table, path: &str) -> Result<Vec<Setting>, Problem> {
     let mut all = Vec::new();
     collect(table, "", path, &mut all)?;
@@ -284,10 +197,10 @@ fn set(value: &Value, at: &Written) -> Result<Set, Problem> {
     }
 }
 
-/// Reads `NAME=VALUE` of a command line: a TOML value, or a text without its quotes.
+/// Reads `NAME=VALUE` of a command line: a TOML value, or a text without quotes.
 ///
 /// # Errors
-/// If it has no `=`, or the value is none that can be set.
+/// If it has no `=`, or the value can't be a setting.
 pub fn setting_argument(argument: &str) -> Result<Setting, Problem> {
     let place = Place::Argument(argument.to_owned());
     let Some((name, value)) = argument.split_once('=') else {
@@ -306,7 +219,7 @@ pub fn setting_argument(argument: &str) -> Result<Setting, Problem> {
     }
 }
 
-/// Reads the values that mean a mode. The error reads after "expected".
+/// Reads the values that stand for a mode; `None` if one is invalid.
 pub(super) fn codes(value: &Value) -> Option<Vec<Code>> {
     let one = |value: &Value| match value {
         Value::Integer(number) => Some(Code::Number(*number)),

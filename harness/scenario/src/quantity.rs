@@ -1,24 +1,24 @@
-//! Quantities as users write them, `"0.005 deg/h"`: a number, a unit, a dimension.
+//! Quantities as users write them, `"0.005 deg/h"`: a number with a unit, which has a dimension.
 //!
 //! A unit is a product or quotient of unit names, each with an integer power or under a root:
 //! `deg/h/g`, `ug/sqrt(Hz)`, `m/s^2`, `°/√h`. Values are SI and rad inside; g is 9.80665 m/s².
 
-use octant_earth::units::{ARCMIN, ARCSEC, DEG, NAUTICAL_MILE_M, STANDARD_GRAVITY_MPS2};
+pub use super::unit::{Powers, unit_names};
 
-/// Powers of metre, second, radian, kelvin and sample, doubled so that roots are whole numbers.
-pub type Powers = [i16; 5];
+use super::unit::parse_unit;
+use octant_base::names::nearest;
 
-/// What a quantity measures: the powers of its unit, and how to speak of it.
+/// Dimension of a quantity: the powers of its unit, with texts for messages.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Dimension {
     powers: Powers,
-    /// What it is, with its article: `an angular rate`.
+    /// Name with its article: `an angular rate`.
     pub name: &'static str,
     /// A quantity of this dimension, as an example in messages.
     pub example: &'static str,
-    /// The unit in which values of this dimension are written.
+    /// Unit in which values of this dimension are written.
     pub unit: &'static str,
-    /// The SI unit, in which every value can be written exactly.
+    /// SI unit, in which every value can be written exactly.
     si_unit: &'static str,
 }
 
@@ -35,7 +35,7 @@ const fn dimension(
 impl Dimension {
     /// Duration or period.
     pub const TIME: Self = dimension([0, 2, 0, 0, 0], "a time", "12 h", "s", "s");
-    /// A number of samples, told apart from a ratio: `"20 samples"`.
+    /// Number of samples, distinguished from a ratio: `"20 samples"`.
     pub const SAMPLES: Self =
         dimension([0, 0, 0, 0, 2], "a number of samples", "20 samples", "samples", "samples");
     /// Frequency or rate of samples.
@@ -168,38 +168,38 @@ impl Dimension {
         Self::ACCELERATION_PSD,
     ];
 
-    /// Exponents of kg, m, s, A, K, mol, cd, rad in the unit of FMUs; `None` where they are not
-    /// whole, or count samples.
+    /// Exponents of kg, m, s, A, K, mol, cd, rad in the unit of FMUs; `None` if they are not whole, or
+    /// if it counts samples.
     #[must_use]
     pub fn exponents(self) -> Option<[i8; 8]> {
         exponents(self.powers)
     }
 
-    /// The SI unit, in which every value can be written exactly.
+    /// SI unit, in which every value can be written exactly.
     #[must_use]
     pub const fn si_unit(self) -> &'static str {
         self.si_unit
     }
 
-    /// The dimension with these exponents that scenarios use, where there is one.
+    /// Dimension of scenarios with these exponents, if there is one.
     pub fn with_exponents(exponents: &[i8; 8]) -> Option<Self> {
         Self::ALL.into_iter().find(|dimension| dimension.exponents().as_ref() == Some(exponents))
     }
 
-    /// The dimension of a parsed quantity, where it is one that scenarios use.
+    /// Dimension of a parsed quantity, if it is one of scenarios.
     pub fn of(quantity: Quantity) -> Option<Self> {
         Self::ALL.into_iter().find(|d| d.powers == quantity.powers)
     }
 
-    /// Writes an SI value as a quantity that parses back to the same bits: in the user's unit with
-    /// as few digits as that takes, else in SI.
+    /// Writes an SI value as a quantity that parses back to the same bits: in the user's unit with as
+    /// few digits as possible, else in SI.
     #[must_use]
     pub fn write(self, value: f64) -> String {
         for unit in [self.unit, self.si_unit] {
             let Ok((factor, _)) = parse_unit(unit) else { continue };
             for digits in 0..17 {
                 let text = format!("{:.digits$e}", value / factor);
-                // Through f64 again, for its shortest plain spelling.
+                // Converted to f64 again, for its shortest plain spelling.
                 let Ok(number) = text.parse::<f64>() else { continue };
                 if (number * factor).to_bits() == value.to_bits() {
                     return format!("{} {unit}", plain(number));
@@ -218,7 +218,7 @@ fn exponents([m, s, rad, k, samples]: Powers) -> Option<[i8; 8]> {
     Some([0, half(m)?, half(s)?, 0, half(k)?, 0, 0, half(rad)?])
 }
 
-/// A number without exponent where that reads well.
+/// Writes a number without exponent if that is readable.
 fn plain(number: f64) -> String {
     let size = number.abs();
     if size == 0.0 || (1e-6..1e7).contains(&size) {
@@ -237,7 +237,7 @@ pub struct Quantity {
 }
 
 impl Quantity {
-    /// Whether two quantities measure the same.
+    /// True if two quantities have the same dimension.
     #[must_use]
     pub fn same_dimension(self, other: Self) -> bool {
         self.powers == other.powers
@@ -248,22 +248,34 @@ impl Quantity {
         exponents(self.powers)
     }
 
-    /// Whether this is a quantity of the dimension.
+    /// True if this is a quantity of the dimension.
     #[must_use]
     pub fn is(self, dimension: Dimension) -> bool {
         self.powers == dimension.powers
     }
 }
 
-/// Why a text isn't a quantity: a fragment that fits after "found".
+/// Reason why a text isn't a quantity, a fragment that fits after "found".
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum NotAQuantity {
-    /// It doesn't start with a finite number.
+    /// The text doesn't start with a finite number.
     NoNumber,
-    /// A number and nothing else.
+    /// The number has no unit.
     NoUnit,
-    /// The unit isn't one, with the part that wasn't understood.
+    /// The unit is unknown; with the unknown part.
     UnknownUnit(String),
+}
+
+/// Error of a text that is no quantity, a fragment that fits after "found …".
+pub fn explain(error: &NotAQuantity) -> String {
+    match error {
+        NotAQuantity::NoNumber => "which doesn't start with a finite number".to_owned(),
+        NotAQuantity::NoUnit => "a number without unit".to_owned(),
+        NotAQuantity::UnknownUnit(unit) => match nearest(unit, unit_names()) {
+            Some(name) => format!("with the unknown unit {unit:?} (did you mean {name:?}?)"),
+            None => format!("with the unknown unit {unit:?}"),
+        },
+    }
 }
 
 /// Parses a number with its unit.
@@ -283,7 +295,7 @@ pub fn parse(text: &str) -> Result<Quantity, NotAQuantity> {
     Ok(Quantity { si, powers })
 }
 
-/// Bytes of the decimal number that a text starts with.
+/// Length of the decimal number at the start of a text, bytes.
 fn number_length(text: &str) -> usize {
     let bytes = text.as_bytes();
     let digits = |from: usize| bytes[from..].iter().take_while(|b| b.is_ascii_digit()).count();
@@ -300,154 +312,6 @@ fn number_length(text: &str) -> usize {
         }
     }
     at
-}
-
-/// Unit names, SI value of one, powers.
-const UNITS: &[(&str, f64, Powers)] = &[
-    ("1", 1.0, [0, 0, 0, 0, 0]),
-    ("rad", 1.0, [0, 0, 2, 0, 0]),
-    ("mrad", 1e-3, [0, 0, 2, 0, 0]),
-    ("urad", 1e-6, [0, 0, 2, 0, 0]),
-    ("deg", DEG, [0, 0, 2, 0, 0]),
-    ("°", DEG, [0, 0, 2, 0, 0]),
-    ("arcmin", ARCMIN, [0, 0, 2, 0, 0]),
-    ("'", ARCMIN, [0, 0, 2, 0, 0]),
-    ("′", ARCMIN, [0, 0, 2, 0, 0]),
-    ("arcsec", ARCSEC, [0, 0, 2, 0, 0]),
-    ("\"", ARCSEC, [0, 0, 2, 0, 0]),
-    ("″", ARCSEC, [0, 0, 2, 0, 0]),
-    ("s", 1.0, [0, 2, 0, 0, 0]),
-    ("ms", 1e-3, [0, 2, 0, 0, 0]),
-    ("us", 1e-6, [0, 2, 0, 0, 0]),
-    ("ns", 1e-9, [0, 2, 0, 0, 0]),
-    ("min", 60.0, [0, 2, 0, 0, 0]),
-    ("h", 3600.0, [0, 2, 0, 0, 0]),
-    ("day", 86400.0, [0, 2, 0, 0, 0]),
-    ("Hz", 1.0, [0, -2, 0, 0, 0]),
-    ("kHz", 1e3, [0, -2, 0, 0, 0]),
-    ("m", 1.0, [2, 0, 0, 0, 0]),
-    ("mm", 1e-3, [2, 0, 0, 0, 0]),
-    ("cm", 1e-2, [2, 0, 0, 0, 0]),
-    ("um", 1e-6, [2, 0, 0, 0, 0]),
-    ("km", 1e3, [2, 0, 0, 0, 0]),
-    ("nmi", NAUTICAL_MILE_M, [2, 0, 0, 0, 0]),
-    ("kn", NAUTICAL_MILE_M / 3600.0, [2, -2, 0, 0, 0]),
-    ("g", STANDARD_GRAVITY_MPS2, [2, -4, 0, 0, 0]),
-    ("mg", 1e-3 * STANDARD_GRAVITY_MPS2, [2, -4, 0, 0, 0]),
-    ("ug", octant_earth::units::MICRO_G, [2, -4, 0, 0, 0]),
-    ("ppm", 1e-6, [0, 0, 0, 0, 0]),
-    ("%", 1e-2, [0, 0, 0, 0, 0]),
-    ("K", 1.0, [0, 0, 0, 2, 0]),
-    ("mK", 1e-3, [0, 0, 0, 2, 0]),
-    ("samples", 1.0, [0, 0, 0, 0, 2]),
-    ("sample", 1.0, [0, 0, 0, 0, 2]),
-];
-
-/// The names of the units that products are made of.
-pub fn unit_names() -> impl Iterator<Item = &'static str> + Clone {
-    UNITS.iter().map(|(name, ..)| *name)
-}
-
-/// SI value and powers of a unit; the error is the part that wasn't understood.
-fn parse_unit(text: &str) -> Result<(f64, Powers), String> {
-    // Both code points of mu, and the superscript and root signs, in their plain spellings.
-    let plain = text.replace(['µ', 'μ'], "u").replace('²', "^2").replace(['·', '⋅'], "*");
-    let mut parser = UnitParser { rest: &plain, depth: 0 };
-    let unit = parser.product()?;
-    if parser.rest.trim().is_empty() { Ok(unit) } else { Err(parser.rest.trim().to_owned()) }
-}
-
-struct UnitParser<'a> {
-    rest: &'a str,
-    depth: u8,
-}
-
-impl UnitParser<'_> {
-    fn eat(&mut self, token: &str) -> bool {
-        let rest = self.rest.trim_start();
-        let found = rest.strip_prefix(token);
-        self.rest = found.unwrap_or(rest);
-        found.is_some()
-    }
-
-    fn product(&mut self) -> Result<(f64, Powers), String> {
-        let (mut factor, mut powers) = self.power()?;
-        loop {
-            let sign = if self.eat("/") {
-                -1
-            } else if self.eat("*") {
-                1
-            } else {
-                return Ok((factor, powers));
-            };
-            let (f, p) = self.power()?;
-            factor = if sign < 0 { factor / f } else { factor * f };
-            for (a, b) in powers.iter_mut().zip(p) {
-                *a = add(*a, sign, b)?;
-            }
-        }
-    }
-
-    fn power(&mut self) -> Result<(f64, Powers), String> {
-        let (base, powers) = self.atom()?;
-        if !self.eat("^") {
-            return Ok((base, powers));
-        }
-        let exponent = ["-1", "-2", "1", "2", "3"]
-            .into_iter()
-            .find(|text| self.eat(text))
-            .and_then(|text| text.parse::<i16>().ok())
-            .ok_or_else(|| format!("^{}", self.rest))?;
-        let mut factor = 1.0;
-        for _ in 0..exponent.abs() {
-            factor = if exponent < 0 { factor / base } else { factor * base };
-        }
-        let mut raised = [0; 5];
-        for (a, b) in raised.iter_mut().zip(powers) {
-            *a = add(0, exponent, b)?;
-        }
-        Ok((factor, raised))
-    }
-
-    fn atom(&mut self) -> Result<(f64, Powers), String> {
-        if self.depth > 8 {
-            return Err(self.rest.to_owned());
-        }
-        if self.eat("sqrt(") || self.eat("√(") {
-            let inner = self.nested()?;
-            return root(inner).ok_or_else(|| "sqrt".to_owned());
-        }
-        if self.eat("√") {
-            self.depth += 1;
-            let inner = self.atom()?;
-            self.depth -= 1;
-            return root(inner).ok_or_else(|| "√".to_owned());
-        }
-        if self.eat("(") {
-            return self.nested();
-        }
-        let end = self.rest.find(['/', '*', '^', '(', ')', ' ']).unwrap_or(self.rest.len());
-        let (name, rest) = self.rest.split_at(end);
-        let unit = UNITS.iter().find(|(known, ..)| *known == name);
-        let (_, factor, powers) = unit.ok_or_else(|| name.to_owned())?;
-        self.rest = rest;
-        Ok((*factor, *powers))
-    }
-
-    fn nested(&mut self) -> Result<(f64, Powers), String> {
-        self.depth += 1;
-        let inner = self.product()?;
-        self.depth -= 1;
-        if self.eat(")") { Ok(inner) } else { Err(format!("{} without )", self.rest)) }
-    }
-}
-
-fn add(a: i16, times: i16, b: i16) -> Result<i16, String> {
-    times.checked_mul(b).and_then(|x| a.checked_add(x)).ok_or_else(|| "power too large".to_owned())
-}
-
-fn root((factor, powers): (f64, Powers)) -> Option<(f64, Powers)> {
-    powers.iter().all(|p| p % 2 == 0).then(|| (factor.sqrt(), powers.map(|p| p / 2)))
 }
 
 #[cfg(test)]

@@ -1,38 +1,38 @@
-//! How recordings of others become samples: which columns and fields are what.
+//! Conversion of other programs' recordings to samples: the mapping of columns and fields.
 
 use std::path::PathBuf;
 
-/// What a file's inertial columns hold.
+/// Quantity of a file's inertial columns.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Quantity {
-    /// Angular rate, rad/s, and specific force, m/s², taken as constant over the interval that ends
-    /// at the stamp.
+    /// Angular rate, rad/s, and specific force, m/s², taken as constant over the interval that ends at
+    /// the stamp.
     #[default]
     Rates,
-    /// Angle increments, rad, and velocity increments, m/s, over that interval.
+    /// Angle increments, rad, and velocity increments, m/s, over the interval that ends at the stamp.
     Increments,
 }
 
-/// Most samples that a row may be split into.
+/// Largest number of samples that a row may be split into.
 pub const SPLIT_MAX: u32 = 1000;
 
 /// A column of a file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Column {
-    /// Its number, from 1.
+    /// Number, from 1.
     Number(usize),
-    /// Its name in the header line.
+    /// Name in the header line.
     Name(String),
 }
 
-/// A column and what turns it into SI: `(value − offset) · scale`.
+/// A column with its conversion to SI: `(value − offset) · scale`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Axis {
-    /// The column. Which column serves which body axis is the order of the axes.
+    /// Column. The order of the axes assigns columns to body axes.
     pub column: Column,
-    /// What the instrument shows at zero, in units of the file.
+    /// Reading of the instrument at zero, in units of the file.
     pub offset: f64,
-    /// SI units per unit of the file; negative turns the axis around.
+    /// SI units per unit of the file; negative reverses the axis.
     pub scale: f64,
 }
 
@@ -51,7 +51,7 @@ pub enum TimeUnit {
 }
 
 impl TimeUnit {
-    /// Powers of ten from this unit to a nanosecond.
+    /// Power of ten from this unit to a nanosecond.
     #[must_use]
     pub const fn nanosecond_exponent(self) -> i32 {
         match self {
@@ -66,28 +66,28 @@ impl TimeUnit {
 /// The time column.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TimeColumn {
-    /// The column.
+    /// Column.
     pub column: Column,
-    /// Its unit.
+    /// Unit.
     pub unit: TimeUnit,
 }
 
-/// What stands between two fields.
+/// Delimiter between two fields.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Delimiter {
-    /// Any run of blanks and tabs; leading ones don't count.
+    /// Any run of blanks and tabs; leading ones are ignored.
     #[default]
     Blanks,
-    /// One ASCII character. Blanks around a field don't count; a field may be quoted.
+    /// One ASCII character. Blanks around a field are ignored; a field may be quoted.
     Character(u8),
 }
 
-/// The files.
+/// Text files of a recording.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum TextFiles {
     /// Gyros and accelerometers in one file.
     One(PathBuf),
-    /// In two files of the same stamps.
+    /// Two files with the same stamps.
     Split {
         /// File of the gyros, and of the gimbals.
         gyro: PathBuf,
@@ -97,7 +97,7 @@ pub enum TextFiles {
 }
 
 impl TextFiles {
-    /// Each file.
+    /// All files.
     pub fn all(&self) -> impl Iterator<Item = &PathBuf> {
         match self {
             Self::One(file) => [Some(file), None],
@@ -108,7 +108,7 @@ impl TextFiles {
     }
 }
 
-/// Gimbal angles, where the file has them.
+/// Gimbal angles, if the file has them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GimbalColumns {
     /// Inner gimbal, rad after scaling.
@@ -117,10 +117,10 @@ pub struct GimbalColumns {
     pub roll: Axis,
 }
 
-/// How text becomes samples.
+/// Mapping of text files to samples.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TextMapping {
-    /// The files.
+    /// Files.
     pub files: TextFiles,
     /// Time; without it the stamps follow from the nominal rate.
     pub time: Option<TimeColumn>,
@@ -128,32 +128,32 @@ pub struct TextMapping {
     pub gyro: [Axis; 3],
     /// Accelerometers of body axes x y z: m/s² (m/s) after scaling.
     pub accelerometer: [Axis; 3],
-    /// What these columns are.
+    /// Quantity of these columns.
     pub quantity: Quantity,
-    /// Nominal rate of the rows, Hz: gives the interval of the first, and all stamps where there is
-    /// no time column.
+    /// Nominal rate of the rows, Hz: determines the interval of the first row, and all stamps if there
+    /// is no time column.
     pub nominal_rate_hz: f64,
-    /// Samples that a row becomes, equal parts of its interval: counts then hold faster rates.
-    /// Gimbal angles are those of the row.
+    /// Number of samples made from a row, equal parts of its interval, so that counts can hold faster
+    /// rates. Gimbal angles are those of the row.
     pub split: u32,
     /// Delimiter.
     pub delimiter: Delimiter,
-    /// Lines that begin with this are passed over; empty: none.
+    /// Beginning of lines that are skipped; empty: none.
     pub comment: String,
-    /// Lines at the start of a file that are passed over whatever they hold.
+    /// Number of lines at the start of a file that are skipped, whatever they contain.
     pub skip_lines: usize,
     /// Gimbal angles.
     pub gimbal: Option<GimbalColumns>,
 }
 
-/// A field of a message and what turns it into SI.
+/// A field of a message with its conversion to SI.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MappedField {
     /// Path of the field: `angular_velocity.x`, `axes[2].rate`.
     pub path: String,
-    /// What the instrument shows at zero, in units of the field.
+    /// Reading of the instrument at zero, in units of the field.
     pub offset: f64,
-    /// SI units per unit of the field, `(value − offset) · scale`; negative turns the axis around.
+    /// SI units per unit of the field, `(value − offset) · scale`; negative reverses the axis.
     pub scale: f64,
 }
 
@@ -163,7 +163,7 @@ impl MappedField {
     }
 }
 
-/// Where the stamp of a message comes from.
+/// Stamp of a message.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum MappedStamp {
     /// Log time of the message.
@@ -172,17 +172,17 @@ pub enum MappedStamp {
     PublishTime,
     /// Fields of the message.
     Field {
-        /// Path of a number. Whole numbers are exact; others are rounded to what an f64 holds.
+        /// Path of a number. Whole numbers are exact; others are rounded to f64.
         path: String,
-        /// Its unit.
+        /// Unit.
         unit: TimeUnit,
-        /// Path of whole nanoseconds to add, as stamps of ROS have them.
+        /// Path of whole nanoseconds to add, as in stamps of ROS.
         nanoseconds: Option<String>,
     },
 }
 
-/// How the messages of a foreign MCAP file become samples. Encodings: JSON, and CDR with a
-/// `ros2msg` schema.
+/// Mapping of the messages of a foreign MCAP file to samples. Encodings: JSON, and CDR with a `ros2msg`
+/// schema.
 #[derive(Clone, Debug, PartialEq)]
 pub struct McapMapping {
     /// Topic of the inertial messages.
@@ -191,20 +191,21 @@ pub struct McapMapping {
     pub gyro: [MappedField; 3],
     /// Accelerometers x y z of the body: m/s² (m/s) after scaling.
     pub accelerometer: [MappedField; 3],
-    /// What these fields are.
+    /// Quantity of these fields.
     pub quantity: Quantity,
     /// Stamps.
     pub stamp: MappedStamp,
-    /// Nominal rate of the messages, Hz: gives the interval of the first.
+    /// Nominal rate of the messages, Hz: determines the interval of the first.
     pub nominal_rate_hz: f64,
-    /// Samples that a message becomes, equal parts of its interval: counts then hold faster rates.
+    /// Number of samples made from a message, equal parts of its interval, so that counts can hold
+    /// faster rates.
     pub split: u32,
-    /// Gimbal azimuth and roll, rad after scaling, where the messages have them.
+    /// Gimbal azimuth and roll, rad after scaling, if the messages have them.
     pub gimbal: Option<[MappedField; 2]>,
 }
 
 impl McapMapping {
-    /// The mapping of `sensor_msgs/msg/Imu`, stamped by its header.
+    /// Mapping of `sensor_msgs/msg/Imu`, with the stamps of its header.
     #[must_use]
     pub fn ros_imu(topic: &str, nominal_rate_hz: f64) -> Self {
         let axes =

@@ -1,10 +1,11 @@
-//! From a scenario to the configurations of plant and core, with what is drawn from the seed.
+//! Conversion of a scenario to the configurations of plant and core, with values drawn from the seed.
 //!
-//! Drawing is behind [`Drawing`] alone; all else takes the drawn values. Both methods of a scenario
-//! take the same draws.
+//! Only [`Drawing`] draws; everything else takes the drawn values. Both methods of a scenario use the
+//! same draws.
 
-use super::read::case_attitude;
-use super::{Alignment, Distribution, Dockside, Method, Motion, Scenario};
+use super::model::{
+    Alignment, Distribution, Dockside, MOTIONS, Method, Motion, Scenario, case_attitude,
+};
 use octant_calibration::config as core;
 use octant_earth::{UnitQuaternion, Vector3, rotation};
 use octant_plant::sea::Spectrum;
@@ -13,25 +14,25 @@ use octant_sample::Parameters;
 #[cfg(doc)]
 use octant_sample::parameters::Group;
 
-/// What draws from the seed. No number depends on whether another one was drawn.
+/// Source of random values. No value depends on whether another one was drawn.
 pub trait Drawing {
-    /// True parameters from the distribution of each group, in the order of [`Group::ALL`].
+    /// Draws true parameters from the distribution of each group, in the order of [`Group::ALL`].
     fn parameters(&self, distributions: &[Distribution; 7]) -> Parameters;
-    /// Attitude error φ (rad) and velocity error (m/s) from the 1σ of tilt (rad), azimuth (rad) and
-    /// velocity (m/s).
+    /// Draws attitude error φ (rad) and velocity error (m/s) from the 1σ of tilt (rad), azimuth (rad)
+    /// and velocity (m/s).
     fn alignment_error(
         &self,
         tilt_rad: f64,
         azimuth_rad: f64,
         velocity_mps: f64,
     ) -> ([f64; 3], [f64; 3]);
-    /// So many phases of a motion (`roll`, `pitch`, `yaw`, `surge`, `sway`, `heave`), rad.
+    /// Draws `count` phases of a motion (`roll`, `pitch`, `yaw`, `surge`, `sway`, `heave`), rad.
     fn phases(&self, motion: &str, count: usize) -> Vec<f64>;
-    /// Sinusoids of a motion with the variance and the shape of a spectrum.
+    /// Draws sinusoids of a motion with the variance and the shape of a spectrum.
     fn spectrum(&self, motion: &str, spectrum: &Spectrum, count: usize) -> Vec<plant::Sinusoid>;
 }
 
-/// Draws from the plant's streams: the seed.
+/// Draws from the plant's random streams, with this seed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Seeded(pub u64);
 
@@ -66,13 +67,13 @@ impl Drawing for Seeded {
     }
 
     fn spectrum(&self, motion: &str, spectrum: &Spectrum, count: usize) -> Vec<plant::Sinusoid> {
-        // A stream of its own: single components beside it keep their phases.
+        // The spectrum has a separate stream, so that single components beside it keep their phases.
         spectrum.components(self.0, &format!("{motion}.spectrum"), count)
     }
 }
 
-/// The plant's distribution of a group of N. The check of the scenario has counted the values; one
-/// that isn't there would be refused by the plant as not finite.
+/// Distribution of the plant for a group of N. The check of the scenario has counted the values; the
+/// plant would refuse a missing one as not finite.
 fn of_group<const N: usize>(distribution: &Distribution) -> draw::Draw<N> {
     match distribution {
         Distribution::Normal(sigma) => draw::Draw::Normal { sigma: *sigma },
@@ -83,26 +84,26 @@ fn of_group<const N: usize>(distribution: &Distribution) -> draw::Draw<N> {
     }
 }
 
-/// What is drawn from the seed before a run.
+/// Values drawn from the seed before a run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Draws {
     /// True parameters.
     pub parameters: Parameters,
-    /// The ship's roll, pitch, yaw, surge, sway, heave: components with their phases, and those of
-    /// the spectrum after them. Empty when static.
+    /// Roll, pitch, yaw, surge, sway, heave of the ship: components with their phases, then those of
+    /// the spectrum. Empty if static.
     pub motion: [Vec<plant::Sinusoid>; 6],
-    /// Error of the attitude handed over, φ north, east, down, rad.
+    /// Error of the initial attitude, φ north, east, down, rad.
     pub attitude_error_rad: [f64; 3],
-    /// Error of the velocity handed over, m/s.
+    /// Error of the initial velocity, m/s.
     pub velocity_error_mps: [f64; 3],
 }
 
 impl Draws {
-    /// Draws what the scenario leaves open and takes over what it gives.
+    /// Draws the values that the scenario leaves open, and takes the given ones.
     pub fn of(scenario: &Scenario, drawing: &impl Drawing) -> Self {
         let mut motion: [Vec<plant::Sinusoid>; 6] = Default::default();
         if let Motion::Dockside(ship) = &scenario.motion {
-            for (index, name) in super::read::MOTIONS.into_iter().enumerate() {
+            for (index, name) in MOTIONS.into_iter().enumerate() {
                 motion[index] = sinusoids(ship, index, name, drawing);
             }
         }
@@ -128,7 +129,7 @@ impl Draws {
     }
 }
 
-/// The sinusoids of one of a ship's motions.
+/// Sinusoids of one of a ship's motions.
 fn sinusoids(
     ship: &Dockside,
     index: usize,
@@ -136,7 +137,7 @@ fn sinusoids(
     drawing: &impl Drawing,
 ) -> Vec<plant::Sinusoid> {
     let components = &ship.components[index];
-    // A phase that is given takes no other component's draw.
+    // A given phase doesn't change the draws of other components.
     let drawn = drawing.phases(name, components.len());
     let single = components.iter().zip(drawn).map(|(component, drawn)| plant::Sinusoid {
         amplitude: component.amplitude,
@@ -153,7 +154,7 @@ fn sinusoids(
 }
 
 impl Scenario {
-    /// The plant's configuration.
+    /// Configuration of the plant.
     #[must_use]
     pub fn plant(&self, seed: u64, draws: &Draws) -> plant::Config {
         plant::Config {
@@ -187,10 +188,9 @@ impl Scenario {
         })
     }
 
-    /// The core's configuration for one of the two methods; `None` where the scenario has no
-    /// baseline.
+    /// Configuration of the core for one of the two methods; `None` if the scenario has no baseline.
     ///
-    /// The attitude handed over is the true one with the drawn error: `c_nb(computed) =
+    /// The initial attitude is the true one with the drawn error: `c_nb(computed) =
     /// (I − [φ×]) c_nb(true)`. `true_q_nb` and `true_velocity_mps` are the truth at the start.
     #[must_use]
     pub fn core(
@@ -237,13 +237,13 @@ impl Scenario {
         })
     }
 
-    /// The screens with what bounds them: how the base moves, what the encoders and the increments
-    /// are worth.
+    /// Screening with its bounds: motion of the base, noise of the encoders, resolution of the
+    /// increments, vibration.
     fn screening_for(&self, draws: &Draws) -> core::Screening {
         let extensions = &self.imu.extensions;
         let vibration = extensions.vibration.map_or((0.0, 0.0), |vibration| {
-            // Two increments differ by no more than four amplitudes of the angle, and of the
-            // velocity; gravity turns with the angle.
+            // Two increments differ by at most four amplitudes of the angle, and of the velocity;
+            // gravity turns with the angle.
             let omega = 2.0 * std::f64::consts::PI * vibration.frequency_hz;
             let angle = Vector3::from(vibration.angle_rad).norm();
             let speed = Vector3::from(vibration.displacement_m).norm() * omega;
@@ -272,8 +272,8 @@ impl Scenario {
     }
 }
 
-/// Bounds of a ship's motion: amplitudes of all its components on all axes, added up, and doubled,
-/// because nobody knows a sway that well.
+/// Bounds of a ship's motion: the sum of the amplitudes of all its components on all axes, doubled,
+/// because a sway is never known that well.
 fn bounds(ship: &plant::Dockside) -> core::BaseMotion {
     let largest = |motions: [&[plant::Sinusoid]; 3], order: i32| {
         let of = |s: &plant::Sinusoid| {
@@ -293,7 +293,7 @@ fn bounds(ship: &plant::Dockside) -> core::BaseMotion {
     }
 }
 
-/// An attitude with the error φ (rad, in n): the rotation whose first order is `I − [φ×]`.
+/// Applies an error φ (rad, in n) to an attitude: the rotation whose first order is `I − [φ×]`.
 fn with_error(truth: &UnitQuaternion<f64>, phi_rad: [f64; 3]) -> UnitQuaternion<f64> {
     rotation::exp(&-Vector3::from(phi_rad)) * truth
 }
@@ -333,7 +333,7 @@ mod tests {
             }
             assert_eq!(Draws { parameters: all.parameters, ..other }, all, "{change}");
         }
-        // Nor does a spectrum beside a component, or another alignment.
+        // A spectrum beside a component, or another alignment, doesn't change other draws either.
         let spectrum = "spectrum = { peak_period = \"9 s\", roll = \"2 deg\", components = 5 }\n";
         let other = drawn(&format!("{ship}{spectrum}[procedure.alignment]\ntilt = \"0.1 deg\"\n"));
         assert_eq!(other.parameters, all.parameters);

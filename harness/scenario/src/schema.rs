@@ -77,7 +77,7 @@ fn kind(kind: &Kind) -> Value {
             json!({ "type": "integer", "minimum": from, "maximum": to })
         }
         Kind::Number(bounds) => match bounds {
-            // What schemas of numbers can't say briefly is left to the program.
+            // Bounds that schemas of numbers can't express briefly are left to the program.
             Bounds::Any | Bounds::NotZero => json!({ "type": "number" }),
             Bounds::Positive => json!({ "type": "number", "exclusiveMinimum": 0 }),
             Bounds::NotNegative => json!({ "type": "number", "minimum": 0 }),
@@ -130,17 +130,17 @@ fn kind(kind: &Kind) -> Value {
             json!({ "type": "array", "items": one_of(variants), "maxItems": at_most })
         }
         Kind::Either(kinds) => json!({ "anyOf": kinds.iter().map(self::kind).collect::<Vec<_>>() }),
-        // Never a property: such a key is known to the check alone.
+        // Never used as a property: only the check knows such a key.
         Kind::Refused(_) => json!(false),
     }
 }
 
-/// One object for each form.
+/// Schema with one object for each form.
 fn one_of(variants: &Variants) -> Value {
     json!({ "oneOf": (variants.forms)().iter().map(|(_, form)| object(form)).collect::<Vec<_>>() })
 }
 
-/// What a channel is made of: a name or a table, or one of them for each element.
+/// Schema of a port: a name or a table, or one of them for each element.
 fn port(channel: &Channel) -> Value {
     let text = json!({ "type": "string" });
     let one = json!({ "anyOf": [text, {

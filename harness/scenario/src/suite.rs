@@ -1,4 +1,4 @@
-//! A suite: scenarios, and how each of them has to end.
+//! Suites: scenarios with their expected results.
 //!
 //! ```toml
 //! schema = 1
@@ -21,43 +21,36 @@ use super::read::Reader;
 use octant_requirements::Verdict;
 use std::path::{Path, PathBuf};
 
-/// A list of scenarios with the ends that are expected of them.
+/// A list of scenarios with their expected results.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Suite {
-    /// The cases, in the order of the file.
+    /// Cases, in the order of the file.
     pub cases: Vec<Case>,
 }
 
-/// One scenario, and how it has to end.
+/// A scenario with its expected result.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Case {
     /// File of the scenario.
     pub scenario: PathBuf,
-    /// The verdict.
+    /// Expected verdict.
     pub expect: Verdict,
-    /// Words that every reason has to contain; given wherever a pass isn't expected.
+    /// Text that every reason has to contain; required unless a pass is expected.
     pub because: Option<String>,
 }
 
 impl Suite {
-    /// Reads a suite file. Names of scenarios start at its folder.
+    /// Reads a suite file. Names of scenarios are relative to its folder.
     ///
     /// # Errors
     /// If the file can't be read, isn't TOML, or is not a suite: every problem with its place.
     pub fn load(path: &Path) -> Result<Self, ScenarioError> {
         let file = path.display().to_string();
-        let text = std::fs::read_to_string(path).map_err(|error| ScenarioError {
-            file: file.clone(),
-            problems: vec![Problem {
-                place: Place::Unread,
-                path: String::new(),
-                message: error.to_string(),
-            }],
-        })?;
+        let text = ScenarioError::text_of(path)?;
         Self::parse(&text, &file, path.parent().unwrap_or(Path::new("")))
     }
 
-    /// Reads the text of a suite. `file` names it in errors, `folder` is where scenarios are.
+    /// Reads the text of a suite. `file` names it in errors, `folder` is the folder of the scenarios.
     ///
     /// # Errors
     /// If it isn't TOML or not a suite: every problem with its place.
@@ -111,24 +104,45 @@ fn cases(document: &Table, folder: &Path) -> Result<Suite, Problem> {
     Ok(Suite { cases })
 }
 
+/// Result of a case other than the expected one.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error(
+    "found {} ({}), expected {}{}",
+    .found.name(),
+    .reasons.join("; "),
+    .expected.name(),
+    .because.as_ref().map_or_else(String::new, |because| format!(", because of {because:?}"))
+)]
+pub struct Unexpected {
+    /// Verdict.
+    pub found: Verdict,
+    /// Its reasons.
+    pub reasons: Vec<String>,
+    /// Expected verdict.
+    pub expected: Verdict,
+    /// Text that every reason has to contain.
+    pub because: Option<String>,
+}
+
 impl Case {
-    /// Holds what came against what is expected: the verdict, and that there is no reason for it but
-    /// the expected one.
+    /// Compares a result with the expected one: the verdict must be equal, and every reason the
+    /// expected one.
     ///
     /// # Errors
-    /// In words: what was found and what was expected.
-    pub fn hold(&self, verdict: Verdict, reasons: &[String]) -> Result<(), String> {
-        let expected = self.because.as_deref().map_or_else(
-            || self.expect.name().to_owned(),
-            |because| format!("{}, because of {because:?}", self.expect.name()),
-        );
+    /// If they differ: the result found and the result expected.
+    pub fn hold(&self, verdict: Verdict, reasons: &[String]) -> Result<(), Unexpected> {
         let alone = |because: &str| {
             !reasons.is_empty() && reasons.iter().all(|reason| reason.contains(because))
         };
         if verdict == self.expect && self.because.as_deref().is_none_or(alone) {
             return Ok(());
         }
-        Err(format!("found {} ({}), expected {expected}", verdict.name(), reasons.join("; ")))
+        Err(Unexpected {
+            found: verdict,
+            reasons: reasons.to_vec(),
+            expected: self.expect,
+            because: self.because.clone(),
+        })
     }
 }
 
@@ -154,13 +168,13 @@ mod tests {
         let reasons = ["calibration refused: no".to_owned()];
         bad.hold(Verdict::Fail, &reasons).unwrap();
         let more = [reasons[0].clone(), "X: 3".to_owned()];
-        assert!(bad.hold(Verdict::Fail, &more).unwrap_err().contains("X: 3"));
+        assert!(bad.hold(Verdict::Fail, &more).unwrap_err().to_string().contains("X: 3"));
         assert_eq!(
-            bad.hold(Verdict::Fail, &["X: 3".to_owned()]).unwrap_err(),
+            bad.hold(Verdict::Fail, &["X: 3".to_owned()]).unwrap_err().to_string(),
             "found fail (X: 3), expected fail, because of \"refused\""
         );
         assert_eq!(
-            good.hold(Verdict::Fail, &reasons).unwrap_err(),
+            good.hold(Verdict::Fail, &reasons).unwrap_err().to_string(),
             "found fail (calibration refused: no), expected pass"
         );
     }

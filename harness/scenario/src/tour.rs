@@ -1,15 +1,15 @@
-//! The tour: a scenario that names every key with its meaning, made from the table of keys.
+//! The tour: a scenario with every key and its meaning, made from the table of keys.
 //!
-//! Keys that are left out by default, or that contradict another one, are there as comments.
+//! Keys that are omitted by default, or that contradict another one, are comments in it.
 
-use super::complete::{expected, join};
-use super::document::{parse_default, write_value};
+use super::complete::expected;
+use super::document::{join, parse_default, write_value};
 use super::examples;
 use super::keys::{Bounds, Default, Key, Kind, SCENARIO, Section};
 use super::ports;
 use super::quantity::{self, Dimension};
 
-/// What the tour sets beside the defaults: path and TOML value.
+/// Settings of the tour beside the defaults: path and TOML value.
 const SET: &[(&str, &str)] = &[
     ("schema", "1"),
     ("title", "a tour of every key"),
@@ -24,11 +24,11 @@ const SET: &[(&str, &str)] = &[
     ("requirements.clause", "example: no document behind it"),
 ];
 
-/// Tables that are left out by default and that the tour has.
+/// Tables that are omitted by default but present in the tour.
 const OPENED: &[&str] =
     &["procedure.calibration", "procedure.navigation", "baseline", "requirements"];
 
-/// Examples where the one of the dimension says little.
+/// Examples for keys for which the example of the dimension isn't useful.
 const EXAMPLES: &[(&str, &str)] = &[
     ("motion.ship.roll", r#"[{ amplitude = "3 deg", period = "8 s", phase = "0 deg" }]"#),
     ("motion.ship.pitch", r#"[{ amplitude = "1.5 deg", period = "6 s", phase = "0 deg" }]"#),
@@ -95,19 +95,19 @@ const EXAMPLES: &[(&str, &str)] = &[
     ("endpoint.fmu.modes.calibrating", r#"[1, "turning"]"#),
 ];
 
-/// The kind of fault that the tour shows.
+/// Kind of fault in the tour.
 const SHOWN_FAULT: &str = "spike";
 
-/// The example of the key at a path, as TOML.
+/// Example for the key at a path, as TOML.
 fn example_at(path: &str, kind: &Kind) -> String {
     let own = EXAMPLES.iter().find(|(name, _)| *name == path);
     own.map_or_else(|| example(kind), |(_, text)| (*text).to_owned())
 }
 
-/// Keys with a default that have no effect beside what the tour sets.
+/// Keys with a default that have no effect beside the tour's settings.
 const CLOSED: &[&str] = &["procedure.alignment.duration", "procedure.calibration.least_squares"];
 
-/// The tour as TOML. It runs: 4 hours of calibration, 24 hours of navigation, two methods.
+/// Makes the tour as TOML. It can be run: 4 hours of calibration, 24 hours of navigation, two methods.
 #[must_use]
 pub fn tour() -> String {
     let mut out = String::from(
@@ -153,12 +153,12 @@ fn table(section: &Section, path: &str, open: bool, out: &mut String) {
     }
 }
 
-/// The keys of a table that has its own header, and whether it is one of an array.
+/// Keys of a table with its own header, and whether it is one of an array.
 fn headed(key: &Key, path: &str) -> Option<(&'static Section, bool)> {
     match &key.kind {
         Kind::Table(section) if !section.one_of => Some((section, false)),
         Kind::Tables(section, ..) if path.is_empty() => Some((section, true)),
-        // The forms of a fault are many: one shows what they have in common.
+        // A fault has many forms: one of them shows the common keys.
         Kind::VariantTables(variants, _) => {
             let (_, section) = (variants.forms)().iter().find(|(name, _)| *name == SHOWN_FAULT)?;
             Some((section, true))
@@ -168,7 +168,7 @@ fn headed(key: &Key, path: &str) -> Option<(&'static Section, bool)> {
     }
 }
 
-/// Meaning, what is taken, and the default.
+/// Writes meaning, kind and default of a key as a comment.
 fn comment(key: &Key, out: &mut String) {
     let mut text = key.doc.to_owned();
     match &key.kind {
@@ -235,14 +235,14 @@ fn comment(key: &Key, out: &mut String) {
     out.push('\n');
 }
 
-/// A default of the table as TOML.
+/// Writes a default of the table as TOML.
 fn written(default: &str) -> String {
     let mut out = String::new();
     write_value(&parse_default(default).value, &mut out);
     out
 }
 
-/// A value that a kind takes, as TOML.
+/// Example value of a kind, as TOML.
 fn example(kind: &Kind) -> String {
     let repeat = |text: &str, count: usize| format!("[{}]", vec![text; count].join(", "));
     match kind {
@@ -289,7 +289,7 @@ fn example(kind: &Kind) -> String {
     }
 }
 
-/// Examples of keys of triggers and repetitions.
+/// Examples for keys of triggers and repetitions.
 const FORM_EXAMPLES: &[(&str, &str)] = &[
     ("at", r#""5050 s""#),
     ("sample", "1010001"),
@@ -305,13 +305,13 @@ const FORM_EXAMPLES: &[(&str, &str)] = &[
     ("times", "3"),
 ];
 
-/// The example of a key of a form.
+/// Example for a key of a form.
 fn example_in_form(key: &Key) -> String {
     let own = FORM_EXAMPLES.iter().find(|(name, _)| *name == key.name);
     own.map_or_else(|| example(&key.kind), |(_, text)| (*text).to_owned())
 }
 
-/// The keys of a table that can't be left out, and those with a value by default, as TOML.
+/// Required keys of a table, and those with a default value, as TOML.
 fn given(section: &Section) -> Vec<String> {
     let line = |key: &Key| match key.default {
         Default::Required => Some(format!("{} = {}", key.name, example_in_form(key))),
@@ -321,7 +321,8 @@ fn given(section: &Section) -> Vec<String> {
     section.keys.iter().filter_map(line).collect()
 }
 
-/// A quantity within its bounds: the dimension's example where that is, else one between them.
+/// Example of a quantity within its bounds: that of the dimension if possible, else one between the
+/// bounds.
 fn quantity_within(dimension: Dimension, bounds: Bounds) -> String {
     let example = quantity::parse(dimension.example).is_ok_and(|q| bounds.contain(q.si));
     match bounds {
@@ -330,12 +331,12 @@ fn quantity_within(dimension: Dimension, bounds: Bounds) -> String {
     }
 }
 
-/// The keys of a kind of fault, of samples or of connections.
+/// Keys of a kind of fault, of samples or of connections.
 fn section_of(kind: &str) -> Option<&'static Section> {
     super::keys::kind_section(kind).or_else(|| super::keys::connection_section(kind))
 }
 
-/// What the parameters of a kind of fault take, with their bounds, in words.
+/// Descriptions of the parameters of a kind of fault, with their bounds.
 #[must_use]
 pub fn fault_parameters(kind: &str) -> Vec<(&'static str, String)> {
     let takes = |key: &'static Key| {
@@ -359,7 +360,7 @@ pub fn fault_parameters(kind: &str) -> Vec<(&'static str, String)> {
     section.map_or_else(Vec::new, |section| section.keys.iter().map(takes).collect())
 }
 
-/// An entry of a scenario with a fault of a kind, as TOML; `None` for a kind that isn't there.
+/// Entry of a scenario with a fault of a kind, as TOML; `None` for an unknown kind.
 #[must_use]
 pub fn fault_example(kind: &str) -> Option<String> {
     let section = section_of(kind)?;
@@ -398,7 +399,7 @@ mod tests {
     use super::super::error::Place;
     use super::*;
 
-    /// Every path of the table of keys, with the key.
+    /// Collects every path of the table of keys, with its key.
     fn paths(section: &'static Section, path: &str, all: &mut Vec<(String, &'static Key)>) {
         for key in section.keys.iter().filter(|key| !matches!(key.kind, Kind::Refused(_))) {
             let path = join(path, key.name);
@@ -431,7 +432,7 @@ mod tests {
         assert!(all.len() > 150, "{} keys", all.len());
         for (path, _) in all {
             let (parent, name) = path.rsplit_once('.').unwrap_or(("", &path));
-            // Under the parent's header, or beside the parent where that is an inline table.
+            // The key is under the parent's header, or beside the parent if that is an inline table.
             let from = if parent.is_empty() {
                 0
             } else if let Some(at) = tour.find(&format!("[{parent}]")) {
@@ -439,7 +440,7 @@ mod tests {
             } else {
                 let (grandparent, inline) = parent.rsplit_once('.').unwrap();
                 let header = tour.find(&format!("[{grandparent}]")).unwrap();
-                // The comment above the line tells of the keys that the line doesn't use.
+                // The comment above the line describes the keys that the line doesn't use.
                 let line = header
                     + tour[header..].find(&format!("\n{inline} = ")).unwrap_or_else(|| {
                         tour[header..].find(&format!("\n#: {inline} = ")).unwrap()
@@ -451,7 +452,7 @@ mod tests {
             // The root's own values end at the first header as well.
             let skip = if parent.is_empty() { block.find("schema = ").unwrap() } else { 0 };
             let end = block[skip..].find("\n\n").map_or(block.len(), |at| skip + at);
-            // Comments are wrapped anywhere.
+            // Comments may be wrapped at any word.
             let block = block[..end].replace("\n# ", " ");
             let header = format!("[{path}]");
             let named = tour.contains(&header) || block.contains(&format!("{name} = "));
@@ -463,7 +464,7 @@ mod tests {
     fn every_example_and_every_default_passes_the_check() {
         let mut all = Vec::new();
         paths(&SCENARIO, "", &mut all);
-        // A table's example is the sum of those of its keys.
+        // A table's example consists of those of its keys.
         all.retain(|(_, key)| key.kind.section().is_none_or(|section| section.one_of));
         for (path, key) in all {
             let text = match key.default {

@@ -1,20 +1,19 @@
-//! The resolved scenario: every default and every drawn value written out.
+//! The resolved scenario, with every default and every drawn value.
 
 use super::derive::without_effect;
 use super::document::{Entry, Node, Table, Value, write_value};
 use super::error::Place;
 use super::keys::{Kind, SCENARIO, Section};
+use super::model::{Alignment, MOTIONS, Motion, Scenario};
 use super::quantity::Dimension;
-use super::read::MOTIONS;
 use super::resolve::Draws;
-use super::{Alignment, Motion, Scenario};
 use octant_sample::parameters::Group;
 use std::fmt::Write as _;
 use std::path::Path;
 
 impl Scenario {
-    /// The scenario as TOML with every default and every drawn value in it. Parsed again, with the
-    /// same seed, it makes the same run.
+    /// Writes the scenario as TOML with every default and every drawn value. Parsed again, with the
+    /// same seed, it gives the same run.
     #[must_use]
     pub fn to_resolved_toml(&self, seed: u64, draws: &Draws) -> String {
         let mut document = self.document.clone();
@@ -59,8 +58,7 @@ impl Scenario {
         out
     }
 
-    /// File names that start at the scenario's folder, as absolute ones: the resolved scenario
-    /// stands in another folder.
+    /// Makes relative file names absolute, because the resolved scenario is in another folder.
     fn write_files(&self, document: &mut Table) {
         let folder = std::path::absolute(&self.folder).unwrap_or_else(|_| self.folder.clone());
         let absolute = |file: &str| {
@@ -89,7 +87,7 @@ impl Scenario {
                 {
                     continue;
                 }
-                // A port, and no file.
+                // A port, which is no file.
                 ("source.uri", Some(_)) if octant_link::Uri::is_one(written) => continue,
                 ("endpoint.uri", Some((scheme, _))) if scheme != "fmu" => continue,
                 ("source.uri" | "endpoint.uri", Some((scheme, file))) => {
@@ -102,7 +100,7 @@ impl Scenario {
     }
 }
 
-/// The dimension in which a group is written.
+/// Dimension in which a group is written.
 fn dimension_of(group: Group) -> Dimension {
     match group {
         Group::GyroBias => Dimension::GYRO_BIAS,
@@ -171,7 +169,7 @@ fn write_table(table: &Table, section: &Section, path: &str, out: &mut String) {
         }
     }
     for (name, section, tables, array) in later {
-        let path = super::complete::join(path, name);
+        let path = super::document::join(path, name);
         for table in tables {
             _ = if array { write!(out, "\n[[{path}]]\n") } else { write!(out, "\n[{path}]\n") };
             write_table(table, section, &path, out);

@@ -1,4 +1,4 @@
-//! Two methods on the same instruments with the same noise: `octant compare`.
+//! Comparison of two methods on the same instruments with the same noise: `octant compare`.
 
 use super::ensemble::{Improvement, improvement, rms};
 use super::floor::MaximumFloor;
@@ -9,10 +9,10 @@ use octant_statistics::power;
 use octant_statistics::sample::Interval;
 use serde::{Deserialize, Serialize};
 
-/// Version of the form of `compare.json`.
+/// Version of the schema of `compare.json`.
 pub const SCHEMA: u32 = 1;
 
-/// Improvement that the published claim is about.
+/// Improvement of the published claim, 1.
 pub const CLAIM: f64 = 0.5;
 
 /// Largest errors of one navigation, arcmin; a mark that the run did not reach is null.
@@ -29,7 +29,7 @@ pub struct Maxima {
 }
 
 impl Maxima {
-    /// The maxima of a scored navigation.
+    /// Maxima of a scored navigation.
     #[must_use]
     pub fn of(navigation: &Navigation) -> Self {
         let mark = |name: &str| navigation.marks.get(name);
@@ -41,7 +41,7 @@ impl Maxima {
         }
     }
 
-    /// One of them.
+    /// Maximum of a measure.
     #[must_use]
     pub const fn get(&self, measure: Measure) -> Option<f64> {
         match measure {
@@ -53,7 +53,7 @@ impl Maxima {
     }
 }
 
-/// What is compared: the largest error of a run up to a mark.
+/// Measure of a comparison: the largest error of a run up to a mark.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Measure {
@@ -76,7 +76,7 @@ impl Measure {
     pub const ALL: [Self; 4] =
         [Self::Latitude24h, Self::Longitude24h, Self::Latitude72h, Self::Longitude72h];
 
-    /// The measure in words.
+    /// Name of the measure.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -87,7 +87,7 @@ impl Measure {
         }
     }
 
-    /// It is of longitude.
+    /// True for a longitude error.
     #[must_use]
     pub const fn is_longitude(self) -> bool {
         matches!(self, Self::Longitude24h | Self::Longitude72h)
@@ -111,42 +111,42 @@ pub const REFUSALS_CONFIDENCE: f64 = 0.95;
 pub struct PairedRun {
     /// The seed.
     pub seed: u64,
-    /// Of the first method, the one to be improved on.
+    /// Maxima of the first method, the one to be improved on.
     pub first: Maxima,
-    /// Of the second method.
+    /// Maxima of the second method.
     pub second: Maxima,
-    /// Why the first method refused its calibration; null: it didn't.
+    /// Reason for which the first method refused its calibration; null: it didn't.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub first_refused: Option<String>,
-    /// Why the second method did.
+    /// Reason for which the second method refused its calibration; null: it didn't.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub second_refused: Option<String>,
 }
 
-/// How often each method refused its calibration.
+/// Numbers of refused calibrations of each method.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Refusals {
-    /// Seeds that were run.
+    /// Number of seeds.
     pub seeds: u64,
-    /// Seeds that the first method refused.
+    /// Number of seeds that the first method refused.
     pub first: u64,
-    /// Seeds that the second method refused.
+    /// Number of seeds that the second method refused.
     pub second: u64,
-    /// Seeds that both refused.
+    /// Number of seeds that both refused.
     pub both: u64,
     /// Rate of the first method, with its 95 % interval (Clopper and Pearson).
     pub first_rate: Interval,
-    /// Rate of the second method.
+    /// Rate of the second method, likewise.
     pub second_rate: Interval,
-    /// Two-sided probability of a difference like this, if both refuse as often (McNemar).
+    /// Two-sided probability of a difference at least as large, if both refuse equally often (McNemar).
     pub p: f64,
-    /// Smallest part of the seeds that one method refuses and the other doesn't which this test finds at
-    /// 5 % with 90 %; null: none is found by so few seeds.
+    /// Smallest fraction of seeds refused by only one of the methods that this test detects at 5 % with
+    /// a probability of 90 %; null: so few seeds detect none.
     pub detectable: Option<f64>,
 }
 
 impl Refusals {
-    /// Counts the refusals of runs; none where no seed was refused.
+    /// Counts the refusals of runs; `None` if no seed was refused.
     #[must_use]
     pub fn of(runs: &[PairedRun]) -> Option<Self> {
         let published = |of: fn(&PairedRun) -> bool| runs.iter().map(of).collect::<Vec<bool>>();
@@ -210,37 +210,38 @@ impl Refusals {
 /// One measure over all seeds.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Cell {
-    /// What is compared.
+    /// Measure.
     pub measure: Measure,
-    /// Pairs that have it.
+    /// Number of pairs that have it.
     pub runs: u32,
     /// Root mean square over seeds of the first method, arcmin.
     pub first: f64,
     /// Root mean square over seeds of the second method, arcmin.
     pub second: f64,
-    /// 1 − second/first with its 90 % interval, and the smallest that so many pairs show with 90 %.
+    /// Improvement 1 − second/first with its 90 % interval, and the smallest that so many pairs detect
+    /// with a probability of 90 %.
     pub improvement: Improvement,
-    /// The same from the random walk alone, exact parameters and attitude, arcmin.
+    /// Root mean square from the random walk alone, with exact parameters and attitude, arcmin.
     pub floor: Option<f64>,
-    /// What it comes to.
+    /// Verdict on the claim.
     pub claim: Claim,
 }
 
-/// What a comparison shows of the claim that the second method is more than 50 % better.
+/// Verdict of a comparison on the claim that the second method is more than 50 % better.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Claim {
     /// The whole interval of improvement is above 50 %.
     Holds,
-    /// More than 50 % in these runs; the interval reaches below.
+    /// The improvement in these runs is more than 50 %, but the interval reaches below.
     Likely,
-    /// Better for certain, and at most 50 % in these runs; the interval reaches above.
+    /// The improvement is significant and at most 50 % in these runs, but the interval reaches above.
     Better,
-    /// Better for certain, and not by 50 %: the whole interval lies between.
+    /// The improvement is significant and below 50 %: the whole interval lies between.
     BetterByLess,
-    /// The interval includes 0: nothing is shown.
+    /// The interval includes 0: the result is inconclusive.
     NotShown,
-    /// Worse for certain.
+    /// The second method is significantly worse.
     Worse,
 }
 
@@ -262,10 +263,10 @@ impl Claim {
     }
 }
 
-/// The comparison of two methods.
+/// Comparison of two methods.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Comparison {
-    /// Version of this form: [`SCHEMA`].
+    /// Version of the schema: [`SCHEMA`].
     pub schema: u32,
     /// Version of the program.
     pub octant: String,
@@ -275,12 +276,12 @@ pub struct Comparison {
     pub first: String,
     /// Name of the second method.
     pub second: String,
-    /// How often the methods refused; null where none did.
+    /// Refusals of the methods; null if there were none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub refusals: Option<Refusals>,
     /// Every measure that at least two pairs have.
     pub cells: Vec<Cell>,
-    /// The claim in plain words: the verdict, then the reasons.
+    /// Verdict on the claim in plain words, then the reasons.
     pub words: Vec<String>,
     /// Every pair of runs.
     pub runs: Vec<PairedRun>,
@@ -288,7 +289,7 @@ pub struct Comparison {
 
 /// Compares paired runs.
 ///
-/// `floor` are the maxima of the random walk alone for 24 h and 72 h, from
+/// `floor` has the maxima of the random walk alone for 24 h and 72 h, from
 /// [`super::floor::Floor::maxima`].
 #[must_use]
 pub fn compare(
@@ -333,19 +334,19 @@ fn cell(measure: Measure, runs: &[PairedRun], floor: &[MaximumFloor]) -> Option<
     })
 }
 
-/// `[−14 %, 1 %]` and the like.
+/// Text of an interval, `[−14 %, 1 %]`.
 #[must_use]
 pub fn interval(i: &Improvement) -> String {
     format!("[{} %, {} %]", percent(i.low), percent(i.high))
 }
 
-/// A fraction in whole per cent, with a true minus.
+/// Text of a fraction in whole per cent, with a true minus sign.
 #[must_use]
 pub fn percent(fraction: f64) -> String {
     octant_base::number::fixed(100.0 * fraction, 0)
 }
 
-/// The verdict and its reasons.
+/// Text of the verdict and its reasons.
 fn words(
     first: &str,
     second: &str,
@@ -354,7 +355,7 @@ fn words(
     refusals: Option<&Refusals>,
 ) -> Vec<String> {
     let told = refusals.map(|refusals| refusals.words([first, second])).unwrap_or_default();
-    // Longitude at the latest mark is what a g-dependent bias moves most.
+    // A g-dependent bias changes the longitude at the latest mark most.
     let main = cells.iter().rfind(|c| c.measure.is_longitude()).or_else(|| cells.last());
     let Some(main) = main else {
         let nothing = format!(
@@ -394,7 +395,7 @@ fn words(
              {floor:.3} arcmin; {second} has {:.3} and {first} {:.3}",
             main.second, main.first
         ));
-        // A method without any error of its own would still have the floor.
+        // Even a method without any error of its own would have the floor.
         let best = 1.0 - floor / main.first;
         if best < CLAIM {
             words.push(format!(
@@ -422,7 +423,7 @@ fn words(
     words
 }
 
-/// The second method is within a factor of 2 of the random walk.
+/// True if the second method is within a factor of 2 of the random walk.
 fn near_floor(cell: &Cell) -> bool {
     cell.floor.is_some_and(|floor| cell.second < 2.0 * floor)
 }

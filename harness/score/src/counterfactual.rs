@@ -1,53 +1,54 @@
-//! What a fault did: the faulted run held against its twin, which met the same instrument and the
-//! same noise without the fault.
+//! Effect of faults: comparison of the faulted run with its twin, which has the same instrument and the
+//! same noise without the faults.
 //!
-//! Every difference between the two is the fault's doing, because nothing else differs. What the
-//! core reported in the faulted run and not in its twin is how it noticed.
+//! Every difference between the two is caused by the faults, because nothing else differs. Reports of
+//! the core in the faulted run that its twin doesn't have show that the core noticed the faults.
 
+use super::calibration::Calibration;
 use super::health::{Episode, name};
-use super::summary::{Calibration, Navigation};
+use super::navigation::Navigation;
 use super::trace::Trace;
 use octant_earth::ellipsoid::Ellipsoid;
 use octant_earth::units::{ARCMIN, NAUTICAL_MILE_M};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// Parameter shift, in posterior σ of the twin, from which a fault counts as harmful: an error that
-/// its own σ would not let anyone expect.
+/// Parameter shift, in posterior σ of the twin, from which a fault counts as harmful: an error that the
+/// parameter's own σ makes unlikely.
 pub const HARMFUL_SHIFT_SIGMA: f64 = 3.0;
-/// The same report within this time in both runs is not the fault's, ns.
+/// Time within which the same report in both runs is not attributed to the fault, ns.
 const SAME_NS: u64 = 5_000_000_000;
-/// Rows of the difference kept in the summary.
+/// Most rows of the difference in the summary.
 const ROWS_MAX: usize = 1000;
 
-/// What the faults of a run did, against its twin.
+/// Effect of the faults of a run, compared with its twin.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Counterfactual {
-    /// Seconds of the run after which the outputs of the two are no longer the same; they differ
-    /// within the second that follows. Null where no output differs.
+    /// Time up to which the outputs of the two are the same, s; they differ within the next 200 outputs
+    /// (1 s at 200 Hz). Null if no output differs.
     pub outputs_differ_after_s: Option<f64>,
     /// Shift of every estimated parameter, by name.
     pub parameters: BTreeMap<String, Shift>,
-    /// Name of the parameter that moved most; null without a calibration in both.
+    /// Name of the parameter that shifted most; null without a calibration in both.
     pub worst_parameter: Option<String>,
-    /// Its |shift|, in σ of the twin.
+    /// Magnitude of its shift, in σ of the twin.
     pub worst_shift_sigma: Option<f64>,
-    /// Difference of the navigation errors; null where one of the two didn't navigate.
+    /// Difference of the navigation errors; null if one of the two didn't navigate.
     pub navigation: Option<DriftDifference>,
-    /// What became of each fault, in the order of the scenario.
+    /// Detection of each fault, in the order of the scenario.
     pub faults: Vec<Noticed>,
-    /// Faults that fired and were not noticed.
+    /// Number of faults that fired and were not noticed.
     pub undetected: u64,
-    /// Longest delay of those that were noticed, s; null where none was.
+    /// Longest detection delay, s; null if no fault was noticed.
     pub detection_delay_max_s: Option<f64>,
-    /// The calibration was refused, and that of the twin wasn't.
+    /// True if the calibration was refused, and that of the twin wasn't.
     pub refused: bool,
-    /// The fault did harm: a parameter moved by 3 σ or more, or the radial error changed by more than
-    /// the twin's largest.
+    /// True for a significant effect: a parameter shifted by 3 σ or more, or the largest difference of
+    /// position exceeds the twin's largest radial error.
     pub harmful: bool,
-    /// It did harm, the calibration was published, and no fault was noticed.
+    /// True for a significant effect if the calibration was published and no fault was noticed.
     pub missed: bool,
-    /// Reports of the core that no fault explains: those of the twin.
+    /// Number of reports of the core that no fault explains: those of the twin.
     pub false_alarms: u64,
     /// Hash of the twin's stream.
     pub twin_stream_hash: String,
@@ -58,7 +59,7 @@ pub struct Counterfactual {
 pub struct Shift {
     /// Estimate of the faulted run minus that of the twin, in the unit of the parameter.
     pub shift: f64,
-    /// The same in posterior σ of the twin.
+    /// Shift in posterior σ of the twin.
     pub sigma: f64,
 }
 
@@ -71,50 +72,50 @@ pub struct DriftDifference {
     pub longitude_max_arcmin: f64,
     /// Largest distance between the two solutions, nmi.
     pub radial_max_nmi: f64,
-    /// Largest radial error of the twin, nmi: what the difference is to be held against.
+    /// Largest radial error of the twin, nmi, for comparison with the difference.
     pub twin_radial_max_nmi: f64,
-    /// Hours, difference of latitude, of longitude (arcmin).
+    /// Rows of time (h), difference of latitude, difference of longitude (arcmin).
     pub series_hours: Vec<[f64; 3]>,
 }
 
-/// Whether and how the core noticed a fault.
+/// Detection of a fault by the core.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Noticed {
     /// Id of the fault.
     pub id: String,
     /// Onset: start of the first interval that it altered, s of the run; null if it never fired.
     pub onset_s: Option<f64>,
-    /// The core's first report that its twin doesn't have, from the onset on; null: none. With
-    /// several faults at once it can be another one's.
+    /// First report of the core, from the onset on, that its twin doesn't have; null: none. With
+    /// several faults at once it can be caused by another one.
     pub noticed_by: Option<String>,
-    /// Seconds from the onset to that report.
+    /// Time from the onset to that report, s.
     pub delay_s: Option<f64>,
-    /// Seconds of the run at which the last such report ended.
+    /// Time of the run at which the last such report ended, s.
     pub last_report_s: Option<f64>,
-    /// The reports ended before the calibration or the run did, the calibration stands, and no
-    /// parameter moved by 3 σ.
+    /// True if the reports ended more than 2 s before the end of the run, the calibration stands, and
+    /// no parameter shifted by 3 σ.
     pub recovered: bool,
 }
 
-/// One run, as far as it is compared.
+/// Data of one run for the comparison.
 #[derive(Clone, Copy, Debug)]
 pub struct Side<'a> {
-    /// Its calibration.
+    /// Calibration.
     pub calibration: Option<&'a Calibration>,
-    /// Its navigation.
+    /// Navigation.
     pub navigation: Option<&'a Navigation>,
-    /// What the core reported.
+    /// Episodes of the core's reports.
     pub episodes: &'a [Episode],
-    /// Its trace.
+    /// Trace.
     pub trace: &'a Trace,
-    /// Hash of its stream.
+    /// Hash of the stream.
     pub stream_hash: &'a str,
     /// Length of the run, s of device time.
     pub elapsed_s: f64,
 }
 
-/// Holds a faulted run against its twin. `onsets` are the faults with the start of the first
-/// interval that each altered, s; `latitude_rad` and `height_m` are those of the site.
+/// Compares a faulted run with its twin. `onsets` are the faults with the start of the first interval
+/// that each altered, s; `latitude_rad` and `height_m` are those of the site.
 #[must_use]
 pub fn counterfactual(
     faulted: &Side<'_>,
@@ -168,7 +169,7 @@ pub fn counterfactual(
     }
 }
 
-/// Shifts of the parameters that both estimated.
+/// Shifts of the parameters that both runs estimated.
 fn shifts(faulted: &Side<'_>, twin: &Side<'_>) -> BTreeMap<String, Shift> {
     let (Some(faulted), Some(twin)) = (faulted.calibration, twin.calibration) else {
         return BTreeMap::new();
@@ -247,11 +248,11 @@ fn noticed(
     let after: Vec<&&Episode> = new.iter().filter(|e| e.start.seconds() >= onset_s).collect();
     if let Some(first) = after.iter().min_by_key(|episode| episode.start.ns) {
         found.noticed_by = Some(name(first.cause).to_owned());
-        // To the nanosecond that stamps have: a limit of 5 ms is kept by a delay of 5 ms.
+        // Rounded to the nanosecond of the stamps, so that a delay of 5 ms keeps a limit of 5 ms.
         found.delay_s = Some(((first.start.seconds() - onset_s) * 1e9).round() / 1e9);
         let last_s = after.iter().map(|e| e.end.seconds()).fold(0.0, f64::max);
         found.last_report_s = Some(last_s);
-        // Measurements come once a second: one that reports at the very end hasn't ended.
+        // Measurements come once a second: reports at the very end haven't ended.
         found.recovered = stands && last_s < elapsed_s - 2.0;
     }
     found

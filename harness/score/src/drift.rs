@@ -7,10 +7,10 @@ use octant_earth::ellipsoid::Ellipsoid;
 use octant_earth::units::{ARCMIN, NAUTICAL_MILE_M};
 use std::collections::BTreeMap;
 
-/// Hours at which scores are also given "so far", when the run gets there.
+/// Hours at which intermediate scores are given, if the run gets there.
 pub const MARKS_H: [u32; 2] = [24, 72];
 
-/// One error of the navigation solution: navigation minus truth.
+/// Error of the navigation solution at one time: navigation minus truth.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DriftSample {
     /// Time since the start of the navigation, s.
@@ -25,10 +25,10 @@ pub struct DriftSample {
     pub height_m: f64,
 }
 
-/// Why a drift can't be scored.
+/// Error of a drift that can't be scored.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum DriftError {
-    /// No sample came.
+    /// No samples were scored.
     #[error("score the drift: no sample of the navigation, at least 2 are needed")]
     Empty,
     /// A value is not a number.
@@ -36,22 +36,22 @@ pub enum DriftError {
     NotFinite {
         /// Number of the sample, from 0.
         sample: u64,
-        /// Its time, s.
+        /// Time of the sample, s.
         t_s: f64,
     },
-    /// Time stands still or runs backwards.
+    /// Time doesn't increase.
     #[error("score the drift: sample {sample} is at {t_s} s, after one at {previous_s} s")]
     Order {
         /// Number of the sample, from 0.
         sample: u64,
-        /// Its time, s.
+        /// Time of the sample, s.
         t_s: f64,
         /// Time of the sample before it, s.
         previous_s: f64,
     },
 }
 
-/// Errors at one time in the units of the scores.
+/// Errors at one time, in the units of the scores.
 #[derive(Clone, Copy, Debug)]
 struct Errors {
     t_s: f64,
@@ -82,8 +82,8 @@ impl Extent {
     }
 }
 
-/// Scores the drift of one navigation while it runs, at 1 Hz or any slower rate. Memory doesn't
-/// grow with the length of the run.
+/// Scores the drift of one navigation while it runs, at 1 Hz or any slower rate. Memory doesn't grow
+/// with the length of the run.
 #[derive(Clone, Debug)]
 pub struct DriftScorer {
     samples: u64,
@@ -92,7 +92,7 @@ pub struct DriftScorer {
     latitude: Extent,
     longitude: Extent,
     radial: Extent,
-    /// Σ r t and Σ t² of the regression through the origin.
+    /// Sums Σ r t and Σ t² of the regression through the origin.
     radial_time: f64,
     time_square: f64,
     slope: Option<SecularSlope>,
@@ -108,7 +108,7 @@ impl Default for DriftScorer {
 }
 
 impl DriftScorer {
-    /// A scorer that has seen nothing.
+    /// Makes a scorer without samples.
     #[must_use]
     pub fn new() -> Self {
         Self {
@@ -127,8 +127,8 @@ impl DriftScorer {
         }
     }
 
-    /// Takes one error. What is wrong with it is told by [`Self::finish`]; nothing after the first
-    /// wrong sample counts.
+    /// Takes one sample. [`Self::finish`] reports errors in it; samples after the first invalid one are
+    /// ignored.
     pub fn push(&mut self, sample: &DriftSample) {
         if self.broken.is_some() {
             return;
@@ -172,7 +172,7 @@ impl DriftScorer {
         self.previous = Some(now);
     }
 
-    /// What lies between two samples: integrals, and marks that are reached.
+    /// Adds the interval between two samples: integrals, and marks that are reached.
     fn step(&mut self, before: &Errors, now: &Errors) {
         let dt_s = now.t_s - before.t_s;
         for hour in MARKS_H {
@@ -201,13 +201,13 @@ impl DriftScorer {
         self.radial.integrate(before.radial_nmi, now.radial_nmi, dt_s);
     }
 
-    /// The scores of everything taken so far.
+    /// Scores of all samples so far.
     ///
-    /// `height` says what was done with the vertical channel: a free one diverges and drags the
-    /// horizontal one with it, so scores of the two can't be compared.
+    /// `height` is the treatment of the vertical channel: a free one diverges and affects the
+    /// horizontal ones, so scores with different treatments can't be compared.
     ///
     /// # Errors
-    /// If fewer than two samples came, one was not finite, or time did not increase.
+    /// If there are fewer than two samples, one was not finite, or time did not increase.
     pub fn finish(&self, height: HeightChannel) -> Result<Navigation, DriftError> {
         if let Some(broken) = self.broken {
             return Err(broken);

@@ -1,4 +1,4 @@
-//! Statistics over many runs that scores are made of: those of [`octant_statistics`].
+//! Statistics over many runs that the scores use, from [`octant_statistics`].
 
 pub use octant_statistics::paired::{Improvement, improvement};
 pub use octant_statistics::position::{PositionStatistics, cep50, position_statistics};

@@ -1,11 +1,11 @@
-//! What the equipment of a run comes to, by the day on which the run ended.
+//! Findings about the equipment of a run, from its certificates and the day on which the run ended.
 
-use super::judge::{About, Finding};
+use super::finding::{About, Finding};
 use octant_requirements::Verdict;
 use octant_requirements::equipment::{Day, Equipment};
 
-/// What the equipment of a run that ended on a day comes to: a finding for each piece whose certificate had expired.
-/// Where nobody knows the day, nothing of it is shown.
+/// Findings about the equipment of a run that ended on a day: one for each piece whose certificate had
+/// expired. Without a known day there is one for every piece.
 #[must_use]
 pub fn findings(equipment: &[Equipment], ended: Option<&Day>) -> Vec<Finding> {
     let one = |piece: &Equipment| {

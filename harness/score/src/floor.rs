@@ -1,5 +1,5 @@
-//! The floor that the random walk sets: what a free inertial solution with exact parameters and an
-//! exact initial attitude still drifts, on a static base with the height held.
+//! Floor of the drift by the random walk: the drift of a free inertial solution with exact parameters
+//! and an exact initial attitude, on a static base with the height held.
 //!
 //! Phi-angle error model with seven states, φ (north, east, down), δv (north, east), δL, δλ:
 //!
@@ -9,8 +9,7 @@
 //! δL̇ = δv_N / (R_M + h)                   δλ̇ = δv_E / ((R_N + h) cos L)
 //! ```
 //!
-//! White noise doesn't change by turning the body, so the rotation in navigation needs no place
-//! here.
+//! Turning the body doesn't change white noise, so the rotation in navigation is not modelled.
 
 use nalgebra::{SMatrix, SVector};
 use octant_earth::ellipsoid::{EARTH_RATE_RADPS, Ellipsoid};
@@ -23,7 +22,7 @@ const STATES: usize = 7;
 type Matrix = SMatrix<f64, STATES, STATES>;
 type State = SVector<f64, STATES>;
 
-/// Step of the propagation, s: a Schuler period is 84 of them.
+/// Step of the propagation, s: 1/84 of a Schuler period.
 const STEP_S: f64 = 60.0;
 
 /// Error of a sensor, constant in n: gyro (rad/s) north, east, down, accelerometer (m/s²) north,
@@ -36,7 +35,7 @@ pub struct Floor {
     dynamics: Matrix,
     /// Φ over one step.
     transition: Matrix,
-    /// Covariance that one step adds.
+    /// Covariance added by one step.
     noise: Matrix,
     angle_random_walk: f64,
     velocity_random_walk: f64,
@@ -55,16 +54,16 @@ pub struct FloorPoint {
     pub longitude_arcmin: f64,
 }
 
-/// The floor over one navigation.
+/// Floor over one navigation.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FloorSummary {
-    /// 1σ at the end, arcmin.
+    /// 1σ of the latitude error at the end, arcmin.
     pub latitude_final_arcmin: f64,
-    /// 1σ at the end, arcmin.
+    /// 1σ of the longitude error at the end, arcmin.
     pub longitude_final_arcmin: f64,
-    /// Expected rms over time, √(1/T ∫ σ² dt), arcmin.
+    /// Expected time-RMS of the latitude error, √(1/T ∫ σ² dt), arcmin.
     pub latitude_rms_arcmin: f64,
-    /// Expected rms over time, arcmin.
+    /// Expected time-RMS of the longitude error, arcmin.
     pub longitude_rms_arcmin: f64,
     /// Expected time-RMS of the radial error, nmi.
     pub radial_rms_nmi: f64,
@@ -77,14 +76,14 @@ pub struct FloorSummary {
 pub struct MaximumFloor {
     /// Length of the navigation, h.
     pub hours: f64,
-    /// Of the latitude error, arcmin.
+    /// Value for the latitude error, arcmin.
     pub latitude_arcmin: f64,
-    /// Of the longitude error, arcmin.
+    /// Value for the longitude error, arcmin.
     pub longitude_arcmin: f64,
 }
 
 impl Floor {
-    /// The model at a latitude (rad) and height (m), with angle random walk (rad/√s) and
+    /// Makes the model at a latitude (rad) and height (m), with angle random walk (rad/√s) and
     /// accelerometer noise density ((m/s²)/√Hz).
     #[must_use]
     pub fn new(
@@ -103,13 +102,13 @@ impl Floor {
         f[(1, 0)] = omega * s;
         f[(1, 2)] = omega * c;
         f[(2, 1)] = -omega * c;
-        // δω_en and δω_ie.
+        // Terms of δω_en and δω_ie.
         f[(0, 4)] = 1.0 / rn;
         f[(1, 3)] = -1.0 / rm;
         f[(2, 4)] = -s / c / rn;
         f[(0, 5)] = -omega * s;
         f[(2, 5)] = -omega * c;
-        // f × φ and Coriolis.
+        // Terms of f × φ and Coriolis.
         f[(3, 1)] = g;
         f[(4, 0)] = -g;
         f[(3, 4)] = -2.0 * omega * s;
@@ -128,7 +127,7 @@ impl Floor {
         }
     }
 
-    /// σ over time and what follows from it, for a navigation of `duration_s`.
+    /// Floor of a navigation of `duration_s`.
     #[must_use]
     pub fn summary(&self, duration_s: f64) -> FloorSummary {
         let steps = (duration_s / STEP_S).max(1.0) as u32;
@@ -163,7 +162,7 @@ impl Floor {
     }
 
     /// Root mean square over `members` simulated runs of the largest error up to each of `hours`.
-    /// There is no closed form for a maximum; the same seed gives the same numbers.
+    /// A maximum has no closed form; the same seed gives the same numbers.
     #[must_use]
     pub fn maxima(&self, hours: &[f64], members: u32, seed: u64) -> Vec<MaximumFloor> {
         let mut hours = hours.to_vec();
@@ -208,7 +207,7 @@ impl Floor {
             .collect()
     }
 
-    /// Latitude and longitude error (rad) after `t_s` from errors that are constant in n, without
+    /// Latitude and longitude error (rad) after `t_s`, from errors that are constant in n, without
     /// noise.
     #[must_use]
     pub fn propagate(&self, initial: [f64; STATES], error: &SensorError, t_s: f64) -> [f64; 2] {
@@ -224,7 +223,7 @@ impl Floor {
     }
 }
 
-/// A sensor error as it enters the states: the gyro error with a minus.
+/// Input of the states by a sensor error: the gyro error enters with a minus sign.
 fn input(error: &SensorError) -> State {
     State::from([-error[0], -error[1], -error[2], error[3], error[4], 0.0, 0.0])
 }
@@ -235,8 +234,8 @@ fn noise_density(angle_random_walk: f64, velocity_random_walk: f64) -> Matrix {
     Matrix::from_diagonal(&State::from([g, g, g, a, a, 0.0, 0.0]))
 }
 
-/// Φ = exp(F·t) and ∫₀ᵗ exp(F·s) ds by their power series; t is at most a minute, where 20 terms
-/// are beyond the last bit.
+/// Φ = exp(F·t) and ∫₀ᵗ exp(F·s) ds by their power series; t is at most a minute, for which 20 terms
+/// are exact to the last bit.
 fn transition(f: &Matrix, t_s: f64) -> (Matrix, Matrix) {
     let mut term = Matrix::identity();
     let mut phi = Matrix::identity();
@@ -249,7 +248,7 @@ fn transition(f: &Matrix, t_s: f64) -> (Matrix, Matrix) {
     (phi, integral)
 }
 
-/// Φ over a step and the covariance that white noise adds in it, by doubling from 1/1024 step.
+/// Φ over a step, and the covariance that white noise adds in it, by doubling from 1/1024 of a step.
 fn discretize(f: &Matrix, density: &Matrix) -> (Matrix, Matrix) {
     let mut t_s = STEP_S / 1024.0;
     let (mut phi, _) = transition(f, t_s);
@@ -262,7 +261,7 @@ fn discretize(f: &Matrix, density: &Matrix) -> (Matrix, Matrix) {
     (phi, q)
 }
 
-/// Two independent standard normal numbers (Box and Muller, 1958), by libm.
+/// Two independent standard normal numbers (Box and Muller, 1958), computed with libm.
 fn gaussian_pair(random: &mut Philox) -> [f64; 2] {
     let u = rand_philox::u32_to_unit_f64(random.next_u32());
     let v = rand_philox::u32_to_unit_f64(random.next_u32());

@@ -1,37 +1,37 @@
-//! What the core reported over a run: counts, episodes, mean NIS.
+//! Reports of the core over a run: counts, episodes, mean NIS.
 
-use super::summary::HealthCounts;
+use super::calibration::HealthCounts;
 use octant_sample::time::DeviceTime;
 use octant_sample::{Health, Output};
 
-/// Episodes kept; more are only counted.
+/// Most episodes kept; further ones are only counted.
 pub const EPISODES_MAX: usize = 1000;
 
-/// Flags of one cause that are closer than this are one episode: measurements come once a second.
+/// Longest time between flags of one cause in the same episode, ns: measurements come once a second.
 const JOIN_NS: u64 = 2_500_000_000;
 
-/// A stretch in which the core reported one cause.
+/// A period in which the core reported one cause.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Episode {
-    /// The cause: one flag.
+    /// Cause: one flag.
     pub cause: Health,
     /// First epoch that reported it.
     pub start: DeviceTime,
     /// Last epoch that reported it.
     pub end: DeviceTime,
-    /// Epochs that reported it.
+    /// Number of epochs that reported it.
     pub epochs: u64,
 }
 
 impl Episode {
-    /// The cause in words.
+    /// Name of the cause.
     #[must_use]
     pub fn name(&self) -> &'static str {
         name(self.cause)
     }
 }
 
-/// A flag in words.
+/// Name of a flag.
 #[must_use]
 pub fn name(cause: Health) -> &'static str {
     match cause {
@@ -54,11 +54,11 @@ pub fn name(cause: Health) -> &'static str {
     }
 }
 
-/// Watches the outputs of one run. Takes no memory while it watches.
+/// Monitors the outputs of one run, without allocating.
 #[derive(Clone, Debug)]
 pub struct HealthMonitor {
     counts: HealthCounts,
-    /// The last epoch that reported each flag, and the index of its episode if it is listed.
+    /// Last epoch that reported each flag, and the index of its episode if it is listed.
     last: [Option<(DeviceTime, Option<usize>)>; 32],
     episodes: Vec<Episode>,
     unlisted: u64,
@@ -73,7 +73,7 @@ impl Default for HealthMonitor {
 }
 
 impl HealthMonitor {
-    /// A monitor that has seen nothing.
+    /// Makes a monitor without outputs.
     #[must_use]
     pub fn new() -> Self {
         Self {
@@ -91,8 +91,7 @@ impl HealthMonitor {
         self.push_at(output, output.device_time);
     }
 
-    /// As [`Self::push`], with the time at which it is to be listed: the output's own is that of a
-    /// stamp that a fault may have altered.
+    /// Takes the output of one epoch at a given time: a fault may have altered the output's own stamp.
     pub fn push_at(&mut self, output: &Output, now: DeviceTime) {
         let rejected = output.health.contains(Health::INNOVATION_REJECTED);
         if output.nis.is_finite() || rejected {
@@ -135,7 +134,7 @@ impl HealthMonitor {
         let count = match cause {
             Health::INNOVATION_REJECTED => &mut counts.rejected,
             Health::RECOVERING => {
-                // A recovery is one event, however long it lasts.
+                // A recovery is one event, whatever its length.
                 counts.recoveries += u64::from(joins.is_none());
                 return;
             }
@@ -169,13 +168,13 @@ impl HealthMonitor {
         (self.nis_count > 0).then(|| self.nis_sum / self.nis_count as f64)
     }
 
-    /// Episodes in the order in which they began, at most [`EPISODES_MAX`].
+    /// Episodes in the order of their beginnings, at most [`EPISODES_MAX`].
     #[must_use]
     pub fn episodes(&self) -> &[Episode] {
         &self.episodes
     }
 
-    /// Episodes that found no place in the list.
+    /// Number of episodes beyond the list.
     #[must_use]
     pub fn unlisted(&self) -> u64 {
         self.unlisted

@@ -1,70 +1,28 @@
-//! From a summary to its verdict: the one place where one is derived.
+//! Derivation of the verdict from a summary, which happens only here.
 //!
-//! It rests on the values and limits of the requirements, on what was done of the plan, on refusals, faults and findings;
-//! all of them are in the summary, so that whoever reads one can derive its verdict again.
+//! The verdict depends on the values and limits of the requirements, on the part of the plan that was
+//! done, on refusals, faults and findings. All of them are in the summary, so that every reader can
+//! derive its verdict again.
+
+pub use super::finding::{About, Finding};
 
 use super::summary::{Baseline, Calibration, FaultResult, Summary, WITH_FINDINGS};
 use super::verdict::{RequirementResult, evaluate};
 use super::work::{Part, Short, Work};
 use octant_requirements::Verdict;
 use octant_requirements::verdict::LimitCheck;
-use serde::{Deserialize, Serialize};
+use std::convert::Infallible;
+use std::fmt::Display;
 
-/// Whom a finding is about.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum About {
-    /// The unit under test: what it did wrong counts against it.
-    Unit,
-    /// The bench: the unit isn't judged by what follows.
-    Bench,
-    /// Equipment of the bench whose certificate doesn't hold: nothing that was measured with it is shown.
-    Equipment,
-    /// The run: somebody ended it, or left out what it needs.
-    Run,
-}
-
-/// Something other than a requirement that bears on the verdict: an answer that may not be, an overrun, a
-/// dropped record, a bench that failed.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Finding {
-    /// What it comes to.
-    pub verdict: Verdict,
-    /// Whom it is about.
-    pub about: About,
-    /// What happened, in plain words.
-    pub reason: String,
-}
-
-impl Finding {
-    /// That the unit did what no unit may.
-    #[must_use]
-    pub fn of_unit(verdict: Verdict, reason: String) -> Self {
-        Self { verdict, about: About::Unit, reason }
-    }
-
-    /// That the bench broke its promise.
-    #[must_use]
-    pub fn of_bench(verdict: Verdict, reason: String) -> Self {
-        Self { verdict, about: About::Bench, reason }
-    }
-
-    /// That the run doesn't show what it was to show.
-    #[must_use]
-    pub fn of_run(reason: String) -> Self {
-        Self { verdict: Verdict::Inconclusive, about: About::Run, reason }
-    }
-}
-
-/// Reason of a run of which nothing was asked.
+/// Reason of a run without requirements.
 pub const NO_REQUIREMENT: &str = "nothing was required";
 
-/// What is told of a calibration that was refused.
+/// Text about a refused calibration.
 pub fn refusal(method: &str, reason: &str) -> String {
     format!("calibration of {method} refused: {reason}")
 }
 
-/// Faults of both methods that never fired, with what is told of them.
+/// Faults of both methods that never fired, with texts.
 pub fn unfired(summary: &Summary) -> impl Iterator<Item = (&FaultResult, String)> {
     let primary = summary.faults.iter().map(|fault| (fault, String::new()));
     let baseline = summary.baseline.iter().flat_map(|baseline| {
@@ -79,7 +37,8 @@ pub fn unfired(summary: &Summary) -> impl Iterator<Item = (&FaultResult, String)
     })
 }
 
-/// Holds a summary against its requirements, and sets `requirements`, `findings`, `verdict` and `reasons`.
+/// Compares a summary with its requirements, and sets `requirements`, `findings`, `verdict` and
+/// `reasons`.
 ///
 /// # Errors
 /// If the summary can't be written as JSON.
@@ -88,18 +47,19 @@ pub fn judge(
     requirements: &[LimitCheck],
     findings: &[Finding],
 ) -> Result<(), serde_json::Error> {
-    judge_by(summary, requirements, findings, |_| Ok(0.0))
+    judge_by(summary, requirements, findings, |_| Ok::<_, Infallible>(0.0))
 }
 
-/// As [`judge`], with the expanded uncertainty of what each measure is held against, or why nobody knows it.
+/// Judges as [`judge`] does, with the expanded uncertainty of each measure's reference, or the reason
+/// why it is unknown.
 ///
 /// # Errors
 /// If the summary can't be written as JSON.
-pub fn judge_by(
+pub fn judge_by<E: Display>(
     summary: &mut Summary,
     requirements: &[LimitCheck],
     findings: &[Finding],
-    uncertainty: impl Fn(&str) -> Result<f64, String>,
+    uncertainty: impl Fn(&str) -> Result<f64, E>,
 ) -> Result<(), serde_json::Error> {
     let document = serde_json::to_value(&*summary)?;
     summary.findings = findings.to_vec();
@@ -108,12 +68,12 @@ pub fn judge_by(
         match uncertainty(&requirement.measure) {
             Ok(uncertainty) => result.with_uncertainty(uncertainty),
             Err(_) if result.value.is_none() => result,
-            // Without a value nothing of it is decided, now or when it is derived again.
+            // Without a value the result is inconclusive, now and when it is derived again.
             Err(reason) => RequirementResult {
                 value: None,
                 margin: None,
                 verdict: Verdict::Inconclusive,
-                reason: Some(reason),
+                reason: Some(reason.to_string()),
                 ..result
             },
         }
@@ -132,12 +92,12 @@ pub fn judge_by(
 pub struct Derived {
     /// The verdict.
     pub verdict: Verdict,
-    /// Why, in plain words.
+    /// Reasons, in plain words.
     pub reasons: Vec<String>,
 }
 
-/// The verdict of a summary, from what is in it: not from `verdict` and `reasons`, which are what was said of
-/// it. The results of its requirements are held against value and limit again.
+/// Derives the verdict of a summary from its contents, without `verdict` and `reasons`. The results of
+/// its requirements are derived from value and limit again.
 #[must_use]
 pub fn derive(summary: &Summary) -> Derived {
     let results = summary.requirements.iter().map(|result| as_far_as_done(summary, result.again()));
@@ -152,7 +112,8 @@ pub fn derive(summary: &Summary) -> Derived {
         unit = unit.worst(verdict);
         reasons.extend(reason);
     }
-    // What was broken before the bench failed stays broken; else the bench has the last word.
+    // A requirement that failed before the bench did stays failed; otherwise the verdict of the bench
+    // counts too.
     let mut verdict = if unit == Verdict::Fail { unit } else { unit.worst(bench) };
     if summary.requirements.is_empty() {
         reasons.push(NO_REQUIREMENT.to_owned());
@@ -161,7 +122,7 @@ pub fn derive(summary: &Summary) -> Derived {
         }
     }
     if summary.schema < WITH_FINDINGS {
-        // Its findings were not kept: what they came to can't be less than was said.
+        // Findings of that schema were not stored: the verdict can't be better than the stored one.
         verdict = verdict.worst(summary.verdict);
         if verdict == Verdict::Pass && summary.requirements.is_empty() {
             verdict = Verdict::None;
@@ -172,7 +133,7 @@ pub fn derive(summary: &Summary) -> Derived {
 
 type Told = (Verdict, Option<String>);
 
-/// What bears on the verdict: of the unit and the run, and of the bench.
+/// Verdicts that affect the result: of the unit and the run, and of the bench.
 fn sides(
     summary: &Summary,
     results: &mut dyn Iterator<Item = &RequirementResult>,
@@ -189,8 +150,8 @@ fn sides(
     for (method, calibration, primary) in refusals(summary) {
         let Some(reason) = calibration.refused.as_ref() else { continue };
         let told = refusal(method, reason);
-        // The baseline is there to be compared with: its refusal is told, the run stands. After the bench
-        // failed a refusal is what it should be.
+        // The baseline is only for comparison: its refusal is reported, and the run stands. After a
+        // failure of the bench a refusal is correct.
         let verdict = match (primary, bench_broke(summary) || is_uncertified(summary)) {
             (true, false) => Verdict::Fail,
             (true, true) => Verdict::Inconclusive,
@@ -214,8 +175,8 @@ fn refusals(summary: &Summary) -> impl Iterator<Item = (&str, &Calibration, bool
     primary.chain(baseline.filter_map(|b| Some((b.label.as_str(), b.calibration.as_ref()?, false))))
 }
 
-/// Where the methods of a run fall short of their plan. What was refused is told as that, unless it was the
-/// bench's doing.
+/// Shortfalls of a run's methods from their plan. A refused method is reported as refused only, unless
+/// the bench failed.
 fn shortfalls(summary: &Summary) -> Vec<(Short, String)> {
     let broke = bench_broke(summary);
     let refused = |calibration: Option<&Calibration>| {
@@ -238,18 +199,18 @@ fn shortfalls(summary: &Summary) -> Vec<(Short, String)> {
     all
 }
 
-/// The bench broke its promise: nothing was judged from then on.
+/// True if the bench failed: nothing was judged from then on.
 fn bench_broke(summary: &Summary) -> bool {
     summary.findings.iter().any(|finding| finding.about == About::Bench)
 }
 
-/// It was measured with equipment whose certificate didn't hold.
+/// True if equipment without a valid certificate was used.
 fn is_uncertified(summary: &Summary) -> bool {
     summary.findings.iter().any(|finding| finding.about == About::Equipment)
 }
 
-/// What a result comes to where its part of the run was not done as planned: no pass; and where the unit
-/// could not be judged to the end, no fail of what might have become better.
+/// Result of a requirement as far as its part of the run was done: without the complete part it can't
+/// be a pass, and after a failure of the bench it is no fail if it could still have become better.
 pub(super) fn as_far_as_done(summary: &Summary, result: RequirementResult) -> RequirementResult {
     if is_uncertified(summary) && matches!(result.verdict, Verdict::Pass | Verdict::Fail) {
         let reason = Some("measured with equipment whose certificate didn't hold".to_owned());
@@ -280,11 +241,11 @@ pub(super) fn as_far_as_done(summary: &Summary, result: RequirementResult) -> Re
         }
         _ => return result,
     };
-    RequirementResult { verdict: Verdict::Inconclusive, reason: Some(reason), ..result }
+    RequirementResult { verdict: Verdict::Inconclusive, reason: Some(reason.to_string()), ..result }
 }
 
-/// Whether a limit that is broken can't be kept any more, whatever comes: a maximum, a count, a mark that
-/// was reached, what a calibration that is over came to.
+/// True if a broken limit stays broken in any case: that of a maximum, a count, a mark that was
+/// reached, or a result of a completed calibration.
 fn stays_broken(summary: &Summary, result: &RequirementResult) -> bool {
     use octant_requirements::Comparison;
     let upper = matches!(result.comparison, Comparison::AtMost | Comparison::Below);
@@ -311,8 +272,8 @@ fn stays_broken(summary: &Summary, result: &RequirementResult) -> bool {
         || (calibrated && Part::of(path) == Some(Part::Calibration))
 }
 
-/// The worst of a judged summary but for its requirements: a calibration that was refused, a fault that
-/// never fired, a finding, work that wasn't done, and that it checks nothing.
+/// Worst verdict of a judged summary without its requirements: of a refused calibration, a fault that
+/// never fired, a finding, a shortfall, or missing requirements.
 #[must_use]
 pub fn besides(summary: &Summary) -> Verdict {
     let (unit, bench) = sides(summary, &mut std::iter::empty());

@@ -1,13 +1,13 @@
-//! `junit.xml`: the verdict for CI systems, in the flavour of nextest.
+//! Verdict as `junit.xml` for CI systems, in the flavour of nextest.
 
 use super::summary::{FaultResult, Summary};
 use super::verdict::RequirementResult;
 use octant_requirements::Verdict;
 use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
 
-/// The run as JUnit XML: one suite named for the scenario, one case for each requirement with a
-/// property `verifies`, one for each fault (that it fired), and one for the run itself. JUnit doesn't know "inconclusive": it becomes
-/// an error of that type, because it must never count as passed.
+/// Writes the run as JUnit XML: one suite named after the scenario, one case for each requirement with
+/// a property `verifies`, one for each fault (that it fired), and one for the run itself. JUnit has no
+/// "inconclusive": it becomes an error of that type, because it must never count as passed.
 ///
 /// # Errors
 /// If the XML can't be written.
@@ -21,7 +21,7 @@ pub fn junit(summary: &Summary) -> Result<String, quick_junit::SerializeError> {
     )
 }
 
-/// As [`junit`], of the parts of a summary that it shows, and of other runs that have them.
+/// Writes JUnit XML as [`junit`] does, from the parts of a summary that it needs, also for other runs.
 ///
 /// # Errors
 /// If the XML can't be written.
@@ -77,7 +77,7 @@ pub fn junit_of(
     report.to_string()
 }
 
-/// JUnit has no "inconclusive": it becomes an error of that type.
+/// Status of a verdict. JUnit has no "inconclusive": it becomes an error of that type.
 pub fn status(verdict: Verdict, message: &str) -> TestCaseStatus {
     let kind = match verdict {
         Verdict::None => {

@@ -1,23 +1,28 @@
-//! What a run is worth: drift of the navigation, accuracy of the parameters, verdict.
+//! Scores of a run: drift of the navigation, accuracy of the parameters, verdict.
 //!
 //! - [`drift`] scores the errors of the navigation solution, streamed at 1 Hz or slower
-//! - [`parameters`] holds estimates against truth, normalized by their σ
-//! - [`mod@reference`] and [`floor`] say what physics lets the scores be
+//! - [`parameters`] compares estimates with truth, normalized by their σ
+//! - [`mod@reference`] and [`floor`] give the physical limits of the scores
 //! - [`ensemble`] has the statistics over many runs, [`compare`] those of two methods in pairs
-//! - [`health`] counts what the core reported on the way
-//! - [`summary`] is `summary.json`, [`work`] is what was planned and done
-//! - [`verdict`] holds a measure against its limit, [`judge`] derives the verdict of a summary, [`junit`] tells CI
-//! - [`rederive`] holds a stored summary against itself, [`numerics`] says whose bits can be compared, [`equipment`] what expired certificates come to
+//! - [`health`] counts the reports of the core
+//! - [`summary`] is `summary.json`, [`work`] compares the work planned with the work done
+//! - [`verdict`] compares a measure with its limit, [`judge`] derives the verdict of a summary,
+//!   [`junit`] writes it for CI
+//! - [`rederive`] checks a stored summary for contradictions, [`numerics`] tells which programs give
+//!   the same bits, [`equipment`] finds expired certificates
 
+mod calibration;
 pub mod compare;
 pub mod counterfactual;
 pub mod drift;
 pub mod ensemble;
 pub mod equipment;
+mod finding;
 pub mod floor;
 pub mod health;
 pub mod judge;
 pub mod junit;
+mod navigation;
 pub mod numerics;
 pub mod parameters;
 pub mod rederive;

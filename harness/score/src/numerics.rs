@@ -1,17 +1,18 @@
-//! The numerics version: which programs give the same bits from the same scenario and seed.
+//! The numerics version, which tells which programs give the same bits from the same scenario and seed.
 //!
-//! The version of the program says what it can do; this one says whether its numbers can be compared to the last bit.
-//! It stands in `summary.json` and with it in the results of cases, in merged tables, in manifests and in nights.
+//! The version of the program describes its functions; the numerics version tells whether numbers can
+//! be compared to the last bit. It is stored in `summary.json` and so in the results of cases, in
+//! merged tables, in manifests and in nightly results.
 
-/// The numerics version of this program.
+/// Numerics version of this program.
 ///
-/// Raised by one, once in a release, by this rule: for some scenario that the last release runs, this release gives
-/// another stream hash or another published number (of `summary.json`, a table or a report). The changelog of that
-/// release says so. A change of words, files or verdicts alone doesn't raise it. Between releases it stays:
-/// there the hash of the program tells builds apart.
+/// The version is raised by one, once in a release, by this rule: for some scenario that the last release runs,
+/// this release gives another stream hash or another published number (of `summary.json`, a table or a
+/// report). The changelog of that release says so. A change of words, files or verdicts alone doesn't
+/// raise it. Between releases it stays the same, and the hash of the program distinguishes builds.
 pub const NUMERICS: u32 = 1;
 
-/// Where results have another numerics version than this program, what that means; `None`: they have the same.
+/// Warning about results of another numerics version; `None`: they have this program's.
 #[must_use]
 pub fn differs(found: Option<u32>) -> Option<String> {
     (found != Some(NUMERICS)).then(|| {
@@ -22,7 +23,7 @@ pub fn differs(found: Option<u32>) -> Option<String> {
     })
 }
 
-/// `numerics version 1`.
+/// Text `numerics version 1`.
 #[must_use]
 pub fn in_words(version: Option<u32>) -> String {
     version.map_or_else(

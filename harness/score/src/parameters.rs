@@ -1,4 +1,5 @@
-//! Estimated parameters against truth: errors, normalized by the σ that the estimator claims.
+//! Estimated parameters compared with truth: errors, also normalized by the σ that the estimator
+//! claims.
 
 use super::summary::ParameterScore;
 use nalgebra::{SMatrix, SVector};
@@ -6,8 +7,8 @@ use octant_sample::Parameters;
 use octant_sample::parameters::{Group, NAMES, PARAMETER_COUNT};
 use std::collections::BTreeMap;
 
-/// Scores every parameter, in the units that users see. A σ that isn't positive means that the
-/// parameter was not estimated.
+/// Scores every parameter, in the units for users. A σ that isn't positive means that the parameter was
+/// not estimated.
 #[must_use]
 pub fn score(
     truth: Option<&Parameters>,
@@ -35,8 +36,8 @@ pub fn score(
         .collect()
 }
 
-/// Mean of e²/σ² over the estimated parameters of each group, by the name of the group: near 1
-/// where the claimed σ is right. Correlations are left out; [`nees_full`] has them.
+/// Mean of e²/σ² over the estimated parameters of each group, by the name of the group: near 1 if the
+/// claimed σ is right. Correlations are ignored; [`nees_full`] includes them.
 #[must_use]
 pub fn nees(parameters: &BTreeMap<String, ParameterScore>) -> BTreeMap<String, f64> {
     let mut groups = BTreeMap::new();
@@ -53,10 +54,10 @@ pub fn nees(parameters: &BTreeMap<String, ParameterScore>) -> BTreeMap<String, f
     groups
 }
 
-/// Parameters of the largest group.
+/// Number of parameters of the largest group.
 const GROUP_MAX: usize = 9;
 
-/// eᵀP⁻¹e of each group with its own block of the covariance, divided by the size of the group.
+/// NEES eᵀP⁻¹e of each group with its own block of the covariance, divided by the size of the group.
 ///
 /// `covariance` is in SI, in the order of [`NAMES`], by rows. Groups whose block is not positive
 /// definite (not estimated) are left out.
@@ -70,9 +71,10 @@ pub fn nees_full(
     let mut groups = BTreeMap::new();
     for group in Group::ALL {
         let (first, size) = (group.range().start, group.range().len());
-        // In the group's own unit: the SI values of g-dependent biases are 1e-20 when squared.
+        // Computed in the group's own unit: squared SI values of g-dependent biases would be as small
+        // as 1e-20.
         let unit = group.si_per_unit();
-        // Smaller groups fill the matrix up with ones on the diagonal, against errors of zero.
+        // For smaller groups the matrix is padded with ones on the diagonal, and the errors with zeros.
         let mut block = SMatrix::<f64, GROUP_MAX, GROUP_MAX>::identity();
         let mut error = SVector::<f64, GROUP_MAX>::zeros();
         for i in 0..size {
@@ -100,8 +102,8 @@ pub fn beyond(parameters: &BTreeMap<String, ParameterScore>, sigmas: f64) -> Vec
         .collect()
 }
 
-/// Largest |error|/σ; `None` if no error is known, or if one of those that were to be estimated isn't: a worst
-/// of those that are left would pass over it.
+/// Largest |error|/σ; `None` if no error is known, or if one of the planned parameters has none: the
+/// worst of the others would hide it.
 #[must_use]
 pub fn worst_normalized_error(
     parameters: &BTreeMap<String, ParameterScore>,
@@ -140,7 +142,7 @@ mod tests {
         assert!((y.sigma.unwrap() - 0.0005).abs() < 1e-15);
         assert!((y.normalized.unwrap() + 4.0).abs() < 1e-9);
         assert_eq!(scores["g_zz"].sigma, None, "g_zz was not estimated");
-        // (2² + 4² + 0²) / 3
+        // Expected: (2² + 4² + 0²) / 3
         let nees = nees(&scores);
         assert!((nees["gyro_bias"] - 20.0 / 3.0).abs() < 1e-8);
         assert_eq!(nees.len(), 1, "only the gyro biases were estimated");

@@ -1,8 +1,8 @@
-//! A stored summary held against itself: its verdict is derived again from its own numbers.
+//! Consistency check of a stored summary: its verdict is derived again from its own numbers.
 //!
-//! A verdict in a file is what somebody says of a run. What the run shows are the measures, the limits and
-//! what befell it, all of which are in the summary too. Every reader derives the verdict again; one that differs
-//! is a contradiction, and its file is evidence of nothing.
+//! A verdict in a file is only a claim. The evidence of the run is its measures, limits and findings,
+//! all of which are in the summary too. Every reader derives the verdict again; if it differs, the
+//! summary contradicts itself, and its file is evidence of nothing.
 
 use super::judge::{About, Finding, as_far_as_done, derive};
 use super::summary::{Summary, WITH_FINDINGS};
@@ -10,8 +10,9 @@ use super::verdict::{RequirementResult, evaluate};
 use octant_requirements::verdict::LimitCheck;
 use octant_requirements::{Comparison, Verdict};
 
-/// The results of a stored summary's requirements, held against its measures again: nothing that it says of
-/// them is taken over but their ids, measures and limits.
+/// Derives the results of a stored summary's requirements from its measures again: of the stored
+/// results, only ids, measures, limits, uncertainties and reasons are used, and whether there was a
+/// value.
 ///
 /// # Errors
 /// If the summary can't be written as JSON.
@@ -25,7 +26,8 @@ pub fn results(summary: &Summary) -> Result<Vec<RequirementResult>, serde_json::
             limit: result.limit,
         };
         let found = evaluate(&requirement, &document);
-        // Where nobody knows how uncertain a reference is, there is no value, and nothing is decided.
+        // With an unknown uncertainty of the reference there was no value, and the result stays
+        // inconclusive.
         let value = result.value.and(found.value);
         let found = RequirementResult {
             uncertainty: result.uncertainty,
@@ -38,8 +40,8 @@ pub fn results(summary: &Summary) -> Result<Vec<RequirementResult>, serde_json::
     Ok(summary.requirements.iter().map(again).collect())
 }
 
-/// Whether what is said of a check can be said of its value: a pass of one that keeps its limit alone, a fail
-/// of one that doesn't. Inconclusive may be for a reason outside of the value.
+/// True if the stated verdict of a check is possible for its value: a pass only if the limit is kept, a
+/// fail only if it isn't. An inconclusive result may have a reason outside of the value.
 #[must_use]
 pub fn stands(said: Verdict, comparison: Comparison, value: Option<f64>, limit: f64) -> bool {
     match said {
@@ -49,7 +51,7 @@ pub fn stands(said: Verdict, comparison: Comparison, value: Option<f64>, limit: 
     }
 }
 
-/// Where a stored summary contradicts itself, in words; none: it says what its numbers come to.
+/// Contradictions in a stored summary, as texts; none: its verdict follows from its numbers.
 #[must_use]
 pub fn contradictions(summary: &Summary) -> Vec<String> {
     let results = match results(summary) {
@@ -86,7 +88,7 @@ pub fn contradictions(summary: &Summary) -> Vec<String> {
         }
     }
     let derived = derive(summary).verdict;
-    // Before there was a verdict none, what nothing was asked of passed.
+    // Before the verdict `none` existed, a run without requirements passed.
     let was_none = summary.schema < WITH_FINDINGS
         && (summary.verdict, derived) == (Verdict::Pass, Verdict::None);
     if summary.verdict != derived && !was_none {
@@ -99,17 +101,17 @@ pub fn contradictions(summary: &Summary) -> Vec<String> {
     found
 }
 
-/// What a run comes to by the rules of this program, from what is stored of it.
+/// Verdict on a stored run by the rules of this program.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rejudged {
-    /// The summary with its requirements, findings, verdict and reasons derived anew.
+    /// Summary with its requirements, findings, verdict and reasons derived again.
     pub summary: Summary,
-    /// What could not be derived, since it was never stored.
+    /// Parts that could not be derived because they were never stored.
     pub not_stored: Vec<String>,
 }
 
 impl Rejudged {
-    /// Nothing that is stored speaks against a pass, and too little is stored for one.
+    /// True if nothing stored contradicts a pass, but too little is stored for one.
     #[must_use]
     pub fn is_unknown(&self) -> bool {
         let mut without = self.summary.clone();
@@ -120,13 +122,13 @@ impl Rejudged {
     }
 }
 
-/// The beginning of what is told of a summary that holds too little.
+/// Beginning of the finding about a summary with too little data.
 const NOT_HELD: &str = "its summary doesn't hold what a pass rests on";
 
-/// Derives the verdict of a stored summary anew, with findings about the bench that stand outside of it.
+/// Derives the verdict of a stored summary again, with findings about the bench from outside of it.
 ///
-/// A summary of schema 1 has neither plan nor findings. What it says of itself then stays as the least; it can't
-/// come to a pass, since nobody knows whether the plan was done and the answers were right.
+/// A summary of schema 1 has neither plan nor findings. Its stored verdict is then the lower bound, and
+/// it can't become a pass, because it is unknown whether the plan was done and the answers were right.
 ///
 /// # Errors
 /// If the summary can't be written as JSON.
@@ -149,7 +151,7 @@ pub fn rejudge(stored: &Summary, outside: &[Finding]) -> Result<Rejudged, serde_
             stored.schema,
             not_stored[..not_stored.len().min(2)].join(", ")
         )));
-        // The requirements first: what follows from them again isn't told twice.
+        // The requirements come first, so that their consequences aren't reported twice.
         summary.requirements = results(&summary)?;
         summary.schema = WITH_FINDINGS;
         if derive(&summary).verdict < stored.verdict {

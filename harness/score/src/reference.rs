@@ -1,5 +1,5 @@
-//! What physics says beside the scores: closed forms for the drift that g-dependent biases and
-//! random walk leave, whatever the method.
+//! Physical references for the scores: closed forms for the drift that g-dependent biases and random
+//! walk cause with any method.
 
 use super::floor::{Floor, FloorSummary};
 use octant_earth::ellipsoid::{EARTH_RATE_RADPS, Ellipsoid};
@@ -12,29 +12,29 @@ use serde::{Deserialize, Serialize};
 pub struct Reference {
     /// Schuler period of the site, min.
     pub schuler_period_min: f64,
-    /// What an uncompensated g_zz of 5e-4 deg/h/g does here.
+    /// Effect of an uncompensated g_zz of 5e-4 deg/h/g at this site.
     pub table_g_zz: VerticalDrift,
-    /// What the g_zz of this run does if nobody compensates it; null where it isn't known.
+    /// Effect of this run's g_zz without compensation; null if it isn't known.
     pub true_g_zz: Option<VerticalDrift>,
-    /// What the error of the estimated g_zz does, after compensation.
+    /// Effect of the error of the estimated g_zz, after compensation.
     pub residual_g_zz: Option<VerticalDrift>,
-    /// The same for the baseline.
+    /// Effect of the error of the baseline's estimated g_zz, after compensation.
     pub baseline_residual_g_zz: Option<VerticalDrift>,
-    /// The σ below which no calibration of this length sees the isotropic part of G, deg/h/g.
+    /// Lower limit of σ for the isotropic part of G in a calibration of this length, deg/h/g.
     pub isotropic_g_sigma_floor_deg_per_h_per_g: Option<f64>,
     /// Errors from the noise of the sensors alone, all parameters and the attitude exact.
     pub random_walk: Option<FloorSummary>,
 }
 
-/// Drift from the vertical gyro error that g_zz leaves in the navigation scheme, where every other
+/// Drift from the vertical gyro error that g_zz causes in the navigation scheme, in which every other
 /// bias averages out.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct VerticalDrift {
     /// g_zz, deg/h/g.
     pub g_zz_deg_per_h_per_g: f64,
-    /// Secular longitude error, arcmin per day, with its sign.
+    /// Secular longitude error with its sign, arcmin per day.
     pub longitude_arcmin_per_day: f64,
-    /// Largest latitude error, half a sidereal day after the start, arcmin, with its sign.
+    /// Largest latitude error with its sign, half a sidereal day after the start, arcmin.
     pub latitude_bound_arcmin: f64,
 }
 
@@ -76,7 +76,7 @@ pub fn isotropic_g_sigma(
     rate / earth.gravity_mps2
 }
 
-/// What the references are computed from, SI.
+/// Inputs of the references, SI.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ReferenceInput {
     /// Geodetic latitude, rad.
@@ -91,7 +91,7 @@ pub struct ReferenceInput {
     pub calibration_s: Option<f64>,
     /// Length of the navigation, s.
     pub navigation_s: Option<f64>,
-    /// True g_zz, where it is known.
+    /// True g_zz, if it is known.
     pub true_g_zz: Option<f64>,
     /// Estimated g_zz of the method.
     pub estimated_g_zz: Option<f64>,

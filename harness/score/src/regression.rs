@@ -1,8 +1,8 @@
-//! Secular slope of an error that oscillates: regression on a line and on the oscillations.
+//! Secular slope of an oscillating error: regression on a line and on the oscillations.
 //!
 //! A straight line fitted to a Schuler oscillation has a slope of its own, even over whole periods
-//! (−6A/πnT of a sine). The oscillations are therefore regressed together with the line, over a
-//! window of whole periods, where the columns are nearly orthogonal.
+//! (−6A/πnT for a sine). So the oscillations are regressed together with the line, over a window of
+//! whole periods, in which the columns are nearly orthogonal.
 
 use nalgebra::{SMatrix, SVector};
 use octant_earth::ellipsoid::{EARTH_RATE_RADPS, Ellipsoid};
@@ -12,7 +12,7 @@ pub(super) const SIDEREAL_DAY_S: f64 = 2.0 * core::f64::consts::PI / EARTH_RATE_
 
 const SECONDS_PER_DAY: f64 = 86_400.0;
 
-/// Columns: 1, t, cos and sin at Schuler's frequency, cos and sin at Earth's.
+/// Number of columns: 1, t, cos and sin at the Schuler frequency, cos and sin at the Earth rate.
 const COLUMNS: usize = 6;
 
 /// Normal equations of both errors, accumulated sample by sample.
@@ -24,7 +24,7 @@ struct Sums {
     longitude: SVector<f64, COLUMNS>,
 }
 
-/// Streaming regression with a copy of the sums at the last whole Schuler period and the last whole
+/// Streaming regression, with a copy of the sums at the last whole Schuler period and the last whole
 /// sidereal day.
 #[derive(Clone, Debug)]
 pub(super) struct SecularSlope {
@@ -34,14 +34,14 @@ pub(super) struct SecularSlope {
     sidereal: (u32, Sums),
 }
 
-/// Slopes in the unit of the errors per day, and the window that they are of.
+/// Slopes in the unit of the errors per day, with their window.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Slopes {
     pub(super) latitude_per_day: f64,
     pub(super) longitude_per_day: f64,
-    /// Whole periods in the window.
+    /// Number of whole periods in the window.
     pub(super) periods: u32,
-    /// The periods are sidereal days; else Schuler periods.
+    /// True for sidereal days, false for Schuler periods.
     pub(super) sidereal: bool,
     pub(super) window_s: f64,
 }
@@ -56,13 +56,13 @@ impl SecularSlope {
         }
     }
 
-    /// Takes the errors at `t_s`; times must increase.
+    /// Adds the errors at `t_s`; times must increase.
     pub(super) fn push(&mut self, t_s: f64, latitude: f64, longitude: f64) {
         for (period_s, kept) in
             [(self.schuler_period_s, &mut self.schuler), (SIDEREAL_DAY_S, &mut self.sidereal)]
         {
-            // The sums so far end at the last sample within the whole periods. A sample on the
-            // boundary begins the next period: a window is half open.
+            // The sums so far end at the last sample within the whole periods. A sample on the boundary
+            // begins the next period: a window is half open.
             let whole = (t_s / period_s + 1e-9) as u32;
             if whole > kept.0 {
                 *kept = (whole, self.sums);
@@ -85,7 +85,7 @@ impl SecularSlope {
         self.sums.longitude += row * longitude;
     }
 
-    /// The slopes over the longest window of whole periods; `None` before the first period is full.
+    /// Slopes over the longest window of whole periods; `None` before the end of the first period.
     pub(super) fn slopes(&self) -> Option<Slopes> {
         let (days, sums) = self.sidereal;
         if days > 0 {
@@ -99,7 +99,8 @@ impl SecularSlope {
             });
         }
         let (periods, sums) = self.schuler;
-        // Below a day the Earth-rate columns can't be told from a parabola: they are left out.
+        // In less than a day the Earth-rate columns can't be distinguished from a parabola, and are
+        // left out.
         let (latitude_per_day, longitude_per_day) = solve(&sums, 4)?;
         Some(Slopes {
             latitude_per_day,
@@ -111,15 +112,15 @@ impl SecularSlope {
     }
 }
 
-/// Solves for all columns, or without those at Earth's frequency; the slopes per day of latitude and
-/// longitude.
+/// Solves for all columns, or without those at the Earth rate; returns the slopes of latitude and
+/// longitude per day.
 fn solve(sums: &Sums, columns: usize) -> Option<(f64, f64)> {
     if sums.samples < 2 * columns as u64 {
         return None;
     }
     let Sums { mut normal, mut latitude, mut longitude, .. } = *sums;
     for i in columns..COLUMNS {
-        // A column that is left out becomes an equation of its own: 1 · x = 0.
+        // An omitted column becomes an equation of its own: 1 · x = 0.
         normal.row_mut(i).fill(0.0);
         normal.column_mut(i).fill(0.0);
         normal[(i, i)] = 1.0;

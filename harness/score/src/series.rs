@@ -1,12 +1,12 @@
-//! A series of bounded length that keeps every extreme it passes.
+//! A series of bounded length that keeps all of its extremes.
 
-/// Buckets at most; when they are full, neighbours are merged. Each gives up to four points.
+/// Most buckets; when they are full, neighbours are merged. Each gives up to four points.
 const BUCKETS_MAX: usize = 500;
 
 /// One point: hours, latitude error, longitude error.
 type Point = [f64; 3];
 
-/// The extremes of a stretch of time.
+/// Extremes in a stretch of time.
 #[derive(Clone, Copy, Debug)]
 struct Bucket {
     /// Points with the smallest and largest latitude error, smallest and largest longitude error.
@@ -35,7 +35,7 @@ impl Bucket {
     }
 }
 
-/// Series kept for drawing: memory doesn't grow with the run.
+/// Series for plots, in bounded memory.
 #[derive(Clone, Debug)]
 pub(super) struct Series {
     first: Option<Point>,
@@ -77,8 +77,8 @@ impl Series {
         self.in_last = 1;
     }
 
-    /// The points in order of time, the first and the last among them, rounded to a millionth of
-    /// an hour and of an arcminute (2 mm): a file of a day stays small.
+    /// Points in order of time, including the first and the last, rounded to a millionth of an hour and
+    /// of an arcminute (2 mm), so that the file of a day stays small.
     pub(super) fn points(&self) -> Vec<Point> {
         let mut points: Vec<Point> = self.buckets.iter().flat_map(|b| b.extremes).collect();
         points.extend(self.first);

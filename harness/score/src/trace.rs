@@ -1,19 +1,19 @@
-//! What a run leaves behind so that it can be held against its twin: digests of the core's outputs,
-//! and navigation errors on a grid that both share.
+//! Data of a run for the comparison with its twin: digests of the core's outputs, and navigation errors
+//! on a common grid.
 
 use octant_sample::Output;
 
-/// Outputs under one digest.
+/// Number of outputs for one digest.
 pub const DIGEST_OUTPUTS: u64 = 200;
-/// Points of drift kept; beyond, every second one is dropped and the grid is twice as wide.
+/// Most points of drift kept; beyond, every second one is dropped and the grid spacing is doubled.
 const POINTS_MAX: usize = 4096;
 
-/// The trace of one run.
+/// Trace of one run.
 #[derive(Clone, Debug)]
 pub struct Trace {
     running: u64,
     outputs: u64,
-    /// One for every [`DIGEST_OUTPUTS`] outputs, each over all outputs so far.
+    /// One digest for every [`DIGEST_OUTPUTS`] outputs, each over all outputs so far.
     digests: Vec<u64>,
     stride_s: u64,
     /// Second of the navigation, latitude and longitude error, rad.
@@ -27,13 +27,13 @@ impl Default for Trace {
 }
 
 impl Trace {
-    /// A trace of nothing yet.
+    /// Makes an empty trace.
     #[must_use]
     pub fn new() -> Self {
         Self { running: 0, outputs: 0, digests: Vec::new(), stride_s: 1, points: Vec::new() }
     }
 
-    /// Takes the output of every epoch.
+    /// Adds the output of an epoch.
     #[inline]
     pub fn output(&mut self, output: &Output) {
         let navigation = &output.navigation;
@@ -54,15 +54,14 @@ impl Trace {
         }
     }
 
-    /// A navigation begins; what was taken of one before it, by a core that has started anew since,
-    /// is forgotten.
+    /// Begins a navigation; points of an earlier one, before a restart of the core, are dropped.
     pub fn navigation_begins(&mut self) {
         self.points.clear();
         self.stride_s = 1;
     }
 
-    /// Takes a navigation error, `t_s` after the start of the navigation. Those on whole seconds are
-    /// kept.
+    /// Adds a navigation error, `t_s` after the start of the navigation. Only errors at whole seconds
+    /// are kept.
     pub fn drift(&mut self, t_s: f64, latitude_error_rad: f64, longitude_error_rad: f64) {
         let second = t_s.round();
         if (t_s - second).abs() > 1e-6 || !(0.0..1e12).contains(&second) {
@@ -80,8 +79,8 @@ impl Trace {
         }
     }
 
-    /// Outputs after which this run and another are no longer the same: they differ within the next
-    /// [`DIGEST_OUTPUTS`]. `None` where nothing differs.
+    /// Number of outputs up to which this run and another are the same: they differ within the next
+    /// [`DIGEST_OUTPUTS`]. `None` if there is no difference.
     #[must_use]
     pub fn parts_from(&self, other: &Self) -> Option<u64> {
         let common = self.digests.iter().zip(&other.digests).take_while(|(a, b)| a == b).count();
@@ -89,8 +88,8 @@ impl Trace {
         (!same).then_some(common as u64 * DIGEST_OUTPUTS)
     }
 
-    /// Hours of navigation, and latitude and longitude error of this run minus those of another, rad,
-    /// where both have a point.
+    /// Rows of navigation time (h), and difference of latitude and longitude error, this run minus the
+    /// other, rad, at the points that both have.
     #[must_use]
     pub fn minus(&self, other: &Self) -> Vec<(f64, f64, f64)> {
         let mut theirs = other.points.iter().peekable();

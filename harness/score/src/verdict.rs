@@ -1,36 +1,36 @@
-//! A measure against its limit.
+//! Comparison of a measure with its limit.
 
 use octant_requirements::decision::in_band;
 use octant_requirements::verdict::{Comparison, LimitCheck, Verdict};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-/// A requirement with what was found.
+/// A requirement with its result.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RequirementResult {
     /// Id of the requirement.
     pub id: String,
     /// Path of the measure.
     pub measure: String,
-    /// How it is held against the limit.
+    /// Comparison with the limit.
     pub comparison: Comparison,
     /// The limit.
     pub limit: f64,
-    /// The measure; null if the run doesn't have it.
+    /// Value of the measure; null if the run doesn't have it.
     pub value: Option<f64>,
-    /// Room to the limit, negative where it is broken.
+    /// Margin to the limit, negative if it is broken.
     pub margin: Option<f64>,
-    /// Half of the guard band about the limit; null where it is none.
+    /// Half width of the guard band about the limit; null without a band.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub uncertainty: Option<f64>,
-    /// What it comes to.
+    /// Verdict.
     pub verdict: Verdict,
-    /// Why it is inconclusive.
+    /// Reason for an inconclusive verdict.
     pub reason: Option<String>,
 }
 
 impl RequirementResult {
-    /// `NAV-1: navigation.longitude_error_arcmin.max is 0.751, required <= 3`.
+    /// Text `NAV-1: navigation.longitude_error_arcmin.max is 0.751, required <= 3`.
     #[must_use]
     pub fn sentence(&self) -> String {
         let (value, limit) = self.figures();
@@ -42,8 +42,8 @@ impl RequirementResult {
         )
     }
 
-    /// It, with margin and verdict from value and limit again. What was inconclusive with a value was so for a
-    /// reason outside of it, which is found again where the reason is.
+    /// Derives margin and verdict from value and limit again. A result with a value that was
+    /// inconclusive had a reason outside of the value, which is derived again where it belongs.
     #[must_use]
     pub(super) fn again(&self) -> Self {
         let margin = self.value.map(|value| self.comparison.margin(value, self.limit));
@@ -60,7 +60,7 @@ impl RequirementResult {
         Self { margin, verdict, reason, ..self.clone() }
     }
 
-    /// That a value is too near to its limit to be told from it.
+    /// Text about a value too near to its limit for its uncertainty.
     fn within(&self, value: f64, band: f64) -> String {
         let plain = |value| octant_base::number::plain(value, 6);
         format!(
@@ -72,7 +72,7 @@ impl RequirementResult {
         )
     }
 
-    /// It, decided with an uncertainty of its reference.
+    /// Decides the result with an uncertainty of its reference.
     #[must_use]
     pub(super) fn with_uncertainty(self, uncertainty: f64) -> Self {
         if uncertainty > 0.0 {
@@ -82,7 +82,7 @@ impl RequirementResult {
         }
     }
 
-    /// What is told of it where it isn't a pass.
+    /// Text about a result that isn't a pass.
     #[must_use]
     pub fn told(&self) -> Option<String> {
         match self.verdict {
@@ -95,7 +95,7 @@ impl RequirementResult {
         }
     }
 
-    /// Value and limit as people read them: six digits, or all of them where six look alike.
+    /// Texts of value and limit: six digits, or all of them if six don't show a difference.
     #[must_use]
     pub fn figures(&self) -> (String, String) {
         let value = self.value.unwrap_or(f64::NAN);
@@ -107,11 +107,11 @@ impl RequirementResult {
     }
 }
 
-/// Holds one requirement against a summary as JSON.
+/// Evaluates one requirement on a summary in JSON.
 #[must_use]
 pub fn evaluate(requirement: &LimitCheck, summary: &Value) -> RequirementResult {
     let found = if requirement.limit.is_finite() {
-        measure(&requirement.measure, summary)
+        measure(&requirement.measure, summary).map_err(|error| error.to_string())
     } else {
         Err(format!("limit {} is not a number", requirement.limit))
     };
@@ -137,27 +137,68 @@ pub fn evaluate(requirement: &LimitCheck, summary: &Value) -> RequirementResult 
     }
 }
 
-/// The number at a dotted path of a summary.
+/// Reason why a summary has no number at a path.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum MeasureError {
+    /// A part of the path doesn't exist.
+    #[error("{place} has no `{key}`; it has {}{}", .there.join(", "), and_more(*.more))]
+    Missing {
+        /// Path up to there.
+        place: String,
+        /// Part that doesn't exist.
+        key: String,
+        /// Names in its place; twelve at most.
+        there: Vec<String>,
+        /// Number of further names.
+        more: usize,
+    },
+    /// The run doesn't have the value.
+    #[error("{place} is null: the run doesn't have it")]
+    Null {
+        /// Path up to there.
+        place: String,
+    },
+    /// The path goes on after a value.
+    #[error("{place} is a value and has no `{key}`")]
+    Value {
+        /// Path up to there.
+        place: String,
+        /// Part that follows.
+        key: String,
+    },
+    /// The value isn't a number.
+    #[error("{place} is not a number")]
+    NotANumber {
+        /// The path.
+        place: String,
+    },
+}
+
+fn and_more(more: usize) -> String {
+    if more > 0 { format!(" and {more} more") } else { String::new() }
+}
+
+/// Number at a dotted path of a summary.
 ///
 /// # Errors
-/// In plain words: what of the path isn't there, and what is there instead.
-pub fn measure(path: &str, summary: &Value) -> Result<f64, String> {
+/// If a part of the path doesn't exist, or there is no number.
+pub fn measure(path: &str, summary: &Value) -> Result<f64, MeasureError> {
     let magnitude = path.strip_prefix('|').and_then(|p| p.strip_suffix('|'));
     let mut at = summary;
     let mut walked = String::new();
     for key in magnitude.unwrap_or(path).split('.') {
-        let place = if walked.is_empty() { "the summary" } else { &walked };
+        let place = || if walked.is_empty() { "the summary".to_owned() } else { walked.clone() };
+        let key_found = || key.to_owned();
         let next = match at {
             Value::Object(map) => map.get(key).ok_or_else(|| {
-                let mut there: Vec<&str> = map.keys().map(String::as_str).collect();
+                let mut there: Vec<String> = map.keys().cloned().collect();
                 there.sort_unstable();
                 let more = there.len().saturating_sub(12);
                 there.truncate(12);
-                let tail = if more > 0 { format!(" and {more} more") } else { String::new() };
-                format!("{place} has no `{key}`; it has {}{tail}", there.join(", "))
+                MeasureError::Missing { place: place(), key: key_found(), there, more }
             })?,
-            Value::Null => return Err(format!("{place} is null: the run doesn't have it")),
-            _ => return Err(format!("{place} is a value and has no `{key}`")),
+            Value::Null => return Err(MeasureError::Null { place: place() }),
+            _ => return Err(MeasureError::Value { place: place(), key: key_found() }),
         };
         at = next;
         if !walked.is_empty() {
@@ -170,7 +211,7 @@ pub fn measure(path: &str, summary: &Value) -> Result<f64, String> {
             let value = number.as_f64().unwrap_or(f64::NAN);
             Ok(if magnitude.is_some() { value.abs() } else { value })
         }
-        Value::Null => Err(format!("{walked} is null: the run doesn't have it")),
-        _ => Err(format!("{walked} is not a number")),
+        Value::Null => Err(MeasureError::Null { place: walked }),
+        _ => Err(MeasureError::NotANumber { place: walked }),
     }
 }

@@ -1,41 +1,40 @@
-//! What a run was to do and what it did: the first thing that a verdict rests on.
+//! Comparison of the work planned for a run with the work done, the first basis of a verdict.
 
 use octant_base::number::plain;
 use serde::{Deserialize, Serialize};
 
-/// Shortfall of a duration that is none, s: a unit changes its mode a sample or two late.
+/// Largest tolerated shortfall of a duration, s: a unit changes its mode a sample or two late.
 const DURATION_SLACK_S: f64 = 1.0;
-/// Part of a duration that may be missing where the whole is short.
+/// Largest tolerated shortfall of a short duration, as a fraction.
 const DURATION_SLACK: f64 = 0.01;
-/// Part of the references that may be missing: those due while a mode changes.
+/// Largest tolerated fraction of missing references: those due while a mode changes.
 const REFERENCE_SLACK: f64 = 0.01;
 
-/// Amounts of work, planned or done. Null: not planned, or nobody can tell.
+/// Amounts of work, planned or done. Null: not planned, or unknown.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Work {
-    /// Stops of the calibration at which the gimbals were held.
+    /// Number of stops of the calibration at which the gimbals were held.
     pub stops: Option<u64>,
-    /// Calibration with its alignment, s.
+    /// Duration of the calibration with its alignment, s.
     pub calibration_s: Option<f64>,
-    /// References (velocity or position) for the calibration.
+    /// Number of references (velocity or position) for the calibration.
     pub references: Option<u64>,
-    /// Navigation, s.
+    /// Duration of the navigation, s.
     pub navigation_s: Option<f64>,
 }
 
 /// A part of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Part {
-    /// The calibration.
+    /// Calibration.
     Calibration,
-    /// The navigation.
+    /// Navigation.
     Navigation,
 }
 
 impl Part {
-    /// The part that a measure of a summary belongs to, by its dotted path; `None`: to no part, or
-    /// to both.
+    /// Part that a measure of a summary belongs to, by its dotted path; `None`: no part, or both.
     #[must_use]
     pub fn of(measure: &str) -> Option<Self> {
         let path = measure.trim_matches('|');
@@ -52,14 +51,14 @@ impl Part {
 /// A part of a run that was not done as planned.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Short {
-    /// Which part.
+    /// Part.
     pub part: Part,
-    /// `navigation: planned 24 h, done 1 s`.
+    /// Text such as `navigation: planned 24 h, done 1 s`.
     pub text: String,
 }
 
 impl Work {
-    /// Where what was done falls short of this plan.
+    /// Shortfalls of the work done from this plan.
     #[must_use]
     pub fn short_of(&self, done: &Self) -> Vec<Short> {
         let mut short = Vec::new();
@@ -74,7 +73,7 @@ impl Work {
             let Some(planned_s) = planned_s else { continue };
             let done_s = done_s.unwrap_or(0.0);
             let slack_s = DURATION_SLACK_S.min(planned_s * DURATION_SLACK);
-            // Written so that a done that is no number falls short.
+            // Negated comparison, so that a NaN is a shortfall.
             if !(done_s >= planned_s - slack_s) {
                 add(part, what, duration(planned_s), duration(done_s));
             }
@@ -95,7 +94,7 @@ impl Work {
     }
 }
 
-/// A duration as people read it: `24 h`, `90 s`.
+/// Text of a duration: `24 h`, `90 s`.
 #[must_use]
 pub fn duration(seconds: f64) -> String {
     if seconds >= 3600.0 {
@@ -125,7 +124,7 @@ mod tests {
         assert!(texts(&PLAN).is_empty());
         let late = Work { calibration_s: Some(14_399.5), references: Some(14_300), ..PLAN };
         assert!(texts(&late).is_empty());
-        // What can't be told isn't held against anybody; what isn't planned neither.
+        // Unknown numbers of stops and references are no shortfall, and neither is unplanned work.
         assert!(texts(&Work { stops: None, references: None, ..PLAN }).is_empty());
         assert!(Work::default().short_of(&Work::default()).is_empty());
     }
@@ -145,7 +144,7 @@ mod tests {
         ] {
             assert_eq!(texts(&done), [text]);
         }
-        // A short plan leaves little room.
+        // A short plan tolerates only a small shortfall.
         let plan = Work { navigation_s: Some(10.0), ..Work::default() };
         assert_eq!(plan.short_of(&Work { navigation_s: Some(9.5), ..plan }).len(), 1);
     }

@@ -1,23 +1,24 @@
 //! Independent draws among the rows of a design.
 //!
-//! The unit of inference is the draw: an instrument with its noise. Rows of one draw (its combinations with
-//! the factors of a grid) share it, and rows of two draws that came to the same stream of samples are one
-//! draw told twice. A bound that counts rows as if each were a draw promises what it doesn't keep; a draw
-//! that counts as passed only if all of its rows passed makes Clopper's and Pearson's bound hold however
-//! the rows of a draw depend on each other.
+//! The unit of inference is the draw: an instrument with its noise. Rows of one draw (its combinations
+//! with the factors of a grid) share it, and two draws whose rows have the same stream of samples are
+//! one draw counted twice. A bound that counts rows as if each were a draw is too optimistic. If a draw
+//! counts as passed only when all of its rows passed, Clopper's and Pearson's bound holds for any
+//! dependence between the rows of a draw.
 
 use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
 use std::hash::Hash;
 
-/// The draw that each row is of, as numbers from 0 in the order of the first rows. Rows with the same seed
-/// are of one draw, and so are rows with the same stream, over any number of steps.
+/// Draw of each row, as numbers from 0 in the order of the first rows. Rows with the same seed belong
+/// to one draw, and so do rows with the same stream, also over several steps.
 #[must_use]
 pub fn draws<S: Hash + Eq, H: Hash + Eq>(
     rows: impl IntoIterator<Item = (S, Option<H>)>,
 ) -> Vec<usize> {
     let (mut by_seed, mut by_stream) = (HashMap::new(), HashMap::new());
-    // Each row points to one of its draw that is not behind it; the first of a draw to itself.
+    // Each row points to a row of its draw that isn't after it; the first row of a draw points to
+    // itself.
     let mut first: Vec<usize> = Vec::new();
     fn root(first: &mut [usize], mut row: usize) -> usize {
         while first[row] != row {
@@ -45,21 +46,21 @@ pub fn draws<S: Hash + Eq, H: Hash + Eq>(
         .collect()
 }
 
-/// How many draws came to what.
+/// Numbers of draws by result.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Draws {
-    /// All rows passed.
+    /// Draws whose rows all passed.
     pub passed: u64,
-    /// A row didn't pass: it failed, or came to nothing.
+    /// Draws with a row that didn't pass: it failed or was inconclusive.
     pub not_passed: u64,
-    /// A row has no result yet, and none of the others didn't pass.
+    /// Draws with a row without a result, and with none that didn't pass.
     pub open: u64,
-    /// Rows of all of them.
+    /// Number of rows of all draws.
     pub rows: u64,
 }
 
 impl Draws {
-    /// Counts draws. Of each row its draw, and whether it passed; `None`: it has no result yet.
+    /// Counts draws. Each row has its draw, and whether it passed; `None`: no result yet.
     #[must_use]
     pub fn of(rows: impl IntoIterator<Item = (usize, Option<bool>)>) -> Self {
         let mut draws: HashMap<usize, Option<bool>> = HashMap::new();
@@ -83,25 +84,25 @@ impl Draws {
         counts
     }
 
-    /// Draws of which it is known.
+    /// Number of draws with a result.
     #[must_use]
     pub const fn known(&self) -> u64 {
         self.passed + self.not_passed
     }
 
-    /// All draws.
+    /// Number of all draws.
     #[must_use]
     pub const fn all(&self) -> u64 {
         self.passed + self.not_passed + self.open
     }
 }
 
-/// Draws that come one by one, each with all of its rows: what [`draws`] and [`Draws::of`] say of all that
-/// have come, without looking at them again.
+/// Draws that are added one by one, each with all of its rows. It gives the counts of [`draws`] and
+/// [`Draws::of`] for all draws so far, without processing them again.
 #[derive(Clone, Debug, Default)]
 pub struct Growing<H> {
     by_stream: HashMap<H, usize>,
-    /// Each points to the one that it was joined with; to itself if it stands for a draw.
+    /// Index of the entry that each was joined with; its own index if it stands for a draw.
     joined: Vec<usize>,
     passed: Vec<bool>,
     counts: Draws,
@@ -131,7 +132,7 @@ impl<H: Hash + Eq> Growing<H> {
         }
     }
 
-    /// What they come to so far.
+    /// Counts so far.
     #[must_use]
     pub const fn counts(&self) -> Draws {
         self.counts

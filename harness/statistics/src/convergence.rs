@@ -1,18 +1,18 @@
-//! How an estimate settles with the number of runs.
+//! Convergence of an estimate with the number of runs.
 
 use crate::sample::Interval;
 use serde::{Deserialize, Serialize};
 
-/// The estimate of the first `runs` runs.
+/// Estimate from the first `runs` runs.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Step {
-    /// Runs that it is of.
+    /// Number of runs.
     pub runs: u64,
-    /// The estimate and its bounds.
+    /// Estimate with its bounds.
     pub estimate: Interval,
 }
 
-/// Numbers of runs at which to look: 1, 2, 5, 10, 20, 50 … and all.
+/// Numbers of runs at which to estimate: 1, 2, 5, 10, 20, 50 … and all.
 #[must_use]
 pub fn steps(runs: usize) -> Vec<usize> {
     let mut steps = Vec::new();
@@ -33,11 +33,11 @@ pub fn steps(runs: usize) -> Vec<usize> {
     steps
 }
 
-/// The running estimate: that of the first runs, for each of [`steps`]. A step for which `estimate`
-/// gives nothing is left out.
+/// Running estimate from the first runs, for each of [`steps`]. Steps for which `estimate` returns
+/// `None` are omitted.
 ///
-/// Any estimate of a sample can be looked at: [`crate::quantile::interval`] of a percentile,
-/// [`mean`], or [`pass`] of a pass probability.
+/// Any estimate of a sample can be used: [`crate::quantile::interval`] of a percentile, [`mean`], or
+/// [`pass`] of a pass probability.
 #[must_use]
 pub fn convergence<T>(
     values: &[T],
@@ -49,16 +49,16 @@ pub fn convergence<T>(
         .collect()
 }
 
-/// The mean with its two-sided interval by Student's distribution; `None` of fewer than two.
+/// Mean with its two-sided interval by Student's distribution; `None` for fewer than two values.
 #[must_use]
 pub fn mean(values: &[f64], confidence: f64) -> Option<Interval> {
     let (value, deviation) = (crate::sample::mean(values)?, crate::sample::deviation(values)?);
-    let half = crate::paired::student(values.len() - 1, confidence)? * deviation
+    let half = crate::student::student(values.len() - 1, confidence)? * deviation
         / libm::sqrt(values.len() as f64);
     Some(Interval { value, low: value - half, high: value + half })
 }
 
-/// The pass probability with its two-sided interval of Clopper and Pearson; `None` of nothing.
+/// Pass probability with its two-sided interval of Clopper and Pearson; `None` for no runs.
 #[must_use]
 pub fn pass(passed: &[bool], confidence: f64) -> Option<Interval> {
     let runs = passed.len() as u64;

@@ -1,10 +1,10 @@
-//! How well a sample knows its standard deviation.
+//! Uncertainty of a sample's standard deviation.
 
 use crate::sample::{Interval, deviation};
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
-/// The standard deviation about the mean with its two-sided interval, of normal values:
-/// s √((n − 1) / χ²). `None` of fewer than two values, or of a confidence that is none.
+/// Standard deviation about the mean with its two-sided interval, for normal values: s √((n − 1) / χ²).
+/// `None` for fewer than two values, or for an invalid confidence.
 #[must_use]
 pub fn interval(values: &[f64], confidence: f64) -> Option<Interval> {
     let value = deviation(values)?;
@@ -12,7 +12,7 @@ pub fn interval(values: &[f64], confidence: f64) -> Option<Interval> {
     Some(Interval { value, low: value * low, high: value * high })
 }
 
-/// What the standard deviation of a sample is multiplied by for the ends of its interval.
+/// Factors from the standard deviation of a sample to the ends of its interval.
 #[must_use]
 pub fn factors(degrees_of_freedom: u64, confidence: f64) -> Option<(f64, f64)> {
     if degrees_of_freedom == 0 || !(confidence > 0.0 && confidence < 1.0) {

@@ -3,28 +3,28 @@
 use crate::sample::of_sorted;
 use serde::{Deserialize, Serialize};
 
-/// Why series make no envelope.
+/// Error of series that make no envelope.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum EnvelopeError {
-    /// No run.
+    /// No runs were given.
     #[error("make an envelope: there is no run")]
     Empty,
-    /// A run is on another grid.
+    /// A run has another grid.
     #[error("make an envelope: run {run} has {found} points, the grid has {expected}")]
     Length {
-        /// The run, from 0.
+        /// Number of the run, from 0.
         run: usize,
-        /// Its points.
+        /// Number of its points.
         found: usize,
-        /// The points of the grid.
+        /// Number of points of the grid.
         expected: usize,
     },
-    /// A value that isn't a number.
+    /// A value is NaN.
     #[error("make an envelope: run {run} is not a number at point {point}")]
     NotANumber {
-        /// The run, from 0.
+        /// Number of the run, from 0.
         run: usize,
-        /// The point, from 0.
+        /// Index of the point, from 0.
         point: usize,
     },
 }
@@ -38,8 +38,8 @@ pub struct Envelope {
     pub curves: Vec<Vec<f64>>,
 }
 
-/// A series of points in order of x on a grid, straight between points; `None` where the grid, in
-/// ascending order, reaches beyond the points, or the series has none.
+/// Resamples a series of points, in order of x, on a grid by linear interpolation; `None` if the grid,
+/// in ascending order, extends beyond the points, or there are no points.
 #[must_use]
 pub fn resampled(points: &[[f64; 2]], grid: &[f64]) -> Option<Vec<f64>> {
     let (first, last) = (points.first()?, points.last()?);
@@ -60,11 +60,11 @@ pub fn resampled(points: &[[f64; 2]], grid: &[f64]) -> Option<Vec<f64>> {
         .collect()
 }
 
-/// The percentiles of series by run on a common grid of `points`, exact: every run is looked at, and
-/// between order statistics it is interpolated as [`crate::sample::percentile`] does.
+/// Exact percentiles of the runs' series on a common grid of `points`: all runs are used, with the
+/// interpolation of [`crate::sample::percentile`] between order statistics.
 ///
 /// # Errors
-/// If there is no run, or one has other points or a value that isn't a number.
+/// If there is no run, or one has another number of points or a NaN.
 pub fn envelope<S: AsRef<[f64]>>(
     series: &[S],
     points: usize,

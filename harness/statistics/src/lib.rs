@@ -1,18 +1,19 @@
 //! Statistics of many runs.
 //!
 //! - [`sample`] has the figures of a sample, [`position`] those of position errors: CEP50, R95, drms
-//! - [`mod@deviation`] says how well a σ is known, [`radius`] how far a normal error in the plane gets
-//! - [`cluster`] tells the independent draws among rows, the unit of inference
-//! - [`quantile`] bounds them without a distribution, [`proportion`] a pass probability
-//! - [`rate`] is the radial error rate and the time-RMS, [`mod@envelope`] percentiles over time
-//! - [`rank`] says what an output is sensitive to, [`outlier`] which runs stand out
+//! - [`mod@deviation`] has the uncertainty of a σ, [`radius`] the distance of a normal error in the
+//!   plane
+//! - [`cluster`] finds the independent draws among rows, the unit of inference
+//! - [`quantile`] gives distribution-free bounds, [`proportion`] bounds of a pass probability
+//! - [`rate`] has the radial error rate and the time-RMS, [`mod@envelope`] percentiles over time
+//! - [`rank`] finds the factors that an output is sensitive to, [`outlier`] the runs that stand out
 //! - [`paired`] compares two sets of runs seed by seed
-//! - [`power`] says what so many runs would find
-//! - [`multiple`] corrects many comparisons at once
-//! - [`draw`] makes the factors of runs: distributions, Latin hypercubes, correlations
-//! - [`mod@convergence`] says how an estimate settles with the number of runs
+//! - [`power`] gives the smallest effect that a number of runs detects
+//! - [`multiple`] corrects for many comparisons
+//! - [`draw`] draws the factors of runs: distributions, Latin hypercubes, correlations
+//! - [`mod@convergence`] shows the convergence of an estimate with the number of runs
 //!
-//! Every function names its source. Nothing here knows scenarios or files.
+//! Every function names its source. Nothing in this crate depends on scenarios or files.
 
 pub mod cluster;
 pub mod convergence;
@@ -31,3 +32,4 @@ pub mod radius;
 pub mod rank;
 pub mod rate;
 pub mod sample;
+mod student;

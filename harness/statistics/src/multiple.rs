@@ -1,9 +1,9 @@
-//! Many comparisons at once: of enough of them, some look as if something were there.
+//! Corrections for many comparisons, some of which look significant by chance.
 
-/// Probabilities adjusted by Holm's step-down procedure (Scandinavian Journal of Statistics 6, 1979): those
-/// at most α together have a false one among them with at most α, however they depend on each other.
-/// The least is multiplied by their number, the next by one less, and none falls below the one before
-/// it. What is not a number counts as 1.
+/// Probabilities adjusted by Holm's step-down procedure (Scandinavian Journal of Statistics 6, 1979):
+/// rejecting all hypotheses with at most α makes any false rejection with a probability of at most α,
+/// for any dependence between them. The smallest is multiplied by their number, the next by one less,
+/// and none is below the one before it. A NaN counts as 1.
 #[must_use]
 pub fn holm(probabilities: &[f64]) -> Vec<f64> {
     let known = |p: f64| if p.is_nan() { 1.0 } else { p };

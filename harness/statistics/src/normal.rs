@@ -1,4 +1,5 @@
-//! The standard normal distribution with libm alone: draws have the same bits on every platform.
+//! The standard normal distribution, computed with libm only, so that draws have the same bits on every
+//! platform.
 
 /// Φ(z).
 #[must_use]
@@ -11,7 +12,7 @@ fn horner(x: f64, coefficients: &[f64]) -> f64 {
 }
 
 /// Φ⁻¹(p), to about 16 digits: algorithm AS 241 (PPND16) of Wichura, Applied Statistics 37, 1988.
-/// Infinite at 0 and 1, not a number outside.
+/// Infinite at 0 and 1, NaN outside.
 #[must_use]
 pub fn quantile(p: f64) -> f64 {
     let q = p - 0.5;
@@ -36,7 +37,7 @@ pub fn quantile(p: f64) -> f64 {
     if q < 0.0 { -z } else { z }
 }
 
-/// Numerator and denominator, from the constant term.
+/// Coefficients of numerator and denominator, from the constant term.
 type Rational = ([f64; 8], [f64; 8]);
 
 const CENTRE: Rational = (

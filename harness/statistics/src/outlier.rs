@@ -1,36 +1,36 @@
-//! Runs that stand out.
+//! Outliers among runs.
 
 use serde::{Deserialize, Serialize};
 
-/// A run that stands out.
+/// An outlier.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Outlier {
-    /// Which value it is, from 0.
+    /// Index of the value, from 0.
     pub index: usize,
-    /// How far out it is: the modified z-score, with its sign; infinite for what isn't finite, or where
-    /// more than half of the values are equal.
+    /// Modified z-score with its sign; infinite for a value that isn't finite, or if more than half of
+    /// the values are equal.
     pub score: f64,
 }
 
-/// On which scale values are looked at.
+/// Scale on which values are compared.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Scale {
-    /// As they are: errors of either sign.
+    /// Linear, for errors of either sign.
     Linear,
-    /// Their logarithm: magnitudes, which are skewed. A value of zero or less is out by infinity.
+    /// Logarithmic, for magnitudes, which are skewed. A value of zero or less has an infinite score.
     Logarithm,
 }
 
 /// Limit that Iglewicz and Hoaglin recommend for the modified z-score.
 pub const LIMIT: f64 = 3.5;
 
-/// The 75th percentile of the standard normal: the MAD of a Gaussian is 0.6745 σ.
+/// 75th percentile of the standard normal distribution: the MAD of a Gaussian is 0.6745 σ.
 const MAD_OF_SIGMA: f64 = 0.674_489_750_196_081_7;
 
-/// Values whose modified z-score 0.6745 (x − median) / MAD is above `limit` in magnitude, the farthest
+/// Values whose modified z-score 0.6745 (x − median) / MAD exceeds `limit` in magnitude, the farthest
 /// first (Iglewicz and Hoaglin, How to Detect and Handle Outliers, ASQC 1993). A value that isn't
-/// finite always stands out, and doesn't count for the median.
+/// finite is always an outlier, and isn't used for the median.
 #[must_use]
 pub fn outliers(values: &[f64], scale: Scale, limit: f64) -> Vec<Outlier> {
     let scaled: Vec<f64> = values

@@ -1,20 +1,13 @@
-//! Two sets of runs, compared seed by seed: what both share, the instrument and its noise, stays shared.
+//! Paired comparison of two sets of runs, seed by seed: the instrument and its noise are common to each
+//! pair.
 
 use crate::sample::{Interval, deviation, mean, ranks, rms};
 use serde::{Deserialize, Serialize};
-use statrs::distribution::{Beta, ContinuousCDF, StudentsT};
+use statrs::distribution::{Beta, ContinuousCDF};
 
-/// The factor of a two-sided interval by Student's distribution; `None` without a degree of freedom.
-#[must_use]
-pub fn student(degrees: usize, confidence: f64) -> Option<f64> {
-    if !(confidence > 0.0 && confidence < 1.0) {
-        return None;
-    }
-    let t = StudentsT::new(0.0, 1.0, degrees as f64).ok()?;
-    Some(t.inverse_cdf(0.5 * (1.0 + confidence)))
-}
+pub use crate::student::student;
 
-/// P(X ≤ k) of a binomial with n tosses of a fair coin.
+/// P(X ≤ k) for the binomial distribution of n tosses of a fair coin.
 fn fair_coin(k: u64, n: u64) -> f64 {
     if k >= n {
         return 1.0;
@@ -22,37 +15,38 @@ fn fair_coin(k: u64, n: u64) -> f64 {
     Beta::new((n - k) as f64, (k + 1) as f64).map_or(f64::NAN, |beta| beta.cdf(0.5))
 }
 
-/// Exact two-sided probability of a split at least as uneven as `first` to `second`, if both are as
-/// likely (sign test; Conover, Practical Nonparametric Statistics, 3rd edition, section 3.4).
+/// Exact two-sided probability of a split at least as uneven as `first` to `second`, if both are
+/// equally likely (sign test; Conover, Practical Nonparametric Statistics, 3rd edition, section 3.4).
 #[must_use]
 pub fn sign_test(first: u64, second: u64) -> f64 {
     (2.0 * fair_coin(first.min(second), first + second)).min(1.0)
 }
 
-/// What the differences of pairs show.
+/// Statistics of the differences of pairs.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Difference {
-    /// Mean of second − first with its interval by Student's distribution, of the pairs in which both are
-    /// numbers; `None` of fewer than two such pairs.
+    /// Mean of second − first with its interval by Student's distribution, over the pairs with two
+    /// finite values; `None` for fewer than two such pairs.
     pub mean: Option<Interval>,
     /// Standard deviation of the same differences.
     pub deviation: Option<f64>,
-    /// Pairs in which both are numbers.
+    /// Number of pairs with two finite values.
     pub finite: u64,
-    /// Pairs in which the second is less.
+    /// Number of pairs in which the second value is less.
     pub less: u64,
-    /// Pairs in which the second is more.
+    /// Number of pairs in which the second value is more.
     pub more: u64,
-    /// Exact two-sided probability of the sign test; 1 of no difference at all.
+    /// Exact two-sided probability of the sign test; 1 without any difference.
     pub sign_p: f64,
     /// Two-sided probability of Wilcoxon's signed-rank test.
     pub wilcoxon_p: f64,
 }
 
-/// Compares pairs of numbers. A run that is beyond every number is infinite: it counts in both tests, with
-/// the highest rank, and not in the mean. A pair of which both are infinite doesn't differ.
+/// Compares pairs of numbers. A run beyond every number, such as a refused one, is infinite: it counts
+/// in both tests, with the highest rank, but not in the mean. A pair of two infinities has no
+/// difference.
 ///
-/// `None` if the lengths differ, there are fewer than two pairs, or a value isn't a number.
+/// Returns `None` if the lengths differ, there are fewer than two pairs, or a value is NaN.
 #[must_use]
 pub fn difference(first: &[f64], second: &[f64], confidence: f64) -> Option<Difference> {
     if first.len() != second.len() || first.len() < 2 {
@@ -87,13 +81,13 @@ pub fn difference(first: &[f64], second: &[f64], confidence: f64) -> Option<Diff
     })
 }
 
-/// Differences beyond which the signed-rank test takes the normal distribution.
+/// Number of differences above which the signed-rank test uses the normal distribution.
 const EXACT_MAX: usize = 200;
 
 /// Two-sided probability of Wilcoxon's signed-rank test (Biometrics Bulletin 1, 1945). Zeros are left
-/// out, ties have the mean of their ranks. Exact up to 200 differences, with ties too: the distribution
-/// of the sum over all signs of the ranks that are there. Beyond, the normal approximation with the
-/// variance Σ r² / 4 and a continuity correction.
+/// out, ties have the mean of their ranks. It is exact up to 200 differences, also with ties: the
+/// distribution of the sum over all signs of the actual ranks. Beyond, it uses the normal approximation
+/// with the variance Σ r² / 4 and a continuity correction.
 #[must_use]
 pub fn wilcoxon(differences: &[f64]) -> f64 {
     let differences: Vec<f64> = differences.iter().copied().filter(|d| *d != 0.0).collect();
@@ -112,7 +106,7 @@ pub fn wilcoxon(differences: &[f64]) -> f64 {
         let z = (smaller - total / 2.0 + 0.5).min(0.0) / libm::sqrt(variance);
         return (2.0 * crate::normal::cdf(z)).min(1.0);
     }
-    // Ranks doubled are whole numbers. Each has either sign with probability 1/2.
+    // Doubled ranks are whole numbers. Each has either sign with probability 1/2.
     let steps: Vec<usize> = ranks.iter().map(|r| (2.0 * r) as usize).collect();
     let mut probability = vec![0.0; steps.iter().sum::<usize>() + 1];
     probability[0] = 1.0;
@@ -132,13 +126,13 @@ pub fn wilcoxon(differences: &[f64]) -> f64 {
 /// Pairs of passes and failures.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct PassPairs {
-    /// Both passed.
+    /// Pairs in which both passed.
     pub both: u64,
-    /// Only the first passed: newly failing.
+    /// Pairs in which only the first passed: newly failing.
     pub only_first: u64,
-    /// Only the second passed: newly passing.
+    /// Pairs in which only the second passed: newly passing.
     pub only_second: u64,
-    /// Neither.
+    /// Pairs in which neither passed.
     pub neither: u64,
 }
 
@@ -162,36 +156,37 @@ impl PassPairs {
     }
 
     /// Exact two-sided probability of McNemar's test (Psychometrika 12, 1947): only pairs that differ
-    /// count, and each way is as likely.
+    /// count, and both directions are equally likely.
     #[must_use]
     pub fn mcnemar(&self) -> f64 {
         sign_test(self.only_first, self.only_second)
     }
 }
 
-/// How much better a second method is, from paired runs.
+/// Improvement by a second method, from paired runs.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Improvement {
     /// 1 − rms(second)/rms(first).
     pub value: f64,
-    /// Lower end of its interval.
+    /// Lower end of the interval.
     pub low: f64,
-    /// Upper end of its interval.
+    /// Upper end of the interval.
     pub high: f64,
-    /// Smallest improvement that so many pairs, scattering as these do, show with 90 %: the whole interval
-    /// is above 0 then.
+    /// Smallest improvement that so many pairs, with this scatter, show with a probability of 90 %: the
+    /// whole interval is then above 0.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub detectable: Option<f64>,
 }
 
 /// Improvement of `second` over `first`, run by run with the same seeds, as 1 − ratio of the root mean
-/// squares, with its two-sided interval: Student's of the logarithm of the ratio, whose standard error is
-/// that of the jackknife (Efron, The Jackknife, the Bootstrap and Other Resampling Plans, 1982), leaving
-/// out one pair at a time, so that what both share, the instrument and its noise, stays shared. A
-/// percentile bootstrap of 20 pairs holds 86 % where it says 90; this one holds what it says from 10 on.
+/// squares, with its two-sided interval: Student's for the logarithm of the ratio, with the standard
+/// error of the jackknife (Efron, The Jackknife, the Bootstrap and Other Resampling Plans, 1982). The
+/// jackknife leaves out one pair at a time, so that the instrument and its noise stay common to a pair.
+/// A percentile bootstrap of 20 pairs covers 86 % at a nominal 90 %; this interval keeps its nominal
+/// coverage from 10 pairs on.
 ///
-/// `None` if the lengths differ, there are fewer than two pairs, a value isn't finite, or a root mean
-/// square is zero without one pair.
+/// Returns `None` if the lengths differ, there are fewer than two pairs, a value isn't finite, or a
+/// root mean square is zero without one pair.
 #[must_use]
 pub fn improvement(first: &[f64], second: &[f64], confidence: f64) -> Option<Improvement> {
     let pairs = first.len();

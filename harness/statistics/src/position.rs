@@ -4,14 +4,14 @@ use crate::quantile;
 use crate::sample::{Interval, percentile, rms};
 use serde::{Deserialize, Serialize};
 
-/// Circular error probable of a Gaussian error, 0.5887 (σ_lat + σ_lon): within 3 % while one σ is
+/// Circular error probable of a Gaussian error, 0.5887 (σ_lat + σ_lon): accurate within 3 % if one σ is
 /// at most twice the other.
 #[must_use]
 pub fn cep50(sigma_latitude: f64, sigma_longitude: f64) -> f64 {
     0.5887 * (sigma_latitude + sigma_longitude)
 }
 
-/// Where an ensemble of positions lies, in the unit of its errors.
+/// Statistics of an ensemble of position errors, in the unit of the errors.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PositionStatistics {
     /// 0.5887 (σ_lat + σ_lon), σ about zero: a common offset counts as an error.
@@ -20,7 +20,7 @@ pub struct PositionStatistics {
     pub cep50_empirical: f64,
     /// 95th percentile of the radial errors.
     pub r95: f64,
-    /// √ of the mean of the squared radial errors.
+    /// Square root of the mean squared radial error.
     pub drms: f64,
 }
 
@@ -30,7 +30,7 @@ pub fn radial(north_east: &[[f64; 2]]) -> Vec<f64> {
     north_east.iter().map(|e| libm::sqrt(e[0] * e[0] + e[1] * e[1])).collect()
 }
 
-/// Statistics of north and east errors of an ensemble at one time; `None` of nothing.
+/// Statistics of the north and east errors of an ensemble at one time; `None` without errors.
 #[must_use]
 pub fn position_statistics(north_east: &[[f64; 2]]) -> Option<PositionStatistics> {
     let column = |i: usize| north_east.iter().map(|e| e[i]).collect::<Vec<_>>();
@@ -52,7 +52,7 @@ pub struct PositionBounds {
     pub r95: Interval,
 }
 
-/// Bounds of CEP50 and R95 with this confidence; `None` of nothing.
+/// Bounds of CEP50 and R95 with this confidence; `None` without errors.
 #[must_use]
 pub fn position_bounds(north_east: &[[f64; 2]], confidence: f64) -> Option<PositionBounds> {
     let radial = radial(north_east);

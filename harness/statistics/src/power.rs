@@ -1,19 +1,21 @@
-//! Detection power: the smallest change that a number of runs finds with a given probability.
+//! Detection power: the smallest change that a number of runs detects with a given probability.
 //!
-//! "Nothing was found" says something only beside it.
+//! A result of no change is meaningful only together with it.
 
 use crate::draw::unit;
+use crate::normal;
 use crate::sample::ranks;
-use crate::{normal, paired};
+use crate::student::student;
 use statrs::distribution::{Beta, ChiSquared, ContinuousCDF};
 
-/// The power that reports state a smallest change for.
+/// Power for which reports state the smallest change.
 pub const POWER: f64 = 0.9;
-/// Samples that the power of a signed-rank test is simulated with: it is then known to 0.7 %.
+/// Number of simulated samples for the power of a signed-rank test, which gives it to 0.7 %.
 const SAMPLES: u64 = 2000;
-/// Pairs beyond which Student's test stands for the signed-rank test, by their asymptotic efficiency.
+/// Number of pairs above which Student's test, scaled by the asymptotic efficiency, replaces the
+/// simulation.
 const SIMULATED_MAX: u64 = 60;
-/// Halvings of an interval of shifts.
+/// Number of halvings of an interval of shifts.
 const HALVINGS: u32 = 14;
 /// Asymptotic relative efficiency of the signed-rank test to Student's for normal differences, 3/π
 /// (Hodges and Lehmann, Annals of Mathematical Statistics 27, 1956).
@@ -24,19 +26,19 @@ fn sane(level: f64, power: f64) -> bool {
     inside(level) && inside(power)
 }
 
-/// Smallest shift of the mean of `pairs` normal differences, in their σ, that Wilcoxon's signed-rank test
-/// at a two-sided `level` finds with probability `power`. `None`: no shift is found by so few pairs.
+/// Smallest shift of the mean of `pairs` normal differences, in their σ, that Wilcoxon's signed-rank
+/// test at a two-sided `level` detects with probability `power`. `None`: so few pairs detect no shift.
 ///
-/// Up to 60 pairs the power is that of simulated samples, the same ones each time, against the exact
-/// critical value.
+/// Up to 60 pairs the power is that of simulated samples, the same ones each time, compared with the
+/// exact critical value.
 #[must_use]
 pub fn signed_rank_shift(pairs: u64, level: f64, power: f64) -> Option<f64> {
-    // All signs alike are the most that can be seen.
+    // Equal signs of all differences are the most extreme result.
     if pairs == 0 || !sane(level, power) || libm::exp2(1.0 - pairs as f64) > level {
         return None;
     }
     if pairs > SIMULATED_MAX {
-        let student = paired::student(pairs as usize - 1, 1.0 - level)?;
+        let student = student(pairs as usize - 1, 1.0 - level)?;
         let effective = EFFICIENCY * pairs as f64;
         return Some((student + normal::quantile(power)) / libm::sqrt(effective));
     }
@@ -69,7 +71,7 @@ pub fn signed_rank_shift(pairs: u64, level: f64, power: f64) -> Option<f64> {
     Some(high)
 }
 
-/// The largest sum of ranks of one sign that is significant at a two-sided level.
+/// Largest sum of ranks of one sign that is significant at a two-sided level.
 fn critical_rank_sum(pairs: usize, level: f64) -> Option<f64> {
     let mut probability = vec![0.0; pairs * (pairs + 1) / 2 + 1];
     probability[0] = 1.0;
@@ -91,35 +93,36 @@ fn critical_rank_sum(pairs: usize, level: f64) -> Option<f64> {
     (sums > 0).then(|| (sums - 1) as f64)
 }
 
-/// Smallest probability that a pair turns, all one way, that McNemar's test at a two-sided `level` finds
-/// with probability `power` in so many pairs. `None`: none is found by so few.
+/// Smallest probability that the result of a pair changes, always in the same direction, that McNemar's
+/// test at a two-sided `level` detects with probability `power` in so many pairs. `None`: so few pairs
+/// detect none.
 #[must_use]
 pub fn turning(pairs: u64, level: f64, power: f64) -> Option<f64> {
     if !sane(level, power) {
         return None;
     }
-    // 2 · 2^(−k) at most the level.
+    // Smallest k with 2 · 2^(−k) at most the level.
     let turned = libm::ceil(1.0 - libm::log2(level)) as u64;
     if turned > pairs {
         return None;
     }
-    // P(at least k of n turn) is the incomplete beta function I(p; k, n − k + 1).
+    // P(at least k of n change) is the incomplete beta function I(p; k, n − k + 1).
     let beta = Beta::new(turned as f64, (pairs - turned + 1) as f64).ok()?;
     Some(beta.inverse_cdf(power))
 }
 
-/// Smallest difference of a mean, in σ, that a two-sided Student interval of so many values with this
+/// Smallest difference of a mean, in σ, that a two-sided Student interval of this many values with this
 /// confidence excludes with probability `power`.
 #[must_use]
 pub fn mean_shift(values: u64, confidence: f64, power: f64) -> Option<f64> {
     if !sane(1.0 - confidence, power) {
         return None;
     }
-    let student = paired::student(usize::try_from(values).ok()?.checked_sub(1)?, confidence)?;
+    let student = student(usize::try_from(values).ok()?.checked_sub(1)?, confidence)?;
     Some((student + normal::quantile(power)) / libm::sqrt(values as f64))
 }
 
-/// Ratios of σ, below and above 1, that the χ² interval of so many normal values with this confidence
+/// Ratios of σ, below and above 1, that the χ² interval of this many normal values with this confidence
 /// excludes with probability `power`.
 #[must_use]
 pub fn sigma_ratios(values: u64, confidence: f64, power: f64) -> Option<(f64, f64)> {

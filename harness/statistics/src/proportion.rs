@@ -1,9 +1,9 @@
-//! The probability that a run passes, from runs that passed and failed.
+//! Probability that a run passes, estimated from runs that passed and failed.
 
 use serde::{Deserialize, Serialize};
 use statrs::distribution::{Beta, ContinuousCDF};
 
-/// Runs beyond which nobody waits.
+/// Largest number of runs that is considered.
 const RUNS_MAX: u64 = 10_000_000;
 
 /// Lower bound of the probability of success after `failures` in `runs`, with one-sided
@@ -18,13 +18,14 @@ pub fn success_lower_bound(failures: u64, runs: u64, confidence: f64) -> f64 {
     Beta::new(a, b).map_or(0.0, |beta| beta.inverse_cdf(1.0 - confidence))
 }
 
-/// Upper bound of the probability of success, one-sided as [`success_lower_bound`].
+/// Upper bound of the probability of success, one-sided like [`success_lower_bound`].
 #[must_use]
 pub fn success_upper_bound(failures: u64, runs: u64, confidence: f64) -> f64 {
     1.0 - success_lower_bound(runs.saturating_sub(failures), runs, confidence)
 }
 
-/// What has to be shown: runs pass with at least this probability, with this one-sided confidence.
+/// Required probability: runs pass with at least this probability, shown with this one-sided
+/// confidence.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Demand {
     /// Probability, above 0 and below 1.
@@ -39,21 +40,21 @@ impl Demand {
         inside(self.pass) && inside(self.confidence)
     }
 
-    /// Whether so many failures in so many runs show it.
+    /// True if this many failures in this many runs show that the demand is met.
     #[must_use]
     pub fn is_shown(self, failures: u64, runs: u64) -> bool {
         self.sane() && success_lower_bound(failures, runs, self.confidence) >= self.pass
     }
 
-    /// Whether so many failures in so many runs show that it doesn't hold.
+    /// True if this many failures in this many runs show that the demand isn't met.
     #[must_use]
     pub fn is_refuted(self, failures: u64, runs: u64) -> bool {
         self.sane() && runs > 0 && success_upper_bound(failures, runs, self.confidence) < self.pass
     }
 }
 
-/// The smallest number of runs, at least `runs` and at most [`RUNS_MAX`], with which something is shown
-/// that stays shown with more runs.
+/// Smallest number of runs, at least `runs` and at most [`RUNS_MAX`], for which `shown` is true; it must
+/// stay true with more runs.
 fn first(runs: u64, shown: impl Fn(u64) -> bool) -> Option<u64> {
     let mut high = runs.max(1);
     while !shown(high) {
@@ -75,17 +76,17 @@ fn further(runs: u64, shown: impl Fn(u64) -> bool) -> Needed {
     first(runs, shown).map_or(Needed::CannotBeMet, |all| Needed::Runs(all - runs))
 }
 
-/// Runs that are still needed to show a demand.
+/// Number of further runs needed to show a demand.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Needed {
-    /// So many further runs; 0: it is shown.
+    /// This many further runs; 0: the demand is already shown.
     Runs(u64),
-    /// However many: at this rate the demand isn't met, or would take more than ten million runs.
+    /// No number of runs: at this rate the demand isn't met, or would take more than ten million runs.
     CannotBeMet,
 }
 
-/// Further runs that show the demand if all of them pass.
+/// Number of further runs that show the demand if all of them pass.
 #[must_use]
 pub fn further_if_all_pass(demand: Demand, failures: u64, runs: u64) -> Needed {
     if failures > runs {
@@ -94,10 +95,11 @@ pub fn further_if_all_pass(demand: Demand, failures: u64, runs: u64) -> Needed {
     further(runs, |n| demand.is_shown(failures, n))
 }
 
-/// Further runs that show the demand if runs go on to fail at the rate seen so far.
+/// Number of further runs that show the demand if runs continue to fail at the rate so far.
 ///
-/// A forecast: the number of failures among n runs is taken as the real number rate · n in the bound of
-/// Clopper and Pearson. Where the rate itself is no better than what is demanded, no number helps.
+/// This is a forecast: the bound of Clopper and Pearson is used with the real number rate · n as the
+/// number of failures among n runs. If the rate itself doesn't meet the demand, no number of runs is
+/// enough.
 #[must_use]
 pub fn further_at_rate(demand: Demand, failures: u64, runs: u64) -> Needed {
     if demand.is_shown(failures, runs) {

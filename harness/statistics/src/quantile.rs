@@ -1,23 +1,23 @@
-//! Bounds of a quantile from order statistics, whatever the distribution.
+//! Distribution-free bounds of a quantile from order statistics.
 //!
-//! Of n independent values at most a number k lie below the p-quantile with the probability of a
-//! binomial distribution, so that order statistics bound it (David and Nagaraja, Order Statistics, 3rd
-//! edition, section 7.1; Wilks, 1942, for the number that a bound needs).
+//! The number of n independent values below the p-quantile has a binomial distribution, so that order
+//! statistics bound the quantile (David and Nagaraja, Order Statistics, 3rd edition, section 7.1;
+//! Wilks, 1942, for the number of values that a bound needs).
 
 use crate::sample::{Interval, percentile};
 use statrs::distribution::{Beta, ContinuousCDF};
 
-/// P(at most `k` of `n` fall below the `p`-quantile), of a continuous distribution.
+/// P(at most `k` of `n` are below the `p`-quantile), for a continuous distribution.
 fn at_most(k: u64, n: u64, p: f64) -> f64 {
     if k >= n {
         return 1.0;
     }
-    // The binomial sum is the regularised incomplete beta function.
+    // The binomial sum equals the regularised incomplete beta function.
     Beta::new((n - k) as f64, (k + 1) as f64).map_or(f64::NAN, |beta| beta.cdf(1.0 - p))
 }
 
-/// The upper bound of the `p`-quantile with one-sided `confidence`: the smallest order statistic that
-/// is above it with that probability. `None` if there are too few values for any.
+/// Upper bound of the `p`-quantile with one-sided `confidence`: the smallest order statistic that is
+/// above it with that probability. `None` if there are too few values.
 #[must_use]
 pub fn upper_bound(values: &[f64], p: f64, confidence: f64) -> Option<f64> {
     let rank = upper_rank(values.len() as u64, p, confidence)?;
@@ -25,7 +25,7 @@ pub fn upper_bound(values: &[f64], p: f64, confidence: f64) -> Option<f64> {
     Some(sorted.swap_remove(rank as usize - 1))
 }
 
-/// The lower bound of the `p`-quantile, one-sided as [`upper_bound`].
+/// Lower bound of the `p`-quantile, one-sided like [`upper_bound`].
 #[must_use]
 pub fn lower_bound(values: &[f64], p: f64, confidence: f64) -> Option<f64> {
     let n = values.len() as u64;
@@ -44,7 +44,7 @@ fn sorted(values: &[f64]) -> Option<Vec<f64>> {
     Some(sorted)
 }
 
-/// The smallest rank r, from 1, with P(the r-th of n is above the quantile) at least `confidence`.
+/// Smallest rank r, from 1, with P(the r-th of n is above the quantile) at least `confidence`.
 #[must_use]
 pub fn upper_rank(n: u64, p: f64, confidence: f64) -> Option<u64> {
     let inside = |x: f64| x > 0.0 && x < 1.0;
@@ -64,8 +64,8 @@ pub fn upper_rank(n: u64, p: f64, confidence: f64) -> Option<u64> {
     Some(high)
 }
 
-/// The number of values that an upper bound of the `p`-quantile needs: ln(1 − confidence) / ln p, 59
-/// for 95 % with 95 % (Wilks, Annals of Mathematical Statistics 13, 1942).
+/// Number of values that an upper bound of the `p`-quantile needs: ln(1 − confidence) / ln p, 59 for 95
+/// % with 95 % (Wilks, Annals of Mathematical Statistics 13, 1942).
 #[must_use]
 pub fn values_needed(p: f64, confidence: f64) -> Option<u64> {
     let inside = |x: f64| x > 0.0 && x < 1.0;
@@ -76,8 +76,8 @@ pub fn values_needed(p: f64, confidence: f64) -> Option<u64> {
     (n < 1e15).then_some(n.max(1.0) as u64)
 }
 
-/// The `p`-quantile with its two-sided interval: each end with half of what `confidence` leaves. An
-/// end for which there are too few values is infinite.
+/// The `p`-quantile with its two-sided interval: each end has half of the remaining probability. An end
+/// for which there are too few values is infinite.
 #[must_use]
 pub fn interval(values: &[f64], p: f64, confidence: f64) -> Option<Interval> {
     let each = 0.5 * (1.0 + confidence);

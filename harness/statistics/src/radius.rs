@@ -1,22 +1,22 @@
 //! Distance of a two-dimensional normal error from the origin.
 
-/// Halvings of an interval: more than a double has digits.
+/// Number of halvings of an interval: more than the bits of a double.
 const HALVINGS: u32 = 60;
-/// Intervals of Simpson's rule.
+/// Number of intervals of Simpson's rule.
 const PANELS: u32 = 512;
 
 /// A normal error in the plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Plane {
-    /// Its mean.
+    /// Mean.
     pub mean: [f64; 2],
-    /// Variances of the two.
+    /// Variances of the two components.
     pub variances: [f64; 2],
-    /// Their covariance.
+    /// Covariance of the two components.
     pub covariance: f64,
 }
 
-/// The same along the axes of its ellipse: mean and σ, the larger σ first.
+/// The same error along the axes of its ellipse: mean and σ, the larger σ first.
 struct Axes {
     mean: [f64; 2],
     sigma: [f64; 2],
@@ -42,8 +42,7 @@ impl Plane {
         self.axes().within(radius)
     }
 
-    /// The distance that a part `p` (0 to 1) of all errors keeps; not a number if the variances are
-    /// none.
+    /// Distance that a fraction `p` (0 to 1) of all errors doesn't exceed; NaN for invalid variances.
     #[must_use]
     pub fn quantile(&self, p: f64) -> f64 {
         let axes = self.axes();
@@ -55,7 +54,7 @@ impl Plane {
         if sigma == 0.0 {
             return extent;
         }
-        // Further out than this is less than 1e-16 of a normal distribution.
+        // Less than 1e-16 of a normal distribution is farther out.
         let (mut low, mut high) = (0.0, extent + 9.0 * sigma);
         for _ in 0..HALVINGS {
             let middle = 0.5 * (low + high);
@@ -82,8 +81,8 @@ impl Axes {
             let part = |x: f64| 0.5 * libm::erf(x / (t * core::f64::consts::SQRT_2));
             part(h - n) + part(h + n)
         };
-        // Along the major axis, over what is within the circle and within 9 σ: x = centre + half sin u
-        // takes the square root out of the ends.
+        // Integral along the major axis, within the circle and within 9 σ: x = centre + half sin u
+        // removes the square root at the ends.
         let (from, to) = ((-radius).max(m - 9.0 * s), radius.min(m + 9.0 * s));
         if from >= to {
             return 0.0;

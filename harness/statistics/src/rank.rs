@@ -1,4 +1,4 @@
-//! Rank correlation: whether an output goes with a factor, however bent the relation is.
+//! Rank correlation between an output and a factor, for any monotonic relation.
 
 use crate::sample::{mean, ranks};
 use serde::{Deserialize, Serialize};
@@ -9,15 +9,15 @@ use statrs::distribution::{Beta, ContinuousCDF};
 pub struct Correlation {
     /// Spearman's ρ.
     pub rho: f64,
-    /// Two-sided probability of a magnitude like this, if there is no relation.
+    /// Two-sided probability of a magnitude at least as large without any relation.
     pub p: f64,
 }
 
-/// Spearman's rank correlation (American Journal of Psychology 15, 1904) of pairs, ties with the mean
+/// Spearman's rank correlation (American Journal of Psychology 15, 1904) of pairs; ties have the mean
 /// of their ranks. The probability is that of t = ρ √((n − 2)/(1 − ρ²)) with n − 2 degrees of freedom
-/// (Kendall and Stuart, vol. 2, section 31.19), good from about ten pairs on.
+/// (Kendall and Stuart, vol. 2, section 31.19), accurate from about ten pairs on.
 ///
-/// `None` if the lengths differ, there are fewer than three pairs, a value isn't a number, or one side
+/// Returns `None` if the lengths differ, there are fewer than three pairs, a value is NaN, or one side
 /// is constant.
 #[must_use]
 pub fn spearman(x: &[f64], y: &[f64]) -> Option<Correlation> {
@@ -45,7 +45,7 @@ pub fn spearman(x: &[f64], y: &[f64]) -> Option<Correlation> {
 }
 
 impl Correlation {
-    /// Whether it is more than chance at this level, if it is one of so many that were looked at: each
+    /// True if the correlation is significant at this level as one of `looked_at` tests, each of which
     /// has its part of the level (Bonferroni).
     #[must_use]
     pub fn stands_out(self, level: f64, looked_at: usize) -> bool {
@@ -53,16 +53,16 @@ impl Correlation {
     }
 }
 
-/// How an output goes with one factor.
+/// Correlation of an output with one factor.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Sensitivity {
-    /// The factor.
+    /// Name of the factor.
     pub factor: String,
-    /// Its rank correlation; none where it is the same in all runs, or a value isn't a number.
+    /// Rank correlation; `None` if the factor is the same in all runs, or a value is NaN.
     pub correlation: Option<Correlation>,
 }
 
-/// The rank correlation of an output with every factor, the strongest first.
+/// Rank correlations of an output with every factor, the strongest first.
 #[must_use]
 pub fn sensitivities(factors: &[(String, Vec<f64>)], output: &[f64]) -> Vec<Sensitivity> {
     let mut all: Vec<Sensitivity> = factors
@@ -73,7 +73,7 @@ pub fn sensitivities(factors: &[(String, Vec<f64>)], output: &[f64]) -> Vec<Sens
         })
         .collect();
     let size = |s: &Sensitivity| s.correlation.map_or(-1.0, |c| c.rho.abs());
-    // A stable sort: equal ones stay in the order of the factors.
+    // The stable sort keeps equal ones in the order of the factors.
     all.sort_by(|a, b| size(b).total_cmp(&size(a)));
     all
 }

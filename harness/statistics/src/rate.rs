@@ -4,7 +4,7 @@ use crate::quantile;
 use crate::sample::{Interval, percentile};
 use serde::{Deserialize, Serialize};
 
-/// One radial error at a time.
+/// Radial error at one time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RadialSample {
     /// Time since the start of the navigation, h.
@@ -13,8 +13,8 @@ pub struct RadialSample {
     pub radial_nmi: f64,
 }
 
-/// Radial error rate, nmi/h: the slope of the regression of radial error on time through the origin,
-/// Σ r t / Σ t². `None` without a sample after the start, or with one that isn't finite.
+/// Radial error rate, nmi/h: the slope of the regression of radial error on time through the origin, Σ
+/// r t / Σ t². `None` without a sample after the start, or with one that isn't finite.
 #[must_use]
 pub fn radial_rate_nmi_per_h(samples: &[RadialSample]) -> Option<f64> {
     let (mut product, mut square) = (0.0, 0.0);
@@ -26,8 +26,8 @@ pub fn radial_rate_nmi_per_h(samples: &[RadialSample]) -> Option<f64> {
     rate.is_finite().then_some(rate)
 }
 
-/// Time-RMS, √(1/T ∫ r² dt), of a radial error that is straight between samples, nmi: exact for a ramp.
-/// `None` of fewer than two samples, or if time doesn't increase.
+/// Time-RMS, √(1/T ∫ r² dt), of a radial error with linear interpolation between samples, nmi: exact
+/// for a ramp. `None` for fewer than two samples, or if time doesn't increase.
 #[must_use]
 pub fn time_rms_nmi(samples: &[RadialSample]) -> Option<f64> {
     let mut integral = 0.0;
@@ -44,8 +44,8 @@ pub fn time_rms_nmi(samples: &[RadialSample]) -> Option<f64> {
     rms.is_finite().then_some(rms)
 }
 
-/// 50th and 95th percentile of radial error rates (regression through the origin), nmi/h. The first
-/// is what a class is named by: 0.8 nmi/h CEP.
+/// 50th and 95th percentile of radial error rates (regression through the origin), nmi/h. The first one
+/// names a class: 0.8 nmi/h CEP.
 #[must_use]
 pub fn radial_rates(rates_nmi_per_h: &[f64]) -> Option<[f64; 2]> {
     Some([percentile(rates_nmi_per_h, 0.5)?, percentile(rates_nmi_per_h, 0.95)?])
@@ -54,13 +54,13 @@ pub fn radial_rates(rates_nmi_per_h: &[f64]) -> Option<[f64; 2]> {
 /// Radial error rates of many runs, nmi/h, with distribution-free intervals.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RateBounds {
-    /// The median.
+    /// Median.
     pub rate50: Interval,
-    /// The 95th percentile.
+    /// 95th percentile.
     pub rate95: Interval,
 }
 
-/// The 50th and 95th percentile of rates with their intervals; `None` of nothing.
+/// 50th and 95th percentile of rates with their intervals; `None` without rates.
 #[must_use]
 pub fn rate_bounds(rates_nmi_per_h: &[f64], confidence: f64) -> Option<RateBounds> {
     Some(RateBounds {

@@ -2,20 +2,20 @@
 
 use serde::{Deserialize, Serialize};
 
-/// √ of the mean of squares; `None` of nothing.
+/// Root mean square; `None` without values.
 #[must_use]
 pub fn rms(values: &[f64]) -> Option<f64> {
     let sum: f64 = values.iter().map(|v| v * v).sum();
     (!values.is_empty()).then(|| libm::sqrt(sum / values.len() as f64))
 }
 
-/// The mean; `None` of nothing.
+/// Mean; `None` without values.
 #[must_use]
 pub fn mean(values: &[f64]) -> Option<f64> {
     (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
 }
 
-/// The standard deviation about the mean, with n − 1; `None` of fewer than two.
+/// Standard deviation about the mean, with n − 1; `None` for fewer than two values.
 #[must_use]
 pub fn deviation(values: &[f64]) -> Option<f64> {
     if values.len() < 2 {
@@ -26,10 +26,10 @@ pub fn deviation(values: &[f64]) -> Option<f64> {
     Some(libm::sqrt(sum / (values.len() - 1) as f64))
 }
 
-/// Percentile `p` (0 to 1), interpolated between order statistics; `None` of nothing or of a value
-/// that isn't a number. Definition 7 of Hyndman and Fan (The American Statistician 50, 1996), that of
-/// numpy, R and spreadsheets. Values may be infinite, such as a run that is beyond every number: between a
-/// number and infinity everything is infinite.
+/// Percentile `p` (0 to 1), interpolated between order statistics; `None` without values or with a NaN.
+/// Definition 7 of Hyndman and Fan (The American Statistician 50, 1996), as in numpy, R and
+/// spreadsheets. Values may be infinite, for example for a refused run: between a number and infinity
+/// the result is infinite.
 #[must_use]
 pub fn percentile(values: &[f64], p: f64) -> Option<f64> {
     if values.iter().any(|v| v.is_nan()) {
@@ -40,7 +40,7 @@ pub fn percentile(values: &[f64], p: f64) -> Option<f64> {
     of_sorted(&sorted, p)
 }
 
-/// As [`percentile`], of values in ascending order.
+/// Percentile as in [`percentile`], of values in ascending order.
 pub(crate) fn of_sorted(sorted: &[f64], p: f64) -> Option<f64> {
     if sorted.is_empty() {
         return None;
@@ -49,22 +49,22 @@ pub(crate) fn of_sorted(sorted: &[f64], p: f64) -> Option<f64> {
     let (low, part) = (at as usize, at - libm::floor(at));
     let high = (low + 1).min(sorted.len() - 1);
     let (below, above) = (sorted[low], sorted[high]);
-    // The difference of two infinities is not a number, and no part of one is left.
+    // The difference of two infinities is NaN, and so is every multiple of it.
     Some(if part == 0.0 || below == above { below } else { below + part * (above - below) })
 }
 
-/// An estimate with the interval that its sample leaves.
+/// An estimate with its interval.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Interval {
-    /// The estimate.
+    /// Estimate.
     pub value: f64,
-    /// Lower end; minus infinity where the sample gives none.
+    /// Lower end; minus infinity if the sample gives none.
     pub low: f64,
-    /// Upper end; infinity where the sample gives none.
+    /// Upper end; infinity if the sample gives none.
     pub high: f64,
 }
 
-/// Ranks from 1, ties with the mean of their ranks.
+/// Ranks from 1; ties have the mean of their ranks.
 #[must_use]
 pub fn ranks(values: &[f64]) -> Vec<f64> {
     let mut order: Vec<usize> = (0..values.len()).collect();

@@ -1,4 +1,4 @@
-//! Against closed forms.
+//! Comparison with closed forms.
 
 use octant_statistics::envelope::{EnvelopeError, envelope, resampled};
 use octant_statistics::outlier::{LIMIT, Scale, outliers};
@@ -8,7 +8,7 @@ use octant_statistics::{
     convergence, deviation, normal, paired, position, power, quantile, rank, rate, sample,
 };
 
-/// Standard normals of a stream, for samples.
+/// Standard normal numbers of a stream.
 fn normals(seed: u64, name: &str, n: u64) -> Vec<f64> {
     use octant_random::normal::Ziggurat;
     use octant_random::stream::{Phase, key};
@@ -37,8 +37,8 @@ fn the_circle_of_a_round_gaussian() {
 
 #[test]
 fn bounds_of_a_quantile_cover_it_as_often_as_they_say() {
-    // 2000 samples of 100 uniform numbers: the 95 % point is 0.95, and an interval of 90 % holds it in
-    // at least that many, within the spread of a binomial.
+    // 2000 samples of 100 uniform numbers: the 95 % quantile is 0.95, and a 90 % interval covers it in
+    // at least that fraction of samples, within the scatter of a binomial distribution.
     let mut held = 0;
     for sample in 0..2000 {
         let name = format!("sample {sample}");
@@ -48,9 +48,9 @@ fn bounds_of_a_quantile_cover_it_as_often_as_they_say() {
         held += u32::from(interval.low <= 0.95 && 0.95 <= interval.high);
     }
     assert!(held > 1800 - 3 * 14, "{held} of 2000");
-    // Ranks are whole: it is more than it says, not everything.
+    // Ranks are integers: the coverage is more than nominal, but not complete.
     assert!(held < 1960, "{held} of 2000");
-    // Too few values have no upper end.
+    // Too few values give no upper end.
     assert_eq!(quantile::interval(&[1.0, 2.0], 0.95, 0.9).unwrap().high, f64::INFINITY);
 }
 
@@ -60,7 +60,7 @@ fn the_rate_of_a_ramp_is_its_slope() {
         .map(|i| RadialSample { t_h: 0.3 * f64::from(i), radial_nmi: 0.24 * f64::from(i) })
         .collect();
     assert!((radial_rate_nmi_per_h(&ramp).unwrap() - 0.8).abs() < 1e-14);
-    // √(1/T ∫ (0.8 t)² dt) = 0.8 T / √3.
+    // Expected: √(1/T ∫ (0.8 t)² dt) = 0.8 T / √3.
     let expected = 0.8 * 0.3 * 99.0 / 3f64.sqrt();
     assert!((time_rms_nmi(&ramp).unwrap() - expected).abs() < 1e-12);
     assert_eq!(radial_rate_nmi_per_h(&ramp[..1]), None);
@@ -91,7 +91,7 @@ fn an_envelope_has_the_percentiles_of_every_point() {
 
 #[test]
 fn a_series_on_a_grid_is_straight_between_its_points() {
-    // A line whatever points are kept of it, and a corner that is one of them.
+    // A line through any of its points, and a corner at one of the points.
     let points = [[0.0, 0.0], [0.1, 0.2], [1.0, 2.0], [4.0, -1.0]];
     let grid = [0.0, 0.05, 0.1, 0.5, 1.0, 2.0, 3.5, 4.0];
     let found = resampled(&points, &grid).unwrap();
@@ -99,7 +99,7 @@ fn a_series_on_a_grid_is_straight_between_its_points() {
         assert!((value - expected).abs() < 1e-15, "{found:?}");
     }
     assert_eq!(resampled(&points[2..3], &[1.0]), Some(vec![2.0]));
-    // A jump at one time, and what is beyond the points.
+    // A jump at one time, and a grid beyond the points.
     assert_eq!(resampled(&[[0.0, 1.0], [0.0, 3.0], [1.0, 3.0]], &[0.5]), Some(vec![3.0]));
     assert_eq!(resampled(&points, &[4.1]), None);
     assert_eq!(resampled(&points, &[-0.1, 1.0]), None);
@@ -121,11 +121,11 @@ fn what_stands_out_is_found_and_nothing_else() {
     values[5] = f64::NAN;
     let found: Vec<usize> = outliers(&values, Scale::Linear, 5.0).iter().map(|o| o.index).collect();
     assert_eq!(found, [5, 17, 200]);
-    // Skewed magnitudes stand out by themselves, their logarithms don't.
+    // Skewed magnitudes have outliers by themselves, their logarithms don't.
     let skewed: Vec<f64> = normals(3, "skewed", 300).into_iter().map(|v| (1.5 * v).exp()).collect();
     assert!(outliers(&skewed, Scale::Linear, 5.0).len() > 10);
     assert_eq!(outliers(&skewed, Scale::Logarithm, 5.0), []);
-    // Most are equal: whatever differs stands out, by infinity.
+    // If most values are equal, every other value is an outlier with an infinite score.
     let found = outliers(&[1.0, 1.0, 1.0, 1.0, 1.1], Scale::Linear, LIMIT);
     assert_eq!((found.len(), found[0].index, found[0].score), (1, 4, f64::INFINITY));
     assert_eq!(outliers(&[1.0, 1.0, 1.0], Scale::Linear, LIMIT), []);
@@ -165,7 +165,7 @@ fn sensitivities_come_with_the_strongest_first() {
 fn improvement_is_paired() {
     let first = normals(6, "first", 40);
     let half: Vec<f64> = first.iter().map(|v| 0.5 * v).collect();
-    // The same noise in both: the interval has no width.
+    // With the same noise in both, the interval has zero width.
     let found = paired::improvement(&first, &half, 0.9).unwrap();
     assert!([found.value, found.low, found.high].iter().all(|v| (v - 0.5).abs() < 1e-12));
     let other = normals(6, "second", 40);
@@ -195,7 +195,7 @@ fn the_radius_of_a_normal_error_is_that_of_rayleigh_and_of_a_line() {
     for p in [0.05f64, 0.5, 0.95, 0.999] {
         let round = Plane { mean: [0.0; 2], variances: [9.0; 2], covariance: 0.0 };
         near(round.quantile(p), 3.0 * (-2.0 * (1.0 - p).ln()).sqrt());
-        // All of it on a line, whichever way that lies: a half normal distribution.
+        // A degenerate distribution on a line of any direction is a half normal distribution.
         let half_normal = 3.0 * normal::quantile(0.5 + 0.5 * p);
         for (variances, covariance) in [([9.0, 0.0], 0.0), ([0.0, 9.0], 0.0), ([4.5, 4.5], 4.5)] {
             let line = Plane { mean: [0.0; 2], variances, covariance };
@@ -226,7 +226,7 @@ fn the_radius_of_any_normal_error_is_that_of_a_sample() {
 
 #[test]
 fn power_where_it_is_known_and_where_there_is_none() {
-    // Six signs alike are the first that 5 % finds: 2 · 2^−6, and five are 6.25 %.
+    // Six equal signs are the first that a level of 5 % detects: 2 · 2^−6; five are 6.25 %.
     assert_eq!(power::signed_rank_shift(5, 0.05, 0.9), None);
     assert!(power::signed_rank_shift(6, 0.05, 0.9).is_some());
     assert_eq!(power::turning(5, 0.05, 0.9), None);
@@ -246,7 +246,7 @@ fn power_where_it_is_known_and_where_there_is_none() {
 
 #[test]
 fn a_deviation_has_the_interval_of_chi_squared() {
-    // Tables: χ² of 9 degrees of freedom is 2.700 at 2.5 % and 19.023 at 97.5 %.
+    // From tables: χ² with 9 degrees of freedom is 2.700 at 2.5 % and 19.023 at 97.5 %.
     let (low, high) = deviation::factors(9, 0.95).unwrap();
     assert!((low - (9.0f64 / 19.023).sqrt()).abs() < 1e-4, "{low}");
     assert!((high - (9.0f64 / 2.700).sqrt()).abs() < 1e-3, "{high}");

@@ -6,7 +6,7 @@ use proptest::prelude::*;
 
 const ASKED: Demand = Demand { pass: 0.95, confidence: 0.95 };
 
-/// Whether the rows of a design show the demand, all of them having passed.
+/// Counts the draws of a design whose rows all passed, and tests whether they show the demand.
 fn shown(rows: impl IntoIterator<Item = (u64, Option<String>)>) -> (Draws, bool) {
     let of = draws(rows);
     let counts = Draws::of(of.into_iter().map(|draw| (draw, Some(true))));
@@ -18,7 +18,7 @@ fn one_replicate_with_59_labels_is_one_draw() {
     let rows = || (0..59).map(|_| (1, Some("the same stream".to_owned())));
     let (counts, is_shown) = shown(rows());
     assert_eq!((counts.known(), counts.rows, is_shown), (1, 59, false));
-    // Seeds of their own don't help where the streams are the same.
+    // Different seeds don't help if the streams are the same.
     let (counts, is_shown) = shown(rows().zip(1..).map(|((_, stream), seed)| (seed, stream)));
     assert_eq!((counts.known(), is_shown), (1, false));
 }
@@ -36,7 +36,7 @@ fn fifty_nine_instruments_are_what_it_takes() {
     let of = |count: u64| shown((0..count).map(|seed| (seed, Some(seed.to_string()))));
     assert!(!of(58).1);
     assert!(of(59).1);
-    // An honest neighbour of the labels: the same in twelve combinations that differ.
+    // A valid counterpart of the labels: draws in twelve combinations with different streams.
     let rows = |count: u64| (0..count * 12).map(|row| (row / 12, Some(row.to_string())));
     assert!(!shown(rows(58)).1);
     assert!(shown(rows(59)).1);

@@ -1,10 +1,11 @@
-//! Coverage of every interval that a report prints: how often it holds what is true, at 50, 90 and 95 %,
-//! of designs with clusters too.
+//! Coverage of every interval in a report: how often it contains the true value, at 50, 90 and 95 %,
+//! also for designs with clusters.
 //!
-//! Intervals of counts and of order statistics hold at least what they say: their steps are discrete. All
-//! others have to hold it within the sampling error of the study, four standard errors (a hundred figures
-//! are looked at). The quick version has fewer trials and the same limits in standard errors.
-// The figures are what the study is for.
+//! Intervals of counts and of order statistics cover at least the nominal level, because they are
+//! discrete. All others have to cover it within the sampling error of the study, four standard errors
+//! (because about a hundred figures are tested). The quick version has fewer trials and the same limits
+//! in standard errors.
+// The printed figures are the purpose of the study.
 #![allow(clippy::print_stdout)]
 
 use octant_random::normal::Ziggurat;
@@ -48,16 +49,16 @@ impl Numbers {
     }
 }
 
-/// What a coverage is held against.
+/// Requirement on a coverage.
 #[derive(Clone, Copy, PartialEq)]
 enum Holds {
-    /// The level, within sampling error.
+    /// Equal to the level, within sampling error.
     Level,
     /// At least the level.
     AtLeast,
 }
 
-/// Every figure of a study.
+/// All figures of a study.
 #[derive(Default)]
 struct Study {
     trials: u64,
@@ -65,7 +66,7 @@ struct Study {
 }
 
 impl Study {
-    /// How often something comes out, in all trials.
+    /// Frequency of an event in all trials.
     fn rate(&self, name: &str, one: &dyn Fn(&mut Numbers) -> bool) -> f64 {
         let hits = (0..self.trials).filter(|trial| one(&mut Numbers::new(name, *trial))).count();
         hits as f64 / self.trials as f64
@@ -88,7 +89,7 @@ impl Study {
         }
     }
 
-    /// A probability that should be about this one.
+    /// Tests a probability that should be near `expected`.
     fn about(&mut self, name: &str, expected: f64, slack: f64, one: &dyn Fn(&mut Numbers) -> bool) {
         let found = self.rate(name, one);
         println!("{name}: {expected} ± {slack}: {found:.4}");
@@ -97,7 +98,7 @@ impl Study {
         }
     }
 
-    /// A probability that is at most this.
+    /// Tests a probability that should be at most `most`.
     fn at_most(&mut self, name: &str, most: f64, one: &dyn Fn(&mut Numbers) -> bool) {
         let found = self.rate(name, one);
         println!("{name}: at most {most}: {found:.4}");
@@ -111,8 +112,8 @@ fn holds(interval: Interval, truth: f64) -> bool {
     interval.low <= truth && truth <= interval.high
 }
 
-/// Rows of a campaign: so many instruments in so many combinations. Every row fails with the same
-/// probability; of its variance `shared` (0 to 1) is the instrument's own.
+/// Rows of a campaign: a number of instruments in a number of combinations. Every row fails with the
+/// same probability; the fraction `shared` (0 to 1) of its variance is the instrument's own.
 fn design(
     numbers: &mut Numbers,
     instruments: u64,
@@ -137,7 +138,7 @@ fn counted(rows: &[(u64, bool)]) -> Draws {
     Draws::of(of.into_iter().zip(rows).map(|(draw, (_, passed))| (draw, Some(*passed))))
 }
 
-/// Probability that all rows of an instrument pass, by quadrature over what they share.
+/// Probability that all rows of an instrument pass, by quadrature over their shared part.
 fn all_pass(combinations: u64, fails: f64, shared: f64) -> f64 {
     let limit = normal::quantile(1.0 - fails);
     let (mut sum, mut weight) = (0.0, 0.0);
@@ -155,7 +156,7 @@ fn all_pass(combinations: u64, fails: f64, shared: f64) -> f64 {
     sum / weight
 }
 
-/// Designs: instruments, combinations, probability that a row fails, what is shared.
+/// Designs: instruments, combinations, probability that a row fails, shared fraction of the variance.
 const DESIGNS: [(u64, u64, f64, f64); 6] = [
     (59, 1, 0.05, 0.0),
     (84, 12, 0.02, 0.0),
@@ -188,10 +189,10 @@ fn probabilities(study: &mut Study) {
             holds(pass(&passed, level).unwrap(), truth)
         });
     }
-    // What is claimed wrongly where the truth is just not what is asked.
+    // Frequency of wrong claims when the truth just misses the demand.
     let asked = Demand { pass: 0.95, confidence: 0.95 };
     for (instruments, combinations, shared) in [(59, 1, 0.0), (5, 12, 0.9), (84, 12, 0.8)] {
-        // The failure of a row for which the draws just miss the demand.
+        // Failure probability of a row with which the draws just miss the demand.
         let (mut low, mut high) = (0.0001, 0.06);
         for _ in 0..40 {
             let middle = 0.5 * (low + high);
@@ -210,7 +211,7 @@ fn probabilities(study: &mut Study) {
 }
 
 fn quantiles(study: &mut Study) {
-    // A part of the runs is refused: beyond every number.
+    // A fraction of the runs is refused, which counts as an infinite value.
     for (count, refused) in [(20usize, 0.0), (84, 0.0), (84, 0.03)] {
         for p in [0.5, 0.95] {
             let truth = libm::exp(normal::quantile(p / (1.0 - refused)));
@@ -244,7 +245,7 @@ fn means(study: &mut Study) {
     }
 }
 
-/// Improvement of the largest error: magnitudes that share a part of their noise, on a floor.
+/// Improvement of the largest error: magnitudes that share a part of their noise, with a floor.
 fn improvements(study: &mut Study) {
     for (count, floor) in [(10usize, 0.7), (20, 0.0), (20, 0.7), (50, 0.7)] {
         let square = |sigma: f64| {
@@ -253,7 +254,7 @@ fn improvements(study: &mut Study) {
         };
         let truth = 1.0 - (square(2f64.sqrt()) / square(5f64.sqrt())).sqrt();
         let name = format!("improvement of {count} pairs, floor {floor}");
-        // The jackknife is an approximation: 2 % are its own.
+        // The jackknife is an approximation with an error of up to 2 %.
         for level in LEVELS {
             study.about(&format!("{name}, {level}"), level, 0.02, &|numbers| {
                 let (mut first, mut second) = (Vec::new(), Vec::new());
@@ -318,7 +319,7 @@ fn every_interval_holds_what_it_says_in_five_thousand_trials() {
 
 #[test]
 fn rows_that_share_instruments_promise_what_they_do_not_keep() {
-    // The claim of before, by rows: it has to be seen to be wrong, or the study finds nothing.
+    // The former claim by rows must be found wrong, or the study can't detect anything.
     let asked = Demand { pass: 0.95, confidence: 0.95 };
     let study = Study { trials: QUICK, wrong: Vec::new() };
     let wrong = study.rate("five instruments at twelve longitudes", &|numbers| {

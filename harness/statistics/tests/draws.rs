@@ -1,4 +1,4 @@
-//! Draws of factors: what they depend on, and how they are distributed.
+//! Draws of factors: their dependencies and distributions.
 
 use octant_statistics::draw::{
     Correlation, Correlations, Distribution, DrawError, Factor, Value, latin_hypercube, monte_carlo,
@@ -27,7 +27,7 @@ fn draws(factors: &[Factor], correlations: &[Correlation], n: u64) -> Vec<Vec<Va
     (0..n).map(|i| monte_carlo(factors, correlations, 11, i).unwrap()).collect()
 }
 
-/// Kolmogorov's distance of probabilities from the even distribution, times √n.
+/// Kolmogorov's distance of probabilities from the uniform distribution, times √n.
 fn distance(mut units: Vec<f64>) -> f64 {
     units.sort_by(f64::total_cmp);
     let n = units.len() as f64;
@@ -39,25 +39,25 @@ fn distance(mut units: Vec<f64>) -> f64 {
 fn a_draw_depends_on_seed_name_and_number_alone() {
     let all = factors();
     let whole = draws(&all, &[], 20);
-    // Fewer factors, in another order, and only the later runs: the same numbers.
+    // Fewer factors, in another order, and only the later runs give the same numbers.
     let some = vec![all[4].clone(), all[0].clone()];
     for i in (5..20).rev() {
         let row = monte_carlo(&some, &[], 11, i).unwrap();
         assert_eq!(row, [whole[i as usize][4], whole[i as usize][0]]);
     }
     assert_ne!(monte_carlo(&all, &[], 12, 0).unwrap(), whole[0]);
-    // A correlation of two others moves nothing else, and not the first of them.
+    // A correlation of two others changes no third factor, and not the first one of the two.
     let with = draws(&all, &[pair("bias", "walk", 0.8)], 20);
     for (row, plain) in with.iter().zip(&whole) {
         assert_eq!([row[0], row[1], row[3], row[4]], [plain[0], plain[1], plain[3], plain[4]]);
         assert_ne!(row[2], plain[2]);
     }
-    // Frozen: these bits are in the ids of cases.
+    // Frozen: these bits determine the ids of cases.
     let Value::Number(first) = whole[0][0] else { panic!() };
     assert_eq!(first.to_bits(), FIRST_BIAS_BITS, "{:#x} {first}", first.to_bits());
 }
 
-/// Bias of draw 0 with seed 11.
+/// Bits of the bias of draw 0 with seed 11.
 const FIRST_BIAS_BITS: u64 = 0x4007_03db_ec7a_ffd3;
 
 #[test]
@@ -65,7 +65,7 @@ fn draws_are_distributed_as_they_say() {
     let drawn = draws(&factors(), &[], 20_000);
     let units =
         |at: usize, cdf: &dyn Fn(f64) -> f64| column(&drawn, at).into_iter().map(cdf).collect();
-    // Kolmogorov's 0.1 % point.
+    // Limit: Kolmogorov's 0.1 % point.
     assert!(distance(units(0, &|x| normal::cdf((x - 1.0) / 2.0))) < 1.95);
     assert!(distance(units(1, &|x| (x + 30.0) / 60.0)) < 1.95);
     assert!(distance(units(2, &|x| normal::cdf((x / 7e-4).ln() / 0.5))) < 1.95);
@@ -93,11 +93,11 @@ fn a_latin_hypercube_has_one_draw_in_each_part() {
             parts.sort_unstable();
             assert_eq!(parts, (0..200).collect::<Vec<_>>());
         }
-        // Exactly a quarter, up to the part that the border cuts.
+        // Exactly a quarter, up to the part at the boundary.
         let sites = column(&drawn, 3).iter().filter(|s| **s == 0.0).count();
         assert_eq!(sites, 50);
     }
-    // What one factor has doesn't depend on the others.
+    // The draws of one factor don't depend on the others.
     let alone = latin_hypercube(&all[1..2], &[], 3, 200).unwrap();
     assert_eq!(column(&alone, 0), column(&latin_hypercube(&all, &[], 3, 200).unwrap(), 1));
 }
@@ -109,22 +109,22 @@ fn correlations_are_those_asked_for() {
     let runs = 4000;
     let drawn = draws(&all, &wanted, runs);
     let cube = latin_hypercube(&all, &wanted, 3, runs as usize).unwrap();
-    // Five standard errors of a correlation by chance.
+    // Limit: five standard errors of a chance correlation.
     let chance = 5.0 / (runs as f64).sqrt();
     for (a, b, r) in [(0, 2, 0.8), (0, 4, -0.3), (2, 4, 0.1), (0, 1, 0.0), (1, 4, 0.0)] {
         // Spearman's ρ of a Gaussian copula is 6/π asin(r/2).
         let expected = 6.0 / std::f64::consts::PI * (r / 2.0f64).asin();
         let found = rank::spearman(&column(&drawn, a), &column(&drawn, b)).unwrap().rho;
         assert!((found - expected).abs() < chance, "{a} {b} {r} {found}");
-        // The hypercube has the correlation of normal scores itself, but for the rounding of scores to
-        // those of ranks; factors that nothing was asked of are left to chance.
+        // The hypercube has the correlation of the normal scores themselves, except for the rounding of
+        // scores to those of ranks; factors without a requested correlation are left to chance.
         let found = scores(&column(&cube, a), &column(&cube, b));
         let within = if r == 0.0 { chance } else { 0.01 };
         assert!((found - r).abs() < within, "{a} {b} {r} {found}");
     }
 }
 
-/// However weights are rounded, what has none is never drawn.
+/// An option without weight is never drawn, however weights are rounded.
 #[test]
 fn a_choice_without_weight_is_never_drawn() {
     for count in 1..50 {
@@ -156,7 +156,7 @@ fn correlated_draws_stay_inside() {
     }
 }
 
-/// The correlation of normal scores.
+/// Correlation of normal scores.
 fn scores(x: &[f64], y: &[f64]) -> f64 {
     let of = |values: &[f64]| -> Vec<f64> {
         let n = values.len() as f64 + 1.0;

@@ -1,4 +1,4 @@
-//! The tests of the statistics of campaigns, in one program.
+//! Tests of the statistics of campaigns, in one program.
 #![allow(clippy::unwrap_used)]
 
 mod closed_forms;

@@ -1,4 +1,5 @@
-//! Against numbers of scipy and numpy: `fixtures/golden/statistics.json`, and how it was made beside it.
+//! Comparison with numbers of scipy and numpy: `fixtures/golden/statistics.json`, with the way they
+//! were made beside it.
 
 use octant_statistics::draw::{Distribution, Factor, Value};
 use octant_statistics::outlier::{Scale, outliers};
@@ -43,7 +44,7 @@ fn bounds_of_a_pass_probability() {
     assert!(success_lower_bound(0, 58, 0.95) < 0.95);
 }
 
-/// Where no run passes the upper bound is 1 − (1 − confidence)^(1/n).
+/// If no run passes, the upper bound is 1 − (1 − confidence)^(1/n).
 #[test]
 fn what_is_refuted() {
     let half = Demand { pass: 0.5, confidence: 0.95 };
@@ -67,7 +68,7 @@ fn runs_that_are_still_needed() {
         let at_rate = row["at_rate"].as_u64().map_or(Needed::CannotBeMet, Needed::Runs);
         assert_eq!(further_at_rate(demand, failures, runs), at_rate, "{row}");
     }
-    // What no number of runs shows.
+    // Demands that no number of runs can show.
     for (pass, confidence) in [(1.0, 0.95), (0.95, 1.0), (f64::NAN, 0.5), (0.999_999_99, 0.95)] {
         let demand = Demand { pass, confidence };
         assert_eq!(further_if_all_pass(demand, 0, 10), Needed::CannotBeMet);
@@ -88,13 +89,13 @@ fn ranks_that_bound_a_quantile() {
     }
     assert_eq!(quantile::values_needed(0.95, 0.95), Some(59));
     assert_eq!(quantile::values_needed(0.5, 0.95), Some(5));
-    // The number needed is where the largest value first bounds.
+    // The number needed is the first for which the largest value is a bound.
     for (p, confidence) in [(0.9, 0.9), (0.99, 0.95), (0.5, 0.999)] {
         let n = quantile::values_needed(p, confidence).unwrap();
         assert_eq!(quantile::upper_rank(n, p, confidence), Some(n));
         assert_eq!(quantile::upper_rank(n - 1, p, confidence), None);
     }
-    // A lower bound is an upper bound seen from the other end.
+    // A lower bound is an upper bound of the negated values.
     let values: Vec<f64> = (0..100).map(f64::from).collect();
     let mirrored: Vec<f64> = values.iter().map(|v| -v).collect();
     let upper = quantile::upper_bound(&values, 0.7, 0.9).unwrap();
@@ -121,7 +122,8 @@ fn the_normal_distribution_and_its_inverse() {
     }
     for row in rows("normal_cdf") {
         let row = numbers(&row);
-        // Far out the density falls by z² times what z is off by: the last bit of z/√2 is felt.
+        // Far out the density changes by z² times the relative error of z: the last bit of z/√2
+        // matters.
         assert_near(normal::cdf(row[0]), row[1], 2.3e-16 * (4.0 + row[0] * row[0]));
     }
     assert_eq!(normal::quantile(0.0), f64::NEG_INFINITY);
@@ -202,7 +204,7 @@ fn modified_scores_by_the_median() {
     let golden = golden();
     let (values, scores) = (numbers(&golden["mad"]["values"]), numbers(&golden["mad"]["scores"]));
     let found = outliers(&values, Scale::Linear, 0.0);
-    // All but the median itself, whose score is 0.
+    // All values except the median itself, whose score is 0.
     assert_eq!(found.len(), values.len() - 1);
     for outlier in &found {
         assert_near(outlier.score, scores[outlier.index], 1e-12);

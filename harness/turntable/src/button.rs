@@ -1,19 +1,19 @@
-//! A stop that another program can press.
+//! A stop button that other programs can press.
 //!
-//! A controller often takes one peer at a time, and a serial port that is open can't be opened again: while a
-//! harness drives a table, nobody else reaches it. So the harness has a socket of its own for each table, in a
-//! folder of this host, and a thread that does nothing else than to wait for somebody who presses. It takes no
-//! lock of the driver and needs no reply of the table. Who may log in here may stop a table, and can do nothing
-//! else to it.
+//! A controller often accepts only one peer at a time, and an open serial port can't be opened again:
+//! while a harness drives a table, no other program reaches it. So the harness opens a socket for each
+//! table, in a folder of this host, with a thread that only waits for somebody to press. The thread
+//! takes no lock of the driver and needs no reply of the table. Every user of this host may stop a
+//! table this way, and can do nothing else to it.
 
 use crate::{EmergencyStop, Error};
 
-/// What was pressed.
+/// Result of pressing a button.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Pressed {
-    /// Port of the table, as its harness calls it.
+    /// Port of the table, as named by its harness.
     pub port: String,
-    /// The harness could write the bytes that stop it.
+    /// True if the harness could write the bytes of the stop.
     pub written: bool,
 }
 
@@ -35,23 +35,24 @@ mod unix {
     use std::thread::JoinHandle;
     use std::time::Duration;
 
-    /// The same for every user and every environment: who is in a hurry doesn't look for it.
+    /// Folder of the sockets, the same for every user and environment, so that nobody has to search for
+    /// it in an emergency.
     const FOLDER: &str = "/tmp/octant-tables";
-    /// What is said to press it. A connection alone is somebody who wants to know whether it is in use.
+    /// Word that presses the button. A connection without it only tests whether the table is in use.
     const WORD: &[u8] = b"stop\n";
-    /// How long either end waits for the other.
+    /// Longest wait of either end for the other.
     const PATIENCE: Duration = Duration::from_secs(3);
 
-    /// The file of a port's socket: a short name, since those of sockets have to be.
+    /// Path of a port's socket: a hash, because paths of sockets have to be short.
     fn place(port: &str) -> PathBuf {
-        // FNV-1a.
+        // Hash FNV-1a.
         let hash = port.bytes().fold(0xCBF2_9CE4_8422_2325u64, |hash, byte| {
             (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01B3)
         });
         Path::new(FOLDER).join(format!("{hash:016x}"))
     }
 
-    /// The button of a table. It goes when it is dropped.
+    /// Stop button of a table, removed on drop.
     #[derive(Debug)]
     pub struct Button {
         place: PathBuf,
@@ -60,7 +61,7 @@ mod unix {
     }
 
     impl Button {
-        /// Offers the stop of the table on a port.
+        /// Offers a stop button for the table on a port.
         ///
         /// # Errors
         /// If another program drives the table, or the socket can't be made.
@@ -81,7 +82,7 @@ mod unix {
                             return;
                         }
                         if let Ok(stream) = stream {
-                            // Who doesn't wait for the answer has pressed all the same.
+                            // A peer that doesn't wait for the answer has still pressed the button.
                             let _ = pressed(stream, &stop, &name);
                         }
                     }
@@ -94,7 +95,8 @@ mod unix {
     impl Drop for Button {
         fn drop(&mut self) {
             self.ends.store(true, Ordering::SeqCst);
-            // It waits for somebody: that is us. Without anybody to wake it, it is left to itself.
+            // The thread waits for a connection: this one wakes it. If the connection fails, the thread
+            // isn't joined.
             if UnixStream::connect(&self.place).is_ok()
                 && let Some(thread) = self.thread.take()
             {
@@ -107,13 +109,13 @@ mod unix {
     fn listen(place: &Path) -> io::Result<UnixListener> {
         if !Path::new(FOLDER).is_dir() {
             std::fs::create_dir_all(FOLDER)?;
-            // Whoever drives the next table may be another user. Where the folder is another's, it stays as
-            // it is.
+            // The next driver of a table may be another user. The permissions of another user's folder
+            // are left unchanged.
             let open = std::fs::Permissions::from_mode(0o1777);
             let _ = std::fs::set_permissions(FOLDER, open);
         }
         let listener = match UnixListener::bind(place) {
-            // A socket that nobody listens at is left from a harness that was killed.
+            // A socket without a listener was left by a harness that was killed.
             Err(error)
                 if error.kind() == ErrorKind::AddrInUse && UnixStream::connect(place).is_err() =>
             {
@@ -134,15 +136,15 @@ mod unix {
         if word != WORD {
             return Ok(());
         }
-        let written = stop.trip("somebody pressed the stop on the command line");
+        let written = stop.trip("stop command on the command line");
         writeln!(stream, "{} {port}", u8::from(written))
     }
 
-    /// Presses the button of a table that a program on this host drives; without a port those of all.
-    /// What was pressed: nothing where nobody drives it.
+    /// Presses the button of a table that a program on this host drives; without a port, those of all
+    /// tables. Returns the buttons pressed: none if no program drives the table.
     ///
     /// # Errors
-    /// If a button is there and doesn't answer.
+    /// If a button exists and doesn't answer.
     pub fn press(port: Option<&str>) -> Result<Vec<Pressed>, Error> {
         let places = match port {
             Some(port) => vec![place(port)],
@@ -156,14 +158,14 @@ mod unix {
         let mut all = Vec::new();
         let mut silent = None;
         for place in places {
-            // One that is left over has nobody behind it.
+            // A socket without a listener is ignored.
             let Ok(stream) = UnixStream::connect(&place) else { continue };
             match answer(stream) {
                 Ok(pressed) => all.push(pressed),
-                // The others are pressed all the same.
+                // The other buttons are still pressed.
                 Err(error) => {
                     let port = port.unwrap_or("a table of this host").to_owned();
-                    let reason = format!("who drives it doesn't answer: {error}");
+                    let reason = format!("the program that drives it doesn't answer: {error}");
                     silent = Some(Error::Button { port, reason });
                 }
             }
@@ -186,7 +188,7 @@ mod unix {
 mod elsewhere {
     use super::{EmergencyStop, Error, Pressed};
 
-    /// There are none here: what is left is a stop on the port itself.
+    /// Stop button, which doesn't exist on this system: only a stop on the port itself remains.
     #[derive(Debug)]
     pub struct Button;
 

@@ -1,4 +1,4 @@
-//! A table that is looked at and moved by hand.
+//! Status and moves of a table by hand.
 
 use crate::following::rest;
 use crate::{
@@ -6,36 +6,37 @@ use crate::{
     on_signals, open,
 };
 
-/// What is done by hand.
+/// Move by hand.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Move {
-    /// An axis finds its reference.
+    /// Homing of an axis.
     Home(Axis),
-    /// An axis turns to an angle, with at most a rate, rad and rad/s.
+    /// Turn of an axis to an angle, rad, with at most a rate, rad/s.
     Goto(Axis, f64, Option<f64>),
 }
 
-/// Asks a table where it is. Nothing is switched on, moved or stopped.
+/// Asks a table for its status. Nothing is switched on, moved or stopped.
 ///
 /// # Errors
-/// If it doesn't say it.
+/// If the table doesn't answer.
 pub fn look(plan: &Plan) -> Result<Status, Error> {
     let settings = Settings { watchdog: None, ..plan.settings };
     let port = open(&plan.port)?;
     Driver::on(port, &plan.port, plan.dialect.clone(), settings)?.status()
 }
 
-/// Takes a table over, moves it, waits until it rests and lets it go; where it is then. A panic or a signal
-/// stops it on the way. `guard` is the program of the guard.
+/// Takes a table over, moves it, waits until it rests and releases it; returns its status then. A panic
+/// or a signal stops the table. `guard` is the program of the guard.
 ///
 /// # Errors
-/// If the table can't be had, may not or doesn't do it. It has been told to stop then.
+/// If the table can't be taken over, a move is beyond the limits, or the table doesn't do it. By then
+/// every stop command was sent.
 pub fn move_by_hand(
     plan: &Plan,
     moves: &[Move],
     guard: &mut std::process::Command,
 ) -> Result<Status, Error> {
-    // Refused before it is switched on.
+    // Moves beyond the limits are refused before the table is switched on.
     for one in moves {
         if let Move::Goto(axis, angle_rad, rate_radps) = *one {
             plan.settings.limits.angle(axis, angle_rad)?;

@@ -1,4 +1,4 @@
-//! A table behind a command language.
+//! Driver of a table with a command language.
 
 use crate::dialect::{Command, Fields, Pattern, Values};
 use crate::{
@@ -7,25 +7,25 @@ use crate::{
 use std::io;
 use std::time::{Duration, Instant};
 
-/// The longest line that is listened to.
+/// Longest line that is accepted.
 const MAX_LINE_BYTES: usize = 4096;
-/// How long one read waits: how soon a driver notices that time is up.
+/// Longest wait of one read, which bounds the delay in noticing a timeout.
 const WAIT: Duration = Duration::from_millis(10);
-/// How often a question is asked whose reply was nonsense.
+/// Number of times that a query is sent if its reply is invalid.
 const ASKED: u32 = 3;
 
-/// How a table is driven.
+/// Settings of a driver.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
-    /// How far and how fast it may turn.
+    /// Limits of angle and rate.
     pub limits: Limits,
-    /// How long a reply is waited for.
+    /// Longest wait for a reply.
     pub reply_within: Duration,
-    /// After which silence the controller stops the table by itself; `None`: it isn't told to.
+    /// Silence after which the controller's watchdog stops the table; `None`: the watchdog isn't used.
     pub watchdog: Option<Duration>,
 }
 
-/// Drives a table. When it is dropped the table is stopped.
+/// Drives a table. On drop the table is stopped.
 pub struct Driver<P: Port> {
     port: P,
     name: String,
@@ -33,20 +33,20 @@ pub struct Driver<P: Port> {
     settings: Settings,
     stop: EmergencyStop,
     guard: Option<Guard>,
-    /// Bytes of a reply that has not come whole.
+    /// Bytes of an incomplete reply.
     pending: Vec<u8>,
-    /// A reply that nobody waits for may still come.
+    /// True if a reply that nobody waits for may still arrive.
     stale: bool,
-    /// It has taken the table over, and stops it in the end.
+    /// True if it has taken the table over, and stops it on drop.
     drives: bool,
 }
 
 impl<P: Port> Driver<P> {
-    /// Takes a table over: enables its drives, starts its watchdog, and asks where it is. `name` is that
-    /// of the port, for messages.
+    /// Takes a table over: enables its drives, starts its watchdog, and asks for its status. `name` is
+    /// the port's name in messages.
     ///
     /// # Errors
-    /// If the limits can't be kept, the language has no watchdog though one is asked for, or the table
+    /// If the limits are invalid, the language has no watchdog but one is requested, or the table
     /// doesn't answer.
     pub fn new(port: P, name: &str, dialect: Dialect, settings: Settings) -> Result<Self, Error> {
         settings.limits.check()?;
@@ -65,7 +65,8 @@ impl<P: Port> Driver<P> {
         Ok(driver)
     }
 
-    /// On a port, before anything is sent: as long as it doesn't drive the table it only asks.
+    /// Makes a driver for a port without sending anything. As long as it doesn't drive the table it
+    /// only queries it.
     pub(crate) fn on(
         mut port: P,
         name: &str,
@@ -92,7 +93,7 @@ impl<P: Port> Driver<P> {
     /// `program` is one that calls [`crate::run_guard`].
     ///
     /// # Errors
-    /// If it can't be started.
+    /// If the guard can't be started.
     #[cfg(unix)]
     pub fn guard(
         &mut self,
@@ -105,7 +106,7 @@ impl<P: Port> Driver<P> {
         Ok(())
     }
 
-    /// There are no guards here: what is left is the controller's watchdog.
+    /// Fails, because guards don't exist on this system: only the controller's watchdog remains.
     ///
     /// # Errors
     /// Always.
@@ -116,11 +117,11 @@ impl<P: Port> Driver<P> {
         Err(Error::Guard { reason: reason.into() })
     }
 
-    /// Tells the controller's watchdog and the guard that the harness is there. To be called more
-    /// often than their silence; [`crate::Supervisor`] does.
+    /// Feeds the controller's watchdog and the guard. To be called at intervals shorter than their
+    /// silence; [`crate::Supervisor`] does that.
     ///
     /// # Errors
-    /// If the controller doesn't take it, or the guard is gone.
+    /// If the controller refuses it, or the guard is gone.
     pub fn feed(&mut self) -> Result<(), Error> {
         if let Some(guard) = &mut self.guard {
             guard.alive()?;
@@ -132,11 +133,11 @@ impl<P: Port> Driver<P> {
         Ok(())
     }
 
-    /// Brakes the table, waits until it rests, and takes watchdog and guard back. The end of its use: the
-    /// table stays where it is.
+    /// Brakes the table, waits until it rests, and ends watchdog and guard. The table stays where it
+    /// is.
     ///
     /// # Errors
-    /// If it doesn't come to rest: it has been told to stop in every way then.
+    /// If the table doesn't come to rest: by then every stop command was sent.
     pub fn finish(mut self) -> Result<(), Error> {
         self.stop()?;
         let limits = self.settings.limits;
@@ -150,7 +151,7 @@ impl<P: Port> Driver<P> {
                 break;
             }
             if Instant::now() > until {
-                let why = "it did not come to rest at the end".to_owned();
+                let why = "the table did not come to rest at the end".to_owned();
                 self.stop.trip(&why);
                 return Err(Error::Stopped { why });
             }
@@ -166,7 +167,7 @@ impl<P: Port> Driver<P> {
         Ok(())
     }
 
-    /// Sends the lines of a command, and hears that each was done.
+    /// Sends the lines of a command, and checks that each was done.
     fn command(&mut self, command: Command, values: &Values) -> Result<(), Error> {
         let fields = self.dialect.write(values);
         for pattern in self.dialect.lines(command).to_vec() {
@@ -182,7 +183,7 @@ impl<P: Port> Driver<P> {
     fn filled(&self, pattern: &Pattern, fields: &Fields) -> Result<String, Error> {
         pattern.write(fields).ok_or_else(|| Error::Dialect {
             place: self.dialect.name.clone(),
-            what: format!("`{}` has a field that its command doesn't have", pattern.text()),
+            what: format!("found a field in `{}` that its command doesn't have", pattern.text()),
         })
     }
 
@@ -206,7 +207,7 @@ impl<P: Port> Driver<P> {
     }
 
     fn send(&mut self, line: &str) -> Result<(), Error> {
-        // Replies to an emergency stop were nobody's.
+        // Replies to an emergency stop were read by nobody.
         if self.stale || self.stop.is_tripped() {
             self.drain()?;
         }
@@ -215,7 +216,7 @@ impl<P: Port> Driver<P> {
         written.map_err(|reason| Error::Gone { port: self.name.clone(), reason })
     }
 
-    /// Throws away what came uncalled for, until nothing comes for a moment.
+    /// Discards unexpected bytes, until nothing arrives for a moment.
     fn drain(&mut self) -> Result<(), Error> {
         self.pending.clear();
         let until = Instant::now() + self.settings.reply_within;
@@ -227,7 +228,7 @@ impl<P: Port> Driver<P> {
         Ok(())
     }
 
-    /// Bytes that came within [`WAIT`].
+    /// Receives bytes for at most [`WAIT`].
     fn receive(&mut self) -> Result<usize, Error> {
         let mut bytes = [0; 512];
         let gone = |reason| Error::Gone { port: self.name.clone(), reason };
@@ -246,7 +247,7 @@ impl<P: Port> Driver<P> {
         }
     }
 
-    /// The next line.
+    /// Reads the next line.
     fn line(&mut self, sent: &str) -> Result<String, Error> {
         let until = Instant::now() + self.settings.reply_within;
         loop {
@@ -259,7 +260,7 @@ impl<P: Port> Driver<P> {
             if self.pending.len() > MAX_LINE_BYTES {
                 self.stale = true;
                 let mut reply = String::from_utf8_lossy(&self.pending[..40]).into_owned();
-                reply.push_str("… without an end");
+                reply.push_str("… without an end of line");
                 let any = Pattern::parse("{any}").unwrap_or_else(|_| unreachable!());
                 return Err(self.nonsense(sent, reply, &any));
             }
@@ -272,7 +273,7 @@ impl<P: Port> Driver<P> {
         }
     }
 
-    /// Asks a question until it has an answer that makes sense.
+    /// Sends a query until its answer is valid.
     fn ask(
         &mut self,
         sent: &str,
@@ -342,11 +343,11 @@ impl<P: Port> Turntable for Driver<P> {
         let mut result = Ok(());
         for axis in Axis::ALL {
             let values = Values { axis: Some(axis), ..Values::default() };
-            // The second one is told to stop whatever the first one said.
+            // The second axis is stopped whatever the result for the first one.
             result = result.and(self.command(Command::Stop, &values));
         }
         if let Err(error) = &result {
-            self.stop.trip(&format!("it did not stop when it was told to: {error}"));
+            self.stop.trip(&format!("the table did not obey the stop command: {error}"));
         }
         result
     }
@@ -396,9 +397,9 @@ impl<P: Port> Turntable for Driver<P> {
 
 impl<P: Port> Drop for Driver<P> {
     fn drop(&mut self) {
-        // After `finish` it rests, and a table at rest isn't hurt by being stopped.
+        // After `finish` the table rests, and stopping it again does no harm.
         if self.drives {
-            self.stop.trip("its driver is gone");
+            self.stop.trip("the driver of the table ended");
         }
     }
 }

@@ -1,25 +1,25 @@
-//! What can go wrong with a table.
+//! Errors of a table.
 
 use crate::Axis;
 use std::time::Duration;
 
-/// What went wrong.
+/// Error of a table.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
     /// A port can't be opened.
-    #[error("open {port}: {reason}, expected is tcp:HOST:PORT or serial:DEVICE?baud=RATE")]
+    #[error("open {port}: {reason}, expected tcp:HOST:PORT or serial:DEVICE?baud=RATE")]
     Open {
         /// The port as it was given.
         port: String,
-        /// Why.
+        /// Reason.
         reason: String,
     },
     /// A simulated table can't listen.
-    #[error("listen at {port}: {reason}, expected is tcp:HOST:PORT or pty:LINK")]
+    #[error("listen at {port}: {reason}, expected tcp:HOST:PORT or pty:LINK")]
     Listen {
-        /// Where.
+        /// Address.
         port: String,
-        /// Why.
+        /// Reason.
         reason: String,
     },
     /// The port is gone.
@@ -27,7 +27,7 @@ pub enum Error {
     Gone {
         /// The port.
         port: String,
-        /// What happened.
+        /// Reason.
         reason: std::io::Error,
     },
     /// No reply came.
@@ -35,91 +35,91 @@ pub enum Error {
     Silent {
         /// The port.
         port: String,
-        /// What was sent.
+        /// Line sent.
         sent: String,
-        /// How long it was waited for.
+        /// Time waited.
         within: Duration,
     },
-    /// It doesn't come to rest.
+    /// The table doesn't come to rest.
     #[error("{port}: the table still moves after {within:?}")]
     Moving {
         /// The port.
         port: String,
-        /// How long it was waited for.
+        /// Time waited.
         within: Duration,
     },
-    /// An axis didn't arrive.
-    #[error("{axis} rests at {found:.4}°, expected is {expected:.4}° within {tolerance:.4}°")]
+    /// An axis didn't reach its target.
+    #[error("{axis} is at rest at {found:.4}°, expected {expected:.4}° within {tolerance:.4}°")]
     Elsewhere {
         /// The axis.
         axis: Axis,
-        /// Where it is.
+        /// Angle found, degrees.
         found: f64,
-        /// Where it was sent.
+        /// Target, degrees.
         expected: f64,
-        /// How far it may be from there.
+        /// Tolerance, degrees.
         tolerance: f64,
     },
     /// An axis has no reference.
-    #[error("{axis} was told to find its reference, rests, and has none")]
+    #[error("{axis} is at rest after homing without a reference")]
     NotHomed {
         /// The axis.
         axis: Axis,
     },
-    /// A reply that its command has not.
-    #[error("{port}: `{reply}` is no reply to `{sent}`, expected is `{expected}`")]
+    /// A reply doesn't match its command.
+    #[error("{port}: found the reply `{reply}` to `{sent}`, expected `{expected}`")]
     Nonsense {
         /// The port.
         port: String,
-        /// What was sent.
+        /// Line sent.
         sent: String,
-        /// What came.
+        /// Reply received.
         reply: String,
         /// Pattern of a reply.
         expected: String,
     },
-    /// The controller doesn't do it.
+    /// The controller refused a command.
     #[error("{port}: the controller refused `{sent}` with `{reply}`")]
     Refused {
         /// The port.
         port: String,
-        /// What was sent.
+        /// Line sent.
         sent: String,
-        /// What came.
+        /// Reply received.
         reply: String,
     },
-    /// The limits are none.
+    /// The limits are invalid.
     #[error(
-        "the limits of {axis} can't be kept: expected is a least angle below the greatest, a rate and \
-         an acceleration above zero"
+        "the limits of {axis} can't be kept: expected a least angle below the greatest, a rate and an \
+         acceleration above zero"
     )]
     Limits {
         /// The axis.
         axis: Axis,
     },
-    /// Beyond the soft limits.
+    /// An angle is beyond the soft limits.
     #[error("{axis} {degrees:.4}° is beyond its limits, {least}° to {most}°")]
     Angle {
         /// The axis.
         axis: Axis,
-        /// The angle.
+        /// Angle, degrees.
         degrees: f64,
-        /// Least angle.
+        /// Least angle, degrees.
         least: f64,
-        /// Greatest angle.
+        /// Greatest angle, degrees.
         most: f64,
     },
-    /// Too fast.
+    /// A rate is above its limit.
     #[error("{axis} at {found:.4} °/s is faster than its limit, {most} °/s")]
     Rate {
         /// The axis.
         axis: Axis,
-        /// The rate.
+        /// Rate, °/s.
         found: f64,
-        /// The largest.
+        /// Largest rate, °/s.
         most: f64,
     },
-    /// The axis has a fault.
+    /// The controller reports a fault of an axis.
     #[error("the controller reports fault {fault:#x} of {axis}")]
     Fault {
         /// The axis.
@@ -130,37 +130,37 @@ pub enum Error {
     /// The emergency stop was tripped.
     #[error("the table was stopped: {why}")]
     Stopped {
-        /// Why it was tripped.
+        /// Reason for the stop.
         why: String,
     },
-    /// The language has no such command.
+    /// The language lacks a command.
     #[error("the command language `{dialect}` has no {what}")]
     Lacking {
         /// Name of the dialect.
         dialect: String,
-        /// What it lacks.
+        /// Command that it lacks.
         what: &'static str,
     },
-    /// A table of patterns that is none.
+    /// A table of patterns is invalid.
     #[error("{place}: {what}")]
     Dialect {
         /// File, with line or key.
         place: String,
-        /// What is wrong, and what was expected.
+        /// Error, with the expected form.
         what: String,
     },
-    /// The stop for other programs can't be offered, or doesn't answer.
-    #[error("the stop of {port} for other programs: {reason}")]
+    /// The stop button can't be offered, or doesn't answer.
+    #[error("the stop button of {port}: {reason}")]
     Button {
         /// Port of the table.
         port: String,
-        /// Why.
+        /// Reason.
         reason: String,
     },
     /// The guard can't be started, or is gone.
     #[error("the guard of the table: {reason}")]
     Guard {
-        /// Why.
+        /// Reason.
         reason: String,
     },
 }

@@ -1,28 +1,28 @@
-//! The core's commands to a table.
+//! Transfer of the core's gimbal commands to a table.
 
 use crate::{Axis, Error, Status, Turntable};
 use octant_sample::{GimbalAngles, GimbalCommand};
 
-/// Moves a table to where the core wants the gimbals.
+/// Moves a table to the core's set points.
 ///
-/// The core repeats its set point in every output: the table is told when it changes. A set point that the
-/// table refused is told again with the next output.
+/// The core repeats its set point in every output, but the table is commanded only when it changes. A
+/// set point that the table refused is sent again with the next output.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Follower {
     told: [Option<i32>; 2],
 }
 
 impl Follower {
-    /// Nothing told yet.
+    /// Makes a follower that has sent nothing.
     #[must_use]
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// Passes a command on. Whether the table was told anything.
+    /// Passes a command on. Returns true if the table was commanded.
     ///
     /// # Errors
-    /// If the table doesn't do it.
+    /// If the table doesn't execute it.
     pub fn command(
         &mut self,
         table: &mut impl Turntable,
@@ -45,7 +45,7 @@ impl Follower {
 }
 
 impl Status {
-    /// The angles as a sample has them.
+    /// Angles in the form of a sample.
     #[must_use]
     pub fn gimbal(&self) -> GimbalAngles {
         let [azimuth, roll] = self.axes;

@@ -9,67 +9,69 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
-/// Looks that may wait for the thread of the samples. Where it is busy for longer, the oldest are missed.
+/// Number of looks that may wait for the thread of the samples. If that is busy for longer, the newest
+/// are dropped.
 const LOOKS: usize = 256;
-/// An axis rests when it has rested for so long: a move begins a moment after its command.
+/// Time for which an axis must rest: a move begins a moment after its command.
 const RESTED: Duration = Duration::from_millis(250);
-/// From one look at a table that comes to rest to the next.
+/// Interval between two looks at a table that comes to rest.
 const WAIT: Duration = Duration::from_millis(20);
-/// An axis that turns less than that from one look to the next rests, where its language doesn't say it, rad.
+/// Change of angle between two looks below which an axis rests, if its language doesn't report moves,
+/// rad.
 const STILL_RAD: f64 = 1e-6;
 
-/// What a run asks of a table.
+/// Requirements of a run on its table.
 #[derive(Clone, Debug)]
 pub struct Plan {
-    /// Its port, as [`open`] takes it.
+    /// Port, as for [`open`].
     pub port: String,
-    /// What it speaks.
+    /// Command language.
     pub dialect: Dialect,
-    /// Limits, patience and watchdog.
+    /// Limits, timeout and watchdog.
     pub settings: Settings,
-    /// From one look to the next.
+    /// Interval between two looks.
     pub period: Duration,
-    /// After which silence of this program a guard stops it; `None`: there is no guard.
+    /// Silence of this program after which a guard stops the table; `None`: no guard.
     pub guard: Option<Duration>,
-    /// Both axes find their reference first.
+    /// True if both axes are homed first.
     pub home: bool,
-    /// How long homing and the way to zero may take, each.
+    /// Longest time for homing and for the move to zero, each.
     pub start: Duration,
-    /// How far from zero an axis may rest at the start, rad.
+    /// Largest angle from zero at which an axis may rest at the start, rad.
     pub tolerance_rad: f64,
 }
 
-/// What went between a run and its table.
+/// Counts of the communication between a run and its table.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Told {
-    /// Looks at the table.
+    /// Number of looks at the table.
     pub looks: u64,
-    /// Set points that it was told.
+    /// Number of set points sent.
     pub commands: u64,
 }
 
-/// What the two threads share.
+/// State shared by the two threads.
 #[derive(Default)]
 struct Shared {
-    /// The set point, both counts in one word.
+    /// Set point, both counts in one word.
     target: AtomicU64,
-    /// From now on the table follows it.
+    /// True once the table follows the set point.
     follows: AtomicBool,
     looks: AtomicU64,
     commands: AtomicU64,
 }
 
-/// A table that follows a run, under supervision. Dropped, it is stopped.
+/// A table that follows a run, under supervision. On drop it is stopped.
 ///
-/// The thread of the samples neither waits nor takes a lock: it lays down a set point, and takes what the
-/// table said.
+/// The thread of the samples neither waits nor takes a lock: it stores a set point, and takes the
+/// queued looks.
 pub struct Following {
     supervisor: Supervisor<Box<dyn Port>>,
     stop: EmergencyStop,
     shared: Arc<Shared>,
     looks: rtrb::Consumer<Status>,
     track: Track,
-    /// Goes after the table is stopped.
+    /// Removed after the table is stopped.
     _button: Button,
 }
 
@@ -90,11 +92,12 @@ fn unpacked(word: u64) -> GimbalAngles {
 }
 
 impl Following {
-    /// Takes a table over, lets it find its reference where that is asked for, and brings both gimbals to
-    /// zero, where a run starts. From now on a panic anywhere stops it. `guard` is the program of the guard.
+    /// Takes a table over, homes it if requested, and moves both gimbals to zero, where a run starts.
+    /// From then on a panic in any thread stops the table. `guard` is the program of the guard.
     ///
     /// # Errors
-    /// If the table can't be had, doesn't do it or doesn't arrive. It has been told to stop then.
+    /// If the table can't be taken over, doesn't execute a command or doesn't arrive. By then every
+    /// stop command was sent.
     pub fn start(plan: &Plan, guard: &mut std::process::Command) -> Result<Self, Error> {
         plan.settings.limits.check()?;
         for axis in Axis::ALL {
@@ -110,7 +113,7 @@ impl Following {
             driver.guard(guard, silence)?;
         }
         if plan.home {
-            // Before it is supervised: without a reference its angles say nothing.
+            // Homing comes before supervision: without a reference the angles are meaningless.
             for axis in Axis::ALL {
                 driver.home(axis)?;
                 let status = rest(&mut driver, &plan.port, plan.start, Driver::feed)?;
@@ -124,7 +127,8 @@ impl Following {
         let (of_table, mut follower) = (Arc::clone(&shared), Follower::new());
         let duty = move |status: &Status, driver: &mut Driver<Box<dyn Port>>| {
             of_table.looks.fetch_add(1, Ordering::Relaxed);
-            // Without room the run doesn't take them: the angles of its samples grow old, and say so.
+            // A full queue means that the run doesn't take them: the angles of its samples then become
+            // too old, which is noticed.
             let _ = producer.push(*status);
             if of_table.follows.load(Ordering::Acquire) {
                 let target = unpacked(of_table.target.load(Ordering::Acquire));
@@ -152,37 +156,37 @@ impl Following {
                 });
             }
         }
-        // Those of the way here would leave no room for the next ones.
+        // Looks from the way to zero would leave no room for the next ones.
         while looks.pop().is_ok() {}
         Ok(Self { supervisor, stop, shared, looks, track: Track::new(), _button: button })
     }
 
-    /// Lays down where the core wants the gimbals.
+    /// Stores the set point of the core.
     pub fn command(&self, command: &GimbalCommand) {
         self.shared.target.store(packed(command.target), Ordering::Release);
         self.shared.follows.store(true, Ordering::Release);
     }
 
-    /// Takes what the table said since the last call.
+    /// Takes the looks since the last call.
     pub fn take_looks(&mut self) {
         while let Ok(status) = self.looks.pop() {
             self.track.add(&status);
         }
     }
 
-    /// Where an axis was at a time, as far as its looks were taken.
+    /// Angle of an axis at a time, as far as the looks were taken.
     #[must_use]
     pub fn at(&self, axis: Axis, when: Instant) -> Option<Place> {
         self.track.at(axis, when)
     }
 
-    /// Somebody stopped the table. No lock is taken.
+    /// True if the table was stopped. Takes no lock.
     #[must_use]
     pub fn is_stopped(&self) -> bool {
         self.stop.is_tripped()
     }
 
-    /// Why it was stopped, if it was.
+    /// Reason for the stop, if there was one.
     #[must_use]
     pub fn stopped(&self) -> Option<String> {
         self.stop.check().err().map(|error| match error {
@@ -191,12 +195,12 @@ impl Following {
         })
     }
 
-    /// Stops it at once, and for good.
+    /// Stops the table at once, and for good.
     pub fn trip(&self, why: &str) {
         self.stop.trip(why);
     }
 
-    /// What went between the two so far.
+    /// Counts of the communication so far.
     #[must_use]
     pub fn told(&self) -> Told {
         Told {
@@ -205,16 +209,16 @@ impl Following {
         }
     }
 
-    /// Brakes the table, waits until it rests, and lets it go.
+    /// Brakes the table, waits until it rests, and releases it.
     ///
     /// # Errors
-    /// If it doesn't come to rest: it has been told to stop in every way then.
+    /// If the table doesn't come to rest: by then every stop command was sent.
     pub fn finish(self) -> Result<(), Error> {
         self.supervisor.finish()
     }
 }
 
-/// Waits until both axes have rested for a while; where they are then.
+/// Waits until both axes have rested for a while; returns their status then.
 pub(crate) fn rest<T: Turntable>(
     table: &mut T,
     port: &str,

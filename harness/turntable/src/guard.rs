@@ -1,12 +1,13 @@
-//! A process that stops the table when the harness can't.
+//! The guard, a process that stops the table when the harness can't.
 //!
-//! The guard has the port as its standard output and a pipe from the harness as its input. Down the pipe come
-//! the bytes that stop the table, then a byte now and then, then a farewell. When the pipe ends without it
-//! (whatever ended the harness, SIGKILL too), or nothing comes for too long (it hangs), the guard writes the
-//! bytes. It is in a process group of its own: an interrupt from the terminal doesn't reach it.
+//! The guard has the port as its standard output and a pipe from the harness as its input. Through the
+//! pipe come the bytes that stop the table, then a byte from time to time, and at the end a farewell.
+//! If the pipe ends without the farewell (whatever ended the harness, including SIGKILL), or nothing
+//! arrives for too long (the harness hangs), the guard writes the bytes. It has its own process group,
+//! so that an interrupt from the terminal doesn't reach it.
 //!
-//! What it can't do: stop a table whose line is cut, or whose computer lost its power or was killed with
-//! all its processes. That is for the watchdog of the controller.
+//! The guard can't stop a table whose line is cut, or whose computer lost its power or had all of its
+//! processes killed. For these cases there is the watchdog of the controller.
 
 use crate::Error;
 use std::io::{self, Read, Write};
@@ -16,14 +17,14 @@ use std::time::Duration;
 
 const ALIVE: u8 = b'.';
 const FAREWELL: u8 = b'q';
-/// No table needs more to be stopped.
+/// Limit of the bytes that stop a table; no table needs more.
 const MAX_BYTES: u32 = 65_536;
 
 fn failed(reason: impl ToString) -> Error {
     Error::Guard { reason: reason.to_string() }
 }
 
-/// The guard, as the harness has it. Dropped without a farewell it stops the table.
+/// The harness's handle of a guard. Dropped without a farewell, it makes the guard stop the table.
 #[derive(Debug)]
 pub struct Guard {
     child: Child,
@@ -58,16 +59,16 @@ impl Guard {
         Ok(Self { child, pipe })
     }
 
-    /// The harness is there.
+    /// Sends a sign of life.
     pub(crate) fn alive(&mut self) -> Result<(), Error> {
         if let Some(status) = self.child.try_wait().map_err(failed)? {
             return Err(failed(format!("it ended: {status}")));
         }
-        let pipe = self.pipe.as_mut().ok_or_else(|| failed("it was let go"))?;
+        let pipe = self.pipe.as_mut().ok_or_else(|| failed("it was released"))?;
         pipe.write_all(&[ALIVE]).map_err(failed)
     }
 
-    /// The table rests and isn't used any more.
+    /// Sends the farewell, when the table rests and isn't used any more.
     pub(crate) fn release(mut self) -> Result<(), Error> {
         if let Some(mut pipe) = self.pipe.take() {
             pipe.write_all(&[FAREWELL]).map_err(failed)?;
@@ -79,21 +80,21 @@ impl Guard {
 
 impl Drop for Guard {
     fn drop(&mut self) {
-        // The pipe ends: without a farewell the guard stops the table, and ends.
+        // The pipe ends without a farewell: the guard stops the table, and ends.
         drop(self.pipe.take());
         let _ = self.child.wait();
     }
 }
 
-/// What the guard does, from its standard input to its standard output. A program that is given to
-/// [`crate::Driver::guard`] calls this, writes nothing on its standard output, and ends. Whether the
-/// harness told it farewell: otherwise it had to stop the table.
+/// Runs the guard, from its standard input to its standard output. A program for
+/// [`crate::Driver::guard`] calls this, writes nothing to its standard output, and ends. Returns true
+/// after a farewell; otherwise the guard had to stop the table.
 #[must_use]
 pub fn run_guard() -> bool {
     guard(io::stdin(), &mut io::stdout()).unwrap_or(false)
 }
 
-/// Whether there was a farewell.
+/// Runs the guard; true after a farewell.
 fn guard(mut input: impl Read + Send + 'static, line: &mut impl Write) -> io::Result<bool> {
     let mut head = [0; 8];
     input.read_exact(&mut head)?;
@@ -122,7 +123,8 @@ fn guard(mut input: impl Read + Send + 'static, line: &mut impl Write) -> io::Re
         match heard {
             Ok(heard) if heard.contains(&FAREWELL) => return Ok(true),
             Ok(heard) if !heard.is_empty() => {}
-            // Ended without a farewell, or silent: once more after a moment, for a line that loses bytes.
+            // The pipe ended without a farewell, or was silent: the bytes are written again after a
+            // moment, for a line that loses bytes.
             _ => {
                 let first = line.write_all(&bytes).and_then(|()| line.flush());
                 std::thread::sleep(Duration::from_millis(50));

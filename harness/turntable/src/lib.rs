@@ -1,23 +1,24 @@
 //! Two-axis turntables: driven, stopped and simulated.
 //!
-//! [`Turntable`] is what the harness asks of a table: go to an angle, turn with a rate, stop, home, say where
-//! you are. [`Driver`] does that over any port for any command language of lines, which a table of
-//! patterns describes ([`Dialect`]); that of Aerotech's Ensemble controllers comes with it.
+//! [`Turntable`] is the interface of a table: go to an angle, turn with a rate, stop, home, report the
+//! status. [`Driver`] implements it over any port for any line-based command language, which a table of
+//! patterns describes ([`Dialect`]); that of Aerotech's Ensemble controllers is built in.
 //!
-//! A table is a machine that can hurt people, so what stops it is apart from what drives it:
+//! A table is a machine that can hurt people, so the ways to stop it are separate from its driver:
 //!
 //! - the driver refuses angles beyond the soft limits and rates beyond the largest one, before anything is sent;
-//! - [`Supervisor`] looks at the table many times a second and stops it where it goes beyond them, answers
-//!   nonsense or nothing;
-//! - [`EmergencyStop`] has a handle of its own on the port and its bytes ready: it writes them on demand, on a
-//!   panic, on a signal and when the driver is dropped, and then nothing moves until it is reset;
-//! - [`Guard`] is a process of its own with another handle: it writes them when the harness dies of whatever
-//!   it be, SIGKILL too, or hangs;
-//! - [`Button`] lets another program of the host press the stop, also where the port takes one peer at a time;
-//! - the watchdog of the controller, where it has one and is told to: it stops a table that hears nothing, when
-//!   the line is cut or the computer fails.
+//! - [`Supervisor`] checks the table many times a second, and stops it if it exceeds them, or its
+//!   answers are invalid or missing;
+//! - [`EmergencyStop`] has its own handle of the port with its bytes ready: it writes them on demand,
+//!   on a panic, on a signal and when the driver is dropped, and then nothing moves until it is reset;
+//! - [`Guard`] is a separate process with another handle: it writes them when the harness dies, for any
+//!   reason including SIGKILL, or hangs;
+//! - [`Button`] lets another program of the host press the stop, even if the port accepts only one peer
+//!   at a time;
+//! - the watchdog of the controller, if it has one and is told to use it, stops a table that receives
+//!   nothing, when the line is cut or the computer fails.
 //!
-//! None of this replaces the emergency stop button.
+//! None of this replaces the hardware emergency stop button.
 
 mod button;
 mod by_hand;

@@ -1,4 +1,4 @@
-//! How far and how fast a table may turn.
+//! Limits of a table's angles and rates.
 
 use crate::{Axis, Error};
 
@@ -11,28 +11,28 @@ pub struct AxisLimits {
     pub most_rad: f64,
     /// Largest rate, rad/s.
     pub rate_radps: f64,
-    /// Acceleration of its moves, rad/s².
+    /// Acceleration of the axis's moves, rad/s².
     pub acceleration_radps2: f64,
 }
 
 /// Limits of a table.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limits {
-    /// Of azimuth and roll.
+    /// Limits of azimuth and roll.
     pub axes: [AxisLimits; 2],
 }
 
 impl Limits {
-    /// Of one axis.
+    /// Limits of one axis.
     #[must_use]
     pub fn of(&self, axis: Axis) -> &AxisLimits {
         &self.axes[axis.index()]
     }
 
-    /// They can be kept.
+    /// Checks that the limits are valid.
     ///
     /// # Errors
-    /// If they are none.
+    /// If they aren't.
     pub fn check(&self) -> Result<(), Error> {
         for axis in Axis::ALL {
             let AxisLimits { least_rad, most_rad, rate_radps, acceleration_radps2 } =
@@ -45,13 +45,13 @@ impl Limits {
         Ok(())
     }
 
-    /// An angle to which the axis may go.
+    /// Checks that the axis may go to an angle.
     ///
     /// # Errors
-    /// If it is beyond them.
+    /// If the angle is beyond the limits.
     pub fn angle(&self, axis: Axis, angle_rad: f64) -> Result<(), Error> {
         let limits = self.of(axis);
-        // A NaN is in no range.
+        // A NaN is outside of every range.
         if (limits.least_rad..=limits.most_rad).contains(&angle_rad) && angle_rad.is_finite() {
             return Ok(());
         }
@@ -63,7 +63,7 @@ impl Limits {
         })
     }
 
-    /// A rate with which the axis may turn.
+    /// Checks that the axis may turn with a rate.
     pub(crate) fn rate(&self, axis: Axis, rate_radps: f64) -> Result<(), Error> {
         let most = self.of(axis).rate_radps;
         if rate_radps.abs() <= most {
@@ -72,7 +72,7 @@ impl Limits {
         Err(Error::Rate { axis, found: rate_radps.to_degrees(), most: most.to_degrees() })
     }
 
-    /// The axis comes to rest within its limits if it is braked within a time.
+    /// Checks that the axis comes to rest within its limits if it is braked after a time.
     pub(crate) fn can_stop(
         &self,
         axis: Axis,
@@ -82,7 +82,7 @@ impl Limits {
     ) -> Result<(), Error> {
         let brake = rate_radps.abs() / (2.0 * self.of(axis).acceleration_radps2);
         let at_rest = angle_rad + rate_radps * (within_s + brake);
-        // Outside and on the way back is no reason to stop.
+        // An axis outside of its limits that is on its way back isn't stopped.
         let limits = self.of(axis);
         let outward = (rate_radps > 0.0 && at_rest > limits.most_rad)
             || (rate_radps < 0.0 && at_rest < limits.least_rad);

@@ -11,12 +11,12 @@ usage: octant-turntable simulate [--tcp HOST:PORT | --pty LINK] [--dialect FILE]
        octant-turntable stop PORT [--dialect FILE]
        octant-turntable guard
 
-simulate  plays the controller of a table: on a TCP port (default 127.0.0.1:8000), or on a
-          pseudo-terminal that LINK points to
+simulate  simulates the controller of a table: on a TCP port (default 127.0.0.1:8000), or on a
+          pseudo-terminal with the link LINK to it
 stop      stops a table: PORT is tcp:HOST:PORT or serial:DEVICE?baud=RATE
 guard     is started by the harness
 
-The dialect is a table of patterns; without one it is that of Aerotech's Ensemble.
+The dialect is a file with a table of patterns; the default is that of Aerotech's Ensemble.
 ";
 
 fn main() -> ExitCode {
@@ -76,7 +76,7 @@ fn simulate(options: &[&str]) -> Result<(), Failure> {
     }
     let place = place.unwrap_or_else(|| "tcp:127.0.0.1:8000".to_owned());
     let (server, name) = listen(&place, dialect(file)?).map_err(bench)?;
-    let _ = writeln!(std::io::stderr(), "a table listens on {name}");
+    let _ = writeln!(std::io::stderr(), "a simulated table listens on {name}");
     server.wait();
     Ok(())
 }
@@ -88,7 +88,7 @@ fn stop(port: &str, options: &[&str]) -> Result<(), Failure> {
         _ => return Err(Failure::Usage),
     };
     for who in stop_by_hand(port, &dialect(file)?).map_err(bench)? {
-        let _ = writeln!(std::io::stderr(), "told to stop: {who}");
+        let _ = writeln!(std::io::stderr(), "stop sent through {who}");
     }
     Ok(())
 }

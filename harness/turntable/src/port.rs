@@ -1,4 +1,4 @@
-//! Ports that lead to a table.
+//! Ports of a table's controller.
 
 use crate::Error;
 use std::io::{self, Read, Write};
@@ -7,22 +7,23 @@ use std::time::Duration;
 
 /// A line to a controller.
 pub trait Port: Read + Write + Send {
-    /// Another handle for writing, which works while this one is in use.
+    /// Makes another handle for writing, which works while this one is in use.
     ///
     /// # Errors
-    /// If there is none.
+    /// If there is no other handle.
     fn writer(&self) -> io::Result<Box<dyn Write + Send>>;
 
-    /// How long a read waits at most; then it says `TimedOut` or `WouldBlock`. A write doesn't wait longer.
+    /// Sets the longest wait of a read, which then returns `TimedOut` or `WouldBlock`. A write doesn't
+    /// wait longer either.
     ///
     /// # Errors
-    /// If it can't be set.
+    /// If the wait can't be set.
     fn set_wait(&mut self, wait: Duration) -> io::Result<()>;
 
-    /// Another handle, to be handed to the guard.
+    /// Makes another handle for the guard.
     ///
     /// # Errors
-    /// If there is none.
+    /// If there is no other handle.
     #[cfg(unix)]
     fn duplicate(&self) -> io::Result<std::os::fd::OwnedFd>;
 }
@@ -57,7 +58,7 @@ impl Port for serialport::TTYPort {
     fn duplicate(&self) -> io::Result<std::os::fd::OwnedFd> {
         use std::os::fd::{FromRawFd, IntoRawFd};
         let raw = self.try_clone_native()?.into_raw_fd();
-        // SAFETY: the clone gave its handle away with `into_raw_fd`: it is open, and nobody else has it.
+        // SAFETY: the clone released its handle with `into_raw_fd`: it is open, and has no other owner.
         Ok(unsafe { std::os::fd::OwnedFd::from_raw_fd(raw) })
     }
 }
@@ -88,7 +89,7 @@ impl Port for Box<dyn Port> {
     }
 }
 
-/// What a port is called.
+/// Address of a port.
 enum Address<'a> {
     Tcp(&'a str),
     Serial(&'a str, u32),
@@ -102,37 +103,37 @@ fn address(uri: &str) -> Result<Address<'_>, Error> {
         });
         return match port {
             Some(_) => Ok(Address::Tcp(address)),
-            None => Err(failed(format!("`{address}` is no HOST:PORT"))),
+            None => Err(failed(format!("`{address}` is not HOST:PORT"))),
         };
     }
     let Some(serial) = uri.strip_prefix("serial:") else {
-        return Err(failed("this is no address of a table".into()));
+        return Err(failed("the address has neither tcp: nor serial:".into()));
     };
     let (device, baud) = match serial.split_once('?') {
         None => (serial, 115_200),
         Some((device, query)) => {
             let rate = query.strip_prefix("baud=").and_then(|rate| rate.parse().ok());
-            (device, rate.ok_or_else(|| failed(format!("`{query}` is no baud=RATE")))?)
+            (device, rate.ok_or_else(|| failed(format!("`{query}` is not baud=RATE")))?)
         }
     };
     if device.is_empty() || baud == 0 {
-        return Err(failed("it names no device, or no rate".into()));
+        return Err(failed("the address has no device, or no rate".into()));
     }
     Ok(Address::Serial(device, baud))
 }
 
-/// Whether a text is the address of a table, without opening it.
+/// Checks that a text is the address of a table, without opening it.
 ///
 /// # Errors
-/// If it is none.
+/// If the text is no such address.
 pub fn check_port(uri: &str) -> Result<(), Error> {
     address(uri).map(|_| ())
 }
 
-/// Opens `tcp:HOST:PORT` or `serial:DEVICE?baud=RATE` (8N1, exclusive; without a rate 115200).
+/// Opens `tcp:HOST:PORT` or `serial:DEVICE?baud=RATE` (8N1, exclusive; the default rate is 115200).
 ///
 /// # Errors
-/// If it is no such address, or can't be opened.
+/// If the text is no such address, or the port can't be opened.
 pub fn open(uri: &str) -> Result<Box<dyn Port>, Error> {
     let failed = |reason: String| Error::Open { port: uri.into(), reason };
     let (device, baud) = match address(uri)? {
@@ -145,10 +146,10 @@ pub fn open(uri: &str) -> Result<Box<dyn Port>, Error> {
     };
     let builder = serialport::new(device, baud).timeout(Duration::from_millis(20));
     let port = builder.open_native().map_err(|error| failed(error.to_string()))?;
-    // Some drivers give another rate without a word.
+    // Some drivers silently set another rate.
     match serialport::SerialPort::baud_rate(&port) {
         Ok(found) if found != baud => {
-            Err(failed(format!("the line runs at {found} baud, not {baud}")))
+            Err(failed(format!("the line runs at {found} baud, expected {baud}")))
         }
         _ => Ok(Box::new(port)),
     }

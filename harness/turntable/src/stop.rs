@@ -1,8 +1,8 @@
-//! The emergency stop.
+//! Emergency stop of tables.
 //!
-//! It has a handle of its own on the port and its bytes ready: to trip it takes no reply, no memory and
-//! no lock that the driver holds. All stops of the program are in a register, so that a panic anywhere and
-//! a signal trip them.
+//! The stop has its own handle of the port with its bytes ready: tripping it needs no reply and no lock that
+//! the driver holds. All stops of the program are in a register, so that a panic in any thread and a
+//! signal trip them.
 
 use crate::{Dialect, Error, Port};
 use std::io::Write;
@@ -10,11 +10,11 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, Once, PoisonError, TryLockError, Weak};
 use std::time::Duration;
 
-/// How often the bytes are written: a line can lose some.
+/// Number of times that the bytes are written: a line can lose some.
 const TIMES: u32 = 2;
-/// Between them.
+/// Pause between two writes.
 const PAUSE: Duration = Duration::from_millis(20);
-/// How long somebody else may be writing them.
+/// Number of attempts while another thread writes them.
 const PATIENCE: u32 = 20;
 
 struct Inner {
@@ -24,7 +24,7 @@ struct Inner {
     bytes: Vec<u8>,
 }
 
-/// Stops a table. Clones stop the same one.
+/// Stops a table. Clones stop the same table.
 #[derive(Clone)]
 pub struct EmergencyStop {
     inner: Arc<Inner>,
@@ -37,7 +37,7 @@ fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
 }
 
 impl EmergencyStop {
-    /// With a handle and what is written to it.
+    /// Makes a stop from a handle and the bytes that are written to it.
     pub(crate) fn new(line: Box<dyn Write + Send>, bytes: Vec<u8>) -> Self {
         let inner = Arc::new(Inner {
             tripped: AtomicBool::new(false),
@@ -51,19 +51,19 @@ impl EmergencyStop {
         Self { inner }
     }
 
-    /// Stops the table, and keeps it from being moved until [`EmergencyStop::reset`]. Whether the bytes
-    /// could be written.
+    /// Stops the table, and keeps it from being moved until [`EmergencyStop::reset`]. Returns true if
+    /// the bytes could be written.
     pub fn trip(&self, why: &str) -> bool {
         self.inner.trip(why)
     }
 
-    /// It was tripped.
+    /// True if it was tripped.
     #[must_use]
     pub fn is_tripped(&self) -> bool {
         self.inner.tripped.load(Ordering::SeqCst)
     }
 
-    /// As an error, when it was tripped.
+    /// Returns an error if it was tripped.
     ///
     /// # Errors
     /// If it was tripped.
@@ -74,7 +74,7 @@ impl EmergencyStop {
         Ok(())
     }
 
-    /// The table may be moved again: somebody has looked at it.
+    /// Allows moves again, after somebody has inspected the table.
     pub fn reset(&self) {
         locked(&self.inner.why).clear();
         self.inner.tripped.store(false, Ordering::SeqCst);
@@ -83,7 +83,7 @@ impl EmergencyStop {
 
 impl Inner {
     fn trip(&self, why: &str) -> bool {
-        // The first reason is the reason.
+        // The first reason is kept.
         if !self.tripped.swap(true, Ordering::SeqCst)
             && let Ok(mut reason) = self.why.try_lock()
         {
@@ -92,7 +92,8 @@ impl Inner {
         for _ in 0..PATIENCE {
             let mut line = match self.line.try_lock() {
                 Ok(line) => line,
-                // Who panicked with it wrote half of it: it begins with the end of a line.
+                // A thread that panicked while writing has written only a part: the bytes begin with an
+                // end of line.
                 Err(TryLockError::Poisoned(poisoned)) => poisoned.into_inner(),
                 Err(TryLockError::WouldBlock) => {
                     std::thread::sleep(PAUSE);
@@ -112,9 +113,9 @@ impl Inner {
     }
 }
 
-/// Trips every stop of the program: nothing that it drives moves any more.
+/// Trips every stop of the program, after which none of its tables moves.
 pub fn stop_all(why: &str) {
-    // Not waited for: the thread that panics may hold it.
+    // The lock isn't waited for without limit: the thread that panics may hold it.
     let mut stops = Vec::new();
     for _ in 0..PATIENCE {
         match REGISTER.try_lock() {
@@ -134,8 +135,8 @@ pub fn stop_all(why: &str) {
     }
 }
 
-/// From now on a panic in any thread stops every table, before anything else is done about it: also
-/// in a program that aborts on a panic.
+/// Makes a panic in any thread stop every table from now on, before it is handled otherwise: also in a
+/// program that aborts on a panic.
 pub fn on_panic() {
     static ONCE: Once = Once::new();
     ONCE.call_once(|| {
@@ -147,8 +148,8 @@ pub fn on_panic() {
     });
 }
 
-/// From now on an interrupt, a hang-up, a quit or a termination stops every table, and then ends the program
-/// as it would have without this.
+/// Makes an interrupt, a hang-up, a quit or a termination stop every table from now on; the signal then
+/// ends the program as it would have otherwise.
 ///
 /// # Errors
 /// If the signals can't be caught.
@@ -165,7 +166,7 @@ pub fn on_signals() -> std::io::Result<()> {
     Ok(())
 }
 
-/// There are no signals here to be caught: the guard and the controller's watchdog are what is left.
+/// Does nothing, because there are no signals to catch on this system: guard and watchdog remain.
 ///
 /// # Errors
 /// Never.
@@ -174,11 +175,11 @@ pub fn on_signals() -> std::io::Result<()> {
     Ok(())
 }
 
-/// Stops a table by hand, whoever drives it: through a program of this host that does, and on the port
-/// itself as far as that can be opened. Who stopped it.
+/// Stops a table by hand, whichever program drives it: through a driving program of this host, and on
+/// the port itself if that can be opened. Returns the ways that worked.
 ///
 /// # Errors
-/// If nobody could: why not.
+/// If none worked, with the reason.
 pub fn stop_by_hand(name: &str, dialect: &Dialect) -> Result<Vec<String>, Error> {
     let mut stopped = Vec::new();
     let mut failure = None;
@@ -193,7 +194,7 @@ pub fn stop_by_hand(name: &str, dialect: &Dialect) -> Result<Vec<String>, Error>
         }
         Err(error) => failure = Some(error),
     }
-    // Both ways, if there are two: a table is stopped as often as one likes.
+    // Both ways are used: stopping a table twice does no harm.
     match crate::open(name).and_then(|port| stop_line(port, name, dialect)) {
         Ok(()) => stopped.push("its own port, without waiting for an answer".to_owned()),
         Err(error) => failure = failure.or(Some(error)),
@@ -204,10 +205,10 @@ pub fn stop_by_hand(name: &str, dialect: &Dialect) -> Result<Vec<String>, Error>
     }
 }
 
-/// Stops a table on a port that nobody drives: by hand. Its replies are not waited for.
+/// Stops a table on a port that no program drives, by hand. Its replies are not waited for.
 ///
 /// # Errors
-/// If the port doesn't take it.
+/// If the port doesn't accept the bytes.
 pub fn stop_line(mut port: impl Port, name: &str, dialect: &Dialect) -> Result<(), Error> {
     let gone = |reason| Error::Gone { port: name.to_owned(), reason };
     for time in 0..TIMES {
@@ -216,7 +217,7 @@ pub fn stop_line(mut port: impl Port, name: &str, dialect: &Dialect) -> Result<(
         }
         port.write_all(&dialect.emergency()).and_then(|()| port.flush()).map_err(gone)?;
     }
-    // What was written is on its way before the port is closed.
+    // The bytes must be on their way before the port is closed.
     std::thread::sleep(10 * PAUSE);
     Ok(())
 }

@@ -1,4 +1,4 @@
-//! Somebody who looks at the table all the time.
+//! Continuous supervision of a table.
 
 use crate::{Axis, Driver, EmergencyStop, Error, Limits, Port, Status, Turntable};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -6,23 +6,22 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-/// How much faster than its limit an axis may be read: rates are noisy.
+/// Factor by which a measured rate may exceed its limit: rates are noisy.
 const RATE_SLACK: f64 = 1.1;
 
 struct Shared<P: Port> {
     driver: Mutex<Driver<P>>,
     last: Mutex<Option<Status>>,
-    /// Why it stopped the table.
+    /// Reason for which it stopped the table.
     fault: Mutex<Option<String>>,
     ends: AtomicBool,
 }
 
 /// A table under supervision.
 ///
-/// A thread asks for its status many times a second, feeds watchdog and guard, and stops the table
-/// where an axis could not come to rest within its limits any more, is faster than it may, reports a
-/// fault, or where the table answers nothing or nonsense. Then nothing moves any more: see
-/// [`EmergencyStop`].
+/// A thread asks for the status many times a second, feeds watchdog and guard, and stops the table if
+/// an axis could no longer come to rest within its limits, is too fast or reports a fault, or if the
+/// table's answers are invalid or missing. Then nothing moves any more: see [`EmergencyStop`].
 pub struct Supervisor<P: Port + 'static> {
     shared: Arc<Shared<P>>,
     thread: Option<JoinHandle<()>>,
@@ -35,7 +34,7 @@ fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
 }
 
 impl<P: Port + 'static> Supervisor<P> {
-    /// Begins to look at a table, so often.
+    /// Starts the supervision of a table, with a look each `period`.
     ///
     /// # Errors
     /// If the thread can't be started.
@@ -43,9 +42,9 @@ impl<P: Port + 'static> Supervisor<P> {
         Self::with_duty(driver, period, |_, _| Ok(()))
     }
 
-    /// As [`Supervisor::new`], with something that the same thread does after each look that found the
-    /// table well: to hand on where it is, to move it. An error of it stops the table as anything else
-    /// does that isn't well.
+    /// Starts the supervision like [`Supervisor::new`], with a duty that the same thread performs after
+    /// each good look: for example to pass on the status, or to move the table. An error of the duty
+    /// stops the table like any other error.
     ///
     /// # Errors
     /// If the thread can't be started.
@@ -69,19 +68,19 @@ impl<P: Port + 'static> Supervisor<P> {
         Ok(Self { shared, thread: Some(thread), limits, stop })
     }
 
-    /// What the table said last.
+    /// Last status of the table.
     #[must_use]
     pub fn last(&self) -> Option<Status> {
         *locked(&self.shared.last)
     }
 
-    /// Why it stopped the table, if it did.
+    /// Reason for which it stopped the table, if it did.
     #[must_use]
     pub fn fault(&self) -> Option<String> {
         locked(&self.shared.fault).clone()
     }
 
-    /// Brakes the table and gives its driver back.
+    /// Ends the supervision, brakes the table and releases it.
     ///
     /// # Errors
     /// If the table doesn't stop.
@@ -89,7 +88,7 @@ impl<P: Port + 'static> Supervisor<P> {
         self.end();
         let shared = Arc::clone(&self.shared);
         drop(self);
-        // The thread has ended, and this is the last one.
+        // The thread has ended, and this is the last reference.
         match Arc::into_inner(shared) {
             Some(shared) => {
                 shared.driver.into_inner().unwrap_or_else(PoisonError::into_inner).finish()
@@ -108,7 +107,7 @@ impl<P: Port + 'static> Supervisor<P> {
 
 impl<P: Port + 'static> Drop for Supervisor<P> {
     fn drop(&mut self) {
-        // The driver is dropped after the thread has ended, and stops the table.
+        // The driver is dropped after the end of the thread, and stops the table.
         self.end();
     }
 }
@@ -133,7 +132,8 @@ fn watch<P: Port>(
                 *locked(&shared.last) = Some(status);
             }
             Err(error) => {
-                // Who tripped the stop said why: that it can't be moved then is no news.
+                // If somebody tripped the stop, that reason counts, not the refusal to move that
+                // follows from it.
                 let why = match error {
                     Error::Stopped { why } => why,
                     error => error.to_string(),
@@ -147,7 +147,7 @@ fn watch<P: Port>(
     }
 }
 
-/// Asks a table where it is, and whether that is well.
+/// Asks a table for its status, and checks it.
 fn look(
     table: &mut impl Turntable,
     before: Option<(Instant, Instant, Status)>,
@@ -160,9 +160,10 @@ fn look(
         if let Some(fault) = found.fault.filter(|fault| *fault != 0) {
             return Err(Error::Fault { axis, fault });
         }
-        // From where it was, if the language doesn't say it. When it was there is known between a
-        // question and its answer only, which is long on a busy host: it turns at least at the first
-        // of these, and about at the second.
+        // If the language doesn't report a rate, it follows from the former angle. The time of that
+        // angle is known only to lie between query and answer, which may be long on a busy host: from
+        // the query on, the mean rate is the least possible one, and from the answer on about the true
+        // one.
         let (least, rate) = match (found.rate_radps, before) {
             (Some(rate), _) => (rate, rate),
             (None, Some((asked, answered, status))) => {
@@ -173,7 +174,7 @@ fn look(
             (None, None) => (0.0, 0.0),
         };
         limits.rate(axis, least / RATE_SLACK)?;
-        // Until it is looked at again twice over.
+        // The axis must be able to stop if it is braked two periods from now.
         limits.can_stop(axis, found.angle_rad, rate, 2.0 * period.as_secs_f64())?;
     }
     Ok(status)

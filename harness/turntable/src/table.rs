@@ -1,4 +1,4 @@
-//! What the harness asks of a table.
+//! Interface of a table.
 
 use crate::{EmergencyStop, Error, Limits};
 use std::time::{Duration, Instant};
@@ -13,10 +13,10 @@ pub enum Axis {
 }
 
 impl Axis {
-    /// Both of them.
+    /// Both axes.
     pub const ALL: [Self; 2] = [Self::Azimuth, Self::Roll];
 
-    /// Its name.
+    /// Name of the axis.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -36,36 +36,36 @@ impl std::fmt::Display for Axis {
     }
 }
 
-/// What a table says of an axis. What its language doesn't say is `None`.
+/// Status of an axis. Values that its language doesn't report are `None`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct AxisStatus {
-    /// Where it is, rad.
+    /// Angle, rad.
     pub angle_rad: f64,
-    /// When it was there: in the middle between question and reply.
+    /// Time of the angle: the middle between query and reply.
     pub at: Option<Instant>,
-    /// How far from that it may have been: half of the time from question to reply.
+    /// Uncertainty of that time: half of the time from query to reply.
     pub at_within: Duration,
-    /// How fast it turns, rad/s.
+    /// Rate, rad/s.
     pub rate_radps: Option<f64>,
-    /// A move goes on.
+    /// True while a move is in progress.
     pub moving: Option<bool>,
-    /// It has found its reference.
+    /// True if it has found its reference.
     pub homed: Option<bool>,
-    /// Its drive is on.
+    /// True if its drive is on.
     pub enabled: Option<bool>,
     /// The controller's fault word; 0: none.
     pub fault: Option<u32>,
 }
 
-/// What a table says.
+/// Status of a table.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Status {
-    /// Azimuth and roll.
+    /// Status of azimuth and roll.
     pub axes: [AxisStatus; 2],
 }
 
 impl Status {
-    /// Of one axis.
+    /// Status of one axis.
     #[must_use]
     pub fn of(&self, axis: Axis) -> &AxisStatus {
         &self.axes[axis.index()]
@@ -74,42 +74,43 @@ impl Status {
 
 /// A two-axis table.
 ///
-/// Angles are those of the gimbals, cumulative; rates are theirs. A command returns when the table has
-/// taken it, not when the move has ended.
+/// Angles and rates are those of the gimbals, angles cumulative. A command returns when the table has
+/// accepted it, not at the end of the move.
 pub trait Turntable: Send {
-    /// Turns an axis to an angle, with at most a rate; without one with the largest that is allowed.
+    /// Turns an axis to an angle, with at most a rate; by default, the largest permitted one.
     ///
     /// # Errors
-    /// If it is beyond the limits, the emergency stop was tripped, or the table doesn't do it.
+    /// If it is beyond the limits, the emergency stop was tripped, or the table refuses it.
     fn goto(&mut self, axis: Axis, angle_rad: f64, rate_radps: Option<f64>) -> Result<(), Error>;
 
-    /// Turns an axis on with a rate; 0 brakes it.
+    /// Turns an axis continuously with a rate; 0 brakes it.
     ///
     /// # Errors
     /// As [`Turntable::goto`].
     fn rate(&mut self, axis: Axis, rate_radps: f64) -> Result<(), Error>;
 
-    /// Brakes both axes. It is done also when the emergency stop was tripped.
+    /// Brakes both axes, also after the emergency stop was tripped.
     ///
     /// # Errors
-    /// If the table doesn't do it: the emergency stop has been tripped then.
+    /// If the table doesn't execute it: by then the emergency stop was tripped.
     fn stop(&mut self) -> Result<(), Error>;
 
-    /// Lets an axis find its reference.
+    /// Homes an axis: lets it find its reference.
     ///
     /// # Errors
     /// As [`Turntable::goto`].
     fn home(&mut self, axis: Axis) -> Result<(), Error>;
 
-    /// Where it is.
+    /// Asks for the status.
     ///
     /// # Errors
-    /// If the table doesn't say it.
+    /// If the table doesn't answer.
     fn status(&mut self) -> Result<Status, Error>;
 
-    /// The soft limits.
+    /// Soft limits.
     fn limits(&self) -> &Limits;
 
-    /// What stops it whatever happens; to be given to whoever may have to.
+    /// Emergency stop, which works in any state of the table; to be given to every part that may need
+    /// it.
     fn emergency(&self) -> EmergencyStop;
 }

@@ -1,12 +1,12 @@
-//! Where a table was, between the times at which it said so.
+//! Angles of a table between its looks.
 
 use crate::{Axis, Status};
 use std::time::{Duration, Instant};
 
-/// Points that are kept of an axis: at fifty looks a second, more than a second.
+/// Number of points kept for an axis: more than a second at fifty looks a second.
 const POINTS: usize = 64;
 
-/// Where an axis was when.
+/// Angle of an axis at a time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Point {
     at: Instant,
@@ -15,18 +15,18 @@ struct Point {
     rate_radps: Option<f64>,
 }
 
-/// Where an axis was at a time.
+/// Angle of an axis at a requested time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Place {
-    /// The angle, rad.
+    /// Angle, rad.
     pub angle_rad: f64,
-    /// How far the time is from the nearest one at which the table said its angle.
+    /// Time from the requested time to the nearest look.
     pub age: Duration,
-    /// How far the times at which it said it may have been from what they are taken for.
+    /// Uncertainty of the times of the looks.
     pub within: Duration,
 }
 
-/// What a table said, axis by axis. It takes no memory as it grows.
+/// Recent looks at a table, for each axis, in bounded memory.
 #[derive(Clone, Debug, Default)]
 pub struct Track {
     axes: [AxisTrack; 2],
@@ -34,20 +34,20 @@ pub struct Track {
 
 #[derive(Clone, Debug, Default)]
 struct AxisTrack {
-    /// From the oldest on, in a ring.
+    /// Ring of points; `oldest` is the index of the oldest.
     points: Vec<Point>,
     oldest: usize,
 }
 
 impl Track {
-    /// With room for what will be kept.
+    /// Makes a track with room for all points that are kept.
     #[must_use]
     pub fn new() -> Self {
         let axis = || AxisTrack { points: Vec::with_capacity(POINTS), oldest: 0 };
         Self { axes: [axis(), axis()] }
     }
 
-    /// Takes what the table said. Where it doesn't know when, or goes back in time, it is left out.
+    /// Adds a status. An angle without a time, or not after the last one, is ignored.
     pub fn add(&mut self, status: &Status) {
         for axis in Axis::ALL {
             let found = status.of(axis);
@@ -63,8 +63,8 @@ impl Track {
         }
     }
 
-    /// Where an axis was at a time: on the line between the points before and after it; after the last
-    /// one, on with its rate. `None` before the first.
+    /// Angle of an axis at a time: by linear interpolation between the points before and after it;
+    /// after the last one, by extrapolation with its rate. `None` before the first.
     #[must_use]
     pub fn at(&self, axis: Axis, when: Instant) -> Option<Place> {
         self.axes[axis.index()].at(when)
@@ -84,7 +84,7 @@ impl AxisTrack {
         }
     }
 
-    /// The one that came so many before the newest.
+    /// Point so many steps before the newest.
     fn back(&self, steps: usize) -> Option<Point> {
         let count = self.points.len();
         let index = count.checked_sub(1 + steps)?;
@@ -118,7 +118,7 @@ impl AxisTrack {
     }
 }
 
-/// Rate between two points, of which the second is later.
+/// Rate between two points; the second one is later.
 fn slope(from: Point, to: Point) -> f64 {
     (to.angle_rad - from.angle_rad) / (to.at - from.at).as_secs_f64()
 }
@@ -147,7 +147,7 @@ mod tests {
     }
 
     proptest! {
-        /// A steady turn is found again exactly, whenever it was looked at, beyond the last look too.
+        /// A steady turn is reproduced exactly, at any times of looks, also beyond the last look.
         #[test]
         fn a_steady_turn_is_found_again(
             looks in prop::collection::vec(1u64..50, 2..200),
@@ -180,8 +180,8 @@ mod tests {
         }
     }
 
-    /// Between looks that are h apart a line misses a move with acceleration a by a·h²/8 at most; with the
-    /// rate, t after the last look, by a·t²/2.
+    /// Between looks at an interval h a line deviates from a move with acceleration a by at most
+    /// a·h²/8; extrapolation to a time t after the last look deviates by a·t²/2.
     #[test]
     fn a_move_is_missed_by_what_its_acceleration_does_alone() {
         let degrees = f64::to_radians;
@@ -228,7 +228,7 @@ mod tests {
         assert_eq!(track.at(Axis::Roll, start - ms(1)), None);
         let place = track.at(Axis::Roll, start + ms(5)).unwrap();
         assert_eq!(place, Place { angle_rad: 0.7, age: ms(5), within: ms(3) });
-        // What comes late, or without a time, changes nothing.
+        // A late look, or one without a time, changes nothing.
         track.add(&status(start - ms(10), [9.0, 9.0], [None; 2]));
         track.add(&Status::default());
         assert_eq!(track.at(Axis::Roll, start + ms(5)), Some(place));

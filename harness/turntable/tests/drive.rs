@@ -1,4 +1,4 @@
-//! Drivers against simulated controllers: moves, limits, what goes wrong.
+//! Drivers with simulated controllers: moves, limits, errors.
 
 use crate::common::*;
 use octant_sample::{GimbalAngles, GimbalCommand};
@@ -11,7 +11,7 @@ use std::io::{self, Read, Write};
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
-/// All that a table does, in a language.
+/// Tests all functions of a table, in one language.
 fn all_it_does(server: &Server, mut table: impl Turntable) {
     for axis in Axis::ALL {
         let status = *table.status().unwrap().of(axis);
@@ -29,7 +29,7 @@ fn all_it_does(server: &Server, mut table: impl Turntable) {
     assert!((status.of(Axis::Roll).angle_rad - degrees(30.0)).abs() < 1e-6);
     assert_eq!(status.of(Axis::Azimuth).angle_rad, 0.0);
 
-    // Slow: a busy host may take long until it tells it to stop, and it has its limits.
+    // Slow, within the limits: a busy host may take long until it sends the stop.
     table.rate(Axis::Azimuth, degrees(-2.0)).unwrap();
     wait_for("the rate", || {
         let really = server.with(|c, now_ns| c.motion(Axis::Azimuth, now_ns).rate_radps);
@@ -40,7 +40,7 @@ fn all_it_does(server: &Server, mut table: impl Turntable) {
     }
     table.stop().unwrap();
     wait_for("rest", || rests(server));
-    // Back to where it was, and home.
+    // Moves back, and homes.
     table.goto(Axis::Roll, degrees(30.0), Some(degrees(1.0))).unwrap();
     assert_eq!(table.status().unwrap().of(Axis::Roll).homed, Some(false));
     table.home(Axis::Roll).unwrap();
@@ -63,7 +63,7 @@ fn two_languages_over_tcp() {
 #[test]
 fn supervised() {
     for dialect in [ensemble(), invented()] {
-        // In our time: one of the languages doesn't say a rate, and it is seen by the angles.
+        // In real time: one of the languages has no rate, which then follows from the angles.
         let (server, name) = tcp_at(dialect.clone(), 1.0);
         let watched = Settings { watchdog: Some(Duration::from_secs(600)), ..settings() };
         let driver = drive(&name, dialect, watched);
@@ -84,7 +84,7 @@ fn two_languages_over_a_pseudo_terminal() {
     }
 }
 
-/// A port that answers what it was told to, and keeps what was sent.
+/// A port that gives prepared replies, and records the bytes sent.
 #[derive(Clone, Default)]
 struct Script {
     sent: Arc<Mutex<Vec<u8>>>,
@@ -106,7 +106,7 @@ impl Write for Script {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         self.sent.lock().unwrap().extend(bytes);
         let mut replies = self.replies.lock().unwrap();
-        // What an Ensemble controller says.
+        // Reply of an Ensemble controller.
         let line = String::from_utf8_lossy(bytes).into_owned();
         let reply = match line.trim_end() {
             "AXISSTATUS(@0)" => "%7\n",
@@ -141,7 +141,7 @@ impl Port for Script {
     }
 }
 
-/// The lines that an Ensemble controller is sent, letter by letter, and what its replies mean.
+/// Lines that an Ensemble controller is sent, letter by letter, and the meaning of its replies.
 #[test]
 fn ensemble_to_the_letter() {
     let script = Script::default();
@@ -157,7 +157,7 @@ fn ensemble_to_the_letter() {
     let status = driver.status().unwrap();
     said();
     let [azimuth, roll] = status.axes;
-    // 7: enabled, homed, in position; 11: enabled, homed, moving.
+    // Bits 7: enabled, homed, in position; 11: enabled, homed, moving.
     assert_eq!(
         (azimuth.enabled, azimuth.homed, azimuth.moving),
         (Some(true), Some(true), Some(false))
@@ -208,16 +208,17 @@ fn beyond_the_limits_nothing_is_sent() {
     assert!(error.err().unwrap().to_string().starts_with("the limits of roll can't be kept"));
 }
 
-/// Turned on with a rate, the table comes to rest before its soft limit, though its language may not even
-/// say how fast it is.
+/// An axis turned with a rate comes to rest before its soft limit, even if its language doesn't report
+/// the rate.
 fn ends_at_the_soft_limit(dialect: Dialect) {
-    // In our time: what is looked at is as old as it is on a real line.
+    // In real time: the looks are as old as on a real line.
     let (server, name) = tcp_at(dialect.clone(), 1.0);
     let mut near = settings();
     near.limits.axes[0].most_rad = degrees(65.0);
     let driver = drive(&name, dialect, near);
-    // It is stopped where two more periods of 10 °/s and the way of braking, 1.7°, would end beyond the
-    // limit: at 23.3°, or a period later, at 43.3°. From there a busy host has the second period to look.
+    // The axis is stopped when two more periods of 10 °/s and the braking distance, 1.7°, would end
+    // beyond the limit: at 23.3°, or a period later, at 43.3°. A busy host then still has the second
+    // period to look.
     let mut table = Supervisor::new(driver, Duration::from_secs(2)).unwrap();
     table.rate(Axis::Azimuth, degrees(10.0)).unwrap();
     wait_for("the stop", || table.emergency().is_tripped());
@@ -227,7 +228,7 @@ fn ends_at_the_soft_limit(dialect: Dialect) {
     wait_for("the fault", || table.fault().is_some());
     let fault = table.fault().unwrap();
     assert!(fault.starts_with("azimuth ") && fault.contains("beyond its limits"), "{fault}");
-    // Until somebody has looked at it.
+    // The stop lasts until somebody resets it.
     let error = table.goto(Axis::Azimuth, 0.0, None).unwrap_err().to_string();
     assert!(error.starts_with("the table was stopped: azimuth"), "{error}");
     table.emergency().reset();
@@ -248,7 +249,7 @@ fn a_rate_ends_at_the_soft_limit() {
 fn nonsense_is_not_believed() {
     let (server, name) = tcp(ensemble());
     let mut quick = settings();
-    // Long for a busy host, and short enough to be waited for three times.
+    // Long enough for a busy host, and short enough for three waits.
     quick.reply_within = Duration::from_secs(2);
     let mut driver = drive(&name, ensemble(), quick);
     let behave = |behaviour| server.with(|controller, _| controller.behave(behaviour));
@@ -256,7 +257,7 @@ fn nonsense_is_not_believed() {
     let error = driver.status().unwrap_err().to_string();
     assert_eq!(
         error,
-        format!("{name}: `%twelve` is no reply to `AXISSTATUS(@0)`, expected is `%{{bits}}`")
+        format!("{name}: found the reply `%twelve` to `AXISSTATUS(@0)`, expected `%{{bits}}`")
     );
     behave(Behaviour::Nonsense("!".into()));
     let error = driver.goto(Axis::Roll, 0.5, None).unwrap_err().to_string();
@@ -268,10 +269,10 @@ fn nonsense_is_not_believed() {
     let error = driver.status().unwrap_err().to_string();
     assert_eq!(error, format!("{name}: no reply to `AXISSTATUS(@0)` within 2s"));
     assert!(!driver.emergency().is_tripped());
-    // A stop that isn't answered is made sure of.
+    // A stop without an answer trips the emergency stop.
     assert!(driver.stop().is_err());
     assert!(driver.emergency().is_tripped());
-    // It comes back: what it said meanwhile isn't taken for replies.
+    // After its return, bytes that it sent meanwhile aren't taken for replies.
     behave(Behaviour::Well);
     driver.emergency().reset();
     let status = driver.status().unwrap();
@@ -303,20 +304,20 @@ fn a_table_of_patterns_that_is_none() {
     };
     assert_eq!(
         wrong("MOVE {angle}", "MOVE {angel}"),
-        "invented.toml: commands.goto: `{axis}:MOVE {angel}` has a field {angel}, known are axis, angle, \
-         rate, acceleration, ms, bits, fault, moving, homed, enabled, any"
+        "invented.toml: commands.goto: found a field {angel} in `{axis}:MOVE {angel}`, expected one of \
+         axis, angle, rate, acceleration, ms, bits, fault, moving, homed, enabled, any"
     );
     assert_eq!(
         wrong("MOVE {angle}", "MOVE"),
-        "invented.toml: commands.goto: no line of it has a field {angle}"
+        "invented.toml: commands.goto: found no line with a field {angle}, expected one"
     );
     assert_eq!(
         wrong("\"deg/min\"", "\"rpm\""),
-        "invented.toml: rate: `rpm` is no unit, expected is one of deg/s, deg/min, rad/s"
+        "invented.toml: rate: found the unit `rpm`, expected one of deg/s, deg/min, rad/s"
     );
     assert_eq!(
         wrong("[\"HALT\"]", "[]"),
-        "invented.toml: commands.stop: it is empty: every table can do this"
+        "invented.toml: commands.stop: found no line, expected one: every table has this command"
     );
     assert_eq!(
         wrong("ST {angle} {moving}", "ST {angle}{moving}"),
@@ -338,7 +339,7 @@ fn a_table_of_patterns_that_is_none() {
 }
 
 proptest::proptest! {
-    /// A controller hears anything and goes on.
+    /// A controller accepts any line and continues.
     #[test]
     fn any_line(lines in proptest::collection::vec("\\PC{0,40}", 0..30)) {
         for dialect in [ensemble(), invented()] {
@@ -349,7 +350,7 @@ proptest::proptest! {
         }
     }
 
-    /// A table of patterns with some characters changed is read or refused.
+    /// A table of patterns with some changed characters is read or refused.
     #[test]
     fn a_damaged_table_of_patterns(strikes in proptest::collection::vec((proptest::prelude::any::<proptest::sample::Index>(), 32u8..127), 1..6)) {
         let mut bytes = INVENTED.as_bytes().to_vec();
@@ -374,24 +375,24 @@ fn the_core_moves_the_table() {
     let command = GimbalCommand { target };
     assert!(follower.command(&mut driver, &command).unwrap());
     let heard = server.with(|controller, _| controller.log().len());
-    // The same set point in every output after it.
+    // Every further output has the same set point.
     for _ in 0..100 {
         assert!(!follower.command(&mut driver, &command).unwrap());
     }
     assert_eq!(server.with(|controller, _| controller.log().len()), heard);
     wait_for("the position", || {
         let found = driver.status().unwrap().gimbal();
-        // Six decimals of a degree, in counts of 2⁻²⁷ rad.
+        // Tolerance: six decimals of a degree, in counts of 2⁻²⁷ rad.
         (found.azimuth - target.azimuth).abs() <= 3 && (found.roll - target.roll).abs() <= 3
     });
-    // One gimbal at a time.
+    // Only one gimbal moves.
     let lines = server.with(|controller, _| controller.log().len());
     let on = GimbalCommand { target: GimbalAngles { azimuth: 0, ..target } };
     assert!(follower.command(&mut driver, &on).unwrap());
     let told = server.with(|controller, _| controller.log()[lines..].to_vec());
     assert!(told.iter().any(|line| line.starts_with("LINEAR @0 0.000000")), "{told:?}");
     assert!(!told.iter().any(|line| line.starts_with("LINEAR @1")), "{told:?}");
-    // Beyond the limits it is refused, and said again each time.
+    // A set point beyond the limits is refused, each time.
     let far = GimbalCommand { target: GimbalAngles::from_rad(degrees(400.0), degrees(-45.0)) };
     for _ in 0..2 {
         assert!(matches!(follower.command(&mut driver, &far), Err(Error::Angle { .. })));

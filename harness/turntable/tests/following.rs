@@ -1,4 +1,4 @@
-//! A table that follows a run: it goes where it is told, says where it was, and stops whatever happens.
+//! A table that follows a run: it goes to the set points, reports its angles, and stops in every case.
 
 use crate::common::*;
 use octant_sample::{GimbalAngles, GimbalCommand};
@@ -30,7 +30,7 @@ fn set_point(azimuth: f64, roll: f64) -> GimbalCommand {
 
 #[test]
 fn it_goes_where_it_is_told_and_says_where_it_was() {
-    // In our time, so that what it said can be compared with where it really was then.
+    // In real time, so that the looks can be compared with the true angles.
     let (server, name) = tcp_at(ensemble(), 1.0);
     let mut table = start(&plan(&name));
     let begun = Instant::now();
@@ -40,7 +40,7 @@ fn it_goes_where_it_is_told_and_says_where_it_was() {
     assert_eq!(homed, 2);
     let (mut compared, mut moves) = (0, 0);
     for (azimuth, roll) in [(0.0, 12.0), (-7.0, 12.0), (0.0, 0.0)].into_iter().cycle() {
-        // A busy host looks seldom: it goes to and fro until that was often enough.
+        // A busy host looks seldom: the moves are repeated until there were enough comparisons.
         if moves >= 3 && (compared > 10 || begun.elapsed() > Duration::from_secs(60)) {
             break;
         }
@@ -48,18 +48,20 @@ fn it_goes_where_it_is_told_and_says_where_it_was() {
         table.command(&set_point(azimuth, roll));
         wait_for("the move", || {
             table.take_looks();
-            // The truth before and after a moment: the turn between them is what the comparison may miss.
+            // True angles before and after a moment: the turn between them is a tolerance of the
+            // comparison.
             let before = angle(&server, Axis::Roll);
             let when = Instant::now();
             let after = angle(&server, Axis::Roll);
             if let Some(place) = table.at(Axis::Roll, when)
                 && place.age < Duration::from_millis(50)
             {
-                // Beyond the last look by a·t²/2, with 30 °/s². Its time is the middle of question and
-                // reply: a turn of 20 °/s for half of that, and the rate was another by as much.
+                // Tolerance beyond the last look: a·t²/2 with 30 °/s². The time of a look is the middle
+                // of query and reply: the angle may be wrong by a turn of 20 °/s for half of that, and
+                // the rate accordingly.
                 let (age_s, within_s) = (place.age.as_secs_f64(), place.within.as_secs_f64());
                 let missed = 15.0 * (age_s + within_s).powi(2) + 1e-4;
-                // The rate is asked for a moment after the angle.
+                // The rate is queried a moment after the angle.
                 let moment = 20.0 * within_s + 30.0 * 4.0 * within_s * age_s;
                 let found = place.angle_rad.to_degrees();
                 let (least, most) = (before.min(after), before.max(after));
@@ -90,7 +92,7 @@ fn what_is_beyond_its_limits_stops_it() {
     wait_for("the stop", || table.is_stopped());
     assert_eq!(table.stopped().unwrap(), "roll 500.0000° is beyond its limits, -185° to 365°");
     wait_for("rest", || rests(&server));
-    // What is told afterwards moves nothing.
+    // Later set points move nothing.
     table.command(&set_point(0.0, 10.0));
     let commands = table.told().commands;
     std::thread::sleep(Duration::from_millis(100));
@@ -124,7 +126,7 @@ fn a_table_that_does_not_arrive_does_not_start() {
     wait_for("the way", || angle(&server, Axis::Roll) > 15.0);
     drop(table);
     wait_for("rest", || rests(&server));
-    // It was stopped at some angle: the way to zero takes longer than it may, on any host.
+    // The table was stopped at some angle: the way to zero takes longer than permitted, on any host.
     (hasty.start, hasty.home) = (Duration::from_millis(300), false);
     hasty.settings.limits.axes[1].rate_radps = degrees(0.1);
     let error = Following::start(&hasty, &mut Command::new("none")).unwrap_err().to_string();
@@ -135,7 +137,7 @@ fn a_table_that_does_not_arrive_does_not_start() {
     assert_eq!(error, "roll 0.0000° is beyond its limits, 5° to 365°");
 }
 
-/// The controller has one peer at a time: only who drives it can stop it.
+/// The controller accepts one peer at a time: only the driving program can stop it.
 #[cfg(unix)]
 #[test]
 fn another_program_can_press_the_stop() {
@@ -143,7 +145,7 @@ fn another_program_can_press_the_stop() {
     assert_eq!(press(Some(&name)).unwrap(), []);
     let table = start(&plan(&name));
     let error = Following::start(&plan(&name), &mut Command::new("none"));
-    // The second one isn't even heard: the controller listens to the first.
+    // The second one isn't served: the controller listens to the first.
     assert!(error.is_err());
     assert!(!table.is_stopped());
     table.command(&set_point(0.0, 300.0));
@@ -151,7 +153,7 @@ fn another_program_can_press_the_stop() {
     let told = stop_by_hand(&name, &ensemble()).unwrap();
     assert_eq!(told[0], format!("the program that drives {name}"));
     wait_for("rest", || rests(&server));
-    assert_eq!(table.stopped().unwrap(), "somebody pressed the stop on the command line");
+    assert_eq!(table.stopped().unwrap(), "stop command on the command line");
     drop(table);
     assert_eq!(press(Some(&name)).unwrap(), []);
 }

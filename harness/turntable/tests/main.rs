@@ -1,6 +1,6 @@
-//! The tests of turntables and their drivers, in one program.
+//! Tests of turntables and their drivers, in one program.
 //!
-//! Tables that follow a run are stopped by any panic in the process: where one test fails, others may fail
+//! Tables that follow a run are stopped by any panic in the process: if one test fails, others may fail
 //! after it with "the harness panicked".
 #![allow(clippy::unwrap_used)]
 

@@ -1,14 +1,14 @@
-//! The table stops when the harness panics. In a process of its own: a panic stops every table of a process,
-//! and those of the other tests are in this one.
+//! A panic of the harness stops the table. The test runs in a separate process, because a panic stops
+//! every table of a process, including those of the other tests.
 
 use crate::common::*;
 use octant_turntable::{Axis, Turntable, on_panic};
 use std::process::Command;
 
-/// Tells the child that it is the process of its own.
+/// Environment variable that marks the separate process.
 const ALONE: &str = "OCTANT_PANICS_ALONE";
 
-/// The driver is neither dropped nor asked: the panic alone stops the table.
+/// The driver is neither dropped nor called: the panic alone stops the table.
 #[test]
 fn a_panic_in_any_thread_stops_it() {
     if std::env::var_os(ALONE).is_none() {
@@ -18,7 +18,7 @@ fn a_panic_in_any_thread_stops_it() {
             .output()
             .unwrap();
         let said = String::from_utf8_lossy(&output.stdout);
-        // Of a name that is no test's, none would have run, with success.
+        // A filter that matches no test would also succeed, so one passed test is required.
         assert!(
             output.status.success() && said.contains("1 passed"),
             "{said}{}",

@@ -1,4 +1,4 @@
-//! The table stops: when the harness ends, is killed or hangs, and when the line is cut.
+//! The table stops when the harness ends, is killed or hangs, and when the line is cut.
 
 use crate::common::*;
 use octant_turntable::simulate::Behaviour;
@@ -21,10 +21,10 @@ fn whoever_has_the_stop_can_trip_it() {
     let mut driver = drive(&name, ensemble(), settings());
     let stop = driver.emergency();
     driver.rate(Axis::Azimuth, degrees(1.0)).unwrap();
-    // Slow, so that it is under way whenever somebody looks.
+    // Slow, so that the move is still in progress at any look.
     driver.goto(Axis::Roll, degrees(300.0), Some(degrees(1.0))).unwrap();
     wait_for("both", || Axis::ALL.iter().all(|axis| turns(&server, *axis)));
-    // From another thread, while the driver is busy asking.
+    // Tripped from another thread, while the driver is busy with queries.
     let tripping = std::thread::spawn(move || stop.trip("the button"));
     for _ in 0..20 {
         driver.status().unwrap();
@@ -32,13 +32,13 @@ fn whoever_has_the_stop_can_trip_it() {
     assert!(tripping.join().unwrap());
     wait_for("rest", || rests(&server));
     assert!(driver.goto(Axis::Roll, 0.0, None).is_err());
-    // To stop it is always allowed.
+    // A stop is always permitted.
     driver.stop().unwrap();
 }
 
-/// The line is dead both ways: only the controller can stop the table.
+/// The line is dead in both directions: only the controller can stop the table.
 fn watched(behaviour: Behaviour) {
-    // In our time: a host that is busy for seconds feeds the watchdog too late.
+    // In real time: a host that is busy for seconds would feed the watchdog too late.
     let (server, name) = tcp_at(ensemble(), 1.0);
     let watched = Settings { watchdog: Some(Duration::from_secs(5)), ..settings() };
     let driver = drive(&name, ensemble(), watched);
@@ -48,7 +48,7 @@ fn watched(behaviour: Behaviour) {
     server.with(|controller, _| controller.behave(behaviour));
     wait_for("rest", || rests(&server));
     wait_for("the fault", || table.fault().is_some());
-    // It was heard that it isn't well: nothing is moved any more.
+    // The error was noticed: nothing is moved any more.
     assert!(table.goto(Axis::Azimuth, 0.0, None).is_err());
 }
 
@@ -69,7 +69,7 @@ fn a_silent_controller_is_told_to_stop() {
     table.rate(Axis::Roll, degrees(1.0)).unwrap();
     wait_for("the rate", || turns(&server, Axis::Roll));
     server.with(|controller, _| controller.behave(Behaviour::Silent));
-    // Without a word from it, and without a watchdog.
+    // The table stops without an answer from it, and without a watchdog.
     wait_for("rest", || rests(&server));
     wait_for("the fault", || table.fault().is_some());
     assert!(table.fault().unwrap().contains("no reply to"));
@@ -85,7 +85,7 @@ fn the_end_leaves_it_at_rest() {
     wait_for("the rate", || turns(&server, Axis::Roll));
     table.finish().unwrap();
     assert!(rests(&server));
-    // The watchdog was taken back: no fault comes after its time.
+    // The watchdog was switched off, so that it causes no fault later.
     assert!(
         server.with(|controller, _| controller.log().iter().any(|line| line == "IGLOBAL(34) = 0"))
     );
@@ -99,7 +99,7 @@ mod processes {
     const ADDRESS: &str = "OCTANT_TABLE_UNDER_TEST";
     const GUARDED: &str = "OCTANT_TABLE_GUARDED";
 
-    /// The harness of the tests below, in a process of its own: turns the table until it is ended.
+    /// Harness for the tests below, in a separate process: turns the table until it is ended.
     #[test]
     #[ignore = "run by the other tests"]
     fn harness() {
@@ -136,7 +136,7 @@ mod processes {
         let (server, name) = tcp(ensemble());
         let mut child = start(&name, guarded);
         wait_for("the rate", || turns(&server, Axis::Roll));
-        // The guard was there before: it is started before the table turns.
+        // The guard is already running: it is started before the table turns.
         signal(&child, signal_name);
         wait_for("rest", || rests(&server));
         if signal_name == "-STOP" {
@@ -170,7 +170,7 @@ mod processes {
         wait_for("the rate", || turns(&server, Axis::Roll));
         signal(&child, "-KILL");
         child.wait().unwrap();
-        // Without guard and watchdog it goes on.
+        // Without guard and watchdog the table continues to turn.
         assert!(turns(&server, Axis::Roll));
         let program = env!("CARGO_BIN_EXE_octant-turntable");
         let status = Command::new(program).args(["stop", &name]).status().unwrap();

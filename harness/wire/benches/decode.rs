@@ -1,4 +1,4 @@
-//! How fast a stream of samples and outputs is decoded, in bytes of the line.
+//! Decoding speed of a stream of samples and outputs, in bytes of the line.
 #![allow(missing_docs)]
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
@@ -9,10 +9,10 @@ use octant_wire::message::{ClockTime, OutputMessage, Role, SampleMessage, Step};
 use octant_wire::serial::{Decoder, Encoder, Event};
 use std::hint::black_box;
 
-/// Steps of a stream at 200 Hz.
+/// Number of steps in the stream, at 200 Hz.
 const STEPS: u16 = 2000;
 
-/// Samples as of an instrument at rest, with the small counts and their zeros that are the rule.
+/// Sample as of an instrument at rest: mostly zeros and small counts, as is usual.
 fn sample(step: u16) -> Message {
     let k = i32::from(step);
     let sample = Sample {
@@ -55,7 +55,7 @@ fn serial(c: &mut Criterion) {
             bytes.extend(encoder.encode(&message(step), ClockTime::from_ns(u64::from(step) << 22)));
         }
         group.throughput(Throughput::Bytes(bytes.len() as u64));
-        // In pieces as a port delivers them.
+        // Pieces as a port delivers them.
         for piece in [64, 4096] {
             group.bench_function(format!("decode {name}, {piece} bytes at a time"), |b| {
                 b.iter(|| {
@@ -80,7 +80,7 @@ fn serial(c: &mut Criterion) {
             });
         });
     }
-    // What has no zero in it, and what has nothing else.
+    // Bytes without any zero, and nothing but zeros.
     for (name, byte) in [("garbage without zeros", 0xA5), ("zeros", 0)] {
         let bytes = vec![byte; 1 << 18];
         group.throughput(Throughput::Bytes(bytes.len() as u64));

@@ -1,4 +1,4 @@
-//! Little-endian numbers one after the other.
+//! Little-endian numbers in sequence.
 
 /// Writes into a fixed buffer that its layout fills exactly.
 pub(crate) struct Writer<'a> {
@@ -42,7 +42,7 @@ impl<'a> Writer<'a> {
         self.put(&value.to_le_bytes());
     }
 
-    /// The 64 bits as they are, of a NaN too.
+    /// Writes the 64 bits unchanged, also of a NaN.
     #[inline]
     pub(crate) fn f64(&mut self, value: f64) {
         self.u64(value.to_bits());
@@ -59,7 +59,7 @@ impl<'a> Reader<'a> {
         Self { rest: bytes }
     }
 
-    /// The next bytes; beyond the end, which a checked length excludes, zeros.
+    /// Takes the next bytes; zeros beyond the end, which a checked length excludes.
     #[inline]
     pub(crate) fn take<const N: usize>(&mut self) -> [u8; N] {
         match self.rest.split_first_chunk::<N>() {
@@ -96,7 +96,7 @@ impl<'a> Reader<'a> {
         f64::from_bits(self.u64())
     }
 
-    /// Values one after the other.
+    /// Reads values in sequence.
     #[inline]
     pub(crate) fn array<T, const N: usize>(&mut self, read: impl Fn(&mut Self) -> T) -> [T; N] {
         core::array::from_fn(|_| read(self))

@@ -1,21 +1,21 @@
-//! Which requests a device does, which it answers again, and which it lets be: the tables of "What is
+//! Order of requests: those that a device does, answers again or ignores, by the tables of "What is
 //! said when" in `README.md`.
 
 use crate::message::{AidingMessage, Pacing, SampleMessage, Status, Step};
 use octant_sample::Aiding;
 
-/// What a device does with a request.
+/// Decision of a device about a request.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Verdict {
-    /// Does it and answers; a sample with this aiding.
+    /// Do it and answer; a sample with this aiding.
     Do(Option<Aiding>),
-    /// Answers again what it answered last.
+    /// Send the last answer again.
     Again,
-    /// Nothing: it comes too late, too early, or without its aiding and will come again.
+    /// Ignore it: it comes too late or too early, or without its aiding, and will be repeated.
     Nothing,
 }
 
-/// Keeps the steps of a session in order, on the side of the device.
+/// Keeps the steps of a session in order, at the device.
 #[derive(Clone, Copy, Debug)]
 pub struct Requests {
     pacing: Pacing,
@@ -25,30 +25,30 @@ pub struct Requests {
 }
 
 impl Requests {
-    /// A session begins.
+    /// Begins a session.
     #[must_use]
     pub fn new(pacing: Pacing) -> Self {
         Self { pacing, aiding: None, answered: false, status: Status::default() }
     }
 
-    /// The last step that was done.
+    /// Last step done.
     #[must_use]
     pub fn last(&self) -> Step {
         self.status.step
     }
 
-    /// Counts of steps and requests; those of the line are of its decoder.
+    /// Counts of steps and requests; the decoder has those of the line.
     #[must_use]
     pub fn status(&self) -> Status {
         self.status
     }
 
-    /// Aiding came: it waits for its sample.
+    /// Stores aiding until its sample arrives.
     pub fn aiding(&mut self, aiding: &AidingMessage) {
         self.aiding = Some(*aiding);
     }
 
-    /// A sample came.
+    /// Decides about a sample.
     #[must_use]
     pub fn sample(&mut self, message: &SampleMessage) -> Verdict {
         let order = self.order(message.step);
@@ -68,7 +68,7 @@ impl Requests {
         }
     }
 
-    /// Another request came: a restart, or the end.
+    /// Decides about a restart or the end.
     #[must_use]
     pub fn other(&mut self, step: Step) -> Verdict {
         let order = self.order(step);
@@ -140,7 +140,7 @@ mod state {
     }
 }
 
-/// Counts stay at their largest value.
+/// Adds to a count, which stays at its largest value.
 fn add(count: &mut u32, more: u32) {
     *count = count.saturating_add(more);
 }

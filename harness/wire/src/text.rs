@@ -1,41 +1,41 @@
-//! Short texts of fixed room.
+//! Short texts of fixed capacity.
 
 use core::fmt;
 
-/// A text of at most `N` bytes of UTF-8 without a NUL; on the wire it is filled up with zeros.
+/// A text of at most `N` bytes of UTF-8 without a NUL; on the wire it is padded with zeros.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub struct Text<const N: usize> {
     bytes: [u8; N],
     length: usize,
 }
 
-/// Why bytes or characters are no [`Text`].
+/// Reason why bytes or characters are no [`Text`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum TextError {
-    /// It doesn't fit.
+    /// The text is too long.
     #[error("the text has {found} bytes, {room} fit")]
     Long {
         /// Bytes of the text.
         found: usize,
-        /// Bytes that there is room for.
+        /// Capacity, bytes.
         room: usize,
     },
-    /// A zero byte inside.
+    /// The text has a zero byte inside.
     #[error("the text has a NUL at byte {at} and goes on after it")]
     Nul {
         /// Index of the first zero.
         at: usize,
     },
-    /// Not UTF-8.
+    /// The text isn't UTF-8.
     #[error("the text isn't UTF-8 from byte {at} on")]
     Encoding {
-        /// Length of the part that is.
+        /// Length of the valid part, bytes.
         at: usize,
     },
 }
 
 impl<const N: usize> Text<N> {
-    /// The text.
+    /// Makes a text.
     ///
     /// # Errors
     /// If it is longer than `N` bytes or contains a NUL.
@@ -49,7 +49,7 @@ impl<const N: usize> Text<N> {
         Ok(Self::fitting(text))
     }
 
-    /// As much of the text as fits, up to a whole character and before any NUL.
+    /// Makes a text of as many whole characters as fit, up to a NUL.
     #[must_use]
     pub fn fitting(text: &str) -> Self {
         let mut bytes = [0; N];
@@ -65,23 +65,23 @@ impl<const N: usize> Text<N> {
         Self { bytes, length }
     }
 
-    /// The text.
+    /// Content of the text.
     #[must_use]
     pub fn as_str(&self) -> &str {
-        // Both constructors put whole characters there.
+        // All constructors store whole characters only.
         core::str::from_utf8(&self.bytes[..self.length]).unwrap_or("")
     }
 
-    /// All `N` bytes, as they travel.
+    /// All `N` bytes, as on the wire.
     #[must_use]
     pub fn bytes(&self) -> &[u8; N] {
         &self.bytes
     }
 
-    /// The text from its `N` bytes.
+    /// Reads the text from its `N` bytes.
     ///
     /// # Errors
-    /// If they aren't UTF-8 filled up with zeros.
+    /// If the bytes aren't UTF-8 padded with zeros.
     pub fn from_bytes(bytes: [u8; N]) -> Result<Self, TextError> {
         let length = bytes.iter().position(|byte| *byte == 0).unwrap_or(N);
         if bytes[length..].iter().any(|byte| *byte != 0) {

@@ -1,8 +1,8 @@
-//! How often which message is sent: what the load of a line or bus is computed from.
+//! Rates of messages, from which the load of a line or bus is computed.
 
 use crate::message::{Kind, Role};
 
-/// Messages a second.
+/// Rates of the messages of a session.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Traffic {
     /// Samples from the harness, Hz.
@@ -11,7 +11,7 @@ pub struct Traffic {
     pub outputs_hz: f64,
     /// Aiding from the harness, Hz.
     pub aiding_hz: f64,
-    /// Changes of the parameters, each all of its segments, Hz.
+    /// Changes of the parameters, each with all of its segments, Hz.
     pub parameters_hz: f64,
     /// Heartbeats from either end, Hz.
     pub heartbeat_hz: f64,
@@ -22,14 +22,14 @@ pub struct Traffic {
 }
 
 impl Traffic {
-    /// Samples alone, one way.
+    /// Traffic of samples only, in one direction.
     #[must_use]
     pub fn samples(rate_hz: f64) -> Self {
         Self { samples_hz: rate_hz, ..Self::default() }
     }
 
-    /// A session at a sample rate: samples there, outputs back; aiding, parameters and status once a
-    /// second, heartbeats ten times and the time four times a second.
+    /// Traffic of a session at a sample rate: samples and as many outputs; aiding, parameters and
+    /// status once a second, heartbeats ten times and the time four times a second.
     #[must_use]
     pub fn session(rate_hz: f64) -> Self {
         Self {
@@ -43,7 +43,7 @@ impl Traffic {
         }
     }
 
-    /// Who sends what how often. Parameters: all segments together.
+    /// Sender, kind and rate of each message, Hz. Parameters count once for all segments.
     pub fn messages(&self) -> impl Iterator<Item = (Role, Kind, f64)> {
         [
             (Role::Harness, Kind::Sample, self.samples_hz),

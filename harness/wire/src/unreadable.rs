@@ -1,8 +1,8 @@
-//! Why an intact payload is no message.
+//! Reasons why an intact payload is no message.
 
 use crate::{Kind, TextError, VERSION};
 
-/// Why bytes that arrived undamaged are no message of this version.
+/// Reason why undamaged bytes are no message of this version.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Unreadable {
     /// The peer speaks a newer version than this one.
@@ -14,13 +14,13 @@ pub enum Unreadable {
         /// Version in the peer's hello.
         found: u16,
     },
-    /// No message has this code.
+    /// The code is unknown.
     #[error("a message has code {code}, known are 1 to {}", Kind::ALL.len())]
     Code {
-        /// The code found.
+        /// Code found.
         code: u8,
     },
-    /// The payload has another length than its kind.
+    /// The payload has another length than its kind requires.
     #[error("a message {} has {found} bytes, expected are {}", kind.name(), kind.payload_bytes())]
     Length {
         /// Kind of message.
@@ -28,7 +28,7 @@ pub enum Unreadable {
         /// Bytes found.
         found: usize,
     },
-    /// A field has a value without meaning.
+    /// A field has an invalid value.
     #[error("a message {} has {field} {found}, expected is {expected}", kind.name())]
     Value {
         /// Kind of message.
@@ -37,17 +37,17 @@ pub enum Unreadable {
         field: &'static str,
         /// Value found.
         found: u32,
-        /// What has a meaning.
+        /// Valid values.
         expected: &'static str,
     },
-    /// A text is none.
+    /// A text is invalid.
     #[error("a message {} has a {field} that is no text: {reason}", kind.name())]
     Text {
         /// Kind of message.
         kind: Kind,
         /// Name of the field.
         field: &'static str,
-        /// What is wrong with it.
+        /// Reason.
         reason: TextError,
     },
 }

@@ -1,4 +1,4 @@
-//! Who fits together, and what is said to who doesn't.
+//! Agreement of two hellos, and the bye to an end that doesn't fit.
 
 use octant_wire::message::{
     Agreement, Capabilities, Hello, Limits, Pacing, Reason, Refusal, Role, agree,

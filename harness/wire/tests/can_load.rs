@@ -1,17 +1,17 @@
-//! Bits of CAN frames against frames that are really put together, bit by bit, with their CRC and
-//! their stuff bits; and what a bus carries.
+//! Bits of CAN frames compared with frames built bit by bit, with their CRC and their stuff bits; and
+//! the capacity of a bus.
 
 use octant_wire::can::{Bits, Bus, Format, Slot, classic_bits, fd_bits};
 use octant_wire::traffic::Traffic;
 use octant_wire::{Kind, Role};
 use proptest::prelude::*;
 
-/// The lowest `count` bits of a number, highest first.
+/// Lowest `count` bits of a number, highest first.
 fn bits(value: u32, count: u32) -> impl Iterator<Item = bool> {
     (0..count).rev().map(move |i| value >> i & 1 == 1)
 }
 
-/// Puts a bit that differs after each five equal ones; how many there are before and after `at`.
+/// Counts the stuff bits, one after each five equal bits, before and after `at`.
 fn stuffed(bits: &[bool], at: usize) -> (u32, u32) {
     let (mut last, mut run, mut before, mut after) = (!bits[0], 0, 0, 0);
     for (i, bit) in bits.iter().enumerate() {
@@ -34,7 +34,7 @@ fn stuffed(bits: &[bool], at: usize) -> (u32, u32) {
     (before, after)
 }
 
-/// CRC of a frame as ISO 11898-1 has it, bit by bit.
+/// CRC of a frame by ISO 11898-1, bit by bit.
 fn crc(bits: &[bool], polynomial: u32, width: u32) -> u32 {
     let top = 1 << (width - 1);
     bits.iter().fold(0, |crc, bit| {
@@ -43,7 +43,7 @@ fn crc(bits: &[bool], polynomial: u32, width: u32) -> u32 {
     })
 }
 
-/// A classic frame with pause, in bits.
+/// Counts the bits of a classic frame with intermission.
 fn classic(id: u16, data: &[u8]) -> Bits {
     let mut all = vec![false];
     all.extend(bits(id.into(), 11));
@@ -55,7 +55,7 @@ fn classic(id: u16, data: &[u8]) -> Bits {
     Bits { nominal: all.len() as u32 + stuff + 1 + 2 + 7 + 3, data: 0 }
 }
 
-/// An FD frame with pause, in bits.
+/// Counts the bits of an FD frame with intermission.
 fn fd(id: u16, data: &[u8]) -> Bits {
     let code = match data.len() {
         length @ 0..=8 => length,
@@ -69,7 +69,7 @@ fn fd(id: u16, data: &[u8]) -> Bits {
     };
     let mut all = vec![false];
     all.extend(bits(id.into(), 11));
-    // RRS, IDE, FDF, res, BRS; then ESI.
+    // Bits RRS, IDE, FDF, res, BRS; then ESI.
     all.extend([false, false, true, false, true]);
     let arbitration = all.len();
     all.push(false);
@@ -77,7 +77,7 @@ fn fd(id: u16, data: &[u8]) -> Bits {
     all.extend(data.iter().flat_map(|byte| bits((*byte).into(), 8)));
     let (before, after) = stuffed(&all, arbitration);
     let crc_field = if data.len() <= 16 { 4 + 17 } else { 4 + 21 };
-    // One at the beginning, one after each four bits.
+    // One fixed stuff bit at the beginning, and one after each four bits.
     let fixed = 1 + crc_field / 4;
     Bits {
         nominal: arbitration as u32 + before + 1 + 2 + 7 + 3,
@@ -85,8 +85,8 @@ fn fd(id: u16, data: &[u8]) -> Bits {
     }
 }
 
-/// The most stuff bits of a classic frame with this identifier, over all data, where the CRC may be
-/// anything: walked over every run that a bit can leave.
+/// Most stuff bits of a classic frame with this identifier, over all data and with any CRC: the search
+/// follows every run that a bit can leave.
 fn worst_classic(id: u16, bytes: usize) -> u32 {
     let mut known: Vec<Option<bool>> = vec![Some(false)];
     known.extend(bits(id.into(), 11).map(Some));
@@ -140,7 +140,7 @@ proptest! {
         let data = random.unwrap_or([fill; 64]);
         let (found, worst) = (fd(id, &data[..length]), fd_bits(length));
         prop_assert!(found.nominal <= worst.nominal);
-        // A run that goes on from the arbitration can put one stuff bit more into the data than the
+        // A run that continues from the arbitration can put one stuff bit more into the data than the
         // worst case has, but then there is one less before.
         prop_assert!(found.nominal + found.data <= worst.nominal + worst.data);
         prop_assert!(found.data <= worst.data + (worst.nominal - found.nominal));
@@ -152,13 +152,14 @@ proptest! {
 
 #[test]
 fn known_frames_have_known_lengths() {
-    // The figures of the literature for 11 bits of identifier: 8 bytes 135 bits with pause.
+    // Figure of the literature for 11-bit identifiers: 8 bytes make 135 bits with intermission.
     assert_eq!(classic_bits(8).nominal, 135);
     assert_eq!(classic_bits(0).nominal, 55);
-    // By hand: 0x555 with data of alternating bits has no stuff bit but in its CRC, if there.
+    // By hand: 0x555 alternates, so that a frame without data has stuff bits in its control field and
+    // CRC only.
     let frame = classic(0x555, &[]);
     assert!((47..=50).contains(&frame.nominal), "{frame:?}");
-    // All ones and zeros of CAN FD: 64 bytes at most 22 + 512 + 133 stuffed, 25 + 7 of CRC, 13.
+    // CAN FD by hand: 64 bytes make at most 22 + 512 bits with 133 stuff bits, 25 + 7 of CRC, 13.
     let worst = fd_bits(64);
     assert_eq!(worst.nominal + worst.data, 22 + 512 + 133 + 25 + 7 + 13);
     assert_eq!(worst.nominal, 17 + 4 + 13);
@@ -169,8 +170,8 @@ fn known_frames_have_known_lengths() {
 
 #[test]
 fn the_worst_case_is_nearly_reached_by_our_identifiers() {
-    // The bound knows nothing of the 19 bits before the data, which are fixed. Data and CRC alone, 79
-    // bits behind the last of those, can always make 19 of the 24 stuff bits of 8 bytes.
+    // The bound ignores that the 19 bits before the data are fixed. Data and CRC, the 79 bits after
+    // them, can always have 19 of the 24 stuff bits of 8 bytes.
     for slot in Slot::ALL {
         for segment in 0..slot.segments(Format::Classic) {
             let bytes = slot.frame_bytes(segment, Format::Classic);
@@ -208,7 +209,7 @@ fn a_bus_that_is_too_slow_says_what_it_carries() {
         "classic CAN at 500 kbit/s can't carry 200 samples a second: in the worst case that is \
          133.6 % of the bus (38.7 % there, 94.9 % back), 90 % are allowed; it carries 132 a second"
     );
-    // And that is true.
+    // The sample rate reported is the highest that fits.
     let less = |hz| {
         Bus::classic(500_000).carry(&Traffic { samples_hz: hz, outputs_hz: hz, ..session }, 0.9)
     };
@@ -235,7 +236,7 @@ fn the_load_is_the_sum_of_its_messages() {
     let load = bus.load(&traffic);
     assert!((load.to_harness - 100.0 * seconds).abs() < 1e-15);
     assert_eq!(load.frames_per_s, 300.0);
-    // Parameters: all six segments.
+    // Parameters count with all six segments.
     let traffic = Traffic { parameters_hz: 1.0, ..Traffic::default() };
     assert_eq!(Bus::classic(500_000).load(&traffic).frames_per_s, 72.0);
 }

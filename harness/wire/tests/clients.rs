@@ -1,7 +1,7 @@
-//! The reference clients in Python and C as peers: against the conformance vectors, against this crate,
-//! and against each other, over pipes, UDP and a pair of pseudo terminals.
+//! The reference clients in Python and C as peers: of the conformance vectors, of this crate, and of
+//! each other, over pipes, UDP and a pair of pseudo terminals.
 //!
-//! Where there is no `python3` or no `cc` their part is skipped, unless `OCTANT_REQUIRE_PEERS` is set.
+//! Without `python3` or `cc` their part is skipped, unless `OCTANT_REQUIRE_PEERS` is set.
 #![allow(clippy::print_stdout, reason = "what is skipped is said")]
 
 use crate::common::peer::{Echo, Peer, hello, serve};
@@ -16,7 +16,7 @@ use std::time::Duration;
 const FIXTURES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/wire");
 const SAMPLES: u64 = 60;
 
-/// A client as it is started.
+/// A client and its command.
 #[derive(Clone)]
 struct Client {
     name: &'static str,
@@ -43,7 +43,7 @@ fn there_is(program: &str) -> bool {
     there
 }
 
-/// Both clients, as far as they can be had here.
+/// Both clients, as far as they are available here.
 fn clients() -> &'static [Client] {
     static CLIENTS: OnceLock<Vec<Client>> = OnceLock::new();
     CLIENTS.get_or_init(|| {
@@ -94,7 +94,7 @@ fn samples() -> impl Iterator<Item = (Sample, Option<Aiding>)> {
     })
 }
 
-/// The samples as a file that the clients read.
+/// Writes the samples to a file for the clients.
 fn file_of_samples() -> PathBuf {
     let mut text = String::from("# samples of a test\n");
     for (sample, aiding) in samples() {
@@ -145,7 +145,7 @@ fn the_clients_pass_the_vectors() {
 
 #[test]
 fn the_clients_notice_vectors_that_are_wrong() {
-    // A check that can't fail would be none.
+    // The check must be able to fail.
     for (file, from, to) in [
         ("messages.json", "\"delta_theta_x\": 17000", "\"delta_theta_x\": 17001"),
         ("serial.json", "\"bytes_lost\": 503", "\"bytes_lost\": 504"),
@@ -173,7 +173,7 @@ fn the_clients_notice_vectors_that_are_wrong() {
     }
 }
 
-/// Drives a device of the clients with this crate.
+/// Drives a client as a device, with this crate as the harness.
 fn drive(mut peer: Peer, garbage: bool) -> (i32, String) {
     let session = 0xABCD_0001;
     let ours = hello(Role::Harness, session);
@@ -186,7 +186,7 @@ fn drive(mut peer: Peer, garbage: bool) -> (i32, String) {
     let mut request = |peer: &mut Peer, messages: &[Message], expected: &[Message]| {
         let mut found: Vec<Message> = Vec::new();
         peer.ask(messages, |message| {
-            // Answers that were asked for twice come twice.
+            // A repeated request is answered twice.
             if !expected.iter().any(|one| one.same_bits(message)) {
                 let beside = matches!(
                     message,
@@ -225,7 +225,7 @@ fn drive(mut peer: Peer, garbage: bool) -> (i32, String) {
             aiding.map(Message::Aiding).into_iter().chain([Message::Sample(message)]).collect();
         request(&mut peer, &messages, &expected);
         if sample.sequence == SAMPLES / 2 {
-            // Stepped once, however often it is asked: the next one has to follow.
+            // The request is repeated, but stepped only once: the next step has to follow.
             request(&mut peer, &messages, &expected);
             step = step.next();
             let offset = octant_sample::Parameters::from_array(&[0.5; 30]);
@@ -255,7 +255,7 @@ fn the_clients_are_devices_to_this_crate() {
     for client in clients() {
         let (status, said) = drive(Peer::spawn(&mut client.run(&["device", "stdio"])), false);
         assert_eq!(status, 0, "{}: {said}", client.name);
-        // Not a byte was lost on a pipe; counts of zero one of them doesn't name.
+        // No byte was lost on a pipe; one of the clients omits counts of zero.
         assert!(said.contains("bytes_lost 0") || !said.contains("bytes_lost"), "{said}");
         assert!(said.contains("says bye"), "{said}");
         let (status, said) = drive(Peer::spawn(&mut client.run(&["device", "stdio"])), true);
@@ -279,11 +279,11 @@ fn the_clients_are_harnesses_to_this_crate() {
             serve(&mut peer, lost);
             let (status, said) = peer.finish();
             assert_eq!(status, 0, "{}: {said}", client.name);
-            // On a busy machine some may be repeated where nothing is lost.
+            // On a busy machine some requests may be repeated although nothing is lost.
             let repeated = !said.contains(" 0 requests repeated");
             assert!(repeated || lost.is_none(), "{}: {said}", client.name);
             let lines = std::fs::read_to_string(&outputs).unwrap().lines().count() as u64;
-            // A line of names, and the output of the end.
+            // One line of names, and one output of the end.
             assert_eq!(lines, SAMPLES + 2, "{}", client.name);
             std::fs::remove_file(&outputs).unwrap();
         }
@@ -292,13 +292,13 @@ fn the_clients_are_harnesses_to_this_crate() {
 
 #[test]
 fn the_clients_notice_an_answer_that_is_not_the_echo() {
-    // A verification that can't fail would be none.
+    // The verification must be able to fail.
     let file = file_of_samples();
     for client in clients() {
         let mut command = client.run(&["harness", "stdio"]);
         command.arg(&file).args(["--verify", "--outputs", "/dev/null"]);
         let mut peer = Peer::spawn(&mut command);
-        // Restarted by nobody, this device has an offset that the harness doesn't expect.
+        // This device wasn't restarted, but has an offset that the harness doesn't expect.
         let mut echo = Echo::new(Some(octant_sample::Parameters::from_array(&[1e-9; 30])));
         let (mut done, mut answer, mut aiding) = (Step::default(), Vec::new(), None);
         while let Some(message) = peer.receive(Duration::from_secs(60)) {
@@ -368,7 +368,7 @@ fn the_clients_refuse_a_newer_harness() {
         });
         assert_eq!(bye.reason, Reason::VERSION);
         assert_eq!(bye.text.as_str(), "version 1 is spoken here");
-        // A harness of this version is served all the same.
+        // A harness of this version is still served.
         let session =
             peer.ask(&[Message::Hello(hello(Role::Harness, 8))], |message| match message {
                 Message::Hello(theirs) => Some(theirs.session),
@@ -378,7 +378,7 @@ fn the_clients_refuse_a_newer_harness() {
     }
 }
 
-/// A child that is stopped when it goes out of sight.
+/// A child that is stopped on drop.
 struct Background(Child);
 
 impl Drop for Background {
@@ -388,7 +388,7 @@ impl Drop for Background {
     }
 }
 
-/// A device that listens on UDP, and its port.
+/// Starts a device that listens on UDP; also returns its port.
 fn listen(client: &Client, options: &[&str]) -> (Background, String) {
     let mut child = client
         .run(&["device", "udp-listen:127.0.0.1:0"])
@@ -399,7 +399,7 @@ fn listen(client: &Client, options: &[&str]) -> (Background, String) {
     let mut line = String::new();
     let mut stderr = BufReader::new(child.stderr.take().unwrap());
     stderr.read_line(&mut line).unwrap();
-    // What it says later is of no interest, but has to go somewhere.
+    // Later output doesn't matter, but must be read so that the pipe never fills.
     std::thread::spawn(move || stderr.read_to_string(&mut String::new()));
     let port = line.trim().rsplit(' ').next().unwrap().to_owned();
     (Background(child), port)
@@ -409,7 +409,7 @@ fn listen(client: &Client, options: &[&str]) -> (Background, String) {
 fn the_clients_talk_to_each_other_over_udp() {
     let file = file_of_samples();
     for device in clients() {
-        // A device that behaves, and one that loses, doubles and disturbs its answers.
+        // One device behaves, and one loses, doubles and disturbs its answers.
         let bad = ["--drop", "9", "--twice", "3", "--garbage", "4"];
         let options: &[&[&str]] = if device.name == "python" { &[&[], &bad] } else { &[&[]] };
         for options in options {
@@ -462,7 +462,7 @@ fn a_device_obeys_the_harness_alone_that_said_hello() {
     }
 }
 
-/// Two pseudo terminals, each the other end of the other.
+/// Script of two pseudo terminals, connected to each other.
 const TERMINALS: &str = "
 import os, pty, select, sys, tty
 pairs = [pty.openpty() for _ in range(2)]

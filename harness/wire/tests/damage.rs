@@ -1,4 +1,4 @@
-//! What damage costs: itself, and nothing that it didn't hit; and none of it is unnoticed.
+//! Damage costs only the messages that it hits, and is always noticed.
 
 use crate::common::arbitrary::{message, one_of_each, output, sample};
 use crate::common::{decode, encode, frames, messages, reassemble, received, same, sender};
@@ -9,7 +9,7 @@ use proptest::prelude::*;
 
 #[test]
 fn every_flipped_bit_of_a_frame_is_noticed() {
-    // Between two others, which have to arrive, as far as the bit is not in their zeros.
+    // The bit is in the second of three frames; the other two must arrive.
     for message in one_of_each() {
         let parts: Vec<Vec<u8>> = (0..3).map(|_| encode(&[message])).collect();
         let from = parts[0].len();
@@ -27,7 +27,7 @@ fn every_flipped_bit_of_a_frame_is_noticed() {
     }
 }
 
-/// A frame with one bit of identifier, data or length another one; `None`: no such frame can come.
+/// Flips one bit of identifier, data or length of a frame; `None`: no such frame exists.
 fn flip(frame: &Frame, bit: usize) -> Option<Frame> {
     let bits = 8 * frame.data().len();
     let mut data = frame.data().to_vec();
@@ -83,7 +83,7 @@ proptest! {
         sent in proptest::collection::vec(message(), 1..5),
         garbage in proptest::collection::vec(proptest::collection::vec(any::<u8>(), 0..700), 6),
     ) {
-        // A stretch of garbage that is a frame by chance would have to have the right CRC.
+        // Random garbage would need the right CRC to be a frame.
         let frames: Vec<Vec<u8>> = sent.iter().map(|m| encode(&[*m])).collect();
         let mut bytes = garbage[0].clone();
         for (frame, garbage) in frames.iter().zip(&garbage[1..]) {
@@ -94,7 +94,7 @@ proptest! {
         let events = decode(&mut decoder, &[&bytes]);
         let found: Vec<Message> = received(&events).iter().map(|r| r.message).collect();
         prop_assert!(same(&found, &sent));
-        // Every byte is in a frame, lost, a zero, or still held.
+        // Every byte is part of a frame, lost, a zero, or still held.
         let counters = *decoder.counters();
         let whole: usize = frames.iter().map(|frame| frame.len() - 2).sum();
         let zeros = bytes.iter().filter(|byte| **byte == 0).count();
@@ -128,7 +128,7 @@ proptest! {
             }
             at = end;
         }
-        // A hit may leave a frame as it was; it never takes one that it didn't touch, or makes one.
+        // Damage may leave a frame unchanged; it never loses an untouched frame, and never creates one.
         prop_assert!(untouched.iter().all(|m| found.iter().any(|f| f.same_bits(m))));
         prop_assert!(found.iter().all(|f| sent.iter().any(|m| f.same_bits(m))));
         prop_assert!(found.len() <= sent.len());
@@ -186,7 +186,7 @@ proptest! {
         let counters = *reassembler.counters();
         prop_assert_eq!(counters.frames as usize, bus.len());
         if found.len() < sent.len() && format == Format::Classic {
-            // Each of these messages has many segments: what is lost shows.
+            // Each of these messages has many segments, so a loss shows.
             let all_of_one = counters.is_clean();
             let whole: usize = sent.iter().map(|m| frames(m, format).len()).sum();
             prop_assert!(!all_of_one || bus.len() < whole);
@@ -227,13 +227,13 @@ fn garbage_without_a_zero_is_counted_as_it_comes() {
 fn a_cut_line_or_datagram_ends_with_what_there_is() {
     let message = one_of_each()[3];
     let bytes = encode(&[message]);
-    // Without its last zero a frame is whole all the same.
+    // A frame without its last zero is still complete.
     let mut decoder = Decoder::new();
     assert!(decode(&mut decoder, &[&bytes[..bytes.len() - 1]]).is_empty());
     let Some(Event::Received(received)) = decoder.end() else { panic!("it is whole") };
     assert!(received.message.same_bits(&message));
     assert_eq!(decoder.end(), None);
-    // Cut anywhere else it is none.
+    // A frame cut anywhere else is none.
     for cut in 2..bytes.len() - 1 {
         let mut decoder = Decoder::new();
         decode(&mut decoder, &[&bytes[..cut]]);
@@ -258,7 +258,7 @@ fn what_is_intact_but_not_understood_is_said_in_plain_words() {
         "the peer speaks version 2 of the wire protocol, this program version 1: update this program, \
          or give the peer a firmware of version 1"
     );
-    // However long it is.
+    // Applies to a newer hello of any length.
     assert_eq!(Message::read(Kind::Hello, &[3, 0]), Err(Unreadable::NewerVersion { found: 3 }));
     assert_eq!(words(Kind::Sample, &[0; 3]), "a message sample has 3 bytes, expected are 52");
     let mut output = [0; 132];
@@ -317,7 +317,7 @@ fn can_faults_are_told_apart() {
     assert_eq!(causes(&events), [can::Cause::Missing(4)]);
     assert_eq!((counters.messages, counters.missing, counters.orphaned), (1, 4, 2));
 
-    // The first half of one message and the second of another: only the CRC can tell.
+    // First half of one message and second half of another: only the CRC can tell.
     let Message::Sample(mut other) = message else { unreachable!() };
     other.sample.delta_velocity[1] ^= 1;
     let other = frames(&Message::Sample(other), Format::Classic);

@@ -1,4 +1,4 @@
-//! The CAN database is the one that the code makes.
+//! The CAN database equals the one that the code generates.
 
 use octant_wire::can;
 

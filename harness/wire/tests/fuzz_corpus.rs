@@ -1,5 +1,5 @@
-//! The inputs that the fuzzer starts from and those it found, through the same functions without it. The
-//! former are the conformance vectors: written by this test with `OCTANT_WRITE_FIXTURES=1`.
+//! Runs the fuzzer's seeds and findings through the same functions, without the fuzzer. The seeds are
+//! the conformance vectors, written by this test with `OCTANT_WRITE_FIXTURES=1`.
 #![allow(clippy::print_stdout, reason = "the last name printed is the file that fails")]
 
 #[path = "../../../fuzz/wire.rs"]
@@ -25,7 +25,7 @@ fn texts(list: &Value) -> Vec<&str> {
     list.as_array().unwrap().iter().map(|text| text.as_str().unwrap()).collect()
 }
 
-/// Frames as `cansend` takes them, in the way of the fuzzer.
+/// Converts frames in the notation of `cansend` to the fuzzer's input.
 fn frames(list: &Value) -> Vec<u8> {
     let mut bytes = Vec::new();
     for text in texts(list) {
@@ -38,7 +38,7 @@ fn frames(list: &Value) -> Vec<u8> {
     bytes
 }
 
-/// Runs every file of a corpus, in which the seeds are.
+/// Runs every file of a corpus, which contains the seeds.
 fn corpus(name: &str, input: fn(&[u8]), seeds: Vec<(String, Vec<u8>)>) {
     let folder = PathBuf::from(format!("{ROOT}/fuzz/corpus/{name}"));
     let write = std::env::var_os("OCTANT_WRITE_FIXTURES").is_some();
@@ -67,7 +67,7 @@ fn lines() {
     let mut seeds = Vec::new();
     for vector in vectors("serial.json") {
         let name = vector["name"].as_str().unwrap().to_owned();
-        // In pieces of seven bytes.
+        // Seeds are cut into pieces of seven bytes.
         let bytes = texts(&vector["bytes"]).into_iter().flat_map(unhex);
         seeds.push((name, [7].into_iter().chain(bytes).collect()));
     }

@@ -1,4 +1,4 @@
-//! The tests of the wire protocol, in one program.
+//! Tests of the wire protocol, in one program.
 #![allow(clippy::unwrap_used)]
 
 mod agreement;

@@ -1,4 +1,4 @@
-//! Encoding and decoding allocate nothing, damaged or not.
+//! Encoding and decoding allocate nothing, also for damaged input.
 #![allow(unsafe_code, reason = "an allocator that counts is unsafe by its trait")]
 
 use crate::common::arbitrary::one_of_each;
@@ -15,11 +15,11 @@ thread_local! {
 
 struct Counting;
 
-// SAFETY: every call goes on to the system's allocator as it came.
+// SAFETY: every call is passed on unchanged to the system's allocator.
 unsafe impl GlobalAlloc for Counting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         COUNT.with(|count| count.set(count.get() + 1));
-        // SAFETY: the caller keeps the contract of `alloc`, which is this one.
+        // SAFETY: the caller keeps the contract of `alloc`, which is the same here.
         unsafe { System.alloc(layout) }
     }
 
@@ -57,7 +57,7 @@ fn nothing_is_allocated() {
                 for (i, frame) in
                     can::segments(message, sender, format).into_iter().flatten().enumerate()
                 {
-                    // Each round another segment is lost.
+                    // Each round loses another segment.
                     if i as u64 != round {
                         black_box(reassembler.receive(&frame));
                     }
@@ -67,7 +67,7 @@ fn nothing_is_allocated() {
     }
     assert_eq!(COUNT.with(Cell::get) - before, 0);
     assert!(decoder.counters().frames > 200 && decoder.counters().damaged() > 200);
-    // And it would have been noticed.
+    // The counter does notice an allocation.
     black_box(vec![0u8; 10]);
     assert!(COUNT.with(Cell::get) > before);
 }

@@ -1,4 +1,4 @@
-//! The tables of the description are those of the code, and so is its example.
+//! The tables and the example in the description equal those of the code.
 
 use octant_sample::parameters::NAMES;
 use octant_sample::{DeviceTime, GimbalAngles, Health, Sample};
@@ -152,7 +152,7 @@ fn load() -> String {
     table
 }
 
-/// A sample, field by field, unstuffed and stuffed.
+/// Text of a sample, field by field, unstuffed and stuffed.
 fn example() -> String {
     let sample = Sample {
         sequence: 1,
@@ -197,7 +197,7 @@ fn example() -> String {
     text
 }
 
-/// The page with what is between two marks put there anew.
+/// Replaces the part of the page between two marks.
 fn filled(page: &str, mark: &str, content: &str) -> String {
     let (begin, end) = (format!("<!-- begin {mark} -->\n"), format!("<!-- end {mark} -->"));
     let (before, rest) = page.split_once(&begin).unwrap_or_else(|| panic!("no {begin}"));
@@ -210,7 +210,7 @@ fn the_tables_of_the_page_are_those_of_the_code() {
     let page = std::fs::read_to_string(FILE).unwrap();
     let mut made = filled(&page, "kinds", &kinds());
     for kind in Kind::ALL {
-        // One table for both.
+        // Ready shares the table of another kind.
         if kind != Kind::Ready {
             made = filled(&made, &format!("fields {}", kind.name()), &field_table(kind));
         }
@@ -246,7 +246,7 @@ fn every_bit_that_has_a_name_is_on_the_page() {
     for (name, bits) in Health::all().iter_names() {
         row("Health:", name, bits.bits());
     }
-    // And none that has no name: each table has a row for each and no other.
+    // The page has no other rows: each table has one for each name.
     let on_page = page.lines().filter(|line| line.starts_with("| ") && line.contains(" | `"));
     let numbered = on_page.filter(|line| {
         let cells: Vec<_> = line.split(" | ").collect();

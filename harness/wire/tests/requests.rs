@@ -1,5 +1,5 @@
-//! Lock-step over a line that loses, doubles and reorders gives what a line without fault gives; real time
-//! goes on with what comes.
+//! Lock-step over a line that loses, doubles and reorders messages gives the result of a line without
+//! faults; real time continues with the messages that arrive.
 
 use octant_sample::{Aiding, DeviceTime, Reference, Sample};
 use octant_wire::message::{
@@ -20,17 +20,17 @@ fn sample(step: Step, aided: bool) -> SampleMessage {
     SampleMessage { step, aided, sample: Sample { sequence, ..Sample::default() } }
 }
 
-/// What a line does to a message.
+/// Fate of a message on a line.
 #[derive(Clone, Copy, Debug)]
 enum Fate {
     Arrives,
     Lost,
     Doubled,
-    /// Arrives after what is sent next.
+    /// Arrives after the next message.
     Late,
 }
 
-/// Fates by chance, half of them good: not in a pattern, which could always hit the same message.
+/// Random fates, half of them good; a regular pattern could always hit the same message.
 fn fates(seed: u64) -> impl Iterator<Item = Fate> {
     let mut state = seed | 1;
     std::iter::repeat_with(move || {
@@ -77,7 +77,7 @@ proptest! {
         let mut fates = (fates(seeds.0), fates(seeds.1));
         let mut to_device = Line { late: Vec::new(), there: VecDeque::new() };
         let mut to_harness = Line { late: Vec::new(), there: VecDeque::new() };
-        // Done so far, as if the session began in the middle of the numbers.
+        // Earlier steps are done first, so that the session begins in the middle of the numbers.
         let mut requests = Requests::new(Pacing::LockStep);
         for number in 1..first & 0x7FFF {
             prop_assert_eq!(requests.other(Step::new(number)), Verdict::Do(None));
@@ -90,7 +90,7 @@ proptest! {
             step = step.next();
             let aided = k % every == 0;
             expected.push((step, aided.then(|| aiding(step).aiding)));
-            // Asked until it is answered.
+            // The request is repeated until it is answered.
             let mut answered = false;
             for attempt in 0.. {
                 prop_assert!(attempt < 2000, "step {step:?} is never answered");
@@ -167,7 +167,7 @@ proptest! {
 
 #[test]
 fn a_clock_that_is_ahead_is_found_within_the_error() {
-    // Ahead by 1000; 30 there, 50 back, 7 between.
+    // Clock ahead by 1000; delays of 30 there, 50 back, and 7 between.
     let reply = TimeReply {
         id: 1,
         harness_sent: ClockTime::from_ns(500),
@@ -177,7 +177,7 @@ fn a_clock_that_is_ahead_is_found_within_the_error() {
     let offset = reply.offset(ClockTime::from_ns(587));
     assert_eq!(offset, Offset { ahead_ns: 990, error_ns: 40 });
     assert!((offset.ahead_ns - 1000).abs() <= offset.error_ns);
-    // Clocks as far apart as they can be.
+    // The largest possible offset between two clocks.
     let far = TimeReply { received: ClockTime::from_ns(u64::MAX), ..reply };
     assert!(far.offset(ClockTime::from_ns(0)).ahead_ns > i128::from(u64::MAX) / 2);
 }

@@ -73,7 +73,7 @@ proptest! {
         picks in proptest::collection::vec(any::<prop::sample::Index>(), 400),
         fd: bool,
     ) {
-        // Messages of one slot stay in order, those of different slots overtake each other.
+        // Messages of one slot stay in order; those of different slots may overtake each other.
         let format = if fd { Format::Fd } else { Format::Classic };
         let mut queues: Vec<(u16, Vec<_>)> = Vec::new();
         for message in &sent {
@@ -123,7 +123,7 @@ proptest! {
 #[test]
 fn frames_are_numbered_and_gaps_counted() {
     let sent = one_of_each();
-    // A hello begins to count anew: not part of this.
+    // A hello restarts the numbering and is left out here.
     let sent: Vec<_> = sent.into_iter().filter(|m| m.kind() != Kind::Hello).collect();
     let mut encoder = Encoder::starting_at(0xFFFD);
     let all: Vec<Vec<u8>> =
@@ -167,7 +167,7 @@ fn half_of_the_numbers_are_ahead_and_half_behind() {
 
 #[test]
 fn the_longest_frame_fits() {
-    // No zero in it: stuffing is at its longest.
+    // Without zeros, stuffing is at its longest.
     let mut longest = 0;
     for message in one_of_each() {
         let bytes = encode(&[message]);

@@ -1,5 +1,5 @@
-//! The conformance vectors in `fixtures/wire`: written by this test with `OCTANT_WRITE_FIXTURES=1`, checked
-//! by it otherwise. What a receiver has to make of damage is stated here by hand.
+//! The conformance vectors in `fixtures/wire`: written by this test with `OCTANT_WRITE_FIXTURES=1`,
+//! checked otherwise. The results that a receiver must have for damaged input are stated here by hand.
 
 use crate::common::vectors::{self, Vector};
 use crate::common::{self, decode, reassemble, received, same};
@@ -13,13 +13,13 @@ fn hex(bytes: &[u8]) -> String {
     bytes.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
-/// An object as JSON text, in this order.
+/// Object as JSON text, with its keys in this order.
 fn object(pairs: &[(&str, impl std::fmt::Display)]) -> String {
     let pairs: Vec<_> = pairs.iter().map(|(key, value)| format!("\"{key}\": {value}")).collect();
     format!("{{{}}}", pairs.join(", "))
 }
 
-/// The fields of a payload, by the table alone and in its order: as JSON text.
+/// Fields of a payload as JSON text, from the table alone and in its order.
 fn fields_of(kind: Kind, payload: &[u8]) -> String {
     let mut all = Vec::new();
     for field in fields(kind) {
@@ -60,7 +60,7 @@ fn serial_frame(vector: &Vector) -> Vec<u8> {
     Encoder::starting_at(vector.sequence).encode(&vector.message, vector.clock).to_vec()
 }
 
-/// Writes or compares a file, one entry a line so that changes can be read.
+/// Writes or compares a file, with one entry on each line so that changes are readable.
 fn check(name: &str, about: &str, entries: &[Vec<(&str, String)>]) {
     let line = |entry: &Vec<(&str, String)>| format!("    {}", object(entry));
     let lines: Vec<_> = entries.iter().map(line).collect();
@@ -109,7 +109,7 @@ fn messages_have_these_bytes() {
             ("fd", json!(texts(&can_frames(vector, Format::Fd))).to_string()),
         ]);
     }
-    // Something for every identifier.
+    // Every identifier occurs.
     for slot in Slot::ALL {
         let id = slot.id(0, Format::Classic);
         let sent = all.iter().any(|vector| can_frames(vector, Format::Classic)[0].id() == id);
@@ -118,7 +118,7 @@ fn messages_have_these_bytes() {
     check("messages.json", "messages and their bytes; see harness/wire/README.md", &entries);
 }
 
-/// Fields in the table are where the code has them: one bit at a time, in both directions.
+/// Fields in the table are where the code has them: checked bit by bit, in both directions.
 #[test]
 fn the_table_knows_every_bit_that_the_code_looks_at() {
     for vector in vectors::all() {
@@ -132,17 +132,17 @@ fn the_table_knows_every_bit_that_the_code_looks_at() {
                 let unused = match field.ty {
                     Type::Zero(_) => true,
                     Type::Step(None) => bit % 16 == 15,
-                    // An offset that isn't there.
+                    // The offset is absent.
                     Type::F64 => kind == Kind::Restart && payload[1] >> 7 == 0,
                     _ => false,
                 };
                 match Message::read(kind, &flipped) {
                     Ok(message) => {
                         let same = message.same_bits(&vector.message);
-                        // The flag brings an offset of zeros with it, which is none of zeros.
+                        // Setting the flag adds an offset of zeros, which differs from no offset.
                         assert_eq!(same, unused, "{place}");
                     }
-                    // A choice that has no such value, a version, or a text that is none.
+                    // The value is not among the choices, the version is wrong, or the text is invalid.
                     Err(_) => assert!(
                         !unused
                             && (!field.values.is_empty()
@@ -163,9 +163,9 @@ struct Case {
     about: &'static str,
     /// Stretches of bytes; if there are several, each is a datagram.
     pieces: Vec<Vec<u8>>,
-    /// Messages that come out.
+    /// Messages received.
     messages: Vec<&'static str>,
-    /// Counts that aren't zero, but `bytes`.
+    /// Nonzero counts, except `bytes`.
     counts: Vec<(&'static str, u64)>,
 }
 
@@ -176,7 +176,7 @@ fn stuffed(bare: &[u8]) -> Vec<u8> {
     out
 }
 
-/// A frame of any kind and payload, with the right CRC.
+/// Frame of any kind and payload, with a valid CRC.
 fn forged(kind: u8, sequence: u16, payload: &[u8]) -> Vec<u8> {
     let mut bare = vec![kind];
     bare.extend(sequence.to_le_bytes());

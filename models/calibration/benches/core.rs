@@ -1,4 +1,4 @@
-//! The core alone, one step per element: a second of 200 Hz samples with noise, over and over.
+//! The core alone, one step per element: a second of 200 Hz samples with noise, repeated.
 //!
 //! - `navigation`: free inertial, rotating by the sixteen moves.
 //! - `calibration`: eight positions, 39 states, one measurement a second.
@@ -65,7 +65,7 @@ fn config(calibration: bool) -> Config {
     }
 }
 
-/// A second of a level static base with scattered noise, as (sample, aiding).
+/// Makes a second of a level static base with scattered noise, as (sample, aiding).
 fn second() -> Vec<(Sample, Option<Aiding>)> {
     let earth = Ellipsoid::at(LATITUDE_RAD, 0.0);
     let (rate, g) = (earth.earth_rate(), earth.gravity_mps2);

@@ -1,10 +1,10 @@
 //! Coarse alignment: attitude from gravity and Earth rate, averaged while the instrument stands.
 //!
 //! Gravity comes first (TRIAD: M. D. Shuster, S. D. Oh, *Three-axis attitude determination from
-//! vector observations*, 1981): down is against the mean specific force, east is down × Earth rate,
-//! north completes. Of Earth rate only the direction of its horizontal part is used. Errors, to
-//! first order, for errors ∇ and ε in n: `φ_north = ∇_east/g`, `φ_east = −∇_north/g`,
-//! `φ_down = ε_east/(Ω cos L) − φ_north tan L`.
+//! vector observations*, 1981): down is opposite to the mean specific force, east is down × Earth
+//! rate, north completes. Only the direction of the horizontal part of Earth rate is used. Errors,
+//! to first order, for errors ∇ and ε in n: `φ_north = ∇_east/g`, `φ_east = −∇_north/g`, `φ_down =
+//! ε_east/(Ω cos L) − φ_north tan L`.
 
 use nalgebra::{Matrix3, Vector3};
 use octant_earth::UnitQuaternion;
@@ -13,12 +13,11 @@ use octant_earth::frames::quaternion_from_matrix;
 
 use crate::config::Site;
 
-/// Horizontal rate below which there is no north to find, rad/s: 1 % of Earth rate, at 89.4°
-/// latitude.
+/// Horizontal rate below which north can't be found, rad/s: 1 % of Earth rate, at 89.4° latitude.
 const HORIZONTAL_RATE_MIN_RADPS: f64 = 0.01 * EARTH_RATE_RADPS;
 
-/// Attitude `q_nb` of a standing body from its specific force (m/s²) and angular rate (rad/s), both
-/// in b. `None` if the force is zero or the rate has no horizontal part to speak of.
+/// Computes the attitude `q_nb` of a body at rest from its specific force (m/s²) and angular rate
+/// (rad/s), both in b. `None` if the force is zero or the rate has practically no horizontal part.
 #[must_use]
 pub fn attitude_of(force: &Vector3<f64>, rate: &Vector3<f64>) -> Option<UnitQuaternion<f64>> {
     let down = -force.try_normalize(1e-3)?;
@@ -48,7 +47,7 @@ octant_state::state! {
 }
 
 impl CoarseAlignment {
-    /// An alignment at a site.
+    /// Makes an alignment at a site.
     #[must_use]
     pub fn new(site: &Site) -> Self {
         Self {
@@ -66,10 +65,12 @@ impl CoarseAlignment {
         self.duration_s += dt_s;
     }
 
-    /// Attitude `q_nb`, which on the standing Earth is that at the last sample too.
+    /// Computes the attitude `q_nb` of the averages; a body at rest on the Earth has it at the last
+    /// sample too.
     ///
-    /// `None` near the poles (above 89.4°), and where the gyros show a horizontal rate that is not
-    /// Earth's within a factor of two: they don't see it, or the instrument didn't stand.
+    /// `None` near the poles (above 89.4°), and if the horizontal rate of the gyros differs from
+    /// that of the Earth by more than a factor of two: they don't resolve it, or the instrument
+    /// wasn't at rest.
     #[must_use]
     pub fn finish(&self) -> Option<UnitQuaternion<f64>> {
         if !(self.duration_s > 0.0 && self.horizontal_rate_radps > HORIZONTAL_RATE_MIN_RADPS) {

@@ -8,10 +8,10 @@
 use nalgebra::{Matrix3, Vector3};
 use octant_sample::Parameters;
 
-/// The inverse error model, ready to be applied to every sample.
+/// Inverse error model, ready to be applied to every sample.
 ///
-/// Both triads are had from the measured increments at once, so that the rates don't wait for the
-/// forces: with `K = (I + M_g)⁻¹ G (I + M_a)⁻¹` the second equation is
+/// Both triads are computed directly from the measured increments, so that the rates don't wait for
+/// the forces: with `K = (I + M_g)⁻¹ G (I + M_a)⁻¹` the second equation is
 ///
 /// `ω = (I + M_g)⁻¹ ω̃ − K f̃ − ((I + M_g)⁻¹ b_g − K b_a)`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -19,14 +19,14 @@ use octant_sample::Parameters;
 #[cfg_attr(feature = "state", serde(from = "Inverse", into = "Inverse"))]
 pub struct Compensation {
     inverse: Inverse,
-    /// K of above, (rad/s)/(m/s²).
+    /// K, see above, (rad/s)/(m/s²).
     cross: Matrix3<f64>,
-    /// What is taken off in every second, rad and m/s.
+    /// Offsets subtracted per second, rad and m/s.
     gyro_offset: Vector3<f64>,
     accel_offset: Vector3<f64>,
 }
 
-/// What compensation is made of, and what is kept of it in a state.
+/// Data from which the compensation is computed; the part that a state holds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "state", derive(serde::Serialize, serde::Deserialize))]
 struct Inverse {
@@ -60,8 +60,8 @@ fn matrix(rows: [[f64; 3]; 3]) -> Matrix3<f64> {
 }
 
 impl Compensation {
-    /// The inverse model of these parameters. A model that can't be inverted (errors of the size of
-    /// one) leaves the matrix out; no real sensor has one.
+    /// Makes the inverse model of these parameters. If a matrix has no inverse (errors of the size
+    /// of one), it is left out; no real sensor has such errors.
     #[must_use]
     pub fn new(parameters: &Parameters) -> Self {
         let inverse = |errors: [[f64; 3]; 3]| {
@@ -76,7 +76,7 @@ impl Compensation {
         })
     }
 
-    /// True increments (Δθ, Δv) in b from measured ones over `interval_s`.
+    /// Returns the true increments (Δθ, Δv) in b for measured ones over `interval_s`.
     #[must_use]
     #[inline]
     pub fn apply(

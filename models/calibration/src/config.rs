@@ -1,19 +1,19 @@
-//! What the core is given before the first sample. All angles in rad, all quantities SI.
+//! Configuration of the core, given before the first sample. All angles in rad, all quantities SI.
 
 use crate::sequence::Sequence;
 use octant_earth::{UnitQuaternion, Vector3};
 use octant_sample::Parameters;
 use octant_sample::parameters::Group;
 
-/// Everything that the core is configured with.
+/// Configuration of the core.
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "state", derive(serde::Serialize, serde::Deserialize))]
 pub struct Config {
     /// Sample period, ns.
     pub sample_period_ns: u64,
-    /// Where the instrument stands; navigation starts here.
+    /// Position of the instrument; navigation starts here.
     pub site: Site,
-    /// How the initial attitude is found.
+    /// Method of finding the initial attitude.
     pub alignment: Alignment,
     /// The calibration; `None`: navigate at once with `initial_parameters`.
     pub calibration: Option<Calibration>,
@@ -21,9 +21,9 @@ pub struct Config {
     pub navigation: Option<NavigationPlan>,
     /// Rates of the turntable, as far as the core needs them for its timing.
     pub turntable: TurntableRates,
-    /// Noise of the sensors, as the core believes it.
+    /// Noise of the sensors, as assumed by the core.
     pub noise: Noise,
-    /// Parameters to start from, of an earlier calibration or zero.
+    /// Initial parameters, from an earlier calibration or zero.
     pub initial_parameters: Parameters,
     /// Screens and gates.
     pub screening: Screening,
@@ -41,11 +41,11 @@ pub struct Site {
     pub height_m: f64,
 }
 
-/// How the initial attitude is found.
+/// Method of finding the initial attitude.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "state", derive(serde::Serialize, serde::Deserialize))]
 pub enum Alignment {
-    /// Attitude and velocity are handed over (with errors of the size of the filter's prior).
+    /// Attitude and velocity are given (with errors of the size of the filter's prior).
     Given {
         /// Attitude `q_nb` at the start of the first interval.
         q_nb: UnitQuaternion<f64>,
@@ -54,7 +54,7 @@ pub enum Alignment {
     },
     /// Gravity and Earth rate averaged over the first seconds of the first stop.
     Coarse {
-        /// How long to average, s.
+        /// Averaging time, s.
         duration_s: f64,
     },
 }
@@ -65,13 +65,13 @@ pub enum Alignment {
 pub struct Calibration {
     /// The stops, their relative dwell times and the passes.
     pub sequence: Sequence,
-    /// Whole time of the calibration, s: moves, dwells, all passes.
+    /// Total time of the calibration, s: moves, dwells, all passes.
     pub duration_s: f64,
-    /// How the parameters are estimated.
+    /// Method of estimating the parameters.
     pub estimator: Estimator,
 }
 
-/// How the parameters are estimated.
+/// Method of estimating the parameters.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "state", derive(serde::Serialize, serde::Deserialize))]
 pub enum Estimator {
@@ -100,7 +100,7 @@ pub enum ErrorModel {
 pub struct Kalman {
     /// Form of the error model.
     pub error_model: ErrorModel,
-    /// Which groups of parameters are states, in the order of [`Group::ALL`]. The six-position
+    /// Groups of parameters that are states, in the order of [`Group::ALL`]. The six-position
     /// filter of the conventional method has no [`Group::GDependent`].
     pub estimated: [bool; 7],
     /// Prior standard deviations.
@@ -135,7 +135,7 @@ impl Prior {
     }
 }
 
-/// The reference that the filter measures against.
+/// Reference of the filter's measurements.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "state", derive(serde::Serialize, serde::Deserialize))]
 pub enum AidingMode {
@@ -157,31 +157,31 @@ pub enum AidingMode {
 pub struct LeastSquares {
     /// Local gravity, m/s²; `None`: normal gravity at the site.
     pub gravity_mps2: Option<f64>,
-    /// Where the gyro bias and the gyro matrix come from.
+    /// Reference of the gyro bias and of the gyro matrix.
     pub gyro: GyroReference,
-    /// How static intervals are found.
+    /// Method of finding static intervals.
     pub intervals: StaticIntervals,
 }
 
-/// What the least-squares estimator measures gyros against.
+/// Reference of the gyros in the least-squares estimator.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "state", derive(serde::Serialize, serde::Deserialize))]
 pub enum GyroReference {
-    /// Norm of Earth rate over the static intervals: gyros that see it.
+    /// Norm of Earth rate over the static intervals: for gyros that resolve it.
     EarthRate,
-    /// Gravity turned between neighbouring static attitudes, bias from the first interval: gyros
-    /// that don't see Earth rate (MEMS).
+    /// Gravity turned between neighbouring static attitudes, bias from the first interval: for
+    /// gyros that don't resolve Earth rate (MEMS).
     RotatedGravity,
 }
 
-/// How static intervals are found in the samples.
+/// Method of finding static intervals in the samples.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "state", derive(serde::Serialize, serde::Deserialize))]
 pub enum StaticIntervals {
-    /// From the procedure: the core commands the gimbals and knows when they stand.
+    /// From the procedure: the core commands the gimbals and knows when they rest.
     Commanded,
-    /// From the data: windowed standard deviation of specific force below a multiple of what it is
-    /// in the first, known static, interval.
+    /// From the data: windowed standard deviation of specific force below a multiple of that in the
+    /// first interval, which is known to be static.
     Detected {
         /// Length of the first interval, known to be static, s.
         initial_s: f64,
@@ -200,7 +200,7 @@ pub enum StaticIntervals {
 pub struct ExternalTurntable {
     /// Attitude of the table's base, `q_nc`, known from its survey.
     pub q_nc: UnitQuaternion<f64>,
-    /// 1σ of each of its angles, rad.
+    /// Standard deviation of each of its angles, 1σ, rad.
     pub encoder_sigma_rad: f64,
 }
 
@@ -210,7 +210,7 @@ pub struct ExternalTurntable {
 pub struct NavigationPlan {
     /// Duration, s; `None`: until the source ends.
     pub duration_s: Option<f64>,
-    /// Stops that are repeated for as long as it lasts; one stop: no rotation.
+    /// Stops that are repeated throughout the navigation; one stop: no rotation.
     pub rotation: Sequence,
     /// Dwell at each stop of weight 1, s.
     pub dwell_s: f64,
@@ -236,7 +236,7 @@ pub struct Noise {
     pub velocity_random_walk: f64,
 }
 
-/// Screens and gates. Each can be switched off, to see the bare core.
+/// Screens and gates. Each can be switched off, which leaves the bare core.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "state", derive(serde::Serialize, serde::Deserialize))]
 pub struct Screening {
@@ -244,26 +244,25 @@ pub struct Screening {
     pub gate: Option<Gate>,
     /// Identical counts in a row that make a channel "stuck"; `None`: no test.
     pub stuck_samples: Option<u32>,
-    /// Samples that jump as no motion of turntable and base can are not believed; see
-    /// [`crate::screen`].
+    /// Rejects samples that jump further than turntable and base can move; see [`crate::screen`].
     pub jumps: bool,
-    /// Samples that are missing, flagged invalid, stuck or not believed are bridged by what is known
-    /// of the motion, with the uncertainty that this has. Without it they are used as they are, and
-    /// a gap is bridged by holding the last increments.
+    /// Bridges samples that are missing, flagged invalid, stuck or rejected by the known motion,
+    /// with the uncertainty of that motion. Without bridging they are used as they are, and a gap
+    /// is bridged by holding the last increments.
     pub bridging: bool,
-    /// Gyros and encoders are held against each other, and the encoders against the set point.
+    /// Compares gyros with encoders, and encoders with the set point.
     pub gimbals: bool,
-    /// Correction of a parameter over a stretch of the calibration, in the standard deviations that
-    /// it should have, above which the calibration is refused; `None`: no test. See
-    /// [`crate::drift`].
+    /// Limit of a parameter's correction over a stretch of the calibration, in the standard
+    /// deviations that the correction should have; above it the calibration is refused. `None`: no
+    /// test. See [`crate::drift`].
     pub drift_sigmas: Option<f64>,
-    /// A recovery goes back to the parameters of one to two minutes before it.
+    /// Lets a recovery return to the parameters of one to two minutes before it.
     pub checkpoints: bool,
-    /// A reference that doesn't carry the stamp of its sample is not used.
+    /// Rejects a reference that doesn't carry the stamp of its sample.
     pub aiding_stamps: bool,
-    /// How the base may move: what the limits of the screens follow from.
+    /// Motion of the base, from which the limits of the screens follow.
     pub base: Base,
-    /// 1σ of a gimbal angle as the encoders give it, rad.
+    /// Standard deviation of an encoder's gimbal angle, 1σ, rad.
     pub encoder_sigma_rad: f64,
     /// Coarsest step of the increments beyond the format's own, rad and m/s; 0: none.
     pub resolution: (f64, f64),
@@ -275,7 +274,7 @@ pub struct Screening {
 const ENCODER_SIGMA_RAD: f64 = 8.726_646_259_971_648e-5;
 
 impl Screening {
-    /// Nothing is screened: the bare core.
+    /// No screening: the bare core.
     #[must_use]
     pub const fn none() -> Self {
         Self {
@@ -294,7 +293,7 @@ impl Screening {
         }
     }
 
-    /// An innovation gate with this recovery and the flag for stuck channels, nothing else.
+    /// Innovation gate with this recovery and the flag for stuck channels only.
     #[must_use]
     pub const fn gated(recovery: Recovery) -> Self {
         Self {
@@ -304,10 +303,10 @@ impl Screening {
         }
     }
 
-    /// Everything that there is, for a base that moves like this.
+    /// All screens and gates, for a base with this motion.
     ///
-    /// The gate is at 36, six σ: it rejects 8e-8 of good measurements (χ² of three), one in 900 runs
-    /// of four hours. (At 25 it would be 1.5e-5, one in five.)
+    /// The gate is at 36, six σ: it rejects 8e-8 of good measurements (χ² of three), one in 900
+    /// runs of four hours. (At 25 it would be 1.5e-5, one in five.)
     #[must_use]
     pub const fn hardened(base: Base) -> Self {
         Self {
@@ -327,14 +326,14 @@ impl Screening {
     }
 }
 
-/// How what the instrument's case stands on may move.
+/// Motion of the base on which the instrument's case stands.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "state", derive(serde::Serialize, serde::Deserialize))]
 pub enum Base {
     /// Fixed to the ground.
     #[default]
     Still,
-    /// On a ship, at most like this.
+    /// On a ship, within these bounds.
     Moving(BaseMotion),
 }
 
@@ -362,15 +361,16 @@ pub struct Gate {
     pub nis: f64,
     /// Rejections in a row that start a recovery.
     pub rejections: u32,
-    /// What a recovery does.
+    /// Action of a recovery.
     pub recovery: Recovery,
 }
 
-/// What the core does when the gate has rejected too often.
+/// Action of the core when the gate has rejected too often.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "state", derive(serde::Serialize, serde::Deserialize))]
 pub enum Recovery {
-    /// Zero the covariance of φ, δv, δr with its cross terms, set the σ given, apply the update.
+    /// Zeroes the covariance of φ, δv, δr with its cross terms, sets the given σ, applies the
+    /// update.
     Reset {
         /// σ of φ, rad.
         attitude_rad: f64,
@@ -379,7 +379,7 @@ pub enum Recovery {
         /// σ of δr, m.
         position_m: f64,
     },
-    /// Re-open φ, δv, δr as wide as the innovation says, hold the parameters while the attitude
-    /// settles, then let them go on from the covariance that they had.
+    /// Opens φ, δv, δr as wide as the innovation requires, holds the parameters while the attitude
+    /// settles, then continues their estimation from the covariance that they had.
     Widening,
 }

@@ -1,29 +1,31 @@
-//! Rates that break off: what a spike leaves in the increments of a tenth of a second.
+//! Discontinuities of rates: edges of spikes in the increments of a tenth of a second.
 //!
 //! Turntable and base turn smoothly: over two seconds the rate of a body is a polynomial of low
-//! degree, wherever a drive doesn't change its acceleration, and there the encoders show it. A spike
-//! has edges. So the increments of blocks of 0.1 s go through a step filter: twenty weights of norm
+//! degree, except where a drive changes its acceleration, which the encoders show. A spike has
+//! edges. So the increments of blocks of 0.1 s go through a step filter: twenty weights of norm
 //! one that are orthogonal to every polynomial up to a degree and otherwise as near to a step as
-//! can be. What comes out is white noise with the σ of a block, or a spike:
+//! possible. Its output is white noise with the σ of a block, or a spike:
 //!
-//! | spike lasts | rotation that gives 6.5 σ, Table 1 |
+//! | duration of the spike | rotation that gives 6.5 σ, Table 1 |
 //! |---|---|
 //! | up to 0.1 s | 0.14″ |
 //! | 0.5 s | 0.9″ |
 //! | 2 s | 3.0″ |
 //! | 10 s | 15″ |
 //!
-//! Where the gimbals of a base that stands stand too, the rate itself is known, and a cumulative sum
-//! of what is beyond it (Page, 1954) finds 1″ of any length.
+//! While the gimbals rest on a base at rest, the rate itself is known, and a cumulative sum of the
+//! rate beyond it (Page, 1954) finds 1″ of any duration.
 //!
-//! The gyros are looked at in the case, with the encoders' turn taken off, so that neither a move nor a
-//! ship's sway through turning axes shows. An edge counts only if the gyros themselves have it, not the
-//! encoders alone, and if it is larger than what axes and encoders can make of what both have, as at
-//! every start of a move. Velocity is looked at in n, where a turn doesn't show.
+//! The gyros are examined in the case, with the encoders' turn subtracted, so that neither a move
+//! nor a ship's sway through turning axes shows. An edge counts only if it is in the gyros
+//! themselves, not in the encoders alone, and if it is larger than axes and encoders can cause in a
+//! turn that both measure, as at every start of a move. Velocity is examined in n, where a turn
+//! doesn't show.
 
 mod step;
 mod way;
 
+pub(crate) use step::POINTS;
 pub(crate) use way::{c_cb, gimbal_turn, share_of_turn};
 
 use crate::config::{Base, Kalman, Noise, Screening, TurntableRates};
@@ -34,34 +36,37 @@ use octant_sample::parameters::Group;
 use step::DEGREE;
 use way::Way;
 
-/// Length of a block, s, and blocks of the filter.
+/// Length of a block, s.
 const BLOCK_S: f64 = 0.1;
-pub(crate) const POINTS: usize = 20;
-/// Turn of the case in c, and change of velocity in n: what is looked at always.
+/// Channels that are always examined: turn of the case in c, and change of velocity in n.
 const CHANNELS: usize = 6;
-/// Turn of the body in b, azimuth and roll: what is looked at when the case seems to break off.
+/// Channels examined when the turn of the case seems to have an edge: turn of the body in b,
+/// azimuth and roll.
 const OTHERS: usize = 5;
-/// Turn of an encoder in a block that is none, rad: 20″.
+/// Smallest turn of an encoder in a block that counts as a turn, rad: 20″.
 pub(crate) const TURNS_RAD: f64 = 1e-4;
-/// Standard deviations that noise is allowed. 8e-11 for a normal variable: 7e-5 in four hours of six
-/// channels.
+/// Standard deviations that noise is allowed. A normal variable exceeds them with 8e-11: 7e-5 in
+/// four hours of six channels.
 const NOISE_SIGMAS: f64 = 6.5;
 /// Standard deviations that axes and encoders are allowed.
 const AXES_SIGMAS: f64 = 6.0;
-/// Root mean square of an encoder's slope by its error: that of harmonics one to four of equal size.
+/// Root mean square of the slope of an encoder's error: that of harmonics one to four of equal
+/// size.
 const SLOPE: f64 = 2.74;
-/// White noise of a sample below this many counts isn't what limits a real sensor.
+/// Smallest white noise of a sample for which the test is meaningful, counts; below it noise
+/// doesn't limit a real sensor.
 const TESTABLE_COUNTS: f64 = 20.0;
-/// Rate beyond the known one that the cumulative sum leaves to noise, in units of the angle random
-/// walk per √s, and the probability (as a natural logarithm) of reaching its limit by noise:
+/// Rate beyond the known one that the cumulative sum attributes to noise, in units of the angle
+/// random walk per √s, and the probability (as a natural logarithm) of reaching its limit by noise:
 /// a Brownian motion with drift −k reaches h with exp(−2kh/σ²).
 const SUM_RATE: f64 = 2.5;
 const SUM_LOG: f64 = 40.0;
-/// Share of a turn that begins or ends up to which an edge may be that of encoders that slipped, by 3°; two
-/// of these are.
+/// Largest edge at the start or end of a turn, as a share of the turn, that slipped encoders can
+/// cause, by 3°; and the number of such edges after which they are distrusted.
 const ENCODERS_SHARE: f64 = 0.05;
 const ENCODERS_EDGES: u32 = 2;
-/// Alarms in a stretch, s, that spikes make. A stream with more of them is like this.
+/// Number of alarms in a stretch of 60 s that is a property of the stream; fewer may come from
+/// spikes.
 const ALARMS_MAX: u32 = 6;
 const STRETCH_BLOCKS: u32 = 600;
 
@@ -72,51 +77,51 @@ pub struct Block {
     pub turn: Vector3<f64>,
     /// Change of velocity by specific force in n, m/s.
     pub velocity: Vector3<f64>,
-    /// Encoder angles at its end.
+    /// Encoder angles at the end of the block.
     pub gimbal: GimbalAngles,
-    /// Turn by the gyros beyond the Earth's, rad, where the gimbals stand and that is known.
+    /// Turn by the gyros beyond the Earth's, rad, if the gimbals rest and the Earth's is known.
     pub beyond: Option<Vector3<f64>>,
 }
 
-/// What broke off.
+/// Rate with a discontinuity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Edge {
     /// The turn by the gyros.
     Turn,
-    /// The velocity by the accelerometers, and not the turn.
+    /// The velocity by the accelerometers, but not the turn.
     Velocity,
 }
 
-/// Looks for rates that break off.
+/// Detector of discontinuities of rates.
 #[derive(Clone, Debug)]
 pub struct Continuity {
     weights: [f64; POINTS],
-    /// What noise and the base make of gyros (rad) and velocity (m/s).
+    /// Largest outputs that noise and the base cause in gyros (rad) and velocity (m/s).
     limits: [f64; 2],
-    /// Share of a turn that axes and encoders may show otherwise.
+    /// Share of a turn by which axes and encoders may differ from the gyros.
     axes: f64,
-    /// Where a drive changes its acceleration, by how much encoders at the samples' times seem to be off, rad;
-    /// and what the base turns in a block, rad: the product of both is what seems to break off.
+    /// Apparent error of the encoders at the samples' times where a drive changes its acceleration,
+    /// rad; and the turn of the base in a block, rad: their product is the apparent edge.
     corner: f64,
     sway: f64,
-    /// Of the cumulative sums: turn of a block that is left to noise, and limit, rad.
+    /// Parameters of the cumulative sums: turn of a block attributed to noise, and limit, rad.
     sum: (f64, f64),
 
     ring: [[f64; CHANNELS]; POINTS],
     others: [[f64; OTHERS]; POINTS],
     next: usize,
-    /// Blocks that count, of gyros and of velocity.
+    /// Number of valid blocks, of gyros and of velocity.
     filled: [usize; 2],
-    /// Of the encoders since the last block.
+    /// Path of the encoders since the last block.
     way: Way,
-    /// `c_cb` where the gimbals have stood for a block, and where that was.
+    /// `c_cb` of gimbals that have rested for a block, and their angles.
     middle: (GimbalAngles, Matrix3<f64>),
     sums: [[f64; 2]; 3],
     widened: [f64; 2],
     alarms: [u32; 2],
-    /// Edges that encoders which slipped would show as well.
+    /// Number of edges that slipped encoders would show as well.
     encoder_edges: u32,
-    /// Blocks until the stretch is over.
+    /// Blocks until the stretch ends.
     stretch: u32,
 }
 
@@ -144,14 +149,15 @@ impl Continuity {
     }
 }
 
-/// Samples of a block.
+/// Number of samples in a block.
 #[must_use]
 pub fn block_ticks(sample_s: f64) -> u64 {
     ((BLOCK_S / sample_s + 1e-9) as u64).max(1)
 }
 
 impl Continuity {
-    /// For samples of this period; `None` where the noise is too small for the counts to tell.
+    /// Makes a detector for samples of this period; `None` if the noise is too small against the
+    /// counts.
     #[must_use]
     pub fn new(
         screening: &Screening,
@@ -171,8 +177,8 @@ impl Continuity {
         let window_s = block_s * POINTS as f64;
         let base = match screening.base {
             Base::Still => (0.0, 0.0),
-            // What is left of a sine of angular frequency ω beside its best polynomial of degree d
-            // over a window T: (ωT/2)^(d+1) / (2^d (d+1)!) of its amplitude (Chebyshev). Frequencies
+            // Remainder of a sine of angular frequency ω after its best polynomial of degree d over
+            // a window T: (ωT/2)^(d+1) / (2^d (d+1)!) of its amplitude (Chebyshev). Frequencies
             // from the bounds of rate and acceleration, of force and jerk.
             Base::Moving(motion) => {
                 let left = |omega: f64| {
@@ -195,14 +201,14 @@ impl Continuity {
         let encoder = SLOPE * screening.encoder_sigma_rad;
         let (scale, across) = (prior(Group::GyroScale), prior(Group::GyroMisalignment));
         let walk = noise.angle_random_walk;
-        // Biases and Earth rate through the attitude handed over, rad/s.
+        // Biases and Earth rate through the error of the initial attitude, rad/s.
         let known = AXES_SIGMAS
             * (prior(Group::GyroBias)
                 + 10.0 * prior(Group::GDependent)
                 + 7.3e-5 * kalman.prior.attitude_rad[2].min(0.05));
         let weights = step::weights();
-        // The mean of two encoder angles is off by a twelfth of what the acceleration turns from one sample
-        // to the next, as long as it lasts.
+        // While the acceleration lasts, the mean of two encoder angles is wrong by a twelfth of the
+        // turn that the acceleration causes from one sample to the next.
         let step = 0.5 * weights.iter().map(|one| one.abs()).sum::<f64>();
         let corner = step * turntable.acceleration_radps2 * sample_s * sample_s / 12.0;
         Some(Self {
@@ -241,7 +247,7 @@ impl Continuity {
         })
     }
 
-    /// What came before doesn't count: the stream broke off, or was mended.
+    /// Discards the earlier blocks: the stream was interrupted, or repaired.
     pub fn restart(&mut self, gimbal: GimbalAngles) {
         self.filled = [0; 2];
         self.sums = [[0.0; 2]; 3];
@@ -254,8 +260,8 @@ impl Continuity {
         self.way.follow(gimbal);
     }
 
-    /// The attitude was corrected by so much that velocity in n breaks off by itself. What the gyros
-    /// show in the case doesn't.
+    /// Discards the earlier velocity: the attitude was corrected by so much that velocity in n has
+    /// an edge from the correction. The gyros in the case don't.
     pub fn attitude_corrected(&mut self) {
         self.filled[1] = 0;
         self.sums = [[0.0; 2]; 3];
@@ -267,24 +273,24 @@ impl Continuity {
         self.way.start()
     }
 
-    /// Edges at starts and ends of turns were such that it will be the encoders that are off.
+    /// Returns whether edges at starts and ends of turns point to wrong encoders.
     #[must_use]
     pub fn distrusts_encoders(&self) -> bool {
         self.encoder_edges >= ENCODERS_EDGES
     }
 
-    /// Takes a block; `Some`: a rate broke off.
+    /// Takes a block; returns `Some` if a rate has an edge.
     pub fn add(&mut self, block: &Block) -> Option<Edge> {
         let before = self.way.start();
         let azimuth = block.gimbal.azimuth_rad() - before.azimuth_rad();
         let roll = block.gimbal.roll_rad() - before.roll_rad();
         let (turn, velocity) = (&block.turn, &block.velocity);
-        // Sines and cosines of gimbals that stand are known from the block before.
+        // Sines and cosines of gimbals at rest are known from the block before.
         let case = if block.gimbal == before && self.middle.0 == before {
             self.middle.1 * turn
         } else {
             let swept = self.way.until(block.gimbal);
-            // Where they were before, if they turn: no match for the next block.
+            // The angles before a turn: no match for the next block.
             self.middle = (before, swept.c_cb);
             swept.c_cb * (turn - swept.turn)
         };
@@ -326,7 +332,7 @@ impl Continuity {
         self.limits[triad] * self.widened[triad]
     }
 
-    /// Answers of the step filter, channel by channel.
+    /// Outputs of the step filter, channel by channel.
     #[inline]
     fn filtered<const N: usize>(&self, ring: &[[f64; N]; POINTS]) -> [f64; N] {
         let mut sums = [0.0; N];
@@ -339,7 +345,7 @@ impl Continuity {
         sums
     }
 
-    /// The turn of the case breaks off by so much, and it isn't the encoders that do.
+    /// Returns whether the turn of the case has an edge of this size that the encoders don't cause.
     #[cold]
     fn breaks(&mut self, case: f64) -> bool {
         let [x, y, z, azimuth, roll] = self.filtered(&self.others);
@@ -354,7 +360,7 @@ impl Continuity {
         found
     }
 
-    /// What changes of the drives' acceleration may seem to break off by, rad.
+    /// Apparent edge by changes of the drives' acceleration, rad.
     fn corners(&self) -> f64 {
         let [azimuth, roll] = self.fastest();
         let mut turned = if azimuth + roll > TURNS_RAD { self.sway } else { 0.0 };
@@ -371,7 +377,8 @@ impl Continuity {
         })
     }
 
-    /// Cumulative sums to both sides of what turns beyond the Earth.
+    /// Updates the cumulative sums, to both sides, of the turn beyond the Earth's; returns whether
+    /// one reached its limit.
     fn sums_reach(&mut self, block: &Block) -> bool {
         let Some(beyond) = block.beyond else {
             self.sums = [[0.0; 2]; 3];

@@ -1,6 +1,6 @@
 //! The 39 × 39 error covariance and its kernels.
 //!
-//! Only the first nine states (φ, δv, δr) move; the thirty parameters are constants. So the
+//! Only the first nine states (φ, δv, δr) change; the thirty parameters are constants. So the
 //! transition is `[A B; 0 I]` with nine rows, and propagation costs 9/39 of a full product. All
 //! loops have fixed bounds and one order of operations: the same bits everywhere.
 
@@ -44,7 +44,7 @@ impl octant_state::State for Transition {
     }
 }
 
-/// Serde has no arrays of forty: a row goes as five of eight.
+/// Serde form of a row: serde has no arrays of forty, so a row is five of eight.
 #[cfg(feature = "state")]
 type Eights = [[f64; 8]; ROW / 8];
 
@@ -101,7 +101,7 @@ impl octant_state::State for Covariance {
 }
 
 impl Covariance {
-    /// A diagonal covariance from standard deviations.
+    /// Makes a diagonal covariance from standard deviations.
     #[must_use]
     pub fn from_sigmas(sigmas: &[f64; STATE_COUNT]) -> Self {
         let mut p = [[0.0; ROW]; STATE_COUNT];
@@ -133,7 +133,7 @@ impl Covariance {
         }
     }
 
-    /// `P ← Φ P Φᵀ`.
+    /// Propagates: `P ← Φ P Φᵀ`.
     pub fn propagate(&mut self, transition: &Transition) {
         let phi = &transition.rows;
         let mut w = [[0.0; ROW]; MOVING];
@@ -182,8 +182,9 @@ impl Covariance {
         }
     }
 
-    /// As [`Self::update`], but the parameters are considered, not estimated (Schmidt): they keep
-    /// value and covariance, while their correlation with the moving states is kept right.
+    /// Updates as [`Self::update`], but the parameters are considered, not estimated (Schmidt):
+    /// they keep value and covariance, while their correlation with the moving states stays
+    /// correct.
     pub fn update_moving(&mut self, s: usize, r: f64, innovation: f64, x: &mut [f64; STATE_COUNT]) {
         let (row, scale) = self.gain_row(s, r);
         let scaled = row.map(|value| value * scale);
@@ -202,8 +203,8 @@ impl Covariance {
         }
     }
 
-    /// Update of the true covariance by the gain of another filter, `P ← (I − K h) P (I − K h)ᵀ +
-    /// K r Kᵀ` (Joseph form, valid for any gain): what a filter with too few states really achieves.
+    /// Updates the true covariance by the gain of another filter, `P ← (I − K h) P (I − K h)ᵀ + K r
+    /// Kᵀ` (Joseph form, valid for any gain): the real performance of a filter with too few states.
     pub fn update_with_gain(&mut self, s: usize, r: f64, gain: &[f64; STATE_COUNT]) {
         let row = self.p[s];
         let variance = row[s] + r;
@@ -226,7 +227,7 @@ impl Covariance {
         (row, 1.0 / libm::sqrt(row[s] + r))
     }
 
-    /// Forgets everything about state `i`: zero cross terms and the standard deviation given.
+    /// Reopens state `i`: zero cross terms and the given standard deviation.
     pub fn reopen(&mut self, i: usize, sigma: f64) {
         for j in 0..STATE_COUNT {
             self.p[i][j] = 0.0;
@@ -235,7 +236,7 @@ impl Covariance {
         self.p[i][i] = sigma * sigma;
     }
 
-    /// Every element on and above the diagonal is finite.
+    /// Returns whether every element is finite.
     #[must_use]
     pub fn is_finite(&self) -> bool {
         self.p.iter().flatten().all(|value| value.is_finite())

@@ -1,38 +1,39 @@
-//! Do the parameters stand still while they are estimated?
+//! Drift test: are the parameters constant while they are estimated?
 //!
-//! The parameters are constants. Then what a Kalman filter corrects of one of them between two
-//! instants, p(t₂) − p(t₁), is a sum of weighted innovations, independent of p(t₁), with the
-//! variance P(t₁) − P(t₂) by which its uncertainty shrank (the estimate is a martingale; Bar-Shalom,
-//! Li and Kirubarajan, 2001, 5.4, state the whiteness of innovations that this follows from). Divided
-//! by the root of it, it is normal with variance one. A sensor whose error changes in between makes
-//! it many times larger, while every single innovation still looks as it should: the mean square of
-//! innovations (NIS) doesn't see it.
+//! The parameters are constants. Then the correction that a Kalman filter makes to one of them
+//! between two instants, p(t₂) − p(t₁), is a sum of weighted innovations, independent of p(t₁),
+//! with the variance P(t₁) − P(t₂) by which its uncertainty shrank (the estimate is a martingale;
+//! Bar-Shalom, Li and Kirubarajan, 2001, 5.4, state the whiteness of innovations from which this
+//! follows). Divided by the root of that variance, the correction is normal with variance one. A
+//! sensor whose error changes in between makes it many times larger, while every single innovation
+//! remains consistent: the mean square of innovations (NIS) doesn't show the change.
 //!
-//! The test looks at all pairs of up to sixteen marks over the calibration. Where less than 1 % of a
-//! variance was gained, the parameter could have moved by no more than 0.6 of its σ unseen, and isn't
-//! looked at; neither while a parameter is known hardly better than its prior: a prior that is too
+//! The test covers all pairs of up to sixteen marks over the calibration. If less than 1 % of a
+//! variance was gained, the parameter could have moved undetected by no more than 0.6 of its σ, and
+//! isn't tested. Nor is a parameter tested while it is known hardly better than its prior: a prior
+//! that is too narrow is no drift.
 //! narrow is no drift.
 
 use crate::covariance::{Covariance, PARAMETERS};
 use octant_sample::Parameters;
 use octant_sample::parameters::PARAMETER_COUNT;
 
-/// Corrections above this many standard deviations are a drift. 2e-9 for a normal variable; with
-/// thirty parameters and some hundreds of pairs of marks 2e-5 in a calibration. The largest of
-/// twenty clean calibrations of 4 h is 4.6.
+/// Corrections above this many standard deviations are a drift. A normal variable exceeds them with
+/// 2e-9; with thirty parameters and some hundreds of pairs of marks 2e-5 in a calibration. The
+/// largest of twenty clean calibrations of 4 h is 4.6.
 pub const LIMIT_SIGMAS: f64 = 6.0;
-/// The same on a ship, whose sway the filter takes for white noise, which it isn't: tails are longer.
-/// The largest of twenty clean calibrations of 4 h is 5.0.
+/// The same on a ship, whose sway the filter assumes to be white noise, which it isn't: tails are
+/// longer. The largest of twenty clean calibrations of 4 h is 5.0.
 pub const LIMIT_MOVING_SIGMAS: f64 = 8.0;
 
-/// Marks that are kept; when they are full, every other one is dropped.
+/// Number of marks kept; when they are full, every other one is dropped.
 const MARKS: usize = 16;
-/// Time between marks at first, s; doubled whenever they are thinned out. Short calibrations have
+/// Initial time between marks, s; doubled whenever they are thinned out. Short calibrations have
 /// dwells of about a minute, and a drift shows over some of them.
 const SPACING_S: f64 = 300.0;
-/// Share of the variance that has to be gained between two marks.
+/// Smallest share of the variance to be gained between two marks.
 const GAIN_MIN: f64 = 0.01;
-/// Share of the prior variance below which a parameter is looked at.
+/// Share of the prior variance below which a parameter is tested.
 const KNOWN: f64 = 0.25;
 
 #[derive(Clone, Copy, Debug)]
@@ -43,19 +44,19 @@ struct Mark {
     variances: [f64; PARAMETER_COUNT],
 }
 
-/// The largest correction found.
+/// Largest correction found.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "state", derive(serde::Serialize, serde::Deserialize))]
 pub struct Largest {
-    /// In the standard deviations that it should have.
+    /// Size in the standard deviations that the correction should have.
     pub sigmas: f64,
     /// Index of the parameter.
     pub parameter: usize,
-    /// From and until, s of filter time.
+    /// Start and end, s of filter time.
     pub between_s: (f64, f64),
 }
 
-/// Watches the parameters of one calibration.
+/// Drift test of one calibration.
 #[derive(Clone, Debug)]
 pub struct Drift {
     limit_sigmas: f64,
@@ -103,7 +104,7 @@ fn variances(covariance: &Covariance) -> [f64; PARAMETER_COUNT] {
 }
 
 impl Drift {
-    /// A watch that starts with the prior.
+    /// Makes a test that starts with the prior.
     #[must_use]
     pub fn new(limit_sigmas: f64, prior: &Covariance) -> Self {
         let none = [0.0; PARAMETER_COUNT];
@@ -118,7 +119,7 @@ impl Drift {
         }
     }
 
-    /// Takes the estimate after a measurement; does something when a mark is due.
+    /// Takes the estimate after a measurement; acts only when a mark is due.
     #[inline]
     pub fn watch(&mut self, time_s: f64, parameters: &Parameters, covariance: &Covariance) {
         if time_s >= self.next_s {
@@ -155,15 +156,15 @@ impl Drift {
         self.next_s = time_s + self.spacing_s;
     }
 
-    /// The estimate went back to one of an earlier time: what was learned since then is undone, and
-    /// what it is held against has to be older.
+    /// Drops the marks after a time to which the estimate was set back: later corrections are
+    /// undone, and the estimate has to be compared with older marks.
     pub fn go_back(&mut self, time_s: f64) {
         while self.len > 0 && self.marks[self.len - 1].time_s > time_s {
             self.len -= 1;
         }
     }
 
-    /// Brings it up to the end of the calibration.
+    /// Compares the estimate at the end of the calibration.
     pub fn finish(&mut self, time_s: f64, parameters: &Parameters, covariance: &Covariance) {
         self.mark(time_s, parameters, covariance);
     }
@@ -174,7 +175,7 @@ impl Drift {
         &self.largest
     }
 
-    /// It is above the limit.
+    /// Returns whether the largest correction is above the limit.
     #[must_use]
     #[inline]
     pub fn is_found(&self) -> bool {
@@ -187,7 +188,7 @@ mod tests {
     use super::*;
     use crate::covariance::STATE_COUNT;
 
-    /// A scalar parameter estimated from white measurements of σ 1 every 10 s, alone in the filter.
+    /// Estimates a scalar parameter from white measurements of σ 1 every 10 s, alone in the filter.
     /// `z` are the measurement errors; the parameter steps by `step` at the middle.
     fn estimate(z: impl Fn(u64) -> f64, step: f64) -> Drift {
         let mut sigmas = [1e-3; STATE_COUNT];
@@ -206,7 +207,7 @@ mod tests {
         drift
     }
 
-    /// Normal variables from Philox-free integer mixing: sums of twelve uniform ones.
+    /// Normal variables from integer mixing, without Philox: sums of twelve uniform ones.
     fn normal(seed: u64) -> impl Fn(u64) -> f64 {
         move |k| {
             let mut state = (seed << 32) ^ (k << 4) ^ 0x9E37_79B9_7F4A_7C15;
@@ -235,7 +236,7 @@ mod tests {
             assert!(drift.is_found());
             assert_eq!(drift.largest().parameter, 4);
         }
-        // Of some hundred dependent pairs in fifty runs: the largest is no small one either.
+        // Some hundred dependent pairs in fifty runs: the largest can't be small either.
         assert!((2.5..5.5).contains(&largest), "{largest}");
     }
 

@@ -1,4 +1,4 @@
-//! How errors grow: the system error model over one interval, in phi-angle and psi-angle form.
+//! System error model over one interval, in phi-angle and psi-angle form: growth of the errors.
 //!
 //! Phi-angle form (Zheng, Han and Zheng, 2015, eq. 1 to 3), errors computed − true:
 //! ```text
@@ -14,7 +14,7 @@
 //! δṙ = −ω_en × δr + δv
 //! ```
 //! The parameters are states too, with no dynamics. They count true − estimated, so that ε = δb +
-//! δM ω + δG f and ∇ = δb_a + δM_a f are what compensation has left over.
+//! δM ω + δG f and ∇ = δb_a + δM_a f are the errors that remain after compensation.
 
 use crate::config::ErrorModel;
 use crate::covariance::{DR, DV, PARAMETERS, PHI, Row, Transition};
@@ -26,8 +26,8 @@ const GYRO_OFF_DIAGONAL: [(usize, usize); 6] = [(0, 1), (0, 2), (1, 0), (1, 2), 
 /// Rows and columns of M_a in the order of its off-diagonal states.
 const ACCEL_OFF_DIAGONAL: [(usize, usize); 3] = [(1, 0), (2, 0), (2, 1)];
 
-/// What happened in a short interval, as far as errors care. Good to second order in its length as
-/// long as the body turns by less than a degree or so.
+/// Motion in a short interval, as far as errors depend on it. Accurate to second order in its
+/// length as long as the body turns by less than about a degree.
 #[derive(Clone, Copy, Debug)]
 pub struct Interval {
     /// Length, s.
@@ -45,16 +45,16 @@ pub struct Interval {
 }
 
 impl Transition {
-    /// Carries the transition on over one interval: `Φ ← (I + F h) Φ`, with the attitude error in
-    /// the middle of the interval driving velocity and the velocity error position.
+    /// Advances the transition over one interval: `Φ ← (I + F h) Φ`, with the attitude error at the
+    /// middle of the interval driving velocity and the velocity error driving position.
     pub fn advance(&mut self, model: ErrorModel, interval: &Interval, earth: &Ellipsoid) {
         let input = parameter_input(interval, [true; 3], true);
         self.advance_by(model, interval, earth, &input);
     }
 
-    /// The same over an interval in which some of the gyros (x, y, z), or the accelerometers, were
-    /// not used, but what is known of the motion: their parameters had no effect. Specific force
-    /// that isn't measured is taken as that of a base at rest in n, and turns with no attitude error.
+    /// Advances the transition over an interval in which known motion replaced some of the gyros
+    /// (x, y, z) or the accelerometers: their parameters had no effect. Specific force that isn't
+    /// measured is assumed to be that of a base at rest in n, and turns with no attitude error.
     pub fn advance_bridged(
         &mut self,
         model: ErrorModel,
@@ -88,7 +88,7 @@ impl Transition {
         let w_coriolis = w_ie + w_in;
         let f = &interval.delta_velocity_n;
 
-        // δω_ie h and δω_en h by δv_N, δv_E, δr_N, δr_D; nothing of it in psi-angle form.
+        // δω_ie h and δω_en h by δv_N, δv_E, δr_N, δr_D; zero in psi-angle form.
         let on = if model == ErrorModel::Phi { 1.0 } else { 0.0 };
         let ie_x_rn = on * w_ie.z / rm;
         let ie_z_rn = -on * w_ie.x / rm;
@@ -157,7 +157,7 @@ impl Transition {
     }
 }
 
-/// What the parameter errors add to φ (rows 0 to 2) and δv (rows 3 to 5) in the interval.
+/// Contribution of the parameter errors to φ (rows 0 to 2) and δv (rows 3 to 5) in the interval.
 fn parameter_input(
     interval: &Interval,
     gyros_used: [bool; 3],

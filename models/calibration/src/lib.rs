@@ -2,27 +2,27 @@
 //!
 //! A state machine that is stepped one sample at a time ([`Core::step`]): it aligns, turns its own
 //! gimbals through a position sequence, estimates its sensors' errors, compensates them and
-//! navigates. It sees samples and aiding, never the truth, and it neither allocates nor asks for
-//! the time.
+//! navigates. It gets samples and aiding, never the truth, and it neither allocates nor reads a
+//! clock.
 //!
-//! The modules, in the order in which a sample meets them:
+//! The modules, in the order in which they handle a sample:
 //!
 //! | module | idea |
 //! |---|---|
-//! | [`config`] | what the core is given before the first sample |
-//! | [`sequence`], [`positions`], [`schedule`] | the stops, the published ones, and when the gimbals turn |
-//! | [`monitor`] | what is wrong with a sample on its face: gaps, stuck channels, saturation |
-//! | [`screen`] | increments that jump as no motion makes them |
-//! | [`continuity`] | rates that break off, as those of a spike below what a single sample shows |
+//! | [`config`] | configuration of the core, given before the first sample |
+//! | [`sequence`], [`positions`], [`schedule`] | stops, published sequences, timing of the moves |
+//! | [`monitor`] | plain faults of a sample: gaps, stuck channels, saturation |
+//! | [`screen`] | increments that jump further than any motion allows |
+//! | [`continuity`] | discontinuities of rates, by spikes too small to show in a single sample |
 //! | [`compensation`] | subtracting the estimated errors |
 //! | [`alignment`] | the first attitude, from gravity and Earth rate |
 //! | [`strapdown`] | attitude, velocity and position from increments |
-//! | [`error_model`] | how errors grow: phi-angle and psi-angle form (paper, eq. 1 to 3) |
+//! | [`error_model`] | growth of errors: phi-angle and psi-angle form (paper, eq. 1 to 3) |
 //! | [`covariance`] | the 39 × 39 covariance and its kernels |
 //! | [`filter`] | the closed-loop Kalman filter, its gate and its recovery |
-//! | [`drift`] | do the parameters stand still while they are estimated? |
+//! | [`drift`] | test whether the parameters are constant while they are estimated |
 //! | [`least_squares`] | the second estimator: static attitudes and the moves between them |
-//! | [`external_turntable`] | the third: an external turntable's angles are the reference |
+//! | [`external_turntable`] | the third estimator: an external turntable's angles as reference |
 //! | [`state_machine`] | the procedure, and [`Core`] |
 //! | [`table`] | a finished calibration that can be exported and loaded |
 #![no_std]

@@ -1,19 +1,20 @@
-//! What is wrong with a sample on its face: order, gaps, saturation, stuck channels.
+//! Plain faults of a sample: order, gaps, saturation, stuck channels.
 
 use octant_sample::counts::{DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS};
 use octant_sample::{Health, Sample, Status};
 
-/// How a sample follows the one before.
+/// Position of a sample after the last one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Order {
-    /// The next one; its interval in ns.
+    /// The next sample, with its interval in ns.
     Next(u64),
-    /// Later than the next one: so many are missing; the interval of one sample in ns.
+    /// A later sample than the next one.
     Gap {
         /// Missing samples.
         missing: u64,
     },
-    /// Not later than the last one, or by so much that the stamp must be wrong: not to be used.
+    /// Not later than the last sample, or so much later that the stamp must be wrong: not to be
+    /// used.
     Behind,
 }
 
@@ -21,13 +22,13 @@ pub enum Order {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "state", derive(serde::Serialize, serde::Deserialize))]
 pub struct MonitorTally {
-    /// Gaps, and the samples missing in them.
+    /// Number of gaps.
     pub gaps: u64,
     /// Samples missing in all gaps.
     pub missing: u64,
     /// Samples that did not advance in time or sequence.
     pub out_of_order: u64,
-    /// Samples with a channel that the test calls stuck.
+    /// Samples with a channel that the test finds stuck.
     pub stuck: u64,
     /// Samples with saturated or invalid counts.
     pub invalid: u64,
@@ -41,22 +42,22 @@ struct Last {
     time_ns: u64,
 }
 
-/// Watches the stream of samples.
+/// Monitor of the stream of samples.
 #[derive(Clone, Debug)]
 pub struct Monitor {
     period_ns: u64,
     stuck_samples: Option<u32>,
-    /// Which triads have enough noise for the test of identical counts.
+    /// Triads with enough noise for the test of identical counts.
     testable: [bool; 2],
     last: Option<Last>,
-    /// Counts of the last sample, gyros first. Kept as they are compared: copying the sample whole
-    /// would wait for the stores that have just filled it.
+    /// Counts of the last sample, gyros first. Kept as they are compared: a copy of the whole
+    /// sample would wait for the stores that have just filled it.
     counts: [i32; 6],
     /// Samples in a row, beyond the first, in which a channel gave the same count.
     identical: [u32; 6],
-    /// One of those is not zero.
+    /// True if one of `identical` is not zero.
     repeats: bool,
-    /// There are no counts yet to compare with.
+    /// True if there are no counts yet to compare with.
     fresh: bool,
     tally: MonitorTally,
 }
@@ -82,16 +83,16 @@ impl Monitor {
     }
 }
 
-/// A stamp or number that jumps ahead by more than a day is damaged: no source pauses for so long,
-/// and followed, it would put every later sample behind it.
+/// Largest jump ahead of a stamp or number; a larger one is damage: no source pauses for more than
+/// a day, and if it were accepted, every later sample would lie before it.
 const JUMP_MAX_NS: u64 = 86_400_000_000_000;
 
 /// White noise below this many counts makes identical samples likely.
 const TESTABLE_COUNTS: f64 = 20.0;
 
 impl Monitor {
-    /// A monitor for samples of this period, noise (1σ of an increment, rad and m/s) and number of
-    /// identical counts in a row that make a channel stuck.
+    /// Makes a monitor for samples of this period, noise (1σ of an increment, rad and m/s) and
+    /// number of identical counts in a row that make a channel stuck.
     #[must_use]
     pub fn new(period_ns: u64, sigmas: (f64, f64), stuck_samples: Option<u32>) -> Self {
         Self {
@@ -110,8 +111,8 @@ impl Monitor {
         }
     }
 
-    /// How this sample follows the last, and its health flags but those of stuck channels, which
-    /// [`Self::stuck`] or a [`crate::screen::Screen`] looks for.
+    /// Returns the position of this sample after the last, and its health flags without those of
+    /// stuck channels, for which [`Self::stuck`] or a [`crate::screen::Screen`] tests.
     #[inline]
     pub fn check(&mut self, sample: &Sample) -> (Order, Health) {
         let mut health = Health::empty();
@@ -146,7 +147,7 @@ impl Monitor {
         }
         let interval_ns = sample.device_time.ns - last.time_ns;
         if interval_ns == self.period_ns && sample.sequence == last.sequence + 1 {
-            // As it should be; a division is dear at every sample.
+            // The usual case, without a division: division is slow for every sample.
             return Order::Next(interval_ns);
         }
         let jump = sample.sequence - last.sequence;
@@ -158,14 +159,14 @@ impl Monitor {
         if periods >= 2 { Order::Gap { missing: periods - 1 } } else { Order::Next(interval_ns) }
     }
 
-    /// Channels that give the same count again and again; to be asked for every sample.
+    /// Finds channels that repeat the same count; to be called for every sample.
     ///
-    /// Each count is an argument of its own, and the call is kept, so that each is read the way it
-    /// was written: a wide read of what single stores have just filled waits for them.
+    /// Each count is an argument of its own, and the call is not inlined, so that each is read with
+    /// the width with which it was written: a wide read of single stores has to wait for them.
     #[inline(never)]
     pub fn stuck(&mut self, x: i32, y: i32, z: i32, u: i32, v: i32, w: i32) -> Health {
         let before = core::mem::replace(&mut self.counts, [x, y, z, u, v, w]);
-        // With noise of many counts there is nothing to do in nearly every sample.
+        // With noise of many counts nearly every sample ends here.
         let same = x == before[0]
             || y == before[1]
             || z == before[2]
@@ -196,7 +197,7 @@ impl Monitor {
         health
     }
 
-    /// Takes note of a sample with a channel that a screen found stuck.
+    /// Counts a sample with a channel that a screen found stuck.
     pub fn note_stuck(&mut self) {
         self.tally.stuck += 1;
     }

@@ -1,8 +1,8 @@
 //! The published sequences, as data: cumulative gimbal angles in degrees (azimuth, roll, weight).
 //!
-//! The angles of the paper's own eight positions are not published; these are ours, and so are those
-//! of the twelve and the twenty-four for two gimbals. The two tilts of the eight lie in different
-//! body planes: two in the same plane add nothing to one.
+//! The angles of the paper's own eight positions are not published; these are Octant's, and so are
+//! those of the twelve and the twenty-four for two gimbals. The two tilts of the eight lie in
+//! different body planes: a second tilt in the same plane adds nothing.
 //!
 //! Tables of turns about body axes, as they are published for three-axis tables, are in
 //! [`FREE_TABLE`].
@@ -14,7 +14,7 @@ use octant_earth::{frames, rotation};
 /// A stop: azimuth and roll in degrees, cumulative, and dwell relative to weight 1.
 pub type Degrees = (f64, f64, f64);
 
-/// The conventional six positions, walked there and back in both planes: 17 stops.
+/// The conventional six positions, visited forth and back in both planes: 17 stops.
 pub const SIX: &[Degrees] = &[
     (0.0, 0.0, 1.0),
     (0.0, 90.0, 1.0),
@@ -58,8 +58,8 @@ pub const EIGHT: &[Degrees] = &[
     (0.0, 0.0, 1.0),
 ];
 
-/// The eight positions with the tilts (45, 45) and (45, −45) in the same two places of the path: from
-/// a level stop they turn both gimbals. They see Gzz better than (0, 45) with (90, 45).
+/// The eight positions with the tilts (45, 45) and (45, −45) at the same two places of the path:
+/// from a level stop they turn both gimbals. They determine Gzz better than (0, 45) with (90, 45).
 pub const EIGHT_LEVEL: &[Degrees] = &[
     (0.0, 0.0, 1.0),
     (45.0, 45.0, 2.0),
@@ -82,7 +82,7 @@ pub const EIGHT_LEVEL: &[Degrees] = &[
     (0.0, 0.0, 1.0),
 ];
 
-/// A negative control: the tilts (0, 45) and (0, −45) in the same two places. Both lie in one body
+/// Negative control: the tilts (0, 45) and (0, −45) at the same two places. Both lie in one body
 /// plane, and the second adds nothing to the first.
 pub const EIGHT_SAME_PLANE: &[Degrees] = &[
     (0.0, 0.0, 1.0),
@@ -107,8 +107,8 @@ pub const EIGHT_SAME_PLANE: &[Degrees] = &[
 ];
 
 /// Twelve different orientations for two gimbals, one gimbal a move: each axis up and down with two
-/// headings. The angles are ours; the published twelve turn about axes that two gimbals don't have,
-/// see [`FREE_TABLE`].
+/// headings. The angles are Octant's; the published twelve turn about axes that two gimbals don't
+/// have, see [`FREE_TABLE`].
 pub const TWELVE: &[Degrees] = &[
     (0.0, 0.0, 1.0),
     (180.0, 0.0, 1.0),
@@ -149,7 +149,7 @@ pub const NINETEEN: &[Degrees] = &[
 ];
 
 /// Twenty-four positions for two gimbals, one gimbal a move: four azimuths at each of six rolls 60°
-/// apart. The angles are ours.
+/// apart. The angles are Octant's.
 pub const TWENTY_FOUR: &[Degrees] = &[
     (0.0, 0.0, 1.0),
     (90.0, 0.0, 1.0),
@@ -177,7 +177,7 @@ pub const TWENTY_FOUR: &[Degrees] = &[
     (0.0, 300.0, 1.0),
 ];
 
-/// The named sequences of a calibration: name, stops, and what they are in a line.
+/// Named sequences of a calibration: name, stops, and a description in one line.
 pub const SEQUENCES: &[(&str, &[Degrees], &str)] = &[
     ("six", SIX, "the conventional method: six orthogonal attitudes, 17 stops"),
     ("eight", EIGHT, "the six with two tilts in different body planes, 19 stops"),
@@ -204,7 +204,7 @@ pub const SEQUENCES: &[(&str, &[Degrees], &str)] = &[
     ),
 ];
 
-/// The stops of a named sequence of [`SEQUENCES`].
+/// Finds the stops of a named sequence of [`SEQUENCES`].
 #[must_use]
 pub fn named(name: &str) -> Option<&'static [Degrees]> {
     SEQUENCES.iter().find(|(known, ..)| *known == name).map(|(_, stops, _)| *stops)
@@ -244,8 +244,8 @@ pub enum Axis {
 
 use Axis::{X, Y, Z};
 
-/// Published sequences for a table that turns freely about the body axes: name, and turns in degrees.
-/// The first attitude is that before the first turn.
+/// Published sequences for a table that turns freely about the body axes: name, and turns in
+/// degrees. The first attitude is the one before the first turn.
 ///
 /// - `nineteen`: Xie Bo, 2011.
 /// - `twelve`: twelve turns, thirteen attitudes.
@@ -301,7 +301,8 @@ fn about(axis: Axis, degrees: f64) -> Matrix3<f64> {
     }
 }
 
-/// The attitudes `c_cb` of a sequence of turns about body axes: `start`, and that after each turn.
+/// Iterates over the attitudes `c_cb` of a sequence of turns about body axes: `start`, and the
+/// attitude after each turn.
 pub fn attitudes(
     start: Matrix3<f64>,
     turns: &[(Axis, f64)],
@@ -313,9 +314,9 @@ pub fn attitudes(
     core::iter::once(start).chain(after)
 }
 
-/// Whether two gimbals reach every attitude that the turns lead to from azimuth `azimuth_deg` at
-/// roll 0: those of the form `Rx(roll) · Rz(azimuth)`, in which body z stays at right angles to the
-/// roll axis. `None`: they do. Otherwise the index of the first turn that leads out.
+/// Finds the first turn whose attitude two gimbals can't reach, starting from azimuth `azimuth_deg`
+/// at roll 0: an attitude that isn't `Rx(roll) · Rz(azimuth)`, in which body z stays at right
+/// angles to the roll axis. Returns its index; `None`: they reach all.
 #[must_use]
 pub fn unreachable_turn(azimuth_deg: f64, turns: &[(Axis, f64)]) -> Option<usize> {
     let start = frames::c_cb(azimuth_deg.to_radians(), 0.0);
@@ -323,7 +324,7 @@ pub fn unreachable_turn(azimuth_deg: f64, turns: &[(Axis, f64)]) -> Option<usize
     attitudes(start, turns).skip(1).position(|c_cb| c_cb[(0, 2)].abs() > 1e-9)
 }
 
-/// A sequence from degrees.
+/// Makes a sequence from degrees.
 ///
 /// # Errors
 /// As [`Sequence::new`].
@@ -357,7 +358,7 @@ mod tests {
             from_degrees(stops, 1).unwrap();
             for (azimuth, roll) in moves(stops) {
                 assert!(azimuth || roll, "{name}");
-                // The other pairs of tilts are reached by both gimbals together.
+                // The tilts of these two are reached by both gimbals together.
                 let both = ["eight-level", "eight-same-plane"].contains(name);
                 assert!(azimuth != roll || both, "{name}: one gimbal a move");
             }

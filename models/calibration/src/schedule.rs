@@ -1,4 +1,5 @@
-//! When the gimbals turn: dwell times that fill the calibration, and a cursor that walks the stops.
+//! Timing of the gimbals: dwell times that fill the calibration, and a cursor that visits the
+//! stops.
 
 use crate::config::TurntableRates;
 use crate::sequence::{STOPS_MAX, Sequence, Stop};
@@ -9,7 +10,7 @@ use octant_sample::{GimbalAngles, GimbalCommand};
 pub fn move_s(angle_rad: f64, rates: &TurntableRates) -> f64 {
     let angle = angle_rad.abs();
     let (rate, acceleration) = (rates.rate_radps, rates.acceleration_radps2);
-    // To the last bit the two branches meet where the rate is just reached.
+    // The two branches agree to the last bit where the rate is just reached.
     if angle * acceleration >= rate * rate {
         angle / rate + rate / acceleration
     } else {
@@ -34,7 +35,7 @@ pub fn turned_rad(angle_rad: f64, t_s: f64, rates: &TurntableRates) -> f64 {
     if angle_rad < 0.0 { -turned } else { turned }
 }
 
-/// Time of the move between two stops: both gimbals turn at once, the slower one counts.
+/// Time of the move between two stops: both gimbals turn at once, and the slower one decides.
 #[must_use]
 pub fn move_between_s(from: &Stop, to: &Stop, rates: &TurntableRates) -> f64 {
     move_s(to.azimuth_rad - from.azimuth_rad, rates).max(move_s(to.roll_rad - from.roll_rad, rates))
@@ -67,10 +68,10 @@ pub fn moves_s(sequence: &Sequence, rates: &TurntableRates) -> f64 {
     move_between_s(&Stop::default(), &stops[0], rates) + passes * within + (passes - 1.0) * back
 }
 
-/// Dwell of weight 1 that makes a sequence fill `duration_s`.
+/// Dwell of weight 1 with which a sequence fills `duration_s`.
 ///
 /// # Errors
-/// If less than [`DWELL_MIN_S`] would be left for it.
+/// If it would be less than [`DWELL_MIN_S`].
 pub fn dwell_s(
     sequence: &Sequence,
     duration_s: f64,
@@ -86,16 +87,16 @@ pub fn dwell_s(
     }
 }
 
-/// Walks a sequence in time: which stop is commanded, and whether the gimbals are on their way.
+/// Advances through a sequence in time: the commanded stop, and whether the gimbals are moving.
 ///
-/// Times are those of the phase (calibration or navigation), in samples since its start.
+/// Ticks count samples since the start of the phase (calibration or navigation).
 #[derive(Clone, Debug)]
 pub struct Cursor {
     sequence: Sequence,
     rates: TurntableRates,
     dwell_s: f64,
     sample_s: f64,
-    /// Passes to walk; navigation walks for ever.
+    /// True: without end, as in navigation; else the passes of the sequence.
     endless: bool,
     stop: u32,
     /// Exact start of the present dwell and its end, s since the start of the phase, and the same
@@ -130,7 +131,7 @@ impl Cursor {
     ) -> Self {
         let from = Stop { azimuth_rad: from.azimuth_rad(), roll_rad: from.roll_rad(), weight: 1.0 };
         let first = sequence.stops()[0];
-        // An encoder's reading of "already there" is no move.
+        // An encoder reading within 1 mrad of the first stop needs no move.
         let there = (from.azimuth_rad - first.azimuth_rad).abs() < 1e-3
             && (from.roll_rad - first.roll_rad).abs() < 1e-3;
         let arrival_s = if there { 0.0 } else { move_between_s(&from, &first, &rates) };
@@ -151,17 +152,17 @@ impl Cursor {
         cursor
     }
 
-    /// Fills in what follows from the present stop and the arrival at it.
+    /// Computes the data that follow from the present stop and the arrival at it.
     fn plan_dwell(&mut self) {
         let stop = self.target();
         self.departure_s = self.arrival_s + stop.weight * self.dwell_s;
-        // Past any run, and still something can be added to it.
+        // Beyond any run, and small enough for additions.
         let tick = |time_s: f64| ((time_s / self.sample_s + 0.5) as u64).min(u64::MAX / 4);
         (self.arrival_tick, self.departure_tick) = (tick(self.arrival_s), tick(self.departure_s));
         self.command.target = GimbalAngles::from_rad(stop.azimuth_rad, stop.roll_rad);
     }
 
-    /// Carries on to the output of sample `tick` (from 1) of the phase.
+    /// Advances to the output of sample `tick` (from 1) of the phase.
     ///
     /// A command in the output of sample k acts from the end of interval k + 1, so a move that is
     /// to start at time t is commanded one sample early.
@@ -172,7 +173,7 @@ impl Cursor {
         }
     }
 
-    /// After a gap several stops may have gone by.
+    /// Advances by several stops, as after a gap.
     #[cold]
     fn catch_up(&mut self, tick: u64) {
         for _ in 0..STOPS_MAX {
@@ -182,7 +183,7 @@ impl Cursor {
         }
     }
 
-    /// Sets out to the next stop; `false` at the last.
+    /// Departs to the next stop; `false` at the last.
     fn depart(&mut self) -> bool {
         let count = self.sequence.stops().len() as u32;
         let next = self.stop.wrapping_add(1);
@@ -202,7 +203,7 @@ impl Cursor {
         stops[self.stop as usize % stops.len()]
     }
 
-    /// It walks for ever, as in navigation.
+    /// Returns whether the cursor repeats the sequence without end, as in navigation.
     #[must_use]
     pub fn is_endless(&self) -> bool {
         self.endless
@@ -214,7 +215,7 @@ impl Cursor {
         self.stop
     }
 
-    /// The gimbals are on their way at the end of sample `tick`.
+    /// Returns whether the gimbals are moving at the end of sample `tick`.
     #[must_use]
     #[inline]
     pub fn moving(&self, tick: u64) -> bool {

@@ -1,20 +1,22 @@
-//! Which samples can't be: increments that jump as no motion makes them, and channels that stick.
+//! Rejection of impossible samples: increments that jump further than any motion allows, and
+//! channels that are stuck.
 //!
-//! Two neighbouring increments of one channel differ by their noise and by what the rate (or the
-//! specific force) changes in one period. With the table's and the base's largest accelerations that
-//! is bounded, and what is beyond the bound isn't believed. A clean stream costs one comparison a
-//! channel: everything else is looked at only when one of these fails.
+//! Two neighbouring increments of one channel differ by their noise and by the change of the rate
+//! (or of the specific force) in one period. The table's and the base's largest accelerations bound
+//! that change, and a difference beyond the bound is rejected. A clean stream costs one comparison
+//! a channel: everything else is computed only if one of these fails.
 //!
 //! Limits, for a period h and noise σ of an increment:
 //! - noise: 8 √2 σ. The difference of two samples has √2 σ, and eight of these are exceeded with
 //!   1.2e-15: in 28 h at 200 Hz, 2e7 samples of six channels, with 2e-7.
 //! - gyros: α h², where α is the acceleration that the base can have and, while the gimbals move,
 //!   twice that of the turntable on both gimbals with the square of the rates (two gimbals turning
-//!   at once carry each other's axes around). Twice, because a servo isn't its set point.
-//! - accelerometers: what turns gravity through the axes, (g + a) ω h², and the base's own jerk.
+//!   at once carry each other's axes around). Twice, because a servo doesn't follow its set point
+//!   exactly.
+//! - accelerometers: gravity turning through the axes, (g + a) ω h², and the base's own jerk.
 //!
-//! The hold is bounded: after that the stream is believed again. And a stream that keeps jumping is
-//! right, and the limit wrong: it is doubled.
+//! The hold is bounded: after it the stream is accepted again. If a stream keeps jumping, the limit
+//! must be wrong, and is doubled.
 
 use crate::config::{Base, Noise, Screening, TurntableRates};
 use octant_sample::counts::{DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS};
@@ -29,47 +31,49 @@ pub const ACCELEROMETERS: u8 = 0b11_1000;
 
 /// Standard deviations of the difference of two samples that the noise is allowed.
 const NOISE_SIGMAS: f64 = 8.0;
-/// White noise below this many counts isn't what limits a real sensor: its limit means nothing.
+/// Smallest white noise for which the limit is meaningful, counts; below it noise doesn't limit a
+/// real sensor.
 const TESTABLE_COUNTS: f64 = 20.0;
-/// Margin on what the turntable's servo makes of its acceleration and rate.
+/// Margin for the deviation of the turntable's servo from its acceleration and rate.
 const SERVO_MARGIN: f64 = 2.0;
-/// A channel that isn't tested: no difference is as large, and what is below the floor wraps to more.
+/// Limit of a channel without a test: no difference is as large, and a difference below the floor
+/// wraps to more.
 const NO_LIMIT: u32 = u32::MAX - 1;
 /// Standard gravity, for a bound.
 const GRAVITY_MPS2: f64 = 9.81;
-/// Longest hold where the motion is known (a base that stands), s, and where the last increments are
-/// held, s: a ship's 5 °/s² make 90″ of 0.1 s.
+/// Longest hold if the motion is known (a base at rest), s, and if the last increments are held, s:
+/// a ship's 5 °/s² make 90″ in 0.1 s.
 const HOLD_KNOWN_S: f64 = 2.0;
 const HOLD_LAST_S: f64 = 0.1;
-/// Jumps in one stretch of ten seconds that a fault is believed to make; a stream with more of them
-/// is like this. One hold that comes to its end counts as ten.
+/// Largest number of jumps in a stretch of ten seconds that a fault can cause; more jumps are a
+/// property of the stream. One hold that reaches its end counts as ten.
 const JUMPS_MAX: u32 = 50;
 const JUMPS_STRETCH_S: f64 = 10.0;
 const EXPIRED_JUMPS: u32 = 10;
 
-/// What became of a sample that didn't pass at once.
+/// Result for a sample that didn't pass at once.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Examined {
-    /// Channels that jumped and are not believed.
+    /// Channels that jumped and are rejected.
     pub jumped: u8,
-    /// Channels whose count has been the same for too long.
+    /// Channels that have repeated the same count for too long.
     pub stuck: u8,
-    /// Those among them that were found stuck with this sample.
+    /// Stuck channels that were found with this sample.
     pub found_stuck: u8,
-    /// Channels whose jump has lasted too long: believed again from this sample on.
+    /// Channels that have jumped for too long: accepted again from this sample on.
     pub expired: u8,
 }
 
-/// The screen of one stream.
+/// Screen of one stream.
 #[derive(Clone, Debug)]
 pub struct Screen {
-    /// Last counts that were believed.
+    /// Last counts that were accepted.
     last: Counts,
-    /// Limit while the gimbals stand and while they move; `floor` is 1 where identical counts are
-    /// no accident.
+    /// Limits while the gimbals rest and while they move; `floor` is 1 where identical counts are a
+    /// fault.
     limits: [[u32; 6]; 2],
     floor: [u32; 6],
-    /// Nothing is being held, counted or waited for.
+    /// True if no channel is held and no repeats are counted.
     calm: bool,
     started: bool,
     stuck_limit: u32,
@@ -108,7 +112,7 @@ impl Screen {
 }
 
 impl Screen {
-    /// A screen for samples of this period (s).
+    /// Makes a screen for samples of this period (s).
     #[must_use]
     pub fn new(
         screening: &Screening,
@@ -126,7 +130,7 @@ impl Screen {
         let table_rate = SERVO_MARGIN * core::f64::consts::SQRT_2 * turntable.rate_radps;
         let table_acceleration =
             SERVO_MARGIN * core::f64::consts::SQRT_2 * turntable.acceleration_radps2;
-        // Standing gimbals at 0, moving ones at 1.
+        // Index 0: gimbals at rest; index 1: gimbals moving.
         let angular = [
             base_acceleration,
             base_acceleration
@@ -182,8 +186,8 @@ impl Screen {
         }
     }
 
-    /// The sample follows the last one as it should; then it is taken. If not, [`Self::examine`] it.
-    /// Counts one by one: see the caller.
+    /// Returns whether the sample passes, and takes it in that case; otherwise call
+    /// [`Self::examine`]. The counts are separate arguments for the reason given at the caller.
     #[must_use]
     #[inline]
     #[allow(clippy::too_many_arguments, reason = "in registers")]
@@ -203,8 +207,8 @@ impl Screen {
         good
     }
 
-    /// Looks closely at a sample that didn't pass. `expected`: counts that the known motion makes,
-    /// where it is known; `tick`: number of the sample.
+    /// Examines a sample that didn't pass. `expected`: counts of the known motion, if it is known;
+    /// `tick`: number of the sample.
     pub fn examine(
         &mut self,
         counts: &Counts,
@@ -239,20 +243,20 @@ impl Screen {
                 if !was_stuck {
                     found.found_stuck |= bit;
                 }
-                // What a dead channel says is neither a jump nor something to jump from.
+                // The counts of a stuck channel are neither a jump nor a reference for one.
                 self.held[i] = 0;
                 continue;
             }
             let limit = self.limits[usize::from(moving)][i];
             let near =
                 |reference: f64, allowed: f64| (f64::from(counts[i]) - reference).abs() <= allowed;
-            // What moves goes on moving while it isn't believed; the limit is twice the motion.
+            // A motion continues while it is rejected; the limit is twice the motion.
             let moves = moving || expected.is_none();
             let since = if moves { 1.0 + 0.5 * f64::from(self.held[i]) } else { 1.0 };
             let believed = limit == NO_LIMIT
                 || near(f64::from(self.last[i]), since * f64::from(limit))
                 || expected.is_some_and(|expected| near(expected[i], f64::from(limit)))
-                // Nothing says how far the truth went while the channel was dead.
+                // The motion while the channel was stuck is unknown.
                 || (was_stuck && expected.is_none());
             if believed {
                 self.last[i] = counts[i];
@@ -285,7 +289,7 @@ impl Screen {
         found
     }
 
-    /// A stream that jumps again and again is like this: its limit is wrong.
+    /// Doubles the limit of a triad whose stream jumps again and again: the limit must be wrong.
     fn widen(&mut self, triad: usize) {
         for limits in &mut self.limits {
             for limit in &mut limits[3 * triad..3 * triad + 3] {
@@ -294,13 +298,13 @@ impl Screen {
         }
     }
 
-    /// Repeats of the last count in a row.
+    /// Number of repeats of the last count in a row.
     #[must_use]
     pub fn run(&self, channel: usize) -> u32 {
         self.runs[channel]
     }
 
-    /// Last counts that were believed.
+    /// Last counts that were accepted.
     #[must_use]
     pub fn last(&self) -> &Counts {
         &self.last
@@ -326,7 +330,7 @@ mod tests {
         screen
     }
 
-    /// Counts that differ from sample to sample by less than the noise.
+    /// Counts that change from sample to sample by less than the noise.
     fn still(k: i32) -> Counts {
         [100 + k % 2, 200 + k % 2, 300 + k % 2, k % 2, 1 + k % 2, -52_000_000 + k % 2]
     }
@@ -368,7 +372,7 @@ mod tests {
             assert_eq!(found.jumped, 0b10);
             held += 1;
         }
-        // 0.1 s where the motion isn't known.
+        // 0.1 s if the motion isn't known.
         assert_eq!(held, 20);
         assert!(passes(&mut screen, jumped(1), false), "believed");
     }
@@ -408,7 +412,7 @@ mod tests {
                     assert_eq!(found.found_stuck != 0, found.stuck != 0 && stuck == 1);
                 }
             }
-            // The eighth of nineteen equal counts is the first that is called stuck.
+            // The eighth of nineteen equal counts is the first that is found stuck.
             assert_eq!(stuck, if screening.stuck_samples.is_some() { 12 } else { 0 });
             let wild = [i32::MIN, i32::MAX, 0, i32::MAX, i32::MIN, 5];
             let good = passes(&mut screen, wild, true);

@@ -3,7 +3,7 @@
 /// Largest number of stops of a sequence.
 pub const STOPS_MAX: usize = 64;
 
-/// One stop: cumulative gimbal angles in rad, and how long it is held relative to the others.
+/// One stop: cumulative gimbal angles in rad, and dwell relative to the others.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "state", derive(serde::Serialize, serde::Deserialize))]
 pub struct Stop {
@@ -23,7 +23,7 @@ pub struct Sequence {
     passes: u32,
 }
 
-/// Why a sequence is not one.
+/// Reason why stops are not a valid sequence.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum SequenceError {
     /// No stop at all.
@@ -57,7 +57,7 @@ pub enum SequenceError {
 }
 
 impl Sequence {
-    /// A sequence of stops that is walked `passes` times.
+    /// Makes a sequence of stops that is repeated `passes` times.
     ///
     /// # Errors
     /// If there are no stops or more than [`STOPS_MAX`], no pass, an angle beyond the encoders'
@@ -93,14 +93,14 @@ impl Sequence {
         &self.stops[..self.len]
     }
 
-    /// How often the stops are walked.
+    /// Number of passes through the stops.
     #[must_use]
     pub fn passes(&self) -> u32 {
         self.passes
     }
 }
 
-/// As its stops and passes, checked when they are read.
+/// Serde form: stops and passes, checked on reading.
 #[cfg(feature = "state")]
 mod value {
     extern crate alloc;

@@ -15,17 +15,17 @@ use octant_sample::Navigation;
 /// ship at 10 m/s moves 0.5 m, 1e-7 of the Earth's radius.
 const EARTH_UPDATE_SAMPLES: u32 = 10;
 
-/// What the vertical channel does.
+/// Mode of the vertical channel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "state", derive(serde::Serialize, serde::Deserialize))]
 pub enum Vertical {
-    /// Integrated like the others: needs aiding, a free one diverges.
+    /// Integrated like the others: needs aiding, without it the channel diverges.
     Free,
-    /// Height and vertical velocity are held where they are.
+    /// Height and vertical velocity keep their values.
     Held,
 }
 
-/// Navigation state and what its integration remembers.
+/// Navigation state and the memory of its integration.
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "state", derive(serde::Serialize, serde::Deserialize))]
 pub struct Strapdown {
@@ -39,7 +39,7 @@ pub struct Strapdown {
     /// ω_ie in n at the last evaluation.
     earth_rate: Vector3<f64>,
     tan_latitude: f64,
-    /// 1/(R_M + h), 1/(R_N + h) and 1/((R_N + h) cos L), 1/m: divisions are dear at every sample.
+    /// 1/(R_M + h), 1/(R_N + h) and 1/((R_N + h) cos L), 1/m: division is slow for every sample.
     per_meridian: f64,
     per_transverse: f64,
     per_parallel: f64,
@@ -104,9 +104,9 @@ impl Strapdown {
         let (dtheta0, dv0) = self.previous.unwrap_or((*dtheta, *dv));
         self.previous = Some((*dtheta, *dv));
 
-        // What the state alone decides comes first: nothing of it waits for the sample.
-        // The navigation frame turns under the body by zeta, which is below 1e-6 rad: its quaternion
-        // to second order, closed by the renormalization.
+        // The part that depends on the state alone comes first, so that it doesn't wait for the
+        // sample. The navigation frame turns under the body by zeta, which is below 1e-6 rad: its
+        // quaternion to second order, closed by the renormalization.
         let v = &self.velocity_mps;
         let east = v.y * self.per_transverse;
         let transport_rate =
@@ -117,8 +117,8 @@ impl Strapdown {
         let q_turned = renormalize(frame * self.q_nb);
         let c_nb = self.c_nb();
 
-        // Coning, rotation and sculling in the body frame at the start of the interval; what has
-        // dtheta as its first factor is taken together.
+        // Coning, rotation and sculling in the body frame at the start of the interval; terms with
+        // dtheta as their first factor are combined.
         let rotation = dtheta + dtheta0.cross(dtheta) * (1.0 / 12.0);
         let turned = dtheta.cross(dv);
         let dv_body = dv
@@ -181,7 +181,7 @@ impl Strapdown {
         self.move_to(site);
     }
 
-    /// Nothing that is no number has come to it. What has, was kept out of the solution.
+    /// Returns whether all input so far was finite. Other input was kept out of the solution.
     #[must_use]
     #[inline]
     pub fn is_sound(&self) -> bool {
@@ -207,7 +207,7 @@ impl Strapdown {
         &self.delta_velocity_n
     }
 
-    /// The Earth where the instrument is, as of the last evaluation.
+    /// Earth model at the instrument's position, of the last evaluation.
     #[must_use]
     pub fn earth(&self) -> &Ellipsoid {
         &self.earth
@@ -228,7 +228,7 @@ impl Strapdown {
     }
 }
 
-/// What is not finite stays so in a sum; a sum that overflows is of no use either.
+/// A value that isn't finite remains so in a sum; a sum that overflows is useless too.
 #[inline]
 fn finite(q: &Quaternion<f64>, v: &Vector3<f64>) -> bool {
     ((q.w + q.i) + (q.j + q.k) + (v.x + v.y + v.z)).is_finite()

@@ -1,14 +1,14 @@
-//! A finished calibration: parameters, their full covariance, quality and provenance, as bytes that
-//! can be stored and loaded.
+//! A finished calibration: parameters, their full covariance, quality and provenance, as bytes for
+//! storing and loading.
 //!
 //! Layout, little-endian: magic `OCTCAL`, version u16, then the fields of [`CalibrationTable`] in
-//! order (the covariance as its upper triangle by rows; of the quality its first four fields, the
+//! order (the covariance as its upper triangle by rows; the first four fields of the quality, the
 //! others follow the provenance since version 2), then CRC-32 (ISO-HDLC) of all before.
 
 use octant_sample::Parameters;
 use octant_sample::parameters::PARAMETER_COUNT;
 
-/// Version of the layout that this core writes, and the newest that it reads.
+/// Version of the layout that this core writes, and the newest version that it reads.
 pub const TABLE_VERSION: u16 = 2;
 
 const MAGIC: &[u8; 6] = b"OCTCAL";
@@ -29,17 +29,17 @@ pub struct CalibrationTable {
     /// Covariance of the parameters in the order of [`octant_sample::parameters::NAMES`], SI.
     /// A parameter that was not estimated has variance NaN.
     pub covariance: [[f64; PARAMETER_COUNT]; PARAMETER_COUNT],
-    /// How good it is.
+    /// Quality of the calibration.
     pub quality: Quality,
-    /// How it was made.
+    /// Origin of the calibration.
     pub provenance: Provenance,
 }
 
-/// How good a calibration is.
+/// Quality of a calibration.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "state", derive(serde::Serialize, serde::Deserialize))]
 pub struct Quality {
-    /// Mean normalized innovation squared (three axes); NaN where the method has none.
+    /// Mean normalized innovation squared (three axes); NaN if the method has none.
     pub nis_mean: f64,
     /// Measurements or intervals used.
     pub used: u64,
@@ -47,20 +47,20 @@ pub struct Quality {
     pub rejected: u64,
     /// Recoveries of the filter.
     pub recoveries: u64,
-    /// Samples that were not used, or missing, and bridged by what is known of the motion.
+    /// Samples that were missing or not used, and bridged by the known motion.
     pub bridged: u64,
-    /// Times that gyros and encoders did not show the same turn.
+    /// Number of times that gyros and encoders disagreed on a turn.
     pub gimbal_slips: u64,
     /// Largest correction of a parameter over a stretch of the calibration, in the standard
-    /// deviations that it should have; 0 where it was not looked at.
+    /// deviations that it should have; 0 without the test.
     pub drift_sigmas: f64,
 }
 
-/// How a calibration was made.
+/// Origin of a calibration.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "state", derive(serde::Serialize, serde::Deserialize))]
 pub struct Provenance {
-    /// Device time at which it ended, ns.
+    /// Device time at its end, ns.
     pub ended_ns: u64,
     /// Length, s.
     pub duration_s: f64,
@@ -76,7 +76,7 @@ pub struct Provenance {
     pub method: u16,
 }
 
-/// Why bytes are not a calibration table.
+/// Reason why bytes are not a calibration table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum TableError {
     /// Wrong length.
@@ -96,7 +96,7 @@ pub enum TableError {
         /// Version found.
         found: u16,
     },
-    /// Damaged.
+    /// Wrong checksum.
     #[error("calibration table is damaged: checksum {found:#010x}, computed {computed:#010x}")]
     Checksum {
         /// Checksum in the bytes.
@@ -141,7 +141,7 @@ impl Reader<'_> {
 }
 
 impl CalibrationTable {
-    /// The table as bytes.
+    /// Converts the table to bytes.
     #[must_use]
     pub fn to_bytes(&self) -> [u8; TABLE_BYTES] {
         let mut bytes = [0; TABLE_BYTES];
@@ -177,7 +177,7 @@ impl CalibrationTable {
         bytes
     }
 
-    /// A table from its bytes.
+    /// Reads a table from its bytes.
     ///
     /// # Errors
     /// If the bytes are not a table, are damaged, or are of a newer version.

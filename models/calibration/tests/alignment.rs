@@ -37,8 +37,8 @@ fn azimuth_error_is_that_of_the_golden_gyrocompass() {
         let east = Vector3::new(0.0, value("east_gyro_error_dph") * DEG_PER_HOUR, 0.0);
         let found = phi(value("latitude_deg"), east, Vector3::zeros());
         let expected = value("azimuth_error_arcsec") * ARCSEC;
-        // The golden value is δω/(Ω cos L); the alignment turns by its arc tangent. What is left
-        // besides is the rounding of a quaternion, some 1e-15 rad.
+        // The golden value is δω/(Ω cos L); the alignment turns by its arc tangent. The remaining
+        // error is the rounding of a quaternion, some 1e-15 rad.
         let exact = libm::atan(expected);
         assert!((found.z - exact).abs() < 1e-9 * exact, "{case}: {:e}", found.z);
         assert!(found.x.abs() < 1e-14 && found.y.abs() < 1e-14, "{case}: {found:?}");
@@ -54,7 +54,7 @@ fn tilt_error_is_the_accelerometer_error_over_g() {
     let (north, east) = (error.y / gravity, -error.x / gravity);
     assert!((found.x - north).abs() < 1e-8, "{found:?}, expected {north:e}");
     assert!((found.y - east).abs() < 1e-8, "{found:?}, expected {east:e}");
-    // And φ̇_east = Ω sin L φ_north + Ω cos L φ_down − ε_east = 0 with no gyro error.
+    // With no gyro error, φ̇_east = Ω sin L φ_north + Ω cos L φ_down − ε_east = 0.
     let down = -north * libm::tan(30.5 * DEG);
     assert!((found.z - down).abs() < 1e-8, "{found:?}, expected {down:e}");
 }

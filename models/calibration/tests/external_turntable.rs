@@ -1,4 +1,5 @@
-//! The external turntable as the reference: all thirty parameters, the isotropic part of G too.
+//! The external turntable as the reference: all thirty parameters, including the isotropic part of
+//! G.
 
 use crate::instrument::{ARW, EIGHT, HEADING_RAD, Instrument, SITE, SIX, VRW, truth};
 use octant_calibration::config::{ExternalTurntable, Noise};
@@ -36,8 +37,8 @@ fn without_noise_all_thirty_parameters_come_back() {
     let first = run(instrument(), EIGHT, 20.0, &Parameters::default()).unwrap();
     let second = run(instrument(), EIGHT, 20.0, &first.parameters).unwrap();
     // Tolerances in ppm, arcsec and ug, and for G in deg/h/g: second order of the errors in the
-    // first pass, encoder counts of 0.0015″ in the second; and what an M_g wrong by that makes of
-    // 15 deg/h.
+    // first pass, encoder counts of 0.0015″ in the second; and the effect of an M_g wrong by that
+    // on 15 deg/h.
     for (estimate, tolerance, g_tolerance) in [(&first, 0.1, 1e-5), (&second, 3e-3, 3e-7)] {
         let (found, expected) = (estimate.parameters.to_array(), truth.to_array());
         for i in 0..30 {
@@ -111,7 +112,7 @@ fn in_four_hours_g_is_known_to_what_the_random_walk_allows_isotropic_part_includ
 
 #[test]
 fn six_positions_show_all_of_g_on_the_table() {
-    // Down is ±x, ±y, ±z in six positions, which is all that a linear G needs.
+    // Down is ±x, ±y, ±z in six positions, which is sufficient for a linear G.
     let estimate = run(Instrument::new(truth(), 0.0, 0.0, 1), SIX, 20.0, &Parameters::default());
     assert!(estimate.is_ok(), "{estimate:?}");
 }

@@ -1,6 +1,6 @@
 //! The error model against a numerical Jacobian of the strapdown: each state is perturbed, the
-//! perturbed and the unperturbed navigation run through the same increments, and their difference is
-//! what the transition has to say.
+//! perturbed and the unperturbed navigation process the same increments, and their difference has
+//! to agree with the transition.
 
 use nalgebra::{UnitQuaternion, Vector3};
 use octant_calibration::compensation::Compensation;
@@ -20,7 +20,7 @@ const LATITUDE_RAD: f64 = 0.7;
 const LONGITUDE_RAD: f64 = 0.3;
 const HEIGHT_M: f64 = 50.0;
 
-/// Increments of a body that turns and accelerates on a base that is under way.
+/// Increments of a body that turns and accelerates on a moving base.
 fn increments(k: usize) -> (Vector3<f64>, Vector3<f64>) {
     let t = (k as f64 + 0.5) * DT;
     let rate = Vector3::new(0.08, -0.05 + 0.03 * libm::sin(0.9 * t), 0.06 * libm::cos(0.5 * t));
@@ -73,7 +73,7 @@ fn size(state: usize) -> f64 {
     }
 }
 
-/// Runs the strapdown with a perturbed state, and with none for `None`.
+/// Runs the strapdown with a perturbed state; unperturbed for `None`.
 fn run(perturbed: Option<(usize, f64)>) -> Strapdown {
     let mut strapdown = start();
     let mut parameters = [0.0; 30];
@@ -84,7 +84,8 @@ fn run(perturbed: Option<(usize, f64)>) -> Strapdown {
             let at = |i: usize| Vector3::new(x[i], x[i + 1], x[i + 2]);
             strapdown.correct(&at(PHI), &at(DV), &at(DR));
         } else {
-            // The sensors have the error and nothing compensates: as if −error were compensated.
+            // The sensors have the error, and nothing compensates it: the same as a compensation of
+            // −error.
             parameters[state - PARAMETERS] = -size;
         }
     }
@@ -155,15 +156,15 @@ fn scale(jacobian: &[[f64; MOVING]], state: usize, row: usize) -> f64 {
         .fold(0.0f64, |largest, value| largest.max(value.abs()))
 }
 
-/// How far the model may be off, relative to the scale.
+/// Tolerance of the model, relative to the scale.
 fn tolerance(row: usize, state: usize) -> f64 {
     match (row, state) {
         // The transport rate by a velocity error that grows from zero lags by a sub-step: 50 ms in
         // 4 s. The effect is 1e-6 rad per m/s².
         (0..3, 30..39) => 0.02,
-        // The strapdown evaluates gravity every 50 ms, so it takes note of a correction up to 50 ms
-        // in 4 s late. And gravity's change with latitude is left out of the model: (dg/dL)/R is
-        // 8e-9, 2g/R is 3.1e-6 1/s².
+        // The strapdown evaluates gravity every 50 ms, so that a correction takes effect up to 50
+        // ms in 4 s late. And the model neglects gravity's change with latitude: (dg/dL)/R is 8e-9,
+        // 2g/R is 3.1e-6 1/s².
         (5, 6..9) => 0.015,
         // Sub-steps of 0.3° are of second order, 1e-5; the rest is h/T in small cross terms.
         _ => 1e-3,
@@ -210,7 +211,7 @@ fn the_psi_angle_transition_is_the_phi_angle_one_in_other_variables() {
         unit[..MOVING].copy_from_slice(&to_phi(&moving, first.earth(), first.velocity_mps()));
         let by_phi: [f64; MOVING] =
             core::array::from_fn(|row| (0..STATE_COUNT).map(|j| phi.rows[row][j] * unit[j]).sum());
-        // And through the psi transition.
+        // The same error through the psi transition.
         let end: [f64; MOVING] = core::array::from_fn(|row| psi.rows[row][state]);
         let by_psi = to_phi(&end, last.earth(), last.velocity_mps());
         for row in 0..MOVING {

@@ -25,7 +25,7 @@ fn run(
     estimator.finish()
 }
 
-/// Largest error of a parameter that is estimated, in units that users see.
+/// Largest error of an estimated parameter, in units shown to users.
 fn worst(estimate: &Estimate, truth: &Parameters) -> (f64, &'static str) {
     let (found, expected) = (estimate.parameters.to_array(), truth.to_array());
     let mut worst = (0.0, "");
@@ -58,7 +58,7 @@ fn without_noise_the_parameters_come_back_with_six_and_with_eight_positions() {
         assert_eq!((first.intervals, first.moves), (stops.len(), stops.len() - 1));
         // Table-1 errors squared, over the angle of a move: hundredths of an arcsecond or ppm.
         assert!(worst(&first, &truth).0 < 0.1, "{:?}", worst(&first, &truth));
-        // What is left are the counts: 2e-9 m/s² and 2e-11 rad in 20 s.
+        // The remaining error is from the counts: 2e-9 m/s² and 2e-11 rad in 20 s.
         assert!(worst(&second, &truth).0 < 1e-4, "{:?}", worst(&second, &truth));
     }
 }
@@ -103,7 +103,7 @@ fn with_noise_the_errors_are_as_large_as_sigma_says() {
         let mean = squares / count;
         println!("{} stops: mean of the squared errors in sigma {mean:.2}", stops.len());
         // 210 terms, correlated within a seed: their mean is 1 ± 0.1 to 0.2; sigma is widened where
-        // the residuals are above 1, never narrowed, so the mean may be lower.
+        // the residuals are above 1, never narrowed, so that the mean may be lower.
         assert!((0.6..1.4).contains(&mean), "{mean}");
     }
 }
@@ -140,7 +140,7 @@ fn gyros_that_do_not_see_earth_rate_get_their_matrix_from_rotated_gravity() {
 
 #[test]
 fn positions_that_do_not_determine_the_parameters_are_refused() {
-    // The norm of gravity alone can't see the angles between accelerometers in six positions.
+    // In six positions the norm of gravity alone doesn't show the angles between accelerometers.
     let rotated = run(
         Instrument::new(truth(), 1e-6, 1e-4, 1),
         SIX,
@@ -149,7 +149,7 @@ fn positions_that_do_not_determine_the_parameters_are_refused() {
         &Parameters::default(),
     );
     assert!(matches!(rotated, Err(Refusal::Undetermined { parameter: 27..30 })), "{rotated:?}");
-    // Turning one gimbal only leaves body z without its scale.
+    // Turning only one gimbal leaves the scale of body z undetermined.
     let one_gimbal = [(0.0, 0.0), (0.0, 90.0), (0.0, 180.0), (0.0, 270.0), (0.0, 0.0)];
     let chain = run(
         Instrument::new(truth(), 1e-6, 1e-4, 1),
@@ -188,10 +188,11 @@ fn a_lost_sample_in_a_move_costs_that_move_only() {
 
 #[test]
 fn sigma_is_near_the_golden_filter_and_below_it() {
-    // The golden filter knows that velocity is zero, not that attitude rests: its attitude wanders
-    // with 0.0007 °/√h through a dwell of 12 min (0.3 mdeg, 1.1″), which this adjustment excludes.
-    // So accelerometer biases and scale factors, which don't need attitude, agree within 20 %, and
-    // the rest is better here, by a factor of about two at most. With G known, b_g is better too.
+    // The golden filter knows that velocity is zero, not that attitude is constant: its attitude
+    // wanders with 0.0007 °/√h through a dwell of 12 min (0.3 mdeg, 1.1″), which this adjustment
+    // excludes. So accelerometer biases and scale factors, which don't need attitude, agree within
+    // 20 %, and the other parameters are better here, by a factor of about two at most. With G
+    // known, b_g is better too.
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/golden/covariance.json");
     let golden: serde_json::Value =
         serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap();
@@ -210,7 +211,7 @@ fn sigma_is_near_the_golden_filter_and_below_it() {
             run(instrument, stops, GyroReference::EarthRate, dwell_s, &Parameters::default())
                 .unwrap();
         for i in (0..30).filter(|i| !(12..21).contains(i)) {
-            // Without what the residuals of this one seed add.
+            // Without the widening by the residuals of this one seed.
             let sigma = estimate.sigma[i] / estimate.residual_rms.max(1.0);
             let ratio = sigma / row[NAMES[i]].as_f64().unwrap();
             println!("{name} {}: {ratio:.2} of the golden sigma", NAMES[i]);
@@ -264,7 +265,7 @@ fn sway_and_coarse_gyros_are_refused_against_earth_rate() {
         &Parameters::default(),
     )
     .unwrap();
-    // A sway of 1 mg and minutes, which the mean over a dwell doesn't remove.
+    // A sway of 1 mg over minutes, which the mean over a dwell doesn't remove.
     let mut time_s = 0.0;
     let instrument = || Instrument::new(truth(), instrument::ARW, instrument::VRW, 1);
     instrument().run(EIGHT, 30.0, |sample, dt_s, standing| {

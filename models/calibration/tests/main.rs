@@ -1,4 +1,4 @@
-//! The tests of the calibration core, in one program.
+//! Integration tests of the calibration core, in one program.
 #![allow(clippy::unwrap_used)]
 
 mod alignment;

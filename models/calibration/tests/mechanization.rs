@@ -71,7 +71,8 @@ fn drift_m(rotating: bool) -> f64 {
         let rate = if rotating && phase >= dwell { sign * 6.0 * DEG } else { 0.0 };
         let seen = |u: &Vector3<f64>| {
             if axis == 0 {
-                // Roll turns outside: the case sees it first, then the azimuth gimbal.
+                // The roll gimbal is the outer one: the case is turned by it first, then by the
+                // azimuth gimbal.
                 let case = integrated(0, u, roll, rate, h);
                 turn(2, &case, azimuth.cos(), azimuth.sin(), 1.0)
             } else {
@@ -185,7 +186,8 @@ fn free_inertial_errors_grow_as_the_matrix_exponential_says() {
     );
     assert!(day < 0.02, "{day} arcmin to 24 h");
     assert!(three_days < 0.04, "{three_days} arcmin to 72 h");
-    // What is left is of second order in the error, so a tenth of it is far closer.
+    // The remaining difference is of second order in the error, so that a tenth of the error is far
+    // closer.
     assert!(tenth_day < 0.002, "{tenth_day} arcmin to 24 h");
     assert!(tenth < 0.004, "{tenth} arcmin to 72 h");
 }

@@ -8,8 +8,8 @@ use octant_sample::counts::{Accumulator, DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB
 use octant_sample::{DeviceTime, Parameters, Sample};
 use std::path::{Path, PathBuf};
 
-/// The hand turned the unit at up to 390 °/s; an increment of 100 Hz holds 179 °/s. So each row
-/// becomes two samples.
+/// Samples per row: the unit was turned by hand at up to 390 °/s, and an increment at 100 Hz holds
+/// 179 °/s.
 const PARTS: usize = 2;
 const PERIOD_NS: u64 = 10_000_000 / PARTS as u64;
 const GYRO: Nominal = Nominal { bias_counts: [32768.0; 3], scale: [1.0 / 6258.0; 3] };
@@ -22,7 +22,7 @@ fn folder() -> PathBuf {
     )
 }
 
-/// Columns time, x, y, z.
+/// Reads a table with columns time, x, y, z.
 fn table(path: &Path) -> Vec<[f64; 4]> {
     let text = std::fs::read_to_string(path).unwrap();
     let rows = text.lines().map(|line| {
@@ -32,7 +32,8 @@ fn table(path: &Path) -> Vec<[f64; 4]> {
     rows.collect()
 }
 
-/// Samples over the intervals between rows. The rate of a row stands for the interval before it.
+/// Makes samples over the intervals between rows. The rate of a row applies to the interval before
+/// it.
 fn samples(folder: &Path) -> Vec<(Sample, f64)> {
     let accelerometer = table(&folder.join("accelerometer.txt"));
     let gyroscope = table(&folder.join("gyroscope.txt"));

@@ -1,4 +1,4 @@
-//! When the gimbals turn: dwells fill the time, and the cursor walks every stop.
+//! Timing of the gimbals: dwells fill the time, and the cursor visits every stop.
 
 use octant_calibration::config::TurntableRates;
 use octant_calibration::positions::{EIGHT, SIX, SIXTEEN, from_degrees};

@@ -1,6 +1,6 @@
-//! The state of a core as bytes: its layout, and what becomes of bytes that are none.
+//! The state of a core as bytes: its layout, and the refusal of other bytes.
 //!
-//! That a core goes on bit for bit is tested with the plant, in the harness.
+//! A test in the harness, with the plant, checks that a core continues bit for bit.
 
 use crate::instrument::{ARW, EIGHT, HEADING_RAD, Instrument, PERIOD_NS, SITE, VRW, truth};
 use octant_calibration::Core;
@@ -68,10 +68,10 @@ fn config(estimator: Estimator, screening: Screening) -> Config {
     }
 }
 
-/// Samples of the eight positions with a velocity reference a second.
+/// Samples of the eight positions with a velocity reference once a second.
 static STREAM: LazyLock<Vec<(Sample, Option<Aiding>)>> = LazyLock::new(|| {
     let mut all = Vec::new();
-    // Moves of the instrument here have no ramps; the core doesn't mind.
+    // Moves of this instrument have no ramps, which is irrelevant for the core.
     Instrument::new(truth(), ARW, VRW, 1).run(EIGHT, 7.0, |sample, _, _| {
         let aiding = (sample.sequence % 50 == 0).then_some(Aiding {
             device_time: sample.device_time,
@@ -98,7 +98,7 @@ fn least_squares(gyro: GyroReference, intervals: StaticIntervals) -> Estimator {
     Estimator::LeastSquares(LeastSquares { gravity_mps2: None, gyro, intervals })
 }
 
-/// Cores of every sort, each somewhere on its way; between them they have all that a state can have.
+/// Cores of every sort, each at some point of its run; together they contain every part of a state.
 fn cores() -> Vec<(&'static str, Core)> {
     let hardened = || Screening::hardened(Base::Still);
     let detected = StaticIntervals::Detected {
@@ -159,7 +159,7 @@ fn bytes(core: &Core) -> Vec<u8> {
     bytes
 }
 
-/// The frame with a payload replaced and its checksum made right.
+/// Makes a frame with another payload and the right checksum.
 fn reframed(payload: &[u8]) -> Vec<u8> {
     let mut bytes = Vec::new();
     STATE_FORMAT.write(&mut bytes, |to| payload.iter().for_each(|byte| to.value("byte", byte)));
@@ -172,7 +172,7 @@ fn payload(bytes: &[u8]) -> &[u8] {
 
 #[test]
 fn a_state_is_read_back_and_gives_the_same_bytes() {
-    // Cores by value, of 100 kB and more each, are much for the 2 MB stack of a test.
+    // Cores by value, of 100 kB and more each, are large for the 2 MB stack of a test.
     let roomy = std::thread::Builder::new().stack_size(16 << 20);
     roomy.spawn(every_state_is_read_back).unwrap().join().unwrap();
 }
@@ -199,7 +199,7 @@ fn the_layout_is_the_stored_one() {
     }
     assert_layout(&format!("{folder}/core.txt"), STATE_FORMAT.version, &outlines);
 
-    // And bytes of that version are still read.
+    // Bytes of that version have to remain readable.
     let path = format!("{folder}/core-{}.bin", STATE_FORMAT.version);
     let (_, core) = &cores[4];
     if std::env::var_os("OCTANT_WRITE_FIXTURES").is_some() {
@@ -211,7 +211,7 @@ fn the_layout_is_the_stored_one() {
     assert_eq!(Writer::outline(&loaded), Writer::outline(core));
 }
 
-/// A core of an earlier version had less to remember: what it would be missing can't be made up.
+/// Data that an earlier version lacked can't be made up.
 #[test]
 fn a_state_of_an_earlier_version_is_refused_in_words() {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/state");
@@ -280,7 +280,7 @@ proptest! {
         prop_assert!(!matches!(error, StateError::Value { .. }), "{error}");
     }
 
-    /// Whatever a right checksum stands for: it is refused, or what comes of it doesn't panic.
+    /// Any bytes with a right checksum are refused, or the core made from them doesn't panic.
     #[test]
     fn nonsense_with_a_right_checksum_does_not_panic(
         which in 0..8usize,
@@ -293,7 +293,7 @@ proptest! {
     ) {
         let good = &SAVED[which];
         let mut altered = payload(good).to_vec();
-        // Counts, indices and flags stand in the first kilobytes and in the last.
+        // Counts, indices and flags are in the first kilobytes and in the last.
         let length = if near_the_start { altered.len().min(3000) } else { altered.len() };
         for (at, value) in &changes {
             let at = at.index(length);

@@ -17,9 +17,9 @@ const FLATTENING: f64 = 1.0 / 298.257_223_563;
 /// m = Ω²a²b/GM of WGS-84 (NIMA TR8350.2, table 3.6).
 const GRAVITY_RATIO: f64 = 0.003_449_786_506_84;
 
-/// Everything that navigation needs of the Earth at one latitude and height.
+/// Quantities of the Earth that navigation needs at one latitude and height.
 ///
-/// The sine and cosine are taken once; the rest are a few multiplications.
+/// The sine and cosine are computed once; the rest are a few multiplications.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Ellipsoid {
@@ -36,7 +36,7 @@ pub struct Ellipsoid {
 }
 
 impl Ellipsoid {
-    /// The Earth at a geodetic latitude (rad) and height above the ellipsoid (m).
+    /// Computes the quantities at a geodetic latitude (rad) and height above the ellipsoid (m).
     #[must_use]
     pub fn at(latitude_rad: f64, height_m: f64) -> Self {
         let (sin_latitude, cos_latitude) = libm::sincos(latitude_rad);

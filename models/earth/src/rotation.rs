@@ -73,7 +73,7 @@ pub fn log(q: &UnitQuaternion<f64>) -> Vector3<f64> {
     v * (2.0 * libm::atan2(sin_half, w) / sin_half)
 }
 
-/// One Newton step towards unit length: enough where the error is of rounding.
+/// Brings a quaternion to unit length by one Newton step: enough for errors of rounding size.
 #[must_use]
 #[inline]
 pub fn renormalize(q: Quaternion<f64>) -> Quaternion<f64> {

@@ -1,4 +1,4 @@
-//! The Earth against reference numbers from an independent implementation.
+//! Known-answer tests of the Earth model against an independent implementation.
 
 use octant_earth::ellipsoid::{Ellipsoid, meridian_radius_m, transverse_radius_m};
 use octant_earth::frames::c_cb;
@@ -11,7 +11,7 @@ fn golden(name: &str) -> Value {
     serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap()
 }
 
-/// 1e-9 relative, 1e-15 absolute at zero.
+/// Compares within 1e-9 relative, and within 1e-15 absolute where zero is expected.
 fn assert_close(actual: f64, expected: f64, what: &str) {
     let bound = (1e-9 * expected.abs()).max(1e-15);
     assert!((actual - expected).abs() <= bound, "{what}: {actual} against {expected}");

@@ -1,4 +1,4 @@
-//! The tests of the Earth from outside, in one program.
+//! Integration tests of the Earth model, in one program.
 #![allow(clippy::unwrap_used)]
 
 mod golden;

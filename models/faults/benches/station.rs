@@ -1,11 +1,11 @@
-//! What the station costs an epoch: nothing to speak of while its faults wait.
+//! Cost of the station per epoch: negligible while its faults wait.
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use octant_faults::catalogue::Dimension;
-use octant_faults::disturbance::Disturbed;
 use octant_faults::station::{Delivered, World};
 use octant_faults::trigger::{Repeat, Schedule, Trigger};
 use octant_faults::{Channels, Setup, Spec, Station, Value, Values, kinds};
+use octant_sample::disturbance::Disturbed;
 use octant_sample::{Epoch, Mode, Output, Sample, Truth};
 use std::hint::black_box;
 
@@ -13,7 +13,7 @@ use std::hint::black_box;
 const EPOCHS: u64 = 1000;
 const NEVER: Trigger = Trigger::Epoch(u64::MAX);
 
-/// Recorded data: no plant, no truth.
+/// A source of recorded data: no plant, no truth.
 struct Recorded;
 
 impl World for Recorded {
@@ -60,7 +60,7 @@ fn epochs() -> Vec<Epoch> {
     (0..EPOCHS).map(epoch).collect()
 }
 
-/// What the endpoint would do with an epoch: read it.
+/// Stands in for the endpoint: reads the epoch.
 #[inline]
 fn take(epoch: &Epoch) {
     black_box(epoch);

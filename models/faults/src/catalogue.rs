@@ -1,40 +1,42 @@
-//! What a kind of fault is: its name, where it acts, what it takes and what it does, as data.
+//! Kinds of faults as data: name, place, parameters and effect.
 
 use crate::rule::Rule;
 use crate::setup::{BuildError, Setup};
 use crate::values::Values;
+
+pub use crate::dimension::Dimension;
 
 /// A kind of fault.
 #[derive(Debug)]
 pub struct Kind {
     /// Name in scenarios: lower case, words joined by hyphens.
     pub name: &'static str,
-    /// What it belongs to.
+    /// Family of the kind.
     pub family: Family,
-    /// Where it acts.
+    /// Place where it acts.
     pub acts: Acts,
-    /// What it is, in one sentence.
+    /// Summary in one sentence.
     pub summary: &'static str,
-    /// What it does to samples, exactly: the page of `octant faults describe`. Paragraphs are
-    /// separated by empty lines, equations stand on indented lines.
+    /// Exact effect on samples: the page of `octant faults describe`. Paragraphs are separated by
+    /// empty lines, equations stand on indented lines.
     pub model: &'static str,
-    /// What it takes, beside what every fault takes.
+    /// Parameters, beside those that every fault has.
     pub parameters: &'static [Parameter],
-    /// How long it lasts.
+    /// Duration of faults of this kind.
     pub lasts: Lasts,
     /// Makes the rule of one fault of this kind.
     pub build: fn(&Values, &Setup) -> Result<Rule, BuildError>,
 }
 
 impl Kind {
-    /// The parameter of a name.
+    /// Finds a parameter by its name.
     #[must_use]
     pub fn parameter(&self, name: &str) -> Option<&'static Parameter> {
         self.parameters.iter().find(|parameter| parameter.name == name)
     }
 }
 
-/// What kinds belong together.
+/// Groups of kinds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Family {
     /// Motion and environment, inside the plant.
@@ -43,7 +45,7 @@ pub enum Family {
     Analogue,
     /// Optical effects of ring lasers.
     RingLaser,
-    /// What happens to numbers after they were measured.
+    /// Alteration of numbers after they were measured.
     Digital,
     /// Stamps, order and delivery.
     Time,
@@ -74,7 +76,7 @@ impl Family {
         Self::Host,
     ];
 
-    /// Name for people.
+    /// Name shown to users.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -92,7 +94,7 @@ impl Family {
     }
 }
 
-/// Where a fault acts. Each is a place on the way of a sample; the trait of the place is in
+/// Place where a fault acts. Each is a place on the path of a sample; the trait of the place is in
 /// [`crate::rule`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
@@ -109,14 +111,14 @@ pub enum Acts {
     Unit,
     /// On the wire to the unit under test. Needs an endpoint with a wire.
     Wire,
-    /// On the host that the harness runs on. What it needs is said by its kind.
+    /// On the host that the harness runs on. The kind says what it needs.
     Host,
 }
 
-/// How long a fault of a kind lasts.
+/// Duration of a fault of a kind.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Lasts {
-    /// As long as its `duration`, then it is gone. It can't fade: it is there or it isn't.
+    /// As long as its `duration`, without fading.
     Span,
     /// As long as its `duration`, then it fades linearly over its `recovery`.
     Fading,
@@ -124,17 +126,17 @@ pub enum Lasts {
     Instant,
 }
 
-/// What a kind takes under a name.
+/// One parameter of a kind.
 #[derive(Debug)]
 pub struct Parameter {
     /// Key in the scenario.
     pub name: &'static str,
-    /// What it takes.
+    /// Form of the value.
     pub takes: Takes,
-    /// What stands in where it is left out, as it would be written in a scenario; `None`: it can't
-    /// be left out.
+    /// Value if the scenario gives none, in the form of a scenario; `None`: the parameter is
+    /// required.
     pub default: Option<&'static str>,
-    /// What it means, in one sentence.
+    /// Meaning in one sentence.
     pub doc: &'static str,
 }
 
@@ -155,17 +157,17 @@ pub enum Takes {
     Channels,
     /// A plain number.
     Number(Bounds),
-    /// Of a connection: a value that its input can have, with a unit or in that of the input, or
+    /// On a connection: a value that its input can have, with a unit or in that of the input, or
     /// `last`.
     Value,
-    /// Of a connection: a difference of values, with a unit or in that of the input.
+    /// On a connection: a difference of values, with a unit or in that of the input.
     Difference(Bounds),
 }
 
 /// Limits of a quantity, SI.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Bounds {
-    /// Any finite value but zero: with zero the fault would do nothing.
+    /// Any finite value but zero: at zero the fault would have no effect.
     NotZero,
     /// Any finite value.
     Any,
@@ -173,59 +175,6 @@ pub enum Bounds {
     Positive,
     /// Zero or more.
     NotNegative,
-    /// From, to, SI, and how the user reads it ("from 0 to 1").
+    /// Lower limit, upper limit, SI, and their text for the user ("from 0 to 1").
     Within(f64, f64, &'static str),
-}
-
-/// What a quantity measures. A value in [`Values`] is in the SI unit named here.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Dimension {
-    /// s.
-    Time,
-    /// Whole samples; written `"20 samples"`.
-    Samples,
-    /// 1/s.
-    Frequency,
-    /// rad.
-    Angle,
-    /// rad, written in arcsec.
-    SmallAngle,
-    /// rad/s of a motion.
-    AngularRate,
-    /// rad/s of a gyro error.
-    GyroBias,
-    /// rad/s².
-    AngularAcceleration,
-    /// rad/√s.
-    AngleRandomWalk,
-    /// rad/s/√s.
-    RateRandomWalk,
-    /// (rad/s)/(m/s²).
-    GDependent,
-    /// m.
-    Length,
-    /// m/s.
-    Velocity,
-    /// m/s².
-    Acceleration,
-    /// m/s² of an accelerometer error.
-    AccelBias,
-    /// (m/s²)/√Hz.
-    VelocityRandomWalk,
-    /// (m/s²)/√s, a random walk of the accelerometer bias.
-    AccelRandomWalk,
-    /// 1.
-    Ratio,
-    /// K.
-    Temperature,
-    /// K/s.
-    TemperatureRate,
-    /// (rad/s)/K.
-    GyroBiasPerK,
-    /// (m/s²)/K.
-    AccelBiasPerK,
-    /// 1/K.
-    ScalePerK,
-    /// (m/s²)²/Hz, written in g²/Hz.
-    AccelerationPsd,
 }

@@ -1,30 +1,30 @@
 //! Faults of the harness's own host: its processors, its disk, its recorder.
 //!
-//! A fault is described here; who runs on the host realises it. It lasts as long as it says, in time
-//! of the host: a thread that is starved could not end what starves it.
+//! A fault is described here; the program that runs on the host realises it. Its duration is fixed,
+//! in host time: a starved thread could not end the fault that starves it.
 
-/// What happens to the host.
+/// Fault of the host.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum HostAction {
     /// All processors are busy.
     Starve {
-        /// How long, s.
+        /// Duration, s.
         lasts_s: f64,
-        /// Threads that burn each of them.
+        /// Threads that load each processor.
         threads: u32,
     },
     /// The disk of the recording is full from now on.
     FillDisk,
-    /// The thread that writes the recording stands still.
+    /// The thread that writes the recording stops for a time.
     StallRecorder {
-        /// How long, s.
+        /// Duration, s.
         pause_s: f64,
     },
 }
 
-/// Somebody whose host can be disturbed.
+/// A host that can be disturbed.
 pub trait Hosted {
-    /// A fault sets in. Called on the thread of the samples: it raises what others do. False where
-    /// there is nothing that it could happen to.
+    /// Begins a fault. Called on the thread of the samples: the disturbance itself runs on other
+    /// threads. Returns false if the host has nothing on which the fault could act.
     fn begin(&mut self, action: &HostAction) -> bool;
 }

@@ -1,22 +1,23 @@
-//! Fault injection: what can go wrong between instrument and calibration core, each kind a model of
-//! its own, and the proof that it happened.
+//! Fault injection: possible faults between instrument and calibration core, each kind with a model
+//! of its own and with evidence of its effect.
 //!
-//! - [`catalogue`]: every kind with its parameters, its model and where it acts. The scenario's
-//!   keys, `octant faults describe` and the documentation are made from it.
-//! - [`trigger`]: when a fault sets in, how long it lasts, how it fades and how often it comes back.
-//! - [`rule`]: what a kind has to implement: one small trait for each place where a fault acts.
+//! - [`catalogue`]: every kind with its parameters, its model and its place. The scenario's keys,
+//!   `octant faults describe` and the documentation are made from it.
+//! - [`trigger`]: onset, duration, fading and repetition of a fault.
+//! - [`rule`]: interface of a kind: one small trait for each place where a fault acts.
 //! - [`station`]: the ordered pipeline between source and endpoint. It decides for every epoch
 //!   which faults are active, lets them act in the order of the scenario, and *measures* what they
-//!   altered: a receipt is what was found to differ, not what a fault says of itself.
+//!   altered: a receipt states the differences found, not the claims of a fault.
 //! - [`kinds`]: the kinds themselves, one family a folder.
 //! - [`connection`]: faults on values on their way from one model to another, with the same
 //!   triggers and receipts.
 //!
 //! Faults of the physical world act inside the plant, before its sensors integrate
-//! ([`disturbance`]), so that gyros and accelerometers feel the same motion. Faults of a wire are
-//! described here ([`wire`]) and realised by who has it; those of the host ([`host`]) by who runs on it.
+//! ([`octant_sample::disturbance`]), so that gyros and accelerometers feel the same motion. Faults
+//! of a wire are described here ([`wire`]) and realised by the owner of the wire; those of the host
+//! ([`host`]) by the program that runs on it.
 //!
-//! Nothing here allocates after the station is built, and a station whose faults wait costs two
+//! Nothing here allocates after the station is built, and a station whose faults wait costs a few
 //! comparisons an epoch.
 #![no_std]
 
@@ -26,7 +27,7 @@ extern crate std;
 
 pub mod catalogue;
 pub mod connection;
-pub mod disturbance;
+mod dimension;
 pub mod host;
 pub mod kinds;
 pub mod receipt;

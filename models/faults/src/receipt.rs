@@ -1,4 +1,4 @@
-//! What became of a fault: found by comparing, not told by the fault.
+//! Receipts: the effect of a fault, found by comparison and not reported by the fault.
 
 use crate::wire::Altered;
 use alloc::string::String;
@@ -13,26 +13,26 @@ pub struct Receipt {
     pub id: String,
     /// Name of its kind.
     pub kind: &'static str,
-    /// It was in the pipeline from the start.
+    /// True if the fault was in the pipeline from the start.
     pub armed: bool,
-    /// How often it set in.
+    /// Number of onsets.
     pub firings: u32,
-    /// First epoch of the source that it altered, from 1.
+    /// First epoch of the source that the fault altered, from 1.
     pub first_sample: Option<u64>,
-    /// Last epoch of the source that it altered.
+    /// Last epoch of the source that the fault altered.
     pub last_sample: Option<u64>,
-    /// Epochs that it altered. Of a fault inside the plant: epochs that it was active in; what it
-    /// changed there shows in the difference to the run without it. Of a fault of the wire: epochs
-    /// in whose exchange it altered a frame. Of a fault of the host: those that it set in with.
+    /// Epochs that the fault altered. For a fault inside the plant: epochs in which it was active;
+    /// its effect shows in the difference from the run without it. For a fault of the wire: epochs
+    /// in whose exchange it altered a frame. For a fault of the host: epochs at which it set in.
     pub samples_altered: u64,
-    /// CRC-32 of what it was given, over the epochs that it altered.
+    /// CRC-32 of the input of the fault, over the epochs that it altered.
     pub clean_crc32: u32,
-    /// CRC-32 of what it made of it.
+    /// CRC-32 of the output of the fault, over the same epochs.
     pub faulted_crc32: u32,
 }
 
 impl Receipt {
-    /// It altered something.
+    /// Returns whether the fault altered anything.
     #[must_use]
     pub fn fired(&self) -> bool {
         self.samples_altered > 0
@@ -50,7 +50,7 @@ pub(crate) struct Ledger {
 }
 
 impl State for Ledger {
-    /// A checksum goes on from where it is.
+    /// The state of a checksum is saved, so that it continues after loading.
     fn save(&self, to: &mut Writer) {
         let Self { first, last, altered, clean, faulted } = self;
         to.value("first", first);
@@ -72,7 +72,7 @@ impl State for Ledger {
 }
 
 impl Ledger {
-    /// The fault had its hand on an epoch.
+    /// Counts an epoch that the fault altered.
     pub(crate) fn touched(&mut self, epoch: u64) {
         // Several epochs can leave a delivery fault in one step of the source.
         if self.last != Some(epoch) {
@@ -82,7 +82,7 @@ impl Ledger {
         self.last = Some(epoch);
     }
 
-    /// It went on from the last epoch that it touched up to this one.
+    /// Counts every epoch after the last one counted, up to this one.
     pub(crate) fn touched_to(&mut self, epoch: u64) {
         if let Some(last) = self.last.filter(|last| *last < epoch) {
             self.altered += epoch - last;
@@ -90,7 +90,7 @@ impl Ledger {
         }
     }
 
-    /// Epochs that it has altered.
+    /// Number of epochs altered.
     pub(crate) fn altered(&self) -> u64 {
         self.altered
     }
@@ -103,7 +103,7 @@ impl Ledger {
         digest(&mut self.faulted, epoch);
     }
 
-    /// Frames of a wire were altered; the checksums are over all of them so far.
+    /// Records altered frames of a wire; the checksums are over all of them so far.
     pub(crate) fn frames(&mut self, epoch: u64, altered: &Altered) {
         if altered.frames > 0 {
             self.touched(epoch);
@@ -112,7 +112,7 @@ impl Ledger {
         }
     }
 
-    /// A number, before and after.
+    /// Adds a number before and after to the checksums.
     pub(crate) fn number(&mut self, clean: f64, faulted: f64) {
         self.clean.update(&clean.to_bits().to_le_bytes());
         self.faulted.update(&faulted.to_bits().to_le_bytes());
@@ -140,7 +140,7 @@ impl Ledger {
     }
 }
 
-/// Takes the canonical bytes of an epoch.
+/// Adds the canonical bytes of an epoch to a checksum.
 fn digest(into: &mut crc32fast::Hasher, epoch: &Epoch) {
     let mut bytes = [0; SAMPLE_BYTES];
     sample(&epoch.sample, &mut bytes);

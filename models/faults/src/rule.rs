@@ -1,10 +1,10 @@
-//! What a kind implements: one small trait for each place where a fault can act.
+//! Interface of the kinds: one small trait for each place where a fault can act.
 //!
 //! A rule is called only while its fault is active. It doesn't report what it did: the station
-//! compares, counts and keeps the receipt. What a rule remembers from one call to the next is its
-//! [`State`]: a rule that was built from the same values and gets it goes on as the other would.
+//! compares, counts and keeps the receipt. The memory of a rule from one call to the next is its
+//! [`State`]: a rule that was built from the same values and loads that state continues as the
+//! original would.
 
-use crate::disturbance::{Disturbance, Motor};
 use crate::host::HostAction;
 use crate::setup::Stream;
 use crate::wire::WireFault;
@@ -15,6 +15,7 @@ use dyn_clone::DynClone;
 use octant_random::normal::{Ziggurat, uniform};
 use octant_random::philox::block;
 use octant_random::stream::Phase;
+use octant_sample::disturbance::{Disturbance, Motor};
 use octant_sample::{Epoch, GimbalCommand, Output, Parameters};
 use octant_state::{Reader, State, StateError, Writer};
 
@@ -31,9 +32,9 @@ pub enum Rule {
     Delivery(Box<dyn DeliveryRule>),
     /// On the unit under test.
     Unit(Box<dyn UnitRule>),
-    /// On the wire to it.
+    /// On the wire to the unit under test.
     Wire(Box<dyn WireRule>),
-    /// On the host of the harness. It remembers nothing.
+    /// On the host of the harness. Such a fault has no memory.
     Host(HostAction),
 }
 
@@ -70,7 +71,7 @@ impl State for Rule {
     }
 }
 
-/// What a rule knows of the moment.
+/// Circumstances of a call of a rule.
 #[derive(Clone, Copy, Debug)]
 pub struct Context<'a> {
     /// Number of the source's epoch, from 1.
@@ -81,10 +82,11 @@ pub struct Context<'a> {
     pub counter: u64,
     /// Sample period, s.
     pub dt_s: f64,
-    /// Samples since the fault set in: 0 at the first that the rule sees of this onset, and at no
-    /// other, whatever faults of delivery before it hold back or let out together.
+    /// Samples since the fault set in: 0 at the first epoch of this onset that the rule sees, and
+    /// at no other, no matter which epochs faults of delivery before it hold back or release
+    /// together.
     pub since_onset: u64,
-    /// How often the fault has set in before.
+    /// Number of earlier onsets of the fault.
     pub firing: u32,
     /// 1 while the fault lasts; falls to 0 over its recovery.
     pub strength: f64,
@@ -97,13 +99,13 @@ pub struct Context<'a> {
     pub set_points: SetPoints,
 }
 
-/// Set points that the turntable has had, after all faults. Before the first they are zero, where
-/// the gimbals start.
+/// Set points that the turntable has received, after all faults. At the start they are zero, the
+/// initial angles of the gimbals.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct SetPoints {
-    /// That of the epoch before this one.
+    /// Set point of the epoch before this one.
     pub last: GimbalCommand,
-    /// The last one before it that was another.
+    /// Last set point before it that was different.
     pub before: GimbalCommand,
 }
 
@@ -120,7 +122,7 @@ impl Context<'_> {
         self.uniforms_of(stream, 0)
     }
 
-    /// Four random numbers in (0, 1) of the `nth` epoch of those that come in in this step, from 0.
+    /// Four random numbers in (0, 1) of the `nth` epoch that comes in in this step, from 0.
     #[must_use]
     pub fn uniforms_of(&self, stream: &Stream, nth: usize) -> [f64; 4] {
         block(stream.key(self.phase), [self.counter, nth as u64, 0, 0]).map(uniform)
@@ -132,28 +134,27 @@ pub trait SampleRule: Debug + Send + DynClone + State {
     /// Acts on one epoch.
     fn on_epoch(&mut self, epoch: &mut Epoch, now: &Context<'_>);
 
-    /// Whether the rule needs the epoch before its first one ([`Context::last`]).
+    /// Returns whether the rule needs the epoch before its first one ([`Context::last`]).
     fn looks_back(&self) -> bool {
         false
     }
 
-    /// Whether something of the fault stays after its end: a clock that was set wrong is still
-    /// wrong.
+    /// Returns whether an effect of the fault stays after its end: a clock that was set wrong is
+    /// still wrong.
     fn lingers(&self) -> bool {
         false
     }
 
-    /// Acts on one epoch after the fault's end, for as long as something of it
-    /// [stays](Self::lingers).
+    /// Acts on one epoch after the fault's end, as long as an effect [stays](Self::lingers).
     fn afterwards(&mut self, _epoch: &mut Epoch, _now: &Context<'_>) {}
 }
 
 /// Acts on the delivery of epochs.
 pub trait DeliveryRule: Debug + Send + DynClone + State {
-    /// One step of the source: takes the epochs that come in (one, or none or several where
-    /// faults before this one have delayed some); what is to be delivered now goes to `out`, in
-    /// order. `active` is false in steps after the fault's end, which a rule sees for as long as it
-    /// [holds](Self::holds) something.
+    /// Handles one step of the source: takes the epochs that come in (one, or none or several if
+    /// faults before this one have delayed some), and puts those to be delivered now into `out`, in
+    /// order. `active` is false in steps after the fault's end, in which a rule is called as long
+    /// as it [holds](Self::holds) epochs.
     fn on_step(
         &mut self,
         incoming: &[Epoch],
@@ -162,10 +163,10 @@ pub trait DeliveryRule: Debug + Send + DynClone + State {
         out: &mut Vec<Epoch>,
     );
 
-    /// Epochs that are held back, at most [`crate::station::FLIGHT_MAX`].
+    /// Number of epochs held back, at most [`crate::station::FLIGHT_MAX`].
     fn holds(&self) -> usize;
 
-    /// How many epochs can leave in one step of the source in which `incoming` come in.
+    /// Largest number of epochs that can leave in one step of the source with `incoming` epochs.
     fn most_out(&self, incoming: usize) -> usize;
 }
 
@@ -177,44 +178,46 @@ pub trait CommandRule: Debug + Send + DynClone + State {
 
 /// Acts inside the plant.
 pub trait PlantRule: Debug + Send + DynClone + State {
-    /// What the plant suffers from now on; `motor` is the turntable as it stands.
+    /// Returns the disturbance of the plant from now on; `motor` is the present state of the
+    /// turntable.
     fn begin(&mut self, now: &Context<'_>, motor: &Motor) -> Disturbance;
 }
 
 /// Acts on the wire to the unit under test.
 pub trait WireRule: Debug + Send + DynClone + State {
-    /// What the wire suffers from now on, until the fault ends.
+    /// Returns the fault of the wire from now on, until the fault ends.
     fn begin(&mut self, now: &Context<'_>) -> WireFault;
 }
 
 /// Acts on the unit under test.
 pub trait UnitRule: Debug + Send + DynClone + State {
-    /// What happens to it at this epoch, before it gets the epoch; `None`: nothing. Power is not
-    /// told here but by [`Self::cuts_power`].
+    /// Returns the event of the unit at this epoch, to happen before the unit gets the epoch;
+    /// `None`: no event. Power is reported by [`Self::cuts_power`] instead.
     fn on_epoch(&mut self, now: &Context<'_>) -> Option<UnitEvent>;
 
-    /// Whether the unit is without power while the fault is active. The station tells the endpoint
-    /// when power goes and comes: of several such faults the first onset and the last end count.
+    /// Returns whether the unit is without power while the fault is active. The station tells the
+    /// endpoint when power is lost and returns: of several such faults the first onset and the last
+    /// end count.
     fn cuts_power(&self) -> bool {
         false
     }
 }
 
-/// What happens to the unit under test.
+/// Event of the unit under test.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[allow(clippy::large_enum_variant, reason = "rare, and passed by value once")]
 #[derive(serde::Serialize, serde::Deserialize)]
 pub enum UnitEvent {
-    /// It starts anew, as at power on, and forgets everything.
+    /// The unit restarts, as at power on, and loses all state.
     Restart,
-    /// It loses power: from this epoch on none reaches it and it answers nothing.
+    /// The unit loses power: from this epoch on it receives nothing and answers nothing.
     PowerOff,
-    /// Power comes back: it starts anew, and this epoch is its first.
+    /// Power returns: the unit restarts, and this epoch is its first.
     PowerOn,
-    /// It starts anew with a stored calibration that is `offset` away from the one that it would
-    /// have started from, SI.
+    /// The unit restarts with a stored calibration that differs by `offset` from its regular
+    /// initial calibration, SI.
     RestartWith {
-        /// Added to the initial parameters.
+        /// Difference added to the initial parameters.
         offset: Parameters,
     },
 }

@@ -1,4 +1,4 @@
-//! What a fault has to know of the run before it starts.
+//! Data of the run that a fault needs before it starts.
 
 use alloc::string::String;
 use octant_random::philox::Key;
@@ -11,7 +11,7 @@ pub struct Setup {
     pub seed: u64,
     /// Sample period, ns.
     pub sample_period_ns: u64,
-    /// Samples of the calibration phase; what follows is navigation.
+    /// Samples of the calibration phase; all later samples are navigation.
     pub calibration_samples: u64,
     /// Gyro angle random walk of the instrument, rad/√s.
     pub angle_random_walk: f64,
@@ -19,7 +19,8 @@ pub struct Setup {
     pub velocity_random_walk: f64,
     /// Largest rate of the turntable, rad/s.
     pub turntable_rate_radps: f64,
-    /// Id of the fault that is built: it names the fault's random streams. The station fills it in.
+    /// Id of the fault that is built, part of the names of its random streams. The station fills it
+    /// in.
     pub id: String,
 }
 
@@ -61,7 +62,7 @@ impl Stream {
     }
 }
 
-/// Why a fault can't be built.
+/// Reason why a fault can't be built.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum BuildError {
     /// A value doesn't fit the others.
@@ -69,10 +70,10 @@ pub enum BuildError {
     Value {
         /// The parameter.
         parameter: &'static str,
-        /// What was found and what is expected.
+        /// Value found and values expected.
         problem: String,
     },
-    /// Two faults with one id: receipts could not be told apart.
+    /// Two faults with one id: their receipts could not be told apart.
     #[error("the id {0:?} is given to two faults")]
     DuplicateId(String),
     /// A fault waits for one that isn't there.
@@ -80,19 +81,19 @@ pub enum BuildError {
     NoSuchFault {
         /// The fault that waits.
         id: String,
-        /// What it waits for.
+        /// Id of the fault that it waits for.
         after: String,
     },
 }
 
 impl BuildError {
-    /// A parameter without a value.
+    /// Error for a parameter without a value.
     #[must_use]
     pub fn missing(parameter: &'static str) -> Self {
         Self::Value { parameter, problem: "no value was found, one is expected".into() }
     }
 
-    /// A value that doesn't fit.
+    /// Error for a value that doesn't fit.
     #[must_use]
     pub fn value(parameter: &'static str, problem: impl Into<String>) -> Self {
         Self::Value { parameter, problem: problem.into() }

@@ -1,25 +1,27 @@
 //! The station between source and endpoint: an ordered pipeline of faults.
 //!
-//! An epoch passes it in two steps. [`Station::before`] is called before the source makes the
-//! epoch: triggers are looked at, faults of plant and set point act. [`Station::after`] is called
-//! with the epoch that the source has made: faults of samples and delivery act on it, in the order
-//! of the scenario. What an active fault altered is found by comparing before and after it.
+//! An epoch passes the station in two steps. [`Station::before`] is called before the source makes
+//! the epoch: triggers are evaluated, and faults of plant and set point act. [`Station::after`] is
+//! called with the epoch that the source has made: faults of samples and delivery act on it, in the
+//! order of the scenario. The effect of an active fault is found by comparing before and after.
 
+mod onsets;
+mod passage;
 mod stage;
 mod state;
 
 use crate::catalogue::{Acts, Kind, Lasts};
-use crate::disturbance::Disturbed;
 use crate::host::Hosted;
 use crate::receipt::{Ledger, Receipt};
-use crate::rule::{Context, Rule, SetPoints, UnitEvent};
+use crate::rule::{Rule, SetPoints, UnitEvent};
 use crate::setup::{BuildError, Setup};
-use crate::trigger::{Clock, News, Scene, Schedule, Trigger};
+use crate::trigger::{Clock, Scene, Schedule, Trigger};
 use crate::values::Values;
 use crate::wire::Wired;
 use alloc::string::String;
 use alloc::vec::Vec;
 use octant_random::stream::Phase;
+use octant_sample::disturbance::Disturbed;
 use octant_sample::{Epoch, GimbalCommand, Output, Truth};
 
 use stage::{Shared, Stage};
@@ -29,68 +31,68 @@ pub use state::FORMAT as STATE_FORMAT;
 /// One fault of a scenario.
 #[derive(Clone, Debug)]
 pub struct Spec {
-    /// Its id, one of its own.
+    /// Id, unique in the run.
     pub id: String,
-    /// Its kind.
+    /// Kind of the fault.
     pub kind: &'static Kind,
     /// Values of every parameter of the kind.
     pub values: Values,
-    /// When.
+    /// Time of the fault.
     pub schedule: Schedule,
 }
 
-/// The world that a station acts on beside samples.
+/// Environment on which a station acts beside samples.
 pub trait World {
-    /// The plant, where the source is one.
+    /// The plant, if the source is one.
     fn disturbed(&mut self) -> Option<&mut dyn Disturbed>;
-    /// The wire to the unit under test, where there is one.
+    /// The wire to the unit under test, if there is one.
     fn wired(&mut self) -> Option<&mut dyn Wired> {
         None
     }
-    /// The host of the harness, where something can happen to it.
+    /// The host of the harness, if faults can act on it.
     fn host(&mut self) -> Option<&mut dyn Hosted> {
         None
     }
-    /// Truth at the last epoch, where the source knows it.
+    /// Truth at the last epoch, if the source knows it.
     fn truth(&self) -> Option<Truth>;
 }
 
-/// What became of an epoch.
+/// Result of the pipeline for an epoch.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Delivered<'a> {
-    /// No fault is active: the epoch goes on as it is.
+    /// No fault is active: the epoch is passed on unchanged.
     Untouched,
-    /// These go on instead of it: none, one or several.
+    /// These epochs are passed on instead: none, one or several.
     These(&'a [Epoch]),
 }
 
-/// Something to tell about a fault.
+/// Onset or end of a fault.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct Occurrence {
     /// Epoch of the source.
     pub epoch: u64,
     /// Number of the fault in the scenario, from 0.
     pub fault: usize,
-    /// It sets in, or it ends.
+    /// True at an onset, false at an end.
     pub begins: bool,
 }
 
-/// How a fault does.
+/// Progress of a fault.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Progress {
-    /// It lasts, or fades.
+    /// True while the fault lasts or fades.
     pub active: bool,
-    /// How often it has set in.
+    /// Number of onsets.
     pub firings: u32,
-    /// Epochs that it has altered; see [`Receipt::samples_altered`].
+    /// Epochs altered; see [`Receipt::samples_altered`].
     pub samples_altered: u64,
 }
 
-/// Epochs that one delivery fault can hold back at most.
+/// Largest number of epochs that one delivery fault can hold back.
 pub const FLIGHT_MAX: usize = 4096;
-/// Epochs that can be delivered in one step of the source at most, by all faults together.
+/// Largest number of epochs that all faults together can deliver in one step of the source.
 pub const BURST_MAX: usize = 16 * FLIGHT_MAX;
-/// Occurrences kept between two looks of the harness.
+/// Largest number of occurrences kept until the harness reads them.
 const OCCURRENCES_MAX: usize = 256;
 
 /// The pipeline of one run.
@@ -99,33 +101,33 @@ pub struct Station {
     stages: Vec<Stage>,
     dt_s: f64,
     calibration_samples: u64,
-    /// Epochs so far.
+    /// Number of epochs so far.
     epoch: u64,
     /// The next epoch at which time alone changes something.
     wake: u64,
     /// The scene of the epoch before; 0: none yet.
     seen: u32,
     scene: Option<Scene>,
-    /// A stage is engaged, or has a condition that has to be looked at in every epoch.
+    /// True if a stage is engaged, or has a condition to be evaluated in every epoch.
     busy: bool,
     conditions: bool,
     truth: bool,
-    /// Epochs from this one on are remembered.
+    /// First epoch from which epochs are remembered.
     remember: u64,
-    /// Faults act on set points, and want to know those before.
+    /// True if faults act on set points; they need the earlier ones.
     commands: bool,
     set_points: SetPoints,
     last: Epoch,
     flight: Vec<Epoch>,
     landed: Vec<Epoch>,
-    /// What both have room for.
+    /// Capacity of both buffers, epochs.
     burst: usize,
     occurrences: Vec<Occurrence>,
     events: Vec<UnitEvent>,
     without_power: bool,
 }
 
-/// A clone has room for as much as the original: it doesn't allocate either.
+/// Reserves as much room as the original has, so that the clone doesn't allocate either.
 impl Clone for Station {
     fn clone(&self) -> Self {
         let room = |of: &Vec<Epoch>| {
@@ -149,7 +151,7 @@ impl Clone for Station {
 }
 
 impl Station {
-    /// A station with the faults in the order in which they act.
+    /// Makes a station with the faults in the order in which they act.
     ///
     /// # Errors
     /// If a fault's values contradict each other, an id is given twice, or a fault waits for one
@@ -233,25 +235,25 @@ impl Station {
         })
     }
 
-    /// Looks what has to be looked at next.
+    /// Determines the next epochs at which the station has work.
     fn plan(&mut self) {
         self.wake = self.stages.iter().map(|stage| stage.clock.wake()).min().unwrap_or(u64::MAX);
         self.remember = self.stages.iter().map(Stage::looks_back_from).min().unwrap_or(u64::MAX);
         self.busy = self.conditions || self.stages.iter().any(Stage::engaged);
     }
 
-    /// Before the source makes its next epoch: `command` is what it would get from the core,
+    /// Prepares the source's next epoch: `command` is the set point from the core for the source,
     /// `output` the core's last output.
     ///
-    /// This is [`Self::begin`], then [`Self::command`]. Who gets the command later, but before the
-    /// source does, calls these one by one.
+    /// Equivalent to [`Self::begin`], then [`Self::command`]. A caller that gets the command later,
+    /// but before the source does, calls these one by one.
     #[inline]
     pub fn before(&mut self, command: &mut GimbalCommand, output: &Output, world: &mut dyn World) {
         self.begin(output, world);
         self.command(command, output);
     }
 
-    /// The next epoch begins: what sets in and what ends with it, and faults of the plant and of the
+    /// Begins the next epoch: onsets and ends of faults, and the faults of the plant and of the
     /// unit under test.
     #[inline]
     pub fn begin(&mut self, output: &Output, world: &mut dyn World) {
@@ -261,7 +263,7 @@ impl Station {
         }
     }
 
-    /// Faults of set points act on that of the present epoch.
+    /// Lets faults act on the set point of the present epoch.
     #[inline]
     pub fn command(&mut self, command: &mut GimbalCommand, output: &Output) {
         if self.commands && (self.busy || *command != self.set_points.last) {
@@ -269,14 +271,14 @@ impl Station {
         }
     }
 
-    /// Whether anything has to be done with the epoch that the source has made.
+    /// Returns whether the station has nothing to do with the epoch that the source has made.
     #[inline]
     #[must_use]
     pub fn is_idle(&self) -> bool {
         !self.busy && self.epoch < self.remember
     }
 
-    /// With the epoch that the source has made, on its way to the core.
+    /// Lets faults act on the epoch that the source has made, on its way to the core.
     #[inline]
     pub fn after(&mut self, epoch: &Epoch, output: &Output) -> Delivered<'_> {
         if self.busy {
@@ -299,185 +301,8 @@ impl Station {
         Shared { epoch: self.epoch, phase, counter, dt_s: self.dt_s, set_points }
     }
 
-    #[inline(never)]
-    fn look(&mut self, output: &Output, world: &mut dyn World) {
-        let scene = Scene::of(output);
-        let truth = if self.truth { world.truth() } else { None };
-        let news =
-            News { epoch: self.epoch, before: self.scene, scene, output, truth: truth.as_ref() };
-        for stage in &mut self.stages {
-            stage.clock.look(&news);
-        }
-        (self.scene, self.seen) = (Some(scene), scene.packed());
-        let shared = self.shared();
-        let events = self.events.len();
-        for index in 0..self.stages.len() {
-            let stage = &mut self.stages[index];
-            if stage.acts_unseen() {
-                stage.ledger.touched_to(self.epoch - 1);
-            }
-            let ticked = stage.clock.tick(self.epoch);
-            if ticked.ended {
-                end(stage, index as u32, world);
-                self.tell(index, false);
-                self.tell_others(index);
-            }
-            if ticked.began {
-                let stage = &mut self.stages[index];
-                let now = stage.context(&shared, &self.last, output);
-                begin(stage, index as u32, &now, world);
-                stage.fresh = true;
-                self.tell(index, true);
-            }
-            self.act_before(index, &shared, output);
-        }
-        self.settle_power(events);
-        self.plan();
-    }
-
-    #[inline(never)]
-    fn act_on(&mut self, command: &mut GimbalCommand, output: &Output) {
-        let shared = self.shared();
-        for stage in &mut self.stages {
-            if !stage.acting() {
-                continue;
-            }
-            let now = stage.context(&shared, &self.last, output);
-            if let Rule::Command(rule) = &mut stage.rule {
-                let clean = *command;
-                rule.on_command(command, &now);
-                if *command != clean {
-                    stage.ledger.touched(shared.epoch);
-                    stage.ledger.commands(&clean, command);
-                }
-            }
-        }
-        if *command != self.set_points.last {
-            self.set_points = SetPoints { last: *command, before: self.set_points.last };
-        }
-    }
-
-    /// Power goes with the first fault that cuts it and comes back with the last; `from`: number of
-    /// events that there were before this epoch.
-    fn settle_power(&mut self, from: usize) {
-        let without = self.stages.iter().any(Stage::cuts_power);
-        match (self.without_power, without) {
-            (false, false) => return,
-            // Whatever else happens to it in this epoch is forgotten with its state.
-            (false, true) => {
-                self.events.truncate(from);
-                self.events.push(UnitEvent::PowerOff);
-            }
-            (true, true) => self.events.truncate(from),
-            (true, false) => self.events.insert(from, UnitEvent::PowerOn),
-        }
-        self.without_power = without;
-    }
-
-    /// Those that wait for a fault hear that it has ended.
-    fn tell_others(&mut self, ended: usize) {
-        for other in 0..self.stages.len() {
-            let waits = matches!(
-                self.stages[other].clock.trigger(),
-                Trigger::After { fault, .. } if *fault == self.stages[ended].id
-            );
-            if waits {
-                self.stages[other].clock.other_ended(self.epoch);
-            }
-        }
-    }
-
-    fn tell(&mut self, fault: usize, begins: bool) {
-        // The harness looks after every epoch; more than that in one step can't be told.
-        if self.occurrences.len() < OCCURRENCES_MAX {
-            self.occurrences.push(Occurrence { epoch: self.epoch, fault, begins });
-        }
-    }
-
-    fn act_before(&mut self, index: usize, shared: &Shared, output: &Output) {
-        let stage = &mut self.stages[index];
-        if !stage.acting() {
-            return;
-        }
-        let now = stage.context(shared, &self.last, output);
-        match &mut stage.rule {
-            Rule::Unit(rule) => {
-                let event = rule.on_epoch(&now);
-                // What happens to a unit that is without power already alters nothing.
-                if rule.cuts_power() || (event.is_some() && !self.without_power) {
-                    stage.ledger.touched(shared.epoch);
-                }
-                self.events.extend(event);
-            }
-            Rule::Plant(_) => stage.ledger.touched(shared.epoch),
-            Rule::Command(_)
-            | Rule::Samples(_)
-            | Rule::Delivery(_)
-            | Rule::Wire(_)
-            | Rule::Host(_) => {}
-        }
-    }
-
-    #[inline(never)]
-    fn pass(&mut self, epoch: &Epoch, output: &Output) -> Delivered<'_> {
-        let shared = self.shared();
-        self.flight.clear();
-        self.flight.push(*epoch);
-        let mut engaged = false;
-        for stage in &mut self.stages {
-            if !stage.engaged() {
-                continue;
-            }
-            let acting = stage.acting();
-            let instant = stage.kind.lasts == Lasts::Instant;
-            let now = stage.context(&shared, &self.last, output);
-            match &mut stage.rule {
-                Rule::Samples(rule) => {
-                    engaged = true;
-                    for epoch in &mut self.flight {
-                        let clean = *epoch;
-                        if stage.fresh && (acting || instant) {
-                            let strength = if acting { now.strength } else { 1.0 };
-                            rule.on_epoch(epoch, &Context { since_onset: 0, strength, ..now });
-                            stage.fresh = false;
-                        } else if acting && !instant {
-                            let since_onset = now.since_onset.max(1);
-                            rule.on_epoch(epoch, &Context { since_onset, ..now });
-                        } else if rule.lingers() {
-                            rule.afterwards(epoch, &now);
-                        }
-                        if !epoch.same_bits(&clean) {
-                            stage.ledger.touched(shared.epoch);
-                            stage.ledger.clean(&clean);
-                            stage.ledger.faulted(epoch);
-                        }
-                    }
-                }
-                Rule::Delivery(rule) => {
-                    engaged = true;
-                    self.landed.clear();
-                    rule.on_step(&self.flight, acting, &now, &mut self.landed);
-                    debug_assert!(self.landed.len() <= self.burst, "{} allocates", stage.kind.name);
-                    if !same(&self.flight, &self.landed) {
-                        stage.ledger.touched(shared.epoch);
-                        self.flight.iter().for_each(|epoch| stage.ledger.clean(epoch));
-                        self.landed.iter().for_each(|epoch| stage.ledger.faulted(epoch));
-                    }
-                    core::mem::swap(&mut self.flight, &mut self.landed);
-                }
-                Rule::Plant(_)
-                | Rule::Command(_)
-                | Rule::Unit(_)
-                | Rule::Wire(_)
-                | Rule::Host(_) => {}
-            }
-        }
-        self.last = *epoch;
-        self.plan();
-        if engaged { Delivered::These(&self.flight) } else { Delivered::Untouched }
-    }
-
-    /// What faults of the wire altered while the present epoch was exchanged goes into their receipts.
+    /// Enters the frames that faults of the wire altered during the exchange of the present epoch
+    /// into their receipts.
     pub fn exchanged(&mut self, wire: &mut dyn Wired) {
         let epoch = self.epoch;
         for (handle, stage) in self.stages.iter_mut().enumerate() {
@@ -487,8 +312,8 @@ impl Station {
         }
     }
 
-    /// What happened to the unit under test in this epoch, to be done before it gets the epoch.
-    /// Empty almost always.
+    /// Events of the unit under test in this epoch, to happen before the unit gets the epoch.
+    /// Almost always empty.
     #[inline]
     #[must_use]
     pub fn unit_events(&self) -> &[UnitEvent] {
@@ -502,14 +327,14 @@ impl Station {
         &self.occurrences
     }
 
-    /// Unit events and occurrences have been dealt with.
+    /// Clears the unit events and occurrences once they are handled.
     pub fn told(&mut self) {
         self.events.clear();
         self.occurrences.clear();
     }
 
-    /// Lets a fault with a manual trigger set in at the next epoch. False if there is none of that
-    /// id that waits.
+    /// Lets a fault with a manual trigger set in at the next epoch. Returns false if no fault of
+    /// that id waits.
     pub fn fire(&mut self, id: &str) -> bool {
         let next = self.epoch + 1;
         let fired = self
@@ -521,8 +346,8 @@ impl Station {
         fired
     }
 
-    /// Ends a fault with a manual trigger at the next epoch, as at the end of its duration; one that
-    /// was to set in then doesn't. False if there is none of that id that lasts.
+    /// Ends a fault with a manual trigger at the next epoch, as at the end of its duration; a fault
+    /// that would set in at that epoch doesn't. Returns false if no fault of that id lasts.
     pub fn end(&mut self, id: &str) -> bool {
         let next = self.epoch + 1;
         let ended = self
@@ -534,7 +359,7 @@ impl Station {
         ended
     }
 
-    /// How a fault does, by its number in the scenario from 0.
+    /// Progress of a fault, by its number in the scenario from 0.
     #[must_use]
     pub fn progress(&self, fault: usize) -> Option<Progress> {
         self.stages.get(fault).map(|stage| Progress {
@@ -544,13 +369,13 @@ impl Station {
         })
     }
 
-    /// The most epochs that can be delivered in one step of the source.
+    /// Largest number of epochs that can be delivered in one step of the source.
     #[must_use]
     pub fn most_delivered(&self) -> usize {
         self.burst
     }
 
-    /// Whether a place has faults at all.
+    /// Returns whether any fault acts at a place.
     #[must_use]
     pub fn acts_on(&self, place: Acts) -> bool {
         self.stages.iter().any(|stage| stage.kind.acts == place)
@@ -579,36 +404,7 @@ impl Station {
     }
 }
 
-fn begin(stage: &mut Stage, handle: u32, now: &Context<'_>, world: &mut dyn World) {
-    if let (Rule::Plant(rule), Some(plant)) = (&mut stage.rule, world.disturbed()) {
-        let disturbance = rule.begin(now, &plant.motor());
-        plant.begin(handle, &disturbance);
-    }
-    if let (Rule::Wire(rule), Some(wire)) = (&mut stage.rule, world.wired()) {
-        wire.begin(handle, &rule.begin(now));
-    }
-    if let (Rule::Host(action), Some(host)) = (&stage.rule, world.host())
-        && host.begin(action)
-    {
-        stage.ledger.touched(now.epoch);
-    }
-}
-
-fn end(stage: &Stage, handle: u32, world: &mut dyn World) {
-    if let (Rule::Plant(_), Some(plant)) = (&stage.rule, world.disturbed()) {
-        plant.end(handle);
-    }
-    if let (Rule::Wire(_), Some(wire)) = (&stage.rule, world.wired()) {
-        wire.end(handle);
-    }
-}
-
-/// The same epochs, bit for bit, in the same order.
-fn same(a: &[Epoch], b: &[Epoch]) -> bool {
-    a.len() == b.len() && a.iter().zip(b).all(|(a, b)| a.same_bits(b))
-}
-
-/// Epochs that can leave the last stage in one step of the source.
+/// Largest number of epochs that can leave the last stage in one step of the source.
 fn burst(stages: &[Stage]) -> Result<usize, (String, BuildError)> {
     let mut most = 1;
     for stage in stages {

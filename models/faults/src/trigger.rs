@@ -1,8 +1,8 @@
-//! When a fault sets in, how long it lasts, how it fades, how often it comes back.
+//! Onset, duration, fading and repetition of a fault.
 //!
-//! Times are epochs of the source, numbered from 1. A fault that sets in at time t alters first the
-//! sample of the interval that begins at t: epoch `t / period + 1`. What depends on the core is
-//! decided on its answer to the epoch before.
+//! Times are epochs of the source, numbered from 1. A fault that sets in at time t first alters the
+//! sample of the interval that begins at t: epoch `t / period + 1`. Triggers that depend on the
+//! core are decided on its answer to the epoch before.
 
 use alloc::string::String;
 use octant_random::normal::{uniform, words};
@@ -10,25 +10,25 @@ use octant_random::philox::Key;
 use octant_sample::{Health, Mode, Output, Truth};
 use octant_state::StateError;
 
-/// When and how long.
+/// Trigger, duration and repetition of a fault.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Schedule {
-    /// What it waits for.
+    /// Trigger of the onset.
     pub trigger: Trigger,
-    /// Epochs that it lasts; `None`: to the end of the run. An instant lasts one.
+    /// Duration, epochs; `None`: to the end of the run. An instant lasts one epoch.
     pub duration: Option<u64>,
     /// Epochs over which it fades.
     pub recovery: u64,
-    /// How often it comes back.
+    /// Repetition.
     pub repeat: Repeat,
 }
 
-/// What a fault waits for.
+/// Trigger of a fault.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Trigger {
     /// An epoch of the source, from 1.
     Epoch(u64),
-    /// So many epochs after the core has arrived at a stop, in a mode.
+    /// A delay after the core has arrived at a stop, in a mode.
     Position {
         /// The stop, from 0, over all passes.
         stop: u16,
@@ -37,7 +37,7 @@ pub enum Trigger {
         /// Epochs after the arrival.
         delay: u64,
     },
-    /// So many epochs after the core has set out for a stop, in a mode.
+    /// A delay after the core has set out for a stop, in a mode.
     Move {
         /// The stop, from 0, over all passes.
         stop: u16,
@@ -46,16 +46,16 @@ pub enum Trigger {
         /// Epochs after the start.
         delay: u64,
     },
-    /// So many epochs after the core has entered a mode.
+    /// A delay after the core has entered a mode.
     Mode {
         /// The mode.
         mode: Mode,
-        /// Epochs after that.
+        /// Epochs after the entry.
         delay: u64,
     },
-    /// So many epochs after a signal has crossed a value.
+    /// A delay after a signal has crossed a value.
     Condition {
-        /// What is looked at.
+        /// Signal.
         signal: Signal,
         /// Above or below.
         comparison: Comparison,
@@ -64,16 +64,16 @@ pub enum Trigger {
         /// Epochs after the crossing.
         delay: u64,
     },
-    /// Again and again at equal distances.
+    /// Periodic onsets.
     Periodic {
         /// First epoch.
         first: u64,
-        /// Distance of the onsets.
+        /// Distance of the onsets, epochs.
         period: u64,
         /// No onset after this epoch.
         last: Option<u64>,
     },
-    /// At random: the waiting time from the end of one to the onset of the next is exponential.
+    /// Random onsets: the waiting time from the end of one to the onset of the next is exponential.
     Poisson {
         /// No onset before this epoch.
         first: u64,
@@ -82,52 +82,52 @@ pub enum Trigger {
         /// Mean waiting time, epochs.
         mean: f64,
     },
-    /// So many epochs after another fault has ended.
+    /// A delay after another fault has ended.
     After {
-        /// Id of the other.
+        /// Id of the other fault.
         fault: String,
         /// Epochs after its end.
         delay: u64,
     },
     /// By hand: [`crate::Station::fire`].
     Manual,
-    /// So many epochs after a condition has come true that somebody else looks at: on connections,
-    /// where there is no core; see [`crate::connection::Station::begin`].
+    /// A delay after a condition has come true that the caller evaluates: on connections, where
+    /// there is no core; see [`crate::connection::Station::begin`].
     Outside {
-        /// Epochs after that.
+        /// Epochs after the condition.
         delay: u64,
     },
 }
 
-/// How often a fault comes back.
+/// Repetition of a fault.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Repeat {
-    /// It doesn't (triggers that repeat by themselves still do).
+    /// No repetition (triggers that repeat by themselves still do).
     #[default]
     Once,
-    /// So many times in all, at this distance of onsets.
+    /// A number of onsets, at this distance.
     Times {
         /// Onsets in all.
         times: u32,
         /// Distance of the onsets, epochs.
         every: u64,
     },
-    /// Whenever its trigger comes true again.
+    /// Again whenever the trigger comes true.
     EveryTime,
 }
 
-/// What a condition looks at. All are those of the epoch before.
+/// Signal of a condition. All values are those of the epoch before.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Signal {
     /// NIS of the last measurement.
     Nis,
-    /// Any of these health flags: 1 where one is set, else 0.
+    /// Any of these health flags: 1 if one is set, else 0.
     Health(Health),
     /// Velocity of the navigation solution: 0 north, 1 east, 2 down, m/s.
     Velocity(usize),
-    /// Latitude of the navigation solution minus the true one, rad; its size.
+    /// Magnitude of the latitude error of the navigation solution, rad.
     LatitudeError,
-    /// Longitude of the navigation solution minus the true one, rad; its size.
+    /// Magnitude of the longitude error of the navigation solution, rad.
     LongitudeError,
     /// True gimbal angle: 0 azimuth, 1 roll, rad.
     TrueGimbal(usize),
@@ -136,7 +136,7 @@ pub enum Signal {
 }
 
 impl Signal {
-    /// It needs truth, which only a simulated source has.
+    /// Returns whether the signal needs truth, which only a simulated source has.
     #[must_use]
     pub const fn needs_truth(self) -> bool {
         matches!(
@@ -148,7 +148,7 @@ impl Signal {
         )
     }
 
-    /// Its value; NaN where it has none.
+    /// Value of the signal; NaN if there is none.
     fn value(self, output: &Output, truth: Option<&Truth>) -> f64 {
         let of = |f: fn(&Truth) -> f64| truth.map_or(f64::NAN, f);
         match self {
@@ -168,7 +168,7 @@ impl Signal {
     }
 }
 
-/// Which side of a value a condition waits for.
+/// Side of the value on which a condition is true.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Comparison {
     /// Above it.
@@ -178,7 +178,7 @@ pub enum Comparison {
 }
 
 impl Trigger {
-    /// The first epoch at which it can come true, where time alone decides.
+    /// First epoch at which the trigger can come true, if time alone decides.
     #[must_use]
     pub fn earliest(&self) -> Option<u64> {
         match self {
@@ -190,7 +190,7 @@ impl Trigger {
     }
 }
 
-/// What the core did with the epoch before, as far as triggers wait for it.
+/// State of the core at the epoch before, as far as triggers depend on it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub(crate) struct Scene {
     mode: Mode,
@@ -204,14 +204,14 @@ impl Scene {
         Self { mode: output.mode, stop: output.stop, moving: output.moving }
     }
 
-    /// One word, to be compared in one step.
+    /// Packs the scene into one word, to be compared in one step.
     #[inline]
     pub(crate) fn packed(self) -> u32 {
         1 << 31 | (self.mode as u32) << 17 | u32::from(self.moving) << 16 | u32::from(self.stop)
     }
 }
 
-/// What is new at an epoch.
+/// Input of the triggers at an epoch.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct News<'a> {
     pub(crate) epoch: u64,
@@ -222,18 +222,18 @@ pub(crate) struct News<'a> {
     pub(crate) truth: Option<&'a Truth>,
 }
 
-/// Where a fault is in its life.
+/// Stage in the life of a fault.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub(crate) enum State {
-    /// For its trigger.
+    /// Waits for its trigger.
     Waiting,
-    /// For an epoch that is known.
+    /// Waits for a known epoch.
     Pending(u64),
-    /// It acts, from its onset until before an epoch.
+    /// Acts, from its onset until before an epoch.
     Active { onset: u64, until: u64 },
-    /// It fades.
+    /// Fades.
     Fading { onset: u64, from: u64, until: u64 },
-    /// It won't come back.
+    /// Won't come back.
     Spent,
 }
 
@@ -241,17 +241,17 @@ pub(crate) enum State {
 #[derive(Clone, Debug)]
 pub(crate) struct Clock {
     schedule: Schedule,
-    /// Numbers of a Poisson trigger, one for each onset.
+    /// Key of the random numbers of a Poisson trigger, one for each onset.
     key: Key,
     pub(crate) state: State,
     pub(crate) firings: u32,
-    /// Its condition held at the epoch before.
+    /// True if the condition held at the epoch before.
     held: bool,
 }
 
 octant_state::state! { Clock { values: state, firings, held; parts: ; kept: schedule, key } }
 
-/// What a clock did at an epoch.
+/// Result of a clock at an epoch.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Ticked {
     pub(crate) began: bool,
@@ -271,7 +271,7 @@ impl Clock {
         clock
     }
 
-    /// What it says holds after an epoch.
+    /// Checks that a loaded clock is possible after an epoch.
     pub(crate) fn check(&self, epoch: u64) -> Result<(), StateError> {
         octant_state::check_below("firings", self.firings.into(), 1 << 31)?;
         let (onset, until) = match self.state {
@@ -296,7 +296,7 @@ impl Clock {
         &self.schedule.trigger
     }
 
-    /// Its trigger has to be looked at in every epoch.
+    /// Returns whether the trigger has to be evaluated in every epoch.
     pub(crate) fn has_condition(&self) -> bool {
         matches!(self.schedule.trigger, Trigger::Condition { .. })
     }
@@ -314,7 +314,7 @@ impl Clock {
         }
     }
 
-    /// Strength at an epoch: 1 while it lasts, then down a straight line.
+    /// Strength at an epoch: 1 while the fault lasts, then falling linearly.
     pub(crate) fn strength(&self, epoch: u64) -> f64 {
         match self.state {
             State::Active { .. } => 1.0,
@@ -323,7 +323,7 @@ impl Clock {
         }
     }
 
-    /// Onset of what is going on.
+    /// Onset of the present firing.
     pub(crate) fn onset(&self) -> Option<u64> {
         match self.state {
             State::Active { onset, .. } | State::Fading { onset, .. } => Some(onset),
@@ -331,7 +331,7 @@ impl Clock {
         }
     }
 
-    /// It sets in at the next epoch, if it waits.
+    /// Lets the fault set in at an epoch, if it waits.
     pub(crate) fn fire(&mut self, epoch: u64) -> bool {
         let waits = matches!(self.state, State::Waiting);
         if waits {
@@ -340,7 +340,7 @@ impl Clock {
         waits
     }
 
-    /// It ends at the next epoch, if it lasts; if it was to set in then, it doesn't.
+    /// Ends the fault at an epoch, if it lasts; if it would set in then, it doesn't.
     pub(crate) fn cut(&mut self, epoch: u64) -> bool {
         match &mut self.state {
             State::Active { until, .. } => *until = epoch,
@@ -350,7 +350,7 @@ impl Clock {
         true
     }
 
-    /// Another fault has ended at an epoch.
+    /// Takes note that another fault has ended at an epoch.
     pub(crate) fn other_ended(&mut self, epoch: u64) {
         if let (State::Waiting, Trigger::After { delay, .. }) = (self.state, &self.schedule.trigger)
         {
@@ -358,7 +358,7 @@ impl Clock {
         }
     }
 
-    /// Looks whether the trigger has come true.
+    /// Evaluates the trigger.
     pub(crate) fn look(&mut self, news: &News<'_>) {
         let Some(delay) = self.comes_true(news) else { return };
         if self.state == State::Waiting {
@@ -366,7 +366,7 @@ impl Clock {
         }
     }
 
-    /// Hears whether the condition held that somebody else looks at.
+    /// Takes note whether the condition held that the caller evaluates.
     pub(crate) fn look_outside(&mut self, epoch: u64, holds: bool) {
         let held = core::mem::replace(&mut self.held, holds);
         let crossed = holds && !held;
@@ -393,7 +393,7 @@ impl Clock {
             Trigger::Condition { signal, comparison, value, delay } => {
                 let found = signal.value(news.output, news.truth);
                 if found.is_nan() {
-                    // Nothing was measured: what held before is neither confirmed nor refuted.
+                    // Without a measurement the earlier result is neither confirmed nor refuted.
                     return None;
                 }
                 let holds = match comparison {
@@ -408,10 +408,10 @@ impl Clock {
         }
     }
 
-    /// Carries on to an epoch.
+    /// Advances to an epoch.
     pub(crate) fn tick(&mut self, epoch: u64) -> Ticked {
         let mut ticked = Ticked::default();
-        // Each turn moves on by a state; a life has three of them.
+        // Each turn advances by one state; a life has three of them.
         for _ in 0..4 {
             match self.state {
                 State::Pending(at) if epoch >= at && !ticked.ended => {
@@ -440,11 +440,11 @@ impl Clock {
         ticked
     }
 
-    /// What comes after an end.
+    /// State after an end.
     fn next(&self, onset: u64, epoch: u64) -> State {
         match (&self.schedule.trigger, self.schedule.repeat) {
             (Trigger::Periodic { first, period, last }, _) => {
-                // Counted from the first, so that nothing drifts.
+                // Counted from the first onset, so that no error accumulates.
                 let periods = (onset - (*first).max(1)) / period.max(&1) + 1;
                 self.up_to(*last, (*first).max(1).saturating_add(periods.saturating_mul(*period)))
             }
@@ -468,7 +468,7 @@ impl Clock {
         let Trigger::Poisson { mean, .. } = self.schedule.trigger else { return 0 };
         let [word, ..] = words(self.key, u64::from(self.firings));
         let wait = -mean * libm::log(uniform(word));
-        // Past any run; the cast saturates.
+        // May lie beyond any run; the cast saturates.
         wait as u64
     }
 }

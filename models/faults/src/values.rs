@@ -1,23 +1,23 @@
 //! Values of a fault's parameters, checked and in SI.
 
-use crate::catalogue::Dimension;
+use crate::dimension::Dimension;
 use crate::setup::BuildError;
 use alloc::vec::Vec;
 
-/// A value.
+/// Value of a parameter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Value {
-    /// A quantity, SI, with the dimension that it was written in.
+    /// A quantity, SI, with the dimension in which it was written.
     Quantity(f64, Dimension),
     /// A quantity for each of x, y, z.
     Vector([f64; 3], Dimension),
     /// A whole number.
     Integer(i64),
-    /// A number; of faults on connections, in the unit of the input.
+    /// A number; for faults on connections, in the unit of the input.
     Number(f64),
     /// Yes or no.
     Flag(bool),
-    /// The chosen name.
+    /// A chosen name.
     Choice(&'static str),
     /// Channels.
     Channels(Channels),
@@ -30,7 +30,7 @@ pub struct Values {
 }
 
 impl Values {
-    /// Puts a value under a name; replaces what was there.
+    /// Sets the value of a name; replaces an earlier one.
     pub fn set(&mut self, name: &'static str, value: Value) {
         match self.entries.iter_mut().find(|(known, _)| *known == name) {
             Some(entry) => entry.1 = value,
@@ -38,18 +38,18 @@ impl Values {
         }
     }
 
-    /// The value under a name.
+    /// Value of a name.
     #[must_use]
     pub fn get(&self, name: &str) -> Option<Value> {
         self.entries.iter().find(|(known, _)| *known == name).map(|(_, value)| *value)
     }
 
-    /// Names and values in the order in which they were put.
+    /// Iterates over names and values in the order in which they were set.
     pub fn iter(&self) -> impl Iterator<Item = (&'static str, Value)> + '_ {
         self.entries.iter().copied()
     }
 
-    /// A quantity in SI.
+    /// Reads a quantity in SI.
     ///
     /// # Errors
     /// If there is none under the name.
@@ -57,7 +57,7 @@ impl Values {
         self.quantity_and_dimension(name).map(|(value, _)| value)
     }
 
-    /// A quantity in SI, and what it measures.
+    /// Reads a quantity in SI, with its dimension.
     ///
     /// # Errors
     /// If there is none under the name.
@@ -71,7 +71,7 @@ impl Values {
         }
     }
 
-    /// A vector in SI.
+    /// Reads a vector in SI.
     ///
     /// # Errors
     /// If there is none under the name.
@@ -82,7 +82,7 @@ impl Values {
         }
     }
 
-    /// A whole number.
+    /// Reads a whole number.
     ///
     /// # Errors
     /// If there is none under the name.
@@ -93,7 +93,7 @@ impl Values {
         }
     }
 
-    /// A number.
+    /// Reads a number.
     ///
     /// # Errors
     /// If there is none under the name.
@@ -104,7 +104,7 @@ impl Values {
         }
     }
 
-    /// Yes or no.
+    /// Reads a yes or no.
     ///
     /// # Errors
     /// If there is none under the name.
@@ -115,7 +115,7 @@ impl Values {
         }
     }
 
-    /// The chosen name.
+    /// Reads a chosen name.
     ///
     /// # Errors
     /// If there is none under the name.
@@ -126,7 +126,7 @@ impl Values {
         }
     }
 
-    /// Channels.
+    /// Reads channels.
     ///
     /// # Errors
     /// If there are none under the name.
@@ -150,7 +150,7 @@ impl Channels {
     /// All six.
     pub const ALL: Self = Self(0b111_111);
 
-    /// Names in scenarios, with what they stand for.
+    /// Names in scenarios, with their channels.
     pub const NAMES: [(&'static str, Self); 9] = [
         ("gyro x", Self(1)),
         ("gyro y", Self(1 << 1)),
@@ -163,7 +163,7 @@ impl Channels {
         ("all", Self::ALL),
     ];
 
-    /// The set of a name.
+    /// Finds a set by its name.
     #[must_use]
     pub fn named(name: &str) -> Option<Self> {
         Self::NAMES.iter().find(|(known, _)| *known == name).map(|(_, channels)| *channels)
@@ -181,37 +181,37 @@ impl Channels {
         Self(1 << (3 + axis % 3))
     }
 
-    /// Both sets together.
+    /// Union of both sets.
     #[must_use]
     pub const fn union(self, other: Self) -> Self {
         Self(self.0 | other.0)
     }
 
-    /// Whether a gyro is in the set.
+    /// Returns whether a gyro is in the set.
     #[must_use]
     pub const fn has_gyro(self, axis: usize) -> bool {
         self.0 & Self::gyro(axis).0 != 0
     }
 
-    /// Whether an accelerometer is in the set.
+    /// Returns whether an accelerometer is in the set.
     #[must_use]
     pub const fn has_accelerometer(self, axis: usize) -> bool {
         self.0 & Self::accelerometer(axis).0 != 0
     }
 
-    /// Only gyros are in the set.
+    /// Returns whether only gyros are in the set.
     #[must_use]
     pub const fn gyros_only(self) -> bool {
         self.0 & Self::ACCELEROMETER.0 == 0
     }
 
-    /// Only accelerometers are in the set.
+    /// Returns whether only accelerometers are in the set.
     #[must_use]
     pub const fn accelerometers_only(self) -> bool {
         self.0 & Self::GYRO.0 == 0
     }
 
-    /// The single channels of the set: 0 to 2 gyros, 3 to 5 accelerometers.
+    /// Iterates over the channels of the set: 0 to 2 gyros, 3 to 5 accelerometers.
     pub fn iter(self) -> impl Iterator<Item = usize> {
         (0..6).filter(move |channel| self.0 & (1 << channel) != 0)
     }

@@ -1,12 +1,12 @@
-//! Faults of a wire: what happens to frames between the harness and a device.
+//! Faults of a wire: alterations of frames between the harness and a device.
 //!
-//! A fault is described here; who has the wire realises it and counts what it altered. Random numbers
-//! are those of the fault's own streams, counted by the frames that it sees.
+//! A fault is described here; the owner of the wire realises it and counts what it altered. Random
+//! numbers come from the fault's own streams, counted by the frames that it sees.
 
 use octant_random::normal::uniform;
 use octant_random::philox::{Key, block};
 
-/// Which way.
+/// Direction on the wire.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Way {
     /// From the harness to the device.
@@ -15,7 +15,7 @@ pub enum Way {
     ToHarness,
 }
 
-/// Which ways a fault acts on.
+/// Directions in which a fault acts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Ways {
     /// From the harness to the device.
@@ -25,7 +25,7 @@ pub struct Ways {
 }
 
 impl Ways {
-    /// Whether a way is one of them.
+    /// Returns whether a direction is included.
     #[must_use]
     pub const fn has(self, way: Way) -> bool {
         match way {
@@ -38,31 +38,32 @@ impl Ways {
 /// A fault of a wire, while it lasts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WireFault {
-    /// Which ways it acts on.
+    /// Directions in which it acts.
     pub ways: Ways,
-    /// Share of the frames that it acts on; 1: all of them.
+    /// Share of the frames on which it acts; 1: all of them.
     pub chance: f64,
-    /// What it does.
+    /// Action on the frame.
     pub action: WireAction,
-    /// Its random numbers.
+    /// Key of its random numbers.
     pub key: Key,
 }
 
 impl WireFault {
-    /// Four random numbers in (0, 1) for the `nth` frame of a way.
+    /// Four random numbers in (0, 1) for the `nth` frame of a direction.
     #[must_use]
     pub fn uniforms(&self, way: Way, nth: u64) -> [f64; 4] {
         block(self.key, [nth, way as u64, 0, 0]).map(uniform)
     }
 
-    /// Whether it acts on the `nth` frame of a way, and the numbers that it does so with.
+    /// Decides whether the fault acts on the `nth` frame of a direction; if so, returns the random
+    /// numbers for the action.
     #[must_use]
     pub fn acts_on(&self, way: Way, nth: u64) -> Option<[f64; 3]> {
         let [chance, a, b, c] = self.uniforms(way, nth);
         (self.ways.has(way) && chance < self.chance).then_some([a, b, c])
     }
 
-    /// A random byte that isn't zero, the `i`th of the `nth` frame.
+    /// Random byte that isn't zero, the `i`th of the `nth` frame.
     #[must_use]
     pub fn byte(&self, way: Way, nth: u64, i: u64) -> u8 {
         let [word, ..] = block(self.key, [nth, way as u64, 1, i]);
@@ -70,91 +71,91 @@ impl WireFault {
     }
 }
 
-/// What is done to frames. Of a line of bytes and of UDP a frame is what one message is sent as; on a
-/// CAN bus it is a CAN frame.
+/// Action on a frame. On a line of bytes and on UDP a frame is the unit in which one message is
+/// sent; on a CAN bus it is a CAN frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum WireAction {
-    /// One bit is the other one.
+    /// One bit is inverted.
     Flip,
-    /// A byte is put in.
+    /// A byte is inserted.
     Insert,
-    /// A byte is left out.
+    /// A byte is removed.
     Drop,
     /// The end is cut off.
     Truncate,
-    /// One bit of the last byte before the end, which is of the checksum, is the other one.
+    /// One bit of the last byte before the end, which belongs to the checksum, is inverted.
     Checksum,
-    /// It comes twice.
+    /// The frame arrives twice.
     Duplicate,
-    /// It comes after the next one.
+    /// The frame arrives after the next one.
     Reorder,
-    /// It is lost.
+    /// The frame is lost.
     Lose,
-    /// It comes late, by a time and up to a jitter more, s.
+    /// The frame arrives late, by a time and up to a jitter more, s.
     Delay {
-        /// At least so late.
+        /// Smallest delay, s.
         by_s: f64,
-        /// Up to so much more.
+        /// Largest additional delay, s.
         jitter_s: f64,
     },
-    /// One that was sent so many frames ago comes again before it.
+    /// An earlier frame arrives again before this one.
     Replay {
-        /// How many frames ago, from 1.
+        /// Age of the earlier frame, frames, from 1.
         age: u32,
     },
-    /// It comes in pieces, so long apart, s.
+    /// The frame arrives in pieces.
     Split {
         /// Pieces, 2 or more.
         pieces: u32,
-        /// Time between two of them.
+        /// Time between two pieces, s.
         apart_s: f64,
     },
-    /// It waits for the next one, and both come at once.
+    /// The frame waits for the next one, and both arrive at once.
     Coalesce,
-    /// Something else is sent before it: so many bytes, of CAN so many frames.
+    /// Foreign data is sent before the frame.
     Babble {
-        /// How many.
+        /// Amount: bytes, on CAN frames.
         count: u32,
     },
-    /// The line is held: what comes in that time is lost, and read as one zero.
+    /// The line is held: data sent in that time is lost, and read as one zero.
     Break {
-        /// How long, s.
+        /// Duration, s.
         lasts_s: f64,
     },
-    /// One byte is read as a zero: its stop bit wasn't there.
+    /// One byte is read as a zero: its stop bit was missing.
     Framing,
-    /// The port goes away, and is back after a time, s.
+    /// The port disappears, and returns after a time.
     HangUp {
-        /// How long it is away.
+        /// Duration, s.
         away_s: f64,
     },
-    /// Nothing is taken from the port for a time, s.
+    /// Nothing is read from the port for a time.
     SlowReader {
-        /// How long.
+        /// Duration, s.
         pause_s: f64,
     },
     /// The controller reports an error frame.
     ErrorFrame,
-    /// Arbitration is lost: the frame is sent after one of another node.
+    /// Arbitration is lost: the frame is sent after one from another node.
     ArbitrationLost,
-    /// The controller leaves the bus, and is back after a time, s.
+    /// The controller leaves the bus, and returns after a time.
     BusOff {
-        /// How long it is off.
+        /// Duration, s.
         off_s: f64,
     },
-    /// Another node sends other data under the same identifier before it.
+    /// Another node sends other data under the same identifier before the frame.
     Collision,
-    /// The bus is full: each frame waits for so many others, each of a time, s.
+    /// The bus is full: each frame waits for a number of others.
     Overload {
-        /// How many frames.
+        /// Number of other frames.
         frames: u32,
-        /// Time that each of them takes.
+        /// Duration of each of them, s.
         each_s: f64,
     },
 }
 
-/// What a medium is.
+/// Medium of a wire.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Medium {
     /// A line of bytes.
@@ -166,7 +167,7 @@ pub enum Medium {
 }
 
 impl Medium {
-    /// Name for people.
+    /// Name shown to users.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -178,7 +179,7 @@ impl Medium {
 }
 
 impl WireAction {
-    /// Whether this can happen on a medium.
+    /// Returns whether the action can happen on a medium.
     #[must_use]
     pub const fn happens_on(&self, medium: Medium) -> bool {
         match self {
@@ -191,7 +192,7 @@ impl WireAction {
             | Self::Babble { .. }
             | Self::SlowReader { .. }
             | Self::HangUp { .. } => true,
-            // A controller drops a frame whose bits are damaged, and says so.
+            // A controller discards a damaged frame and reports it.
             Self::Insert | Self::Drop | Self::Truncate | Self::Checksum | Self::Coalesce => {
                 !matches!(medium, Medium::Bus)
             }
@@ -207,23 +208,23 @@ impl WireAction {
     }
 }
 
-/// What a fault has altered since it was asked last, and the checksums over all of it so far.
+/// Alterations by a fault since the last query, and the checksums over all of them so far.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Altered {
-    /// Frames.
+    /// Number of frames.
     pub frames: u64,
-    /// CRC-32 of what it was given, of the frames that it altered.
+    /// CRC-32 of the altered frames, before.
     pub clean_crc32: u32,
-    /// CRC-32 of what it made of them.
+    /// CRC-32 of the altered frames, after.
     pub faulted_crc32: u32,
 }
 
-/// Somebody with a wire that can be disturbed.
+/// A wire that can be disturbed.
 pub trait Wired {
-    /// A fault sets in. `handle` names it until its end.
+    /// Begins a fault. `handle` identifies it until its end.
     fn begin(&mut self, handle: u32, fault: &WireFault);
-    /// A fault ends. What it holds back goes on.
+    /// Ends a fault. Frames that it holds back go on.
     fn end(&mut self, handle: u32);
-    /// What a fault has altered since this was called last.
+    /// Alterations by a fault since the last call.
     fn altered(&mut self, handle: u32) -> Altered;
 }

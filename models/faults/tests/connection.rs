@@ -1,4 +1,4 @@
-//! Faults on connections: each kind against what its model says.
+//! Faults on connections: each kind against its documented model.
 
 use octant_faults::catalogue::Dimension;
 use octant_faults::connection::kinds::{self, Target};
@@ -41,14 +41,14 @@ fn spec_on(
     }
 }
 
-/// What element 0 gets when x(k) = 10 k is sent at epochs 1 to `epochs`.
+/// Values that element 0 gets when x(k) = 10 k is sent at epochs 1 to `epochs`.
 fn sent(specs: &[Spec], epochs: u64) -> (Vec<f64>, Vec<Receipt>) {
     let mut station = Station::new(specs, SEED, PERIOD_S).unwrap();
     let got = (1..=epochs)
         .map(|k| {
             station.begin(|_| None);
             let got = station.transfer(0, 10.0 * k as f64, false);
-            // Made again, as when a step is made in parts, it is the same.
+            // A repeated transfer, as when a step is made in parts, gives the same value.
             let again = station.transfer(0, 10.0 * k as f64, true);
             assert_eq!(got.to_bits(), again.to_bits(), "epoch {k}");
             got
@@ -71,7 +71,7 @@ fn a_stuck_input_keeps_its_last_value_or_has_the_given_one() {
 
     let given = [("value", Value::Number(-1.5))];
     assert_eq!(sent(&[spec("stuck", &given, schedule(1, 2))], 3).0, [-1.5, -1.5, 30.0]);
-    // Nothing came before the first step: what is transferred first.
+    // Before the first step there is no value: the first transfer counts.
     assert_eq!(sent(&[spec("stuck", &[], schedule(1, 3))], 4).0, [10.0, 10.0, 10.0, 40.0]);
 }
 
@@ -80,7 +80,7 @@ fn bias_and_scale_act_with_their_strength() {
     let mut fading = schedule(2, 2);
     fading.recovery = 3;
     let (got, _) = sent(&[spec("bias", &[("value", Value::Number(4.0))], fading.clone())], 8);
-    // Down a straight line that would be at 0 one step after the last: 3/4, 2/4, 1/4.
+    // Falls linearly and would reach 0 one step after the last: 3/4, 2/4, 1/4.
     assert_eq!(got, [10.0, 24.0, 34.0, 43.0, 52.0, 61.0, 70.0, 80.0]);
     let (got, _) = sent(&[spec("scale", &[("factor", Value::Number(0.0))], fading)], 8);
     assert_eq!(got, [10.0, 0.0, 0.0, 10.0, 25.0, 45.0, 70.0, 80.0]);
@@ -109,7 +109,7 @@ fn a_delay_gives_what_was_sent_before() {
     let samples = [("delay", Value::Quantity(2.0, Dimension::Samples))];
     let (got, _) = sent(&[spec("delay", &samples, schedule(1, 5))], 7);
     assert_eq!(got, [10.0, 10.0, 10.0, 20.0, 30.0, 60.0, 70.0]);
-    // 25 ms are two and a half steps of 10 ms, which are two.
+    // 25 ms are two and a half steps of 10 ms, rounded to two.
     let time = [("delay", Value::Quantity(0.025, Dimension::Time))];
     assert_eq!(sent(&[spec("delay", &time, schedule(4, 2))], 6).0[3..], [20.0, 30.0, 60.0]);
     let none = [("delay", Value::Quantity(0.004, Dimension::Time))];
@@ -227,13 +227,13 @@ fn triggers_are_those_of_all_faults() {
             assert!(station.fire("by-hand"));
             assert!(!station.fire("outside"), "its trigger isn't manual");
         }
-        // The condition holds from the end of step 2 on, and is looked at before step 3.
+        // The condition holds from the end of step 2 on, and is evaluated before step 3.
         station.begin(|fault| (fault == 0).then_some(k >= 3));
         if station.transfer(0, 0.0, false) != 0.0 {
             got.push(k);
         }
     }
-    // One step after the crossing; two after the end of that, which is known at 5; by hand.
+    // One step after the crossing; two after the end of that fault, which is known at 5; by hand.
     assert_eq!(got, [4, 7, 10]);
     let told: Vec<(u64, usize, bool)> =
         station.occurrences().iter().map(|o| (o.epoch, o.fault, o.begins)).collect();

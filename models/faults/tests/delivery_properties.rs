@@ -1,5 +1,5 @@
-//! Any combination of faults of delivery: nothing is invented, lost or doubled beyond what the
-//! kinds say, order is kept where they keep it, and receipts add up.
+//! Any combination of faults of delivery: no epoch is invented, lost or doubled beyond the kinds'
+//! models, order is kept where they keep it, and receipts agree.
 
 use crate::common::{self, Outcome, bytes, clean, fault, run};
 use octant_faults::catalogue::Dimension;
@@ -12,13 +12,13 @@ use proptest::prelude::*;
 const EPOCHS: u64 = 900;
 const FAULTY: u64 = 300;
 
-/// What a fault may do, for the test's own account.
+/// Permitted effects of a fault, for the test's own account.
 #[derive(Clone, Debug)]
 struct Part {
     spec: Spec,
     loses: bool,
     copies: usize,
-    /// Epochs may overtake others.
+    /// True if epochs may overtake others.
     disorders: bool,
 }
 
@@ -87,7 +87,7 @@ fn by_step(outcome: &Outcome) -> Vec<Vec<Epoch>> {
     steps
 }
 
-/// The receipt that a stage has to give for what went in and what came out.
+/// Checks the receipt of a stage against its input and output.
 fn check_receipt(receipt: &Receipt, before: &[Vec<Epoch>], after: &[Vec<Epoch>]) {
     let differs = |step: &usize| before[*step] != after[*step];
     let altered: Vec<usize> = (0..before.len()).filter(differs).collect();
@@ -122,7 +122,7 @@ proptest! {
             match (epoch.aiding, clean(number).aiding) {
                 (Some(found), Some(own)) => prop_assert!(found.same_bits(&own)),
                 (Some(found), None) => {
-                    // Kept from an epoch that was lost.
+                    // Aiding kept from an epoch that was lost.
                     let of = found.device_time.ns / common::PERIOD_NS;
                     prop_assert!(loses && found.same_bits(&clean(of).aiding.unwrap()));
                 }
@@ -134,7 +134,7 @@ proptest! {
         }
         for (number, count) in counts.iter().enumerate().skip(1) {
             prop_assert!(*count <= most, "{number} came {count} times");
-            // Every hold has long ended.
+            // All holds ended long before.
             prop_assert!(*count >= 1 || loses, "{number} never came");
             prop_assert!(number <= 2 * FAULTY as usize || *count == 1);
         }
@@ -158,7 +158,7 @@ proptest! {
         at in 1..FAULTY,
     ) {
         // The counter jumps once: from some epoch in the order of delivery on, all numbers are
-        // off, and none is off twice.
+        // wrong, and none is wrong twice.
         parts.retain(|part| !part.loses);
         let mut specs: Vec<Spec> = parts.iter().map(|part| part.spec.clone()).collect();
         let unshifted = run(&specs, EPOCHS).delivered;

@@ -21,7 +21,7 @@ fn at_position(k: u64) -> Epoch {
     epoch
 }
 
-/// The bench's run with another stream.
+/// Runs the bench on another stream.
 fn run_on(specs: &[Spec], epochs: u64, source: impl Fn(u64) -> Epoch) -> Outcome {
     let mut station = Station::new(specs, &setup()).unwrap();
     let (mut outcome, mut world) = (Outcome::default(), Log::default());
@@ -84,7 +84,7 @@ fn assert_near(found: [f64; 3], expected: [f64; 3], tolerance: f64) {
     }
 }
 
-/// All but the reference of the aiding is as it was.
+/// Returns whether only the reference of the aiding differs.
 fn same_but_reference(mut epoch: Epoch, clean: &Epoch) -> bool {
     if let (Some(aiding), Some(was)) = (&mut epoch.aiding, &clean.aiding) {
         aiding.reference = was.reference;
@@ -107,7 +107,7 @@ fn a_wrong_velocity_is_off_by_its_error_and_fades() {
         let Some(_) = epoch.aiding else { continue };
         let factor = match at {
             400 | 600 => 1.0,
-            // Down from 1 at 749 to 0 at 1149.
+            // Falls linearly from 1 at 749 to 0 at 1149.
             800 | 1000 => (1149 - at) as f64 / 400.0,
             _ => 0.0,
         };
@@ -123,7 +123,7 @@ fn a_wrong_velocity_is_off_by_its_error_and_fades() {
 fn a_wrong_position_is_off_by_metres_on_the_ellipsoid() {
     let error = [40.0, -30.0, 5.0];
     let outcome = run_on(&[wrong(error, Dimension::Length, 150, 100)], 400, at_position);
-    // The tangent plane and the ellipsoid part by d²/2R: 0.2 mm.
+    // The distance of the tangent plane from the ellipsoid is d²/2R: 0.2 mm.
     assert_near(displacement(position(&outcome.at(200)[0])), error, 1e-3);
     assert!(same_but_reference(outcome.at(200)[0], &at_position(200)));
     assert!(outcome.at(400)[0].same_bits(&at_position(400)));
@@ -234,7 +234,7 @@ fn late(samples: f64, stamp: &'static str, first: u64, epochs: u64) -> Spec {
     fault("aiding-late", &[delay, ("stamp", Value::Choice(stamp))], first, epochs)
 }
 
-/// The aiding that each epoch has, by the epoch it was measured at: third velocity over 1e-6.
+/// Aiding of each epoch with the epoch of its measurement: third velocity over 1e-6.
 fn measured_at(outcome: &Outcome) -> Vec<(u64, u64)> {
     let aided = outcome.delivered.iter().filter(|(_, epoch)| epoch.aiding.is_some());
     aided.map(|(at, epoch)| (*at, (velocity(epoch)[2] * 1e6).round() as u64)).collect()
@@ -252,7 +252,7 @@ fn late_aiding_goes_with_a_later_sample() {
             assert!(aiding.same_bits(&clean(of).aiding.unwrap()), "old stamp, same values");
         }
     }
-    // Epochs that lost their message and those that got it.
+    // Epochs that lost their message and epochs that received it.
     assert_eq!(outcome.receipts[0].samples_altered, 4);
 }
 
@@ -267,8 +267,8 @@ fn late_aiding_can_be_restamped() {
 
 #[test]
 fn late_aiding_waits_for_a_sample_without_aiding() {
-    // Delayed by one period of the aiding: in its place comes the one before; at the end two
-    // meet, and the late one waits for the next sample.
+    // Delayed by one period of the aiding: each message is replaced by the one before; at the end
+    // two coincide, and the late one waits for the next sample.
     let outcome = run(&[late(200.0, "old", 300, 400)], 1000);
     let expected = [(200, 200), (600, 400), (800, 800), (801, 600), (1000, 1000)];
     assert_eq!(measured_at(&outcome), expected);

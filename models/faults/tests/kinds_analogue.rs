@@ -1,4 +1,4 @@
-//! Every analogue kind does to samples what its page says, by arithmetic of its own.
+//! Every analogue kind alters samples as documented, by independent arithmetic.
 
 use crate::common::counts::*;
 use crate::common::{self, clean, fault, run};
@@ -63,8 +63,8 @@ fn a_ramp_is_the_integral_of_a_ramp() {
     });
 }
 
-/// Size of steps of the bias in counts per sample: rounding to counts (variance 1/6 of the
-/// differences) is nothing beside it.
+/// Size of steps of the bias in counts per sample; rounding to counts (variance 1/6 of the
+/// differences) is negligible beside it.
 const STEP: f64 = 3000.0;
 
 #[test]
@@ -101,7 +101,7 @@ fn the_random_walk_of_the_rate_has_its_allan_variance() {
     }
 }
 
-/// Sums of what each of many firings of 10 samples added to a channel.
+/// Sums of the additions to a channel in each of many firings of 10 samples.
 fn firings(kind: &str, values: &[(&'static str, Value)], channel: usize) -> Vec<Vec<f64>> {
     let mut spec = fault(kind, values, 1, 10);
     spec.schedule.trigger = Trigger::Periodic { first: 1, period: 12, last: None };
@@ -110,7 +110,7 @@ fn firings(kind: &str, values: &[(&'static str, Value)], channel: usize) -> Vec<
     chunks.inspect(|chunk| assert_eq!(chunk[10..], [0.0; 2])).map(|c| c[..10].to_vec()).collect()
 }
 
-/// Standard error of a variance of 4000 Gaussian numbers, five times.
+/// Five standard errors of a variance of 4000 Gaussian numbers.
 const FIVE_OF_4000: f64 = 5.0 * 0.022_360_68;
 
 #[test]
@@ -182,14 +182,15 @@ fn noise_is_multiplied_as_a_root_of_squares() {
                 setup.velocity_random_walk / MPS
             };
         let part = |from: u64, strong: f64| -> Vec<f64> {
-            // A thousand samples of the fade have nearly one strength; each is divided by its own.
+            // A thousand samples of the fade have nearly the same strength; each is divided by its
+            // own.
             let each = |k: u64| {
                 let s = strength(k, 5, N, N);
                 if s < strong { f64::NAN } else { steps[k as usize - 1].0[channel] as f64 / s }
             };
             (from..from + N).map(each).filter(|value| value.is_finite()).collect()
         };
-        // While it lasts, and the first nine tenths of its fading.
+        // While the fault lasts, and the first nine tenths of its fading.
         for (series, white) in [(part(5, 1.0), true), (part(5 + N, 0.1), false)] {
             let n = series.len() as f64;
             let ratio = product(&series, 0) / (sigma * sigma);

@@ -1,4 +1,4 @@
-//! Lost, late, doubled, in another order.
+//! Samples that are lost, late, doubled, in another order.
 
 use crate::common::{Outcome, clean, fault, refused, run, setup};
 use octant_faults::catalogue::Dimension;
@@ -10,7 +10,7 @@ fn samples(n: f64) -> Value {
     Value::Quantity(n, Dimension::Samples)
 }
 
-/// Numbers of the epochs that were delivered in each step; each epoch has to be unaltered.
+/// Numbers of the epochs delivered in each step; checks that each epoch is unaltered.
 fn steps(outcome: &Outcome, epochs: u64) -> Vec<Vec<u64>> {
     let mut steps = vec![Vec::new(); epochs as usize + 1];
     for (at, epoch) in &outcome.delivered {
@@ -47,7 +47,7 @@ fn aiding_of_a_lost_sample_is_lost_or_goes_with_the_next() {
     assert_eq!(next.aiding, clean(200).aiding);
     assert_eq!(next.sample, clean(205).sample);
     assert_eq!(outcome.receipts[0].samples_altered, 11, "ten lost, one with aiding not its own");
-    // A newer message of the sample's own comes first.
+    // A newer message of the sample itself has priority.
     let outcome = run(&[dropout(1.0, "kept", 195, 205)], 450);
     assert!(outcome.at(400)[0].same_bits(&clean(400)));
     assert!(outcome.at(401)[0].same_bits(&clean(401)));
@@ -102,7 +102,7 @@ fn a_window_is_shuffled_evenly() {
         let mut sorted = order.clone();
         sorted.sort_unstable();
         assert_eq!(sorted, [0, 1, 2]);
-        // The first decides among three, the second between the two that are left.
+        // The first number decides among three, the second between the remaining two.
         counts[(2 * order[0] + u64::from(order[1] > order[2])) as usize] += 1;
     }
     let expected = 10_000.0 / 6.0;
@@ -198,7 +198,7 @@ fn a_doubled_sample_has_its_aiding_twice() {
 
 #[test]
 fn a_late_link_delivers_in_time_what_a_lossy_one_leaves() {
-    // In the steps of the dropout nothing comes in, but what is late still comes out.
+    // In the steps of the dropout no epoch comes in, but late ones still come out.
     let mut drop = dropout(1.0, "lost", 20, 5);
     drop.id = "drop".into();
     let outcome = run(&[drop, late(samples(4.0), "at once", 11, 30)], 60);

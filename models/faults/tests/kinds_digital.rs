@@ -1,4 +1,4 @@
-//! Every digital kind does to samples what its page says, by arithmetic of its own.
+//! Every digital kind alters samples as documented, by independent arithmetic.
 
 use crate::common::counts::*;
 use crate::common::{self, Outcome, clean, fault, run};
@@ -12,8 +12,8 @@ use octant_sample::{Aiding, Epoch, GimbalCommand, Output, Reference};
 const X: Channels = Channels::gyro(0);
 const Z_ACCELEROMETER: Channels = Channels::accelerometer(2);
 
-/// Every delivered epoch is what `expected` makes of the clean one while the fault lasts, and the
-/// clean one outside.
+/// Checks that while the fault lasts every delivered epoch is the clean one altered by `expected`,
+/// and outside the clean one.
 fn becomes(outcome: &Outcome, lasts: std::ops::Range<u64>, expected: impl Fn(u64, &mut Epoch)) {
     for (k, epoch) in &outcome.delivered {
         let mut right = clean(*k);
@@ -32,10 +32,10 @@ fn a_stuck_channel_repeats_what_it_read_before() {
         epoch.sample.delta_theta[0] = clean(49).sample.delta_theta[0];
         epoch.sample.delta_velocity[2] = clean(49).sample.delta_velocity[2];
     });
-    // At the first sample of a run there is nothing before.
+    // At the first sample of a run there is no earlier value.
     let outcome = run(&[fault("stuck-at-current", &[channels(X)], 1, 3)], 10);
     becomes(&outcome, 1..4, |_, epoch| epoch.sample.delta_theta[0] = 0);
-    // Each firing has a value of its own.
+    // Each firing has its own value.
     let mut again = fault("stuck-at-current", &[channels(X)], 1, 5);
     again.schedule.trigger = Trigger::Periodic { first: 20, period: 10, last: None };
     becomes(&run(&[again], 100), 20..101, |k, epoch| {
@@ -221,7 +221,7 @@ fn bit(which: Channels, bit: i64, becomes: &'static str, probability: f64, epoch
 fn bits_flip_and_stick() {
     for number in [0, 5, 17, 31] {
         let weight = 1i64 << number;
-        // The bit by division, of the two's complement as a number from 0 to 2³² − 1.
+        // The bit by division, from the two's complement as a number from 0 to 2³² − 1.
         let with = |count: i32, wish: fn(bool) -> bool| {
             let unsigned = i64::from(count).rem_euclid(1 << 32);
             let is = unsigned / weight % 2 == 1;
@@ -319,7 +319,7 @@ fn a_flag_lies() {
         };
         let outcome = run(&[lie("set")], 100);
         becomes(&outcome, 50..70, |_, epoch| epoch.sample.status = flag);
-        // Nothing has set it: clearing alters nothing, and the receipt says so.
+        // The flag was not set: clearing it alters nothing, and the receipt shows that.
         let outcome = run(&[lie("cleared")], 100);
         becomes(&outcome, 50..70, |_, _| {});
         assert_eq!((outcome.receipts[0].firings, outcome.receipts[0].samples_altered), (1, 0));

@@ -1,15 +1,15 @@
-//! Faults of the host: raised once at each onset, and fired only where somebody takes them.
+//! Faults of the host: raised once at each onset, and fired only if the host accepts them.
 
 use crate::common::seconds;
 use octant_faults::catalogue::Acts;
-use octant_faults::disturbance::Disturbed;
 use octant_faults::host::{HostAction, Hosted};
 use octant_faults::station::{Delivered, World};
 use octant_faults::trigger::{Repeat, Schedule, Trigger};
 use octant_faults::{Setup, Spec, Station, Value, Values, kinds};
+use octant_sample::disturbance::Disturbed;
 use octant_sample::{Epoch, GimbalCommand, Output, Truth};
 
-/// A host that takes what happens to it, or has nothing that it could happen to.
+/// A host that accepts faults, or has nothing on which they could act.
 #[derive(Default)]
 struct Host {
     takes: bool,

@@ -1,4 +1,4 @@
-//! Every ring laser kind does to samples what its page says, by arithmetic of its own.
+//! Every ring laser kind alters samples as documented, by independent arithmetic.
 
 use crate::common::counts::*;
 use crate::common::{fault, run};
@@ -62,7 +62,7 @@ fn far_from_lock_in_the_scale_factor_error_is_half_the_square() {
     let sum: i64 = steps.iter().map(|(step, _)| step[2]).sum();
     let expected: f64 =
         (1..=1000).map(|k| clean_count(k, 2)).map(|c| -0.5 * 3_000.0 * 3_000.0 / c).sum();
-    // The next term of the series is (ω_L/ω)²/4 of it.
+    // The next term of the series is (ω_L/ω)²/4 of this one.
     assert!((sum as f64 - expected).abs() < 0.5 + 3e-5 * expected.abs(), "{sum} {expected}");
 }
 
@@ -88,7 +88,7 @@ fn the_residual_angle_is_a_sine_and_no_drift() {
     let largest = steps.iter().map(|(step, _)| step[0].abs()).max().unwrap() as f64;
     let expected = 10_000.0 * (PI * 413.7 * DT).sin().abs();
     assert!((largest - expected).abs() < 2.0, "{largest} {expected}");
-    // And it fades.
+    // The residual also fades.
     let outcome = run(&[fading(spec, 300)], 5500);
     follows(&outcome, &[0, 1, 2], |k, _| strength(k, 101, 5000, 300) * real(k));
 }
@@ -122,7 +122,7 @@ fn a_walking_phase_loses_its_memory() {
         }
         angles.push(series);
     }
-    // Every gyro has a phase of its own.
+    // Every gyro has its own phase.
     let both: f64 = angles[0].iter().zip(&angles[1]).map(|(a, b)| a * b).sum();
     assert!((both / N as f64).abs() < 5.0 * (40.0 / N as f64).sqrt() * 0.5, "{both}");
 }
@@ -132,7 +132,7 @@ fn contradictions_are_refused() {
     let x = Channels::gyro(0);
     assert_eq!(refused("dither-residual", &residual(400.0, 0.1, 0.0, x)), "frequency");
     assert_eq!(refused("dither-residual", &residual(410.0, 0.1, 0.0, Channels::ALL)), "channels");
-    // With a walking phase it is seen.
+    // With a walking phase the residual is visible.
     let walking = fault("dither-residual", &residual(400.0, 0.1, 0.5, x), 1, 50);
     assert!(run(&[walking], 50).receipts[0].fired());
     let values = [channels(Channels::accelerometer(0)), quantity("threshold", 1e-5, GyroBias)];

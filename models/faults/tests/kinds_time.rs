@@ -16,7 +16,7 @@ fn afterwards(name: &'static str) -> (&'static str, Value) {
     ("afterwards", Value::Choice(name))
 }
 
-/// Error of the sample's stamp, ns; everything else has to be as it was.
+/// Error of the sample's stamp, ns; checks that everything else is unaltered.
 fn error(at: u64, epoch: &Epoch) -> i64 {
     let clean = clean(at);
     let mut same = *epoch;
@@ -29,7 +29,7 @@ fn errors(outcome: &Outcome) -> Vec<i64> {
     outcome.delivered.iter().map(|(at, epoch)| error(*at, epoch)).collect()
 }
 
-/// Error of the aiding's stamp at an epoch, ns; everything else has to be as it was.
+/// Error of the aiding's stamp at an epoch, ns; checks that everything else is unaltered.
 fn aiding_error(outcome: &Outcome, at: u64) -> i64 {
     let (mut found, clean) = (outcome.at(at)[0], clean(at));
     let (was, is) = (clean.aiding.unwrap().device_time, found.aiding.unwrap().device_time);
@@ -46,7 +46,7 @@ fn an_offset_is_there_while_it_lasts_and_is_slewed_back() {
     let outcome = run(&[spec], 30);
     let mut expected = [0; 30];
     expected[10..15].fill(-1_500_000);
-    // Down a straight line that would be at full height one sample before and at 0 one after.
+    // Falls linearly from full height one sample before to 0 one sample after.
     expected[15..19].copy_from_slice(&[-1_200_000, -900_000, -600_000, -300_000]);
     assert_eq!(errors(&outcome), expected);
     assert_eq!(outcome.receipts[0].samples_altered, 9);
@@ -107,7 +107,7 @@ fn a_skewed_clock_drifts_from_the_onset_and_keeps_its_error_or_not() {
 
 #[test]
 fn skew_does_not_accumulate_rounding() {
-    // 0.1 ppm: half a nanosecond a sample, which rounding each sample would lose or double.
+    // 0.1 ppm: half a nanosecond a sample, which rounding of each sample would lose or double.
     let skew = ("skew", Value::Quantity(-0.1e-6, Dimension::Ratio));
     let spec = fault("clock-skew", &[skew, clock("instrument"), afterwards("stays")], 1, 100_000);
     let found = errors(&run(&[spec], 100_000));
@@ -220,7 +220,7 @@ fn a_repeated_stamp_is_the_one_that_the_source_gave_even_at_the_first_sample() {
     assert_eq!(errors(&run(&[first], 3)), [-PERIOD, 0, 0]);
 }
 
-/// Error of the numbers; everything else has to be as it was.
+/// Error of the sequence numbers; checks that everything else is unaltered.
 fn number_errors(outcome: &Outcome) -> Vec<i64> {
     let error = |(at, epoch): &(u64, Epoch)| {
         let mut same = *epoch;
@@ -262,7 +262,7 @@ fn what_would_do_nothing_is_refused() {
 
 #[test]
 fn an_onset_that_meets_two_epochs_at_once_is_one_onset() {
-    // Every epoch comes twice: the first of the pair repeats the stamp before, the second has its
+    // Every epoch arrives twice: the first of the pair repeats the stamp before, the second has its
     // own, as the next sample of the run.
     let copies = [("copies", Value::Integer(1)), ("delay", Value::Quantity(0.0, Dimension::Time))];
     let doubled = Spec { id: "doubled".into(), ..fault("duplicate", &copies, 1, 20) };

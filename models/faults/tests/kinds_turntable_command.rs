@@ -15,8 +15,8 @@ fn set_point(stop: usize) -> GimbalCommand {
     GimbalCommand { target: GimbalAngles { azimuth, roll } }
 }
 
-/// A core that sets out for a stop every 100 epochs and arrives 20 later: its answer to epoch
-/// 100 n says stop n.
+/// A core that sets out for a stop every 100 epochs and arrives 20 later: its answer to epoch 100 n
+/// has stop n.
 fn core(k: u64) -> Output {
     let stop = (k / 100).min(6);
     Output {
@@ -34,12 +34,12 @@ fn run(spec: Spec) -> Outcome {
     outcome
 }
 
-/// Stop that the core wants at an epoch.
+/// Set point that the core commands at an epoch.
 fn wanted(epoch: u64) -> GimbalCommand {
     core(epoch - 1).gimbal_command
 }
 
-/// Each stretch of set points that isn't what the core wants, as first epoch, last epoch and set
+/// Each stretch in which the set point differs from the core's, as first epoch, last epoch and set
 /// point.
 fn departures(outcome: &Outcome) -> Vec<(u64, u64, (i32, i32))> {
     let mut found: Vec<(u64, u64, (i32, i32))> = Vec::new();
@@ -70,10 +70,10 @@ fn positions(kind: &str, positions: i64, first: u64) -> Spec {
 
 #[test]
 fn a_position_is_skipped() {
-    // From a dwell on: the next new stop is the third, wanted from epoch 301 to 400.
+    // From a dwell on: the next new stop is the third, commanded from epoch 301 to 400.
     let expected = [(301, 400, STOPS[2])];
     assert_eq!(departures(&run(positions("skipped-position", 1, 250))), expected);
-    // From the epoch on in which it is new.
+    // From the epoch on at which the stop is new.
     let mut spec = positions("skipped-position", 1, 1);
     spec.schedule.trigger = moving_to(3);
     assert_eq!(departures(&run(spec)), expected);
@@ -99,7 +99,7 @@ fn each_onset_skips_one() {
 
 #[test]
 fn a_position_is_repeated() {
-    // Instead of to stop 3 it goes back from stop 2 to stop 1.
+    // Instead of going to stop 3 the turntable returns from stop 2 to stop 1.
     let expected = [(301, 400, STOPS[1])];
     assert_eq!(departures(&run(positions("repeated-position", 1, 250))), expected);
     let mut spec = positions("repeated-position", 1, 1);
@@ -128,7 +128,7 @@ fn moves_go_the_other_way() {
     let mut spec = direction("both");
     spec.schedule.trigger = moving_to(3);
     assert_eq!(departures(&run(spec)), [(301, 400, (-500, 2000)), (401, 500, (-900, 2000))]);
-    // From stop 4 at (900, 2000) roll goes down by 500, and up by as much where it is wrong.
+    // From stop 4 at (900, 2000) roll falls by 500, and with the fault rises by as much.
     let mut spec = direction("roll");
     spec.schedule.trigger = Trigger::Epoch(450);
     assert_eq!(departures(&run(spec)), [(501, 600, (900, 2500)), (601, 649, (0, 4000))]);
@@ -153,10 +153,10 @@ fn set_points_come_late() {
     // 0.15 s are 30 epochs.
     let expected = [(301, 330, STOPS[2]), (401, 430, STOPS[3])];
     assert_eq!(late(250, 200), expected);
-    // It begins 10 epochs before a change and ends 15 after another: at the end there is no more
-    // delay.
+    // The fault begins 10 epochs before a change and ends 15 after another: at the end there is no
+    // delay any more.
     assert_eq!(late(291, 125), [(301, 330, STOPS[2]), (401, 415, STOPS[3])]);
-    // It begins after the change: what stood before the onset isn't taken back.
+    // The fault begins after the change: the set point from before the onset isn't taken back.
     assert!(late(310, 60).is_empty());
 }
 
@@ -170,7 +170,7 @@ fn lost_set_points_are_missed_until_the_end() {
 
 #[test]
 fn the_turntable_is_what_counts_for_the_next_fault() {
-    // While set points are lost the turntable stays at stop 2; what it does next starts there.
+    // While set points are lost the turntable stays at stop 2, from where the next fault starts.
     let mut skip = positions("skipped-position", 1, 420);
     skip.id = "skip".into();
     let outcome = run_with(&[fault("command-lost", &[], 250, 160), skip], 800, core);
@@ -184,7 +184,7 @@ fn the_turntable_is_what_counts_for_the_next_fault() {
 
 #[test]
 fn a_set_point_that_changes_alone_is_known() {
-    // A core that tells nothing of its stops: only the set point says that it went on.
+    // A core that doesn't report its stops: only the set point shows that it went on.
     let silent = |k: u64| Output { gimbal_command: core(k).gimbal_command, ..Output::default() };
     let outcome = run_with(&[fault("command-lost", &[], 350, 80)], 800, silent);
     assert_eq!(departures(&outcome), [(401, 429, STOPS[3])]);

@@ -20,7 +20,7 @@ fn it_restarts_at_its_trigger() {
         stop: (k / 10) as u16,
         ..Output::default()
     });
-    // The answer to epoch 30 says stop 3: epoch 31 and ten more.
+    // The answer to epoch 30 has stop 3: epoch 31 and ten more.
     assert_eq!(outcome.events, [(41, UnitEvent::Restart)]);
     assert!(outcome.delivered.iter().all(|(at, epoch)| epoch.same_bits(&clean(*at))));
     let receipt = &outcome.receipts[0];
@@ -62,7 +62,7 @@ fn power_is_back_when_the_last_fault_ends() {
         let events = run(&specs, 100).events;
         assert_eq!(events, [(20, UnitEvent::PowerOff), (70, UnitEvent::PowerOn)]);
     }
-    // One begins where the other ends: it was never back.
+    // The second fault begins where the first ends: power never returned in between.
     let specs =
         [named("a", fault("brown-out", &[], 20, 30)), named("b", fault("brown-out", &[], 50, 10))];
     assert_eq!(run(&specs, 100).events, [(20, UnitEvent::PowerOff), (60, UnitEvent::PowerOn)]);
@@ -104,7 +104,7 @@ fn a_stale_table_is_off_by_its_offsets() {
         panic!("{:?}", outcome.events)
     };
     assert_eq!(at, 12);
-    // By the order of the parameters' names.
+    // In the order of the parameters' names.
     let mut expected = [0.0; 30];
     for (name, value) in [
         ("gyro_bias_x", 1e-8),

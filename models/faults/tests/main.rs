@@ -1,4 +1,4 @@
-//! The tests of the fault pipeline and of its kinds, in one program.
+//! Integration tests of the fault pipeline and of its kinds, in one program.
 #![allow(clippy::unwrap_used)]
 
 mod any_fault;

@@ -8,7 +8,7 @@ use octant_faults::{Channels, Spec, Station, Value};
 use octant_sample::counts::DELTA_THETA_LSB_RAD;
 use octant_sample::{GimbalCommand, Mode, Output};
 
-/// A spike of so many counts a sample on the x gyro.
+/// A spike of a number of counts a sample on the x gyro.
 fn spike(counts: f64, first: u64, epochs: u64) -> Spec {
     let rate = counts * DELTA_THETA_LSB_RAD / 0.005;
     fault(
@@ -89,7 +89,7 @@ fn poisson_spikes_have_their_rate_and_need_no_history() {
     assert_eq!(altered(&again)[..], both[..altered(&again).len()]);
 }
 
-/// A core that stands at stop 3 from epoch 100 on, moves to 4 from 200 and arrives at 250.
+/// A core that is at stop 3 from epoch 100 on, moves to 4 from 200 and arrives at 250.
 fn core(k: u64) -> Output {
     let (stop, moving) = match k {
         0..100 => (2, true),
@@ -106,7 +106,8 @@ fn core(k: u64) -> Output {
 fn positions_moves_modes_and_conditions_fire() {
     let mode = Mode::Calibrating;
     for (trigger, expected) in [
-        // The answer to epoch 100 says "arrived": epoch 101 is the first that can know.
+        // The answer to epoch 100 reports the arrival: epoch 101 is the first that can depend on
+        // it.
         (Trigger::Position { stop: 3, mode, delay: 0 }, 101),
         (Trigger::Position { stop: 4, mode, delay: 10 }, 261),
         (Trigger::Move { stop: 4, mode, delay: 0 }, 201),
@@ -135,8 +136,8 @@ fn a_fault_can_follow_another() {
     assert_eq!(altered(&run(&[first, after], 100)).last(), Some(&65));
 }
 
-/// A fault by hand lasts from its firing to its end, as often as somebody likes, and one that is ended
-/// before it could set in doesn't.
+/// A manual fault lasts from its firing to its end, any number of times; a fault that is ended
+/// before its onset doesn't set in.
 #[test]
 fn a_fault_by_hand_lasts_as_long_as_the_hand_says() {
     let mut held = triggered(Trigger::Manual, 1);
@@ -173,8 +174,8 @@ fn a_fault_by_hand_lasts_as_long_as_the_hand_says() {
     assert_eq!(station.progress(1), None);
 }
 
-/// A fault inside the plant isn't looked at while it lasts: its receipt counts every epoch all the same,
-/// at any time, over a state that is saved and loaded, and again when it comes back.
+/// A fault inside the plant isn't called while it lasts: its receipt counts every epoch all the
+/// same, at any time, across saving and loading, and in a second firing.
 #[test]
 fn a_fault_inside_the_plant_counts_its_epochs_unseen() {
     let mut slip = fault(

@@ -1,7 +1,7 @@
 //! Samples per second of the plant, 200 Hz, one core.
 //!
 //! - dwell: static, table 1 noise, error model on, no move
-//! - move: the same, a gimbal always turning at 10 °/s
+//! - move: the same, with a gimbal that always turns at 10 °/s
 //! - dockside: the default sway, gimbals at rest
 //! - sea: 30 sinusoids in each of the six degrees of freedom
 #![allow(missing_docs, clippy::unwrap_used)]
@@ -57,7 +57,7 @@ fn bench(c: &mut Criterion) {
     let mut plant = Plant::new(&config(still.clone())).unwrap();
     group.bench_function("dwell", |b| b.iter(|| steps(&mut plant, &level)));
 
-    // 20 000 samples at 10 °/s are 1000°: beyond ±16 rad, so to and fro.
+    // 20 000 samples at 10 °/s are 1000°, beyond ±16 rad: the gimbal turns to and fro.
     let mut plant = Plant::new(&config(still)).unwrap();
     let ends =
         [450.0, -450.0].map(|deg| GimbalCommand { target: GimbalAngles::from_rad(0.0, deg * DEG) });

@@ -3,22 +3,12 @@
 use crate::config::{self, CaseAttitude, Site};
 use crate::course::Course;
 use crate::disturbed::Motion;
+use crate::kinematics::{CaseMotion, Node, Whereabouts};
 use crate::ship::{Ship, into_case, with};
-use crate::sway::SixDof;
+use crate::six_dof::SixDof;
 use crate::window::Frame;
 use nalgebra::Vector3;
 use octant_earth::ellipsoid::Ellipsoid;
-
-/// What the case feels.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct CaseMotion {
-    /// ω_ic in c, rad/s.
-    pub(crate) rate: Vector3<f64>,
-    /// Its derivative in c, rad/s² (transport rate taken at constant latitude).
-    pub(crate) acceleration: Vector3<f64>,
-    /// Specific force in c, m/s².
-    pub(crate) force: Vector3<f64>,
-}
 
 impl octant_state::State for Case {
     fn save(&self, to: &mut octant_state::Writer) {
@@ -52,34 +42,13 @@ impl octant_state::State for Case {
     }
 }
 
-/// Where the case is.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Whereabouts {
-    pub(crate) latitude_rad: f64,
-    pub(crate) longitude_rad: f64,
-    pub(crate) height_m: f64,
-    pub(crate) velocity_mps: Vector3<f64>,
-    pub(crate) heading_rad: f64,
-    pub(crate) pitch_rad: f64,
-    pub(crate) roll_rad: f64,
-}
-
-/// The node of an interval at which motion is wanted.
-#[derive(Clone, Copy, Debug)]
-pub(crate) enum Node {
-    /// One of the regular nodes.
-    Regular(usize),
-    /// Seconds since the start of the interval.
-    Offset(f64),
-}
-
 #[derive(Clone, Debug)]
 enum Kind {
     Static {
         motion: CaseMotion,
         site: Site,
         attitude: CaseAttitude,
-        /// What it is while a fault moves it.
+        /// Moving case that stands in while a fault moves this one.
         adrift: Option<Box<Ship>>,
     },
     Ship(Box<Ship>),
@@ -88,14 +57,14 @@ enum Kind {
 #[derive(Clone, Debug)]
 pub(crate) struct Case {
     kind: Kind,
-    /// Whether angular acceleration is wanted without disturbances too.
+    /// True if angular acceleration is needed without disturbances too.
     accelerations: bool,
 }
 
 impl Case {
-    /// `nodes`: the regular nodes, s from the start of an interval, with their weights.
-    /// `accelerations`: whether the angular acceleration of [`CaseMotion`] is wanted, otherwise it
-    /// is zero.
+    /// Makes a case. `nodes`: the regular nodes, s from the start of an interval, with their
+    /// weights. `accelerations`: whether the angular acceleration of [`CaseMotion`] is needed;
+    /// otherwise it is zero.
     pub(crate) fn new(
         motion: &config::Motion,
         site: Site,
@@ -126,16 +95,16 @@ impl Case {
         Self { kind, accelerations }
     }
 
-    /// From here on rate and specific force are computed for many samples at once, where that saves
-    /// work. Angular acceleration isn't there then, unless the case is disturbed.
+    /// Lets rate and specific force be computed for many samples at once from here on, where that
+    /// saves work. Angular acceleration is then missing unless the case is disturbed.
     pub(crate) fn open_windows(&mut self, period_ns: u64, nodes: &[(f64, f64)]) {
         if let Kind::Ship(ship) = &mut self.kind {
             ship.open_windows(period_ns, nodes);
         }
     }
 
-    /// A disturbance is under way: angular acceleration is wanted, and where it `moves` the case,
-    /// a case at rest has to be able to.
+    /// Prepares for a disturbance: angular acceleration is needed, and with `moves` a case at rest
+    /// has to be able to move.
     pub(crate) fn disturbed(&mut self, moves: bool) {
         match &mut self.kind {
             Kind::Static { adrift: Some(_), .. } if moves => {}
@@ -146,7 +115,7 @@ impl Case {
         }
     }
 
-    /// None is any more.
+    /// Returns to motion without disturbances.
     pub(crate) fn undisturbed(&mut self) {
         match &mut self.kind {
             Kind::Static { adrift, .. } => *adrift = None,
@@ -154,12 +123,12 @@ impl Case {
         }
     }
 
-    /// Motion under disturbances, with a displacement where there is one.
+    /// Motion under disturbances, with a displacement if there is one.
     #[inline(never)]
     pub(crate) fn displaced(&mut self, time_s: f64, motion: Option<&Motion>) -> CaseMotion {
         match &mut self.kind {
             Kind::Ship(ship) | Kind::Static { adrift: Some(ship), .. } => {
-                // A case adrift has no sway of its own: that is zero.
+                // A displaced static case has no sway of its own: its sway is zero.
                 let six = ship.sway.at_time(time_s);
                 ship.motion::<true>(&motion.map_or(six, |motion| with(six, motion)))
             }
@@ -178,7 +147,7 @@ impl Case {
         }
     }
 
-    /// A motion from outside, beside the sway; false: the case is fixed to the ground.
+    /// Adds a motion from outside to the sway; returns false if the case is fixed to the ground.
     pub(crate) fn follow(&mut self, course: &Course) -> bool {
         match &mut self.kind {
             Kind::Static { .. } => false,
@@ -204,8 +173,8 @@ impl Case {
         }
     }
 
-    /// Integrals of rate and specific force over the interval, in a frame into which `turn` takes
-    /// them, where they are at hand.
+    /// Integrals of rate and specific force over the interval, turned by `turn` into another frame;
+    /// `None` without a window.
     #[inline]
     pub(crate) fn integral_in(
         &mut self,
@@ -262,8 +231,8 @@ mod tests {
     use crate::trig::{rx_t, rz_t};
     use octant_earth::ellipsoid::{meridian_radius_m, transverse_radius_m};
 
-    /// The two derivatives that are written out by hand, against central differences: the angular
-    /// acceleration, and the velocity that the position implies.
+    /// Checks the two derivatives that are written out by hand against central differences: the
+    /// angular acceleration, and the velocity that follows from the position.
     #[test]
     fn derivatives_agree_with_differences() {
         let mut ship = crate::motion::dockside_default(9);
@@ -298,8 +267,8 @@ mod tests {
         }
     }
 
-    /// Interpolated in windows, against the motion computed anew at every node: to the rounding of
-    /// either, over many windows and across a jump in time.
+    /// Compares the motion interpolated in windows with the motion computed anew at every node:
+    /// equal to the rounding of either, over many windows and across a jump in time.
     #[test]
     fn windows_are_the_motion_itself() {
         let spectrum = crate::sea::Spectrum::jonswap(0.1, 8.0, 3.3);

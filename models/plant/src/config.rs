@@ -1,20 +1,20 @@
-//! What the plant is made from. All angles in rad, all quantities SI.
+//! Configuration of the plant. All angles in rad, all quantities SI.
 
 use octant_sample::Parameters;
 
-/// The whole truth of one run.
+/// True state of one run.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Config {
     /// Sample period, ns.
     pub sample_period_ns: u64,
     /// Seed of every random stream.
     pub seed: u64,
-    /// Samples of the calibration phase; what follows is navigation. Random streams are keyed by
-    /// phase and count from its first sample.
+    /// Samples of the calibration phase; all later samples are navigation. Random streams are keyed
+    /// by phase and count from its first sample.
     pub calibration_samples: u64,
-    /// Where the dock is.
+    /// Position of the dock, or of a case fixed to the ground.
     pub site: Site,
-    /// How the case moves.
+    /// Motion of the case.
     pub motion: Motion,
     /// The two gimbals.
     pub turntable: Turntable,
@@ -46,7 +46,7 @@ pub struct CaseAttitude {
     pub roll_rad: f64,
 }
 
-/// How the case moves.
+/// Motion of the case.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub enum Motion {
     /// Fixed to the ground.
@@ -78,7 +78,7 @@ pub struct Dockside {
 }
 
 impl Dockside {
-    /// A ship that lies still, at a mean attitude.
+    /// Makes a ship that lies still, at a mean attitude.
     #[must_use]
     pub fn calm(mean: CaseAttitude) -> Self {
         Self {
@@ -118,8 +118,8 @@ pub struct Turntable {
     /// Angle η by which the two gimbal axes miss a right angle, rad: the inner axis leans towards
     /// the outer, `c_cb = Rx(roll) · Ry(η) · Rz(azimuth)`.
     pub non_orthogonality_rad: f64,
-    /// Play of each gear, rad: the body lags the command by half of it, on the side it came from.
-    /// The encoders sit on the drives and don't see it.
+    /// Play of each gear, rad: the body lags the command by half of it, on the side from which it
+    /// came. The encoders sit on the drives and don't see it.
     pub backlash_rad: f64,
 }
 
@@ -132,15 +132,16 @@ pub struct Imu {
     pub angle_random_walk: f64,
     /// Accelerometer noise density, (m/s²)/√Hz.
     pub velocity_random_walk: f64,
-    /// What the filter doesn't model.
+    /// Errors that the filter doesn't model.
     pub extensions: Extensions,
 }
 
-/// What the sensors have and the filter doesn't model. The default is none of it.
+/// Errors that the sensors have and the filter doesn't model. The default has none of them.
 #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Extensions {
     /// First-order Gauss-Markov gyro bias: σ (rad/s) and correlation time (s). Like the random
-    /// walk it goes on from calibration into navigation; what drives it is counted by phase.
+    /// walk, the process continues from calibration into navigation; its driving noise is counted
+    /// by phase.
     pub gyro_gauss_markov: Option<GaussMarkov>,
     /// First-order Gauss-Markov accelerometer bias: σ (m/s²) and correlation time (s).
     pub accel_gauss_markov: Option<GaussMarkov>,
@@ -154,7 +155,7 @@ pub struct Extensions {
     pub gyro_range_radps: f64,
     /// Range of the accelerometers, m/s²; 0: only that of the format.
     pub accel_range_mps2: f64,
-    /// Temperature and what it does.
+    /// Temperature change and its effects.
     pub temperature: Option<Temperature>,
     /// Vibration of the sensor block.
     pub vibration: Option<Vibration>,
@@ -209,16 +210,17 @@ pub struct Vibration {
 /// The reference handed to the core during calibration.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct AidingSource {
-    /// What is measured.
+    /// Quantity that is measured.
     pub kind: AidingKind,
     /// Period, ns; a multiple of the sample period.
     pub period_ns: u64,
 }
 
-/// What the reference measures. The white noise is the reference's own, from its own stream.
+/// Quantity that the reference measures. The white noise is the reference's own, from its own
+/// stream.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub enum AidingKind {
-    /// Velocity of the ground or dock: zero, with noise of this σ, m/s. It doesn't know of sway.
+    /// Velocity of the ground or dock: zero, with noise of this σ, m/s. Sway is ignored.
     ZeroVelocity {
         /// 1σ of each axis, m/s.
         sigma_mps: f64,
@@ -228,7 +230,7 @@ pub enum AidingKind {
         /// 1σ of each axis, m/s.
         sigma_mps: f64,
     },
-    /// Position of the dock: constant, with noise of this σ, m. It doesn't know of sway.
+    /// Position of the dock: constant, with noise of this σ, m. Sway is ignored.
     DockPosition {
         /// 1σ of each axis, m.
         sigma_m: f64,

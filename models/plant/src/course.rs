@@ -1,10 +1,12 @@
-//! A motion of the case that comes from outside, piece by piece: what a foreign ship does.
+//! Motion of the case prescribed from outside, piece by piece: for a ship that is simulated
+//! elsewhere.
 //!
 //! A piece is a polynomial of the fifth degree in each degree of freedom, so that value, rate and
-//! acceleration can go on from one piece to the next. Rate and specific force follow from it on the
-//! ellipsoid as from the plant's own sway: what the sensors feel is the motion that truth tells.
+//! acceleration can be continuous from one piece to the next. Rate and specific force follow from
+//! it on the ellipsoid as from the plant's own sway, so that the sensors feel the same motion that
+//! truth reports.
 
-use crate::sway::{Dof, SixDof};
+use crate::six_dof::{Dof, SixDof};
 
 /// One piece of a motion.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -23,19 +25,19 @@ pub struct Course {
 pub struct Point {
     /// Value, rad or m.
     pub value: f64,
-    /// Its derivative.
+    /// First derivative.
     pub rate: f64,
-    /// Its second derivative.
+    /// Second derivative.
     pub acceleration: f64,
 }
 
 impl Course {
-    /// The piece that begins with some points and ends with others.
+    /// Makes the piece that starts at the points `from` and ends at the points `to`.
     #[must_use]
     pub fn between(start_s: f64, duration_s: f64, from: &[Point; 6], to: &[Point; 6]) -> Self {
         let coefficients = core::array::from_fn(|dof| {
             let (a, b) = (&from[dof], &to[dof]);
-            // Derivatives by the part of the piece that has passed.
+            // Derivatives by the elapsed fraction of the piece.
             let (v0, v1) = (a.rate * duration_s, b.rate * duration_s);
             let square = duration_s * duration_s;
             let (a0, a1) = (a.acceleration * square, b.acceleration * square);
@@ -52,7 +54,7 @@ impl Course {
         Self { start_s, duration_s, coefficients }
     }
 
-    /// Every number is one, and time passes.
+    /// Returns whether every number is finite and the duration is above 0.
     #[must_use]
     pub fn is_sound(&self) -> bool {
         self.start_s.is_finite()
@@ -61,7 +63,7 @@ impl Course {
             && self.coefficients.iter().flatten().all(|value| value.is_finite())
     }
 
-    /// Adds what it is at a time.
+    /// Adds the motion of the piece at a time.
     pub(crate) fn add_to(&self, six: &mut SixDof, time_s: f64) {
         let x = (time_s - self.start_s) / self.duration_s;
         for (dof, c) in six.iter_mut().zip(&self.coefficients) {

@@ -1,6 +1,6 @@
 //! Drawing an instrument from a seed: true parameters, initial alignment, phases of the sway.
 //!
-//! Every group has its own stream, so that a change of one distribution moves no other group.
+//! Every group has its own stream, so that a change of one distribution changes no other group.
 
 use octant_earth::units::{ARCSEC, DEG_PER_HOUR, DEG_PER_HOUR_PER_G, MICRO_G, PPM};
 use octant_random::normal::{Ziggurat, uniform};
@@ -21,7 +21,7 @@ pub enum Draw<const N: usize> {
         /// Largest magnitude.
         half_width: f64,
     },
-    /// Not drawn.
+    /// Constant, not drawn.
     Constant([f64; N]),
 }
 
@@ -72,7 +72,7 @@ fn normals<const N: usize>(seed: u64, name: &str) -> [f64; N] {
     all
 }
 
-/// Uniform number in (0, 1), one of a stream.
+/// Uniform number in (0, 1) at an index of a stream.
 pub(crate) fn uniform_at(seed: u64, name: &str, index: u64) -> f64 {
     uniform(block(key(seed, name, Phase::Draw), [index, 0, 0, 0])[0])
 }
@@ -87,7 +87,7 @@ fn group<const N: usize>(seed: u64, name: &str, draw: &Draw<N>) -> [f64; N] {
     }
 }
 
-/// True parameters of the instrument with this seed.
+/// Draws the true parameters of the instrument with this seed.
 #[must_use]
 pub fn parameters(seed: u64, draws: &ParameterDraws) -> Parameters {
     Parameters {
@@ -101,7 +101,7 @@ pub fn parameters(seed: u64, draws: &ParameterDraws) -> Parameters {
     }
 }
 
-/// Error of an alignment that is handed over: computed − true.
+/// Error of an initial alignment: computed − true.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct AlignmentError {
     /// Attitude error φ in n (north, east, down), rad: `c_nb(computed) = (I − [φ×]) c_nb(true)`.
@@ -110,8 +110,8 @@ pub struct AlignmentError {
     pub velocity_mps: [f64; 3],
 }
 
-/// Gaussian alignment error: tilt (north and east) and azimuth in rad, velocity of each axis in
-/// m/s, 1σ.
+/// Draws a Gaussian alignment error: tilt (north and east) and azimuth in rad, velocity of each
+/// axis in m/s, 1σ.
 #[must_use]
 pub fn alignment_error(
     seed: u64,
@@ -126,7 +126,7 @@ pub fn alignment_error(
     }
 }
 
-/// `n` phases, uniform in (0, 2π) rad, of the stream `draw.phase.NAME`.
+/// Draws `n` phases, uniform in (0, 2π) rad, from the stream `draw.phase.NAME`.
 #[must_use]
 pub fn phases(seed: u64, name: &str, n: usize) -> Vec<f64> {
     let stream = format!("draw.phase.{name}");

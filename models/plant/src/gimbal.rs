@@ -46,18 +46,18 @@ impl Arc {
         (angle + time_s * (rate + 0.5 * acceleration * time_s), rate + acceleration * time_s)
     }
 
-    /// Nothing moves.
+    /// Returns whether the axis rests.
     #[inline(always)]
     pub(crate) fn rests(&self) -> bool {
         self.origin.rate == 0.0 && self.origin.acceleration == 0.0
     }
 }
 
-/// Pieces that a drive profile can have: brake, accelerate, cruise, decelerate; after an overshoot
-/// the last three again. The play of the gear can cut each in two.
+/// Largest number of pieces of a drive profile: brake, accelerate, cruise, decelerate; after an
+/// overshoot the last three again. The play of the gear can cut each in two.
 const SEGMENTS_MAX: usize = 14;
 
-/// Longer than any run, s.
+/// Duration beyond that of any run, s.
 const FOR_GOOD_S: f64 = 1e9;
 
 /// Angle over time as pieces of parabolas, at rest from `end_s` on.
@@ -71,7 +71,7 @@ pub(crate) struct Profile {
 }
 
 impl octant_state::State for Profile {
-    /// Of the pieces, only those that there are.
+    /// Saves only the pieces in use.
     fn save(&self, to: &mut octant_state::Writer) {
         let Self { origin_ns, segments, len, end_s, end_angle } = self;
         to.value("origin_ns", origin_ns);
@@ -107,7 +107,7 @@ impl Profile {
         Self { origin_ns, segments, len: 0, end_s: 0.0, end_angle: angle }
     }
 
-    /// Appends a piece of a duration that begins where the last one ended.
+    /// Appends a piece of a duration, starting where the last piece ends.
     fn push(&mut self, duration_s: f64, from: AxisState) {
         if duration_s > 0.0 && self.len < SEGMENTS_MAX {
             self.segments[self.len] = Segment {
@@ -156,21 +156,21 @@ impl Profile {
         segment.at(time_s)
     }
 
-    /// The instants at which the pieces meet, s since the profile's origin, the end included.
+    /// Times at which the pieces meet, s since the profile's origin, the end included.
     pub(crate) fn knots(&self) -> impl Iterator<Item = f64> + '_ {
         let end = (self.len > 0).then_some(self.end_s);
         self.segments[..self.len].iter().map(|segment| segment.start_s).chain(end)
     }
 
-    /// From the present state to rest at `target`, as fast as the limits allow and without
-    /// overshoot; where the target is nearer than the brakes can stop, or behind, brake first.
+    /// Profile from the present state to rest at `target`, as fast as the limits allow and without
+    /// overshoot; if the target lies behind, or within the stopping distance, it brakes first.
     fn to(target: f64, now: AxisState, origin_ns: u64, rate: f64, acceleration: f64) -> Self {
         let mut profile = Self::rest(origin_ns, target);
         let (mut angle, mut speed) = (now.angle, now.rate);
         let stop = speed * speed / (2.0 * acceleration);
         let ahead = (target - angle) * if speed < 0.0 { -1.0 } else { 1.0 };
-        // A move that is followed to its end comes to its stopping distance exactly; rounding
-        // must not make it brake and creep back.
+        // A move that is followed to its end reaches its stopping distance exactly; rounding must
+        // not make it brake and creep back.
         let slack = 1e-12 * (1.0 + stop);
         if speed != 0.0 && ahead < stop - slack {
             let brake =
@@ -196,7 +196,7 @@ impl Profile {
         angle += sign * risen;
         let flat = AxisState { angle, rate: sign * peak, acceleration: 0.0 };
         profile.push(cruise / peak, flat);
-        // The last piece is laid backwards from the target, so that it ends there exactly.
+        // The last piece is computed backwards from the target, so that it ends there exactly.
         let last = AxisState {
             angle: target - sign * fall,
             rate: sign * peak,
@@ -206,14 +206,14 @@ impl Profile {
         profile
     }
 
-    /// To a rate with the given acceleration, and on with it: for good.
+    /// Profile that changes to a rate with the given acceleration and keeps that rate.
     fn onward(rate: f64, now: AxisState, origin_ns: u64, acceleration: f64) -> Self {
         let change = rate - now.rate;
         let pull = acceleration.copysign(change);
         let duration_s = change.abs() / acceleration;
         let angle = now.angle + 0.5 * (now.rate + rate) * duration_s;
         let mut profile = Self::rest(origin_ns, angle);
-        // Never through zero inside a piece.
+        // A piece must not contain a reversal: the rate passes zero between pieces only.
         let to_stop_s = -now.rate / pull;
         if to_stop_s > 0.0 && to_stop_s < duration_s {
             profile.push(to_stop_s, AxisState { acceleration: pull, ..now });
@@ -230,7 +230,7 @@ impl Profile {
         profile
     }
 
-    /// This profile, but beyond its end by an angle and back.
+    /// Extends this profile by an angle beyond its end, and back.
     fn overshooting(&self, beyond: f64, rate: f64, acceleration: f64) -> Self {
         let Some(last) = self.segments[..self.len].last() else { return *self };
         let start = self.at(0.0);
@@ -248,7 +248,7 @@ impl Profile {
         profile
     }
 
-    /// What is left of the profile from a time on.
+    /// Rest of the profile from a time on.
     fn after(&self, now_ns: u64) -> Self {
         let now_s = self.seconds(now_ns);
         let mut profile = Self::rest(now_ns, self.end_angle);
@@ -262,7 +262,7 @@ impl Profile {
         profile
     }
 
-    /// The same with every angle moved.
+    /// The same profile with an offset added to every angle.
     fn shifted(mut self, angle: f64) -> Self {
         if angle != 0.0 {
             self.segments.iter_mut().for_each(|segment| segment.angle += angle);
@@ -271,8 +271,8 @@ impl Profile {
         self
     }
 
-    /// What a body behind a gear with play ±`half` does when the drive follows this profile: it
-    /// stands until the drive has crossed the play, then follows at its edge.
+    /// Motion of a body behind a gear with play ±`half` when the drive follows this profile: it
+    /// rests until the drive has crossed the play, then follows at its edge.
     fn behind_play(&self, mut body: f64, half: f64) -> Self {
         if half == 0.0 {
             return *self;
@@ -283,7 +283,7 @@ impl Profile {
             let end_s = if i + 1 < self.len { self.segments[i + 1].start_s } else { self.end_s };
             let duration = end_s - segment.start_s;
             let end = segment.at(end_s);
-            // Pieces never change direction inside: they are cut where the rate is zero.
+            // Pieces are cut at zero rate, so that none changes direction inside.
             let sign = 1.0f64.copysign(end.angle - segment.angle);
             let to_edge = sign * (body + sign * half - segment.angle);
             let still = AxisState { angle: body, ..AxisState::default() };
@@ -309,7 +309,7 @@ impl Profile {
     }
 }
 
-/// The nearest value from `low` to `high`; what is no number stays so.
+/// Limits a value to `low` to `high`; NaN stays NaN.
 fn between(value: f64, low: f64, high: f64) -> f64 {
     if value < low {
         low
@@ -320,20 +320,20 @@ fn between(value: f64, low: f64, high: f64) -> f64 {
     }
 }
 
-/// What faults have done to a gimbal.
+/// Damage by faults to a gimbal.
 #[derive(Clone, Copy, Debug, Default, serde::Serialize, serde::Deserialize)]
 pub(crate) struct Harm {
-    /// It doesn't follow set points.
+    /// True if the gimbal doesn't follow set points.
     pub(crate) held: bool,
     /// Angle by which moves go too far, rad.
     pub(crate) overshoot: f64,
-    /// Half of the play that the gear got beside its own, rad.
+    /// Half of the play that faults add to that of the gear, rad.
     pub(crate) half_play: f64,
     /// Angle by which the body has slipped against its drive, rad.
     pub(crate) slipped: f64,
-    /// Of that, what the encoder saw.
+    /// Part of `slipped` that the encoder saw, rad.
     pub(crate) slipped_seen: f64,
-    /// Angle by which the encoder reads wrongly, rad.
+    /// Error that faults add to the encoder, rad.
     pub(crate) encoder: f64,
 }
 
@@ -356,7 +356,7 @@ octant_state::state! {
 }
 
 impl Gimbal {
-    /// A gimbal at rest at angle 0, in the middle of its play.
+    /// Makes a gimbal at rest at angle 0, in the middle of its play.
     pub(crate) fn new(rate_radps: f64, acceleration_radps2: f64, backlash_rad: f64) -> Self {
         Self {
             rate: rate_radps,
@@ -369,7 +369,7 @@ impl Gimbal {
         }
     }
 
-    /// Everything that it does began no later than now.
+    /// Checks that drive and body began their motions no later than now.
     pub(crate) fn check(&self, now_ns: u64) -> Result<(), octant_state::StateError> {
         for profile in [&self.drive, &self.body] {
             octant_state::check_below("origin_ns", profile.origin_ns, now_ns)?;
@@ -377,7 +377,7 @@ impl Gimbal {
         Ok(())
     }
 
-    /// The set point in counts, from `now_ns` on. True if it is a new one.
+    /// Takes the set point in counts, from `now_ns` on. Returns true if it is a new one.
     #[inline]
     pub(crate) fn command(&mut self, target: i32, now_ns: u64) -> bool {
         if target == self.target {
@@ -395,7 +395,7 @@ impl Gimbal {
         }
     }
 
-    /// Goes to the set point from where it is.
+    /// Starts from the present state towards the set point.
     pub(crate) fn go(&mut self, now_ns: u64) {
         let now = self.drive.at(self.drive.seconds(now_ns));
         let target_rad = f64::from(self.target) * octant_sample::counts::GIMBAL_LSB_RAD;
@@ -406,14 +406,14 @@ impl Gimbal {
         self.take(drive, now_ns);
     }
 
-    /// Goes to a set point with a rate of its own, also to the one that it had.
+    /// Starts towards a set point with a rate of its own, even if the set point is the same.
     pub(crate) fn aim(&mut self, target: i32, rate_radps: f64, now_ns: u64) {
         self.rate = rate_radps;
         self.target = target;
         self.go(now_ns);
     }
 
-    /// Turns on with a rate, 0: brakes and stands.
+    /// Turns on with a constant rate; 0 brakes and stops.
     pub(crate) fn run_on(&mut self, rate_radps: f64, now_ns: u64) {
         let now = self.drive.at(self.drive.seconds(now_ns));
         self.take(Profile::onward(rate_radps, now, now_ns, self.acceleration), now_ns);
@@ -429,8 +429,9 @@ impl Gimbal {
         self.half_play + self.harm.half_play
     }
 
-    /// The gear's play changes by a fault to ±`half` beside its own. Returns the angle by which
-    /// the body is out of it: the body stays where it is, and has to be brought back.
+    /// Changes the play that a fault adds to that of the gear to ±`half`. Returns the angle by
+    /// which the body lies outside the new play: the body stays where it is, and has to be brought
+    /// back.
     pub(crate) fn change_play(&mut self, half: f64, now_ns: u64) -> f64 {
         self.harm.half_play = half;
         let drive = self.drive.at(self.drive.seconds(now_ns)).angle;
@@ -443,7 +444,7 @@ impl Gimbal {
         out
     }
 
-    /// The body has slipped against its drive.
+    /// Adds a slip of the body against its drive.
     pub(crate) fn slipped(&mut self, angle: f64, seen: bool) {
         self.harm.slipped += angle;
         if seen {
@@ -452,18 +453,18 @@ impl Gimbal {
         self.body = self.body.shifted(angle);
     }
 
-    /// What the encoder has to read at a time, rad, but for its error curve.
+    /// Angle that the encoder reads at a time, rad, without its error curve.
     pub(crate) fn read(&self, now_ns: u64) -> f64 {
         let drive = self.drive.at(self.drive.seconds(now_ns)).angle;
         drive + (self.harm.slipped_seen + self.harm.encoder)
     }
 
-    /// How long the move goes on, s.
+    /// Time for which the move goes on, s.
     pub(crate) fn move_left_s(&self, now_ns: u64) -> f64 {
         self.drive.end_s - self.drive.seconds(now_ns)
     }
 
-    /// Drive and body rest from a time on.
+    /// Returns whether drive and body rest from a time on.
     #[inline]
     pub(crate) fn rests(&self, from_ns: u64) -> bool {
         self.drive.seconds(from_ns) >= self.drive.end_s

@@ -1,11 +1,11 @@
-//! The sensors: true increments to integer counts.
+//! The sensors: from true increments to integer counts.
 //!
 //! ```text
 //! Δθ̃ = (I + M_g) Δθ + b_g dt + G Δv + noise        Δṽ = (I + M_a) Δv + b_a dt + noise
 //! ```
 //!
-//! Everything is computed in counts of the format; their sizes are powers of two, so that changes
-//! no digit.
+//! Everything is computed in counts of the format; their sizes are powers of two, so that the
+//! conversion changes no digit.
 
 use crate::config::{Imu, Temperature};
 use crate::increments::Increments;
@@ -19,7 +19,7 @@ fn rows(m: [[f64; 3]; 3]) -> Matrix3<f64> {
     Matrix3::from_fn(|row, column| m[row][column])
 }
 
-/// What a triad measures without noise, in counts.
+/// Reading of both triads without noise, in counts.
 #[derive(Clone, Copy, Debug, Default, serde::Serialize, serde::Deserialize)]
 pub(crate) struct Reading {
     gyro: Vector3<f64>,
@@ -33,7 +33,7 @@ struct Triple {
     sigma_counts: f64,
     noise: Ahead,
     wanders: Vec<Wander>,
-    /// Range in counts per interval; infinite: that of the format.
+    /// Range in counts per interval; infinite: only the range of the format.
     limit_counts: f64,
     /// Coarser quantum in counts; 0: none.
     quantum_counts: f64,
@@ -41,7 +41,7 @@ struct Triple {
     accumulators: [Accumulator; 3],
 }
 
-// Noise is made from the sample's number: what is made ahead needn't be kept.
+// Noise follows from the sample's number, so that numbers made ahead needn't be saved.
 octant_state::state! {
     Triple {
         values: quantizers, accumulators;
@@ -177,7 +177,7 @@ impl Sensors {
         }
     }
 
-    /// Every temperature began to change, and to return, no later than now.
+    /// Checks that every change of temperature, and every return, began no later than now.
     pub(crate) fn check(&self, now_ns: u64) -> Result<(), octant_state::StateError> {
         for warmth in &self.temperatures {
             octant_state::check_below("from_ns", warmth.from_ns, now_ns)?;
@@ -188,13 +188,13 @@ impl Sensors {
         Ok(())
     }
 
-    /// From here on the random numbers are those of navigation.
+    /// Switches to the random numbers of the navigation phase.
     pub(crate) fn navigate(&mut self) {
         self.gyro.navigate();
         self.accelerometer.navigate();
     }
 
-    /// The error model without noise and temperature.
+    /// Applies the error model without noise and temperature.
     pub(crate) fn read(&self, increments: &Increments) -> Reading {
         let (theta, velocity) = (&increments.delta_theta, &increments.delta_velocity);
         Reading {
@@ -203,8 +203,8 @@ impl Sensors {
         }
     }
 
-    /// Temperature, noise and digitisation. `sample` is the number in the phase from 0, `start_ns`
-    /// the start of the interval. Counts go where they are to stay.
+    /// Adds temperature and noise, and digitises. `sample` is the number in the phase from 0,
+    /// `start_ns` the start of the interval. The counts are written in place, which avoids a copy.
     #[inline]
     pub(crate) fn count(
         &mut self,
@@ -230,7 +230,7 @@ impl Sensors {
         status
     }
 
-    /// What temperatures add to a reading. Those that have returned are forgotten.
+    /// Change of a reading by temperature. Changes that have returned to zero are removed.
     #[inline(never)]
     fn warm(&mut self, increments: &Increments, start_ns: u64) -> Reading {
         let mut sum = Reading::default();
@@ -244,14 +244,14 @@ impl Sensors {
         sum
     }
 
-    /// A fault changes the temperature.
+    /// Begins a temperature change by a fault.
     pub(crate) fn heat(&mut self, handle: u32, temperature: Temperature, now_ns: u64) {
         if temperature.ramp_kps * temperature.plateau_k > 0.0 {
             self.temperatures.push(Warmth::from(Some(handle), now_ns, temperature));
         }
     }
 
-    /// The fault has ended.
+    /// Ends the temperature change of a fault: the temperature returns.
     pub(crate) fn cool(&mut self, handle: u32, now_ns: u64) {
         for warmth in &mut self.temperatures {
             if warmth.handle == Some(handle) && warmth.returns.is_none() {
@@ -268,7 +268,7 @@ impl Sensors {
 struct Warmth {
     handle: Option<u32>,
     from_ns: u64,
-    /// When its fault ended, and the change at that time, K.
+    /// Time at which the fault ended, and the change at that time, K.
     returns: Option<(u64, f64)>,
     temperature: Temperature,
 }
@@ -313,7 +313,7 @@ fn mean_change_k(temperature: &Temperature, start_s: f64, dt: f64) -> f64 {
     (on_ramp + temperature.plateau_k * (dt - rising)) / dt
 }
 
-/// What a change of temperature adds to a reading.
+/// Change of a reading by a change of temperature.
 fn warm(temperature: &Temperature, change: f64, increments: &Increments, dt: f64) -> Reading {
     let mut reading = Reading::default();
     for axis in 0..3 {

@@ -1,12 +1,15 @@
 //! True increments: the integrals of angular rate and specific force over an interval.
 //!
-//! Gauss-Legendre on pieces that are short against every motion in play: at the default rates its
+//! Gauss-Legendre on pieces that are short against every motion involved: at the default rates the
 //! error is far below the rounding of an f64. Pieces end where a gimbal's acceleration jumps.
 
-use crate::case::{Case, Node};
+mod state;
+
+use crate::case::Case;
 use crate::config::{Config, Motion, Vibration};
 use crate::disturbed::{Active, Registry};
 use crate::gimbal::{Arc, Gimbal};
+use crate::kinematics::Node;
 use crate::trig::{Near, rx_t, ry_t, rz_t};
 use crate::vibration::shaken;
 use crate::window::Frame;
@@ -22,15 +25,15 @@ pub(crate) const GAUSS: [(f64, f64); 3] =
 /// Nodes of the two-point rule on (−1, 1): ±√(1/3).
 const GAUSS_2_NODE: f64 = 0.577_350_269_189_625_8;
 const GAUSS_2: [(f64, f64); 2] = [(-GAUSS_2_NODE, 0.5), (GAUSS_2_NODE, 0.5)];
-/// A turn or phase in a piece, rad, up to which two nodes do: of e^{iφ} their relative error is
-/// φ⁴/4320, here 1e-12 (Abramowitz and Stegun 1972, 25.4.30).
+/// Largest turn or phase in a piece, rad, for which two nodes suffice: for e^{iφ} their relative
+/// error is φ⁴/4320, here 1e-12 (Abramowitz and Stegun 1972, 25.4.30).
 const TWO_NODES_RAD: f64 = 0.008;
 
 /// Longest piece, s.
 const PIECE_MAX_S: f64 = 0.01;
-/// Pieces shorter than this are rounding, s.
+/// Pieces shorter than this are due to rounding and are skipped, s.
 pub(crate) const PIECE_MIN_S: f64 = 1e-12;
-/// Both gimbals' knots, with the ends and the time skew's cut.
+/// Room for both gimbals' knots, both ends and the cut of the time skew.
 const CUTS_MAX: usize = 24;
 
 /// Integrals over an interval, in b.
@@ -49,13 +52,13 @@ impl Increments {
     }
 }
 
-/// Inertial data that lag the stamps: a whole number of periods through a queue, and the rest by a
-/// cut inside the interval.
+/// Delay of the inertial data against the stamps: a queue for the whole periods, and a cut inside
+/// the interval for the rest.
 #[derive(Clone, Debug)]
 struct Lag {
-    /// Where the interval is cut, s after its start.
+    /// Time of the cut, s after the start of the interval.
     cut_s: f64,
-    /// The part after the cut, of the interval before.
+    /// Part of the previous interval after the cut.
     late: Increments,
     queue: VecDeque<Increments>,
 }
@@ -81,7 +84,7 @@ impl octant_state::State for Lag {
     }
 }
 
-/// What the gimbals do on a stretch without a knot.
+/// Motion of the gimbals on a stretch without a knot.
 #[derive(Clone, Copy, Debug)]
 struct Turn {
     roll: Arc,
@@ -112,73 +115,18 @@ pub(crate) struct Body {
     pub(crate) tilt_sincos: (f64, f64),
     pub(crate) vibration: Option<Vibration>,
     pub(crate) lever_arm: Option<[Vector3<f64>; 3]>,
-    /// The lever arms without those of faults.
+    /// Lever arms of the configuration, without those of faults.
     pub(crate) own_lever_arm: Option<[Vector3<f64>; 3]>,
     pub(crate) rate_at_end: Vector3<f64>,
     lag: Option<Lag>,
     constant: bool,
-    /// Sine and cosine of roll and azimuth while both gimbals rest, once an interval has been.
+    /// Sine and cosine of roll and azimuth while both gimbals rest; set by the first interval at
+    /// rest.
     resting_sincos: Option<Frame>,
-    /// Faults that have not ended.
+    /// Lasting faults that have not ended.
     pub(crate) registry: Registry,
-    /// What faults move at present.
+    /// Motions of faults under way.
     pub(crate) active: Option<Box<Active>>,
-}
-
-impl octant_state::State for Body {
-    fn save(&self, to: &mut octant_state::Writer) {
-        let Self {
-            period_ns: _,
-            period_s: _,
-            piece_s: _,
-            nodes: _,
-            case,
-            azimuth,
-            roll,
-            azimuth_near,
-            roll_near,
-            tilt_sincos: _,
-            vibration: _,
-            lever_arm,
-            own_lever_arm: _,
-            rate_at_end,
-            lag,
-            constant: _,
-            resting_sincos: _,
-            registry,
-            active,
-        } = self;
-        to.part("case", case);
-        to.part("azimuth", azimuth);
-        to.part("roll", roll);
-        to.value("near", &(azimuth_near, roll_near));
-        to.value("lever_arm", lever_arm);
-        to.value("rate_at_end", rate_at_end);
-        to.part("lag", lag);
-        to.value("registry", registry);
-        to.value("active", active);
-    }
-
-    fn load(
-        &mut self,
-        from: &mut octant_state::Reader<'_>,
-    ) -> Result<(), octant_state::StateError> {
-        from.part("case", &mut self.case)?;
-        from.part("azimuth", &mut self.azimuth)?;
-        from.part("roll", &mut self.roll)?;
-        (self.azimuth_near, self.roll_near) = from.value("near")?;
-        self.lever_arm = from.value("lever_arm")?;
-        self.rate_at_end = from.value("rate_at_end")?;
-        from.part("lag", &mut self.lag)?;
-        self.registry = from.value("registry")?;
-        self.active = from.value("active")?;
-        self.look_again();
-        if self.active.is_some() {
-            // How finely to integrate follows from what is active.
-            self.plan();
-        }
-        Ok(())
-    }
 }
 
 impl Body {
@@ -245,8 +193,8 @@ impl Body {
         body
     }
 
-    /// The lag holds what the instrument felt before its first interval: gimbals at rest, ship and
-    /// vibration as ever.
+    /// Fills the lag with the increments before the first interval: gimbals at rest, ship and
+    /// vibration moving as always.
     fn fill_lag(&mut self, skew_s: f64) {
         let whole = libm::floor(skew_s / self.period_s + 1e-9);
         let cut_s = (self.period_s - (skew_s - whole * self.period_s)).min(self.period_s);
@@ -256,7 +204,8 @@ impl Body {
         self.begin(-(before as f64) * self.period_s);
         for k in -before..0 {
             let start_s = k as f64 * self.period_s;
-            // Before the start there is no time of the run, and with a lag there are no windows.
+            // Before the start there are no nanoseconds of the run, and 0 stands in; with a lag
+            // there are no windows.
             self.case.enter(start_s, 0);
             let early = self.integrate(start_s, 0, 0.0, cut_s);
             if k > -before {
@@ -269,7 +218,7 @@ impl Body {
         self.lag = Some(Lag { cut_s, late, queue });
     }
 
-    /// The size effect needs the rate at the start.
+    /// Computes the rate at the start, which the size effect needs.
     pub(crate) fn begin(&mut self, start_s: f64) {
         if self.lever_arm.is_some() {
             let mut before = self.clone();
@@ -280,12 +229,12 @@ impl Body {
         }
     }
 
-    /// What was known of gimbals at rest is not any more.
+    /// Forgets the sine and cosine of gimbals at rest.
     pub(crate) fn look_again(&mut self) {
         self.resting_sincos = None;
     }
 
-    /// New set points, from `now_ns` on. True if a gimbal got a new one.
+    /// Takes new set points, from `now_ns` on. Returns true if a gimbal got a new one.
     #[inline]
     pub(crate) fn command(&mut self, command: &GimbalCommand, now_ns: u64) -> bool {
         let azimuth = self.azimuth.command(command.target.azimuth, now_ns);
@@ -300,7 +249,8 @@ impl Body {
         any
     }
 
-    /// The increments of every interval from `start_ns` on are the same until a new command.
+    /// Returns whether the increments of every interval from `start_ns` on are the same until a new
+    /// command.
     #[inline]
     pub(crate) fn is_constant(&self, start_ns: u64) -> bool {
         self.constant
@@ -325,7 +275,7 @@ impl Body {
         if let Some(lag) = &mut self.lag {
             now.add(&lag.late);
             lag.late = late;
-            // Out before in: the queue never grows, not even a clone's.
+            // Removing before adding keeps the queue at its length, even in a clone.
             if let Some(oldest) = lag.queue.pop_front() {
                 lag.queue.push_back(now);
                 now = oldest;
@@ -364,7 +314,7 @@ impl Body {
             }
         }
         if self.is_constant(start_ns) {
-            // One node: the rule is exact for a constant, and this way to the last bit.
+            // One node: exact for a constant, to the last bit.
             let turn = self.turn(start_ns, from_s);
             let weight = to_s - from_s;
             self.add_node(&mut sum, start_s, from_s, Node::Offset(from_s), weight, &turn);
@@ -421,7 +371,7 @@ impl Body {
     fn turn(&mut self, start_ns: u64, inside_s: f64) -> Turn {
         let roll = self.roll.body.arc(start_ns, inside_s);
         let azimuth = self.azimuth.body.arc(start_ns, inside_s);
-        // Of a gimbal that moves these are not used; each node takes its own.
+        // Not used for a moving gimbal: each node computes its own.
         let sincos = |arc: &Arc, near: &mut Near| {
             if arc.rests() { near.sincos(arc.origin.angle) } else { (0.0, 1.0) }
         };

@@ -1,17 +1,18 @@
-//! The truth: motion of the case, the two-gimbal turntable, the sensors and their noise.
+//! True physics of a run: motion of the case, the two-gimbal turntable, the sensors and their
+//! noise.
 //!
-//! The plant makes integer counts, stamped at the end of their interval, and answers to the gimbal
-//! commands of the core. It never sees what the core estimates.
+//! The plant makes integer counts, stamped at the end of their interval, and follows the gimbal
+//! commands of the core. It never sees the estimates of the core.
 //!
-//! A sample comes about in this order: the case moves (fixed, or on a moored ship), the gimbals
-//! turn the body in it, the body's angular rate and specific force are integrated over the
-//! interval, the sensors distort the integrals and add their noise, and counters digitise them.
-//! The reference that aids a calibration is made at the same stamp.
+//! A sample is made in this order: the case moves (fixed, or on a moored ship), the gimbals turn
+//! the body in it, the body's angular rate and specific force are integrated over the interval, the
+//! sensors distort the integrals and add their noise, and counters digitise them. The reference
+//! that aids a calibration is made at the same stamp.
 //!
 //! Random numbers come from named streams ([`octant_random`]): `gyro.noise`, `accelerometer.noise`,
 //! `gyro.gauss_markov`, `gyro.rate_random_walk`, `accelerometer.gauss_markov`, `aiding.noise`,
-//! `turntable.encoder.azimuth`, `turntable.encoder.roll`, and `draw.*` for what is drawn before a
-//! run ([`draw`]). None of them moves another.
+//! `turntable.encoder.azimuth`, `turntable.encoder.roll`, and `draw.*` for numbers drawn before a
+//! run ([`draw`]). No stream affects another.
 
 mod case;
 pub mod config;
@@ -22,12 +23,14 @@ mod encoder;
 mod gimbal;
 mod imu;
 mod increments;
+mod kinematics;
 pub mod motion;
 mod plant;
 mod processes;
 mod reference;
 pub mod sea;
 mod ship;
+mod six_dof;
 mod sway;
 pub mod table;
 mod trig;

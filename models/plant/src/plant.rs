@@ -1,4 +1,4 @@
-//! The plant, stepped one sample at a time.
+//! The plant, advanced one sample at a time.
 
 mod state;
 
@@ -12,13 +12,13 @@ use crate::reference::Aider;
 use crate::validate::{ConfigError, validate};
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use octant_earth::ellipsoid::Ellipsoid;
-use octant_faults::disturbance::{Disturbance, Disturbed, Motor};
+use octant_sample::disturbance::{Disturbance, Disturbed, Motor};
 use octant_sample::time::SimulatedTime;
 use octant_sample::{Aiding, DeviceTime, GimbalAngles, GimbalCommand, Sample, Status, Truth};
 
 pub use state::FORMAT as STATE_FORMAT;
 
-/// What one step gives.
+/// Result of one step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Step {
     /// The sample of the interval.
@@ -29,7 +29,7 @@ pub struct Step {
 
 /// Motion, turntable, sensors and reference of one run.
 ///
-/// A clone goes on exactly as the original would.
+/// A clone continues exactly as the original.
 #[derive(Clone, Debug)]
 pub struct Plant {
     config: Box<Config>,
@@ -46,20 +46,20 @@ pub struct Plant {
     until_aiding: u64,
     non_orthogonality_rad: f64,
     saturated_samples: u64,
-    /// Increments and reading of the last sample, and whether every one to come has the same.
+    /// Increments and reading of the last sample; `is_still` if every later sample has the same.
     increments: Increments,
     reading: Reading,
     is_still: bool,
-    /// Encoder angles; those of a drive that rests are not read again.
+    /// Encoder angles; those of a drive at rest are not computed again.
     angles: GimbalAngles,
-    /// Whether the drives of azimuth and roll rest, and their angles are read.
+    /// True for azimuth and roll if the drive rests and its angle has been read.
     resting: [bool; 2],
     /// Flags of the encoders.
     flags: Status,
 }
 
 impl Plant {
-    /// A plant at time 0, gimbals at rest at (0, 0).
+    /// Makes a plant at time 0, gimbals at rest at (0, 0).
     ///
     /// # Errors
     /// If a field of the configuration is out of its range.
@@ -91,18 +91,18 @@ impl Plant {
         })
     }
 
-    /// What it was made from.
+    /// Configuration of the plant.
     #[must_use]
     pub fn config(&self) -> &Config {
         &self.config
     }
 
-    /// The case of a moored ship moves on a course, beside its sway, in the interval that comes. It
-    /// is given before every interval that it holds for.
+    /// Moves the case of a moored ship on a course, beside its sway, in the next interval. The
+    /// course has to be given before every interval for which it holds.
     ///
     /// # Errors
-    /// If the motion isn't that of a ship, the instrument lags its stamps (what it felt before the
-    /// start isn't known), or the course isn't made of numbers.
+    /// If the motion isn't that of a ship, the instrument lags its stamps (the motion before the
+    /// start, which it would need, isn't known), or the course isn't [sound](Course::is_sound).
     pub fn follow(&mut self, course: &Course) -> Result<(), ConfigError> {
         let problem = |field: &str, found: String, expected: &str| {
             let (field, expected) = (field.to_owned(), expected.to_owned());
@@ -124,13 +124,13 @@ impl Plant {
         Ok(())
     }
 
-    /// The next sample.
+    /// Makes the next sample.
     ///
-    /// `command` is what the core answered to the sample before; it acts from the end of the
-    /// interval that this call delivers, and is first felt in the one after.
+    /// `command` is the core's answer to the sample before; it acts from the end of the interval
+    /// that this call delivers, and is first felt in the one after.
     ///
-    /// This is [`Self::sample_into`], then [`Self::command`]. Who gets a command between two samples
-    /// calls these in the other order.
+    /// Equivalent to [`Self::sample_into`], then [`Self::command`]. A caller that gets a command
+    /// between two samples calls them in the other order.
     #[inline]
     pub fn step(&mut self, command: &GimbalCommand) -> Step {
         let mut step = Step { sample: Sample::default(), aiding: None };
@@ -138,8 +138,8 @@ impl Plant {
         step
     }
 
-    /// [`Self::step`] in place, for who steps millions of times: a copy of what has just been
-    /// written waits for the stores.
+    /// [`Self::step`] in place, for callers that make millions of steps: a copy of data that has
+    /// just been written waits for the stores.
     #[inline]
     pub fn step_into(
         &mut self,
@@ -151,7 +151,7 @@ impl Plant {
         self.command(command);
     }
 
-    /// New set points of the gimbals; they act from now on, the end of the last interval.
+    /// Takes new set points of the gimbals; they act from now on, the end of the last interval.
     #[inline]
     pub fn command(&mut self, command: &GimbalCommand) {
         if self.body.command(command, self.time_ns) {
@@ -160,7 +160,7 @@ impl Plant {
         }
     }
 
-    /// The sample of the next interval, and the reference, when due, with its stamp.
+    /// Makes the sample of the next interval, and the reference, when due, with its stamp.
     #[inline]
     pub fn sample_into(&mut self, sample: &mut Sample, aiding: &mut Option<Aiding>) {
         let start_ns = self.time_ns;
@@ -230,7 +230,7 @@ impl Plant {
         })
     }
 
-    /// Truth at the stamp of the last step; before the first, at time 0.
+    /// Truth at the stamp of the last step; before the first step, at time 0.
     #[must_use]
     pub fn truth(&self) -> Truth {
         let at = self.body.whereabouts(self.time_ns);
@@ -262,15 +262,15 @@ impl Plant {
         }
     }
 
-    /// Samples so far in which a count or a sensor's range saturated.
+    /// Number of samples so far in which a count or a sensor's range saturated.
     #[must_use]
     pub fn saturated_samples(&self) -> u64 {
         self.saturated_samples
     }
 }
 
-/// Truth of a sensor block that faults have displaced against the gimballed body, whose angular
-/// rate `rate` is, in b.
+/// Truth of a sensor block that faults have displaced by `motion` against the gimballed body;
+/// `rate` is the angular rate of the body in b.
 fn displaced(truth: Truth, motion: &Motion, rate: &Vector3<f64>) -> Truth {
     let [w, x, y, z] = truth.q_nb;
     let c_nb = UnitQuaternion::new_unchecked(Quaternion::new(w, x, y, z));
@@ -282,7 +282,7 @@ fn displaced(truth: Truth, motion: &Motion, rate: &Vector3<f64>) -> Truth {
     let north_rad = aside.x / earth.meridian_radius_m;
     let east_rad = aside.y / earth.transverse_radius_m;
     let per_cos = 1.0 / earth.cos_latitude;
-    // North and down are those of the place to which it is displaced.
+    // North and down are taken at the displaced position.
     let turn = Vector3::new(east_rad, -north_rad, -east_rad * earth.sin_latitude * per_cos);
     let q = octant_earth::rotation::exp(&-turn) * c_nb * motion.rotation();
     Truth {
@@ -332,7 +332,7 @@ impl Disturbed for Plant {
 }
 
 impl Plant {
-    /// What was known of samples to come is not any more.
+    /// Forgets that the plant is still and that drives rest, and sets the encoder flags anew.
     fn look_again(&mut self) {
         self.is_still = false;
         self.resting = [false; 2];

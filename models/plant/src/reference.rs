@@ -1,7 +1,7 @@
-//! The reference of a calibration: what the core is aided with.
+//! Reference of a calibration, which aids the core.
 
-use crate::case::Whereabouts;
 use crate::config::{AidingKind, Config, Site};
+use crate::kinematics::Whereabouts;
 use octant_earth::ellipsoid::Ellipsoid;
 use octant_random::stream::Triad;
 use octant_sample::{Aiding, DeviceTime, Reference};
@@ -33,7 +33,7 @@ impl Aider {
         self.period_samples
     }
 
-    /// The message at a stamp; `sample` is the number of the sample in the phase, from 0.
+    /// Makes the message at a stamp; `sample` is the number of the sample in the phase, from 0.
     pub(crate) fn measure(
         &self,
         device_time: DeviceTime,

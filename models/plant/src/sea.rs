@@ -1,6 +1,6 @@
 //! Sea spectra as sums of sinusoids with drawn phases.
 //!
-//! A spectrum is used for the motion itself, in rad or m: its significant value is four standard
+//! A spectrum describes the motion itself, in rad or m: its significant value is four standard
 //! deviations of that degree of freedom.
 
 use crate::config::Sinusoid;
@@ -30,7 +30,7 @@ impl Spectrum {
         Self { significant, peak_period_s, peak_enhancement }
     }
 
-    /// Shape over the frequency relative to the peak, without its scale.
+    /// Spectral shape over the frequency relative to the peak, without scale.
     fn shape(&self, x: f64) -> f64 {
         let width = if x <= 1.0 { 0.07 } else { 0.09 };
         let hump = (x - 1.0) / width;
@@ -39,9 +39,10 @@ impl Spectrum {
             * libm::pow(self.peak_enhancement, libm::exp(-0.5 * hump * hump))
     }
 
-    /// `count` sinusoids that have the spectrum's variance exactly: bins of equal width from half
-    /// to four times the peak frequency, the frequency drawn within each so that the sum doesn't
-    /// repeat, the phase drawn too. Streams `draw.phase.NAME` and `draw.frequency.NAME`.
+    /// Makes `count` sinusoids with exactly the spectrum's variance: bins of equal width from half
+    /// to four times the peak frequency, the frequency drawn within each bin so that the sum
+    /// doesn't repeat, and the phase drawn too. Streams `draw.phase.NAME` and
+    /// `draw.frequency.NAME`.
     #[must_use]
     pub fn components(&self, seed: u64, name: &str, count: usize) -> Vec<Sinusoid> {
         const FROM: f64 = 0.5;
@@ -80,7 +81,8 @@ mod tests {
         }
     }
 
-    /// Closed form of Pierson-Moskowitz: the share of variance below x ω_p is exp(−1.25 / x⁴).
+    /// Compares with the closed form of Pierson-Moskowitz: the share of variance below x ω_p is
+    /// exp(−1.25 / x⁴).
     #[test]
     fn pierson_moskowitz_has_its_closed_form_distribution() {
         let all = Spectrum::pierson_moskowitz(4.0, 10.0).components(5, "roll", 2000);

@@ -1,14 +1,16 @@
-//! A moored ship: sums of sinusoids in six degrees of freedom, and what the case on it feels.
+//! A moored ship: sums of sinusoids in six degrees of freedom, and the resulting motion of the
+//! case.
 //!
 //! The position is *defined* by the sums of sinusoids, as latitude, longitude and height; velocity
 //! over ground and its derivative follow from it on the ellipsoid without approximation, and so do
 //! transport rate, Coriolis and curvature terms:
 //! `f = C_cn (v̇ + (2 ω_ie + ω_en) × v − g)` (Titterton and Weston, 2004, sec. 3.5).
 
-use crate::case::{CaseMotion, Node, Whereabouts};
 use crate::config::{CaseAttitude, Dockside, Site};
 use crate::disturbed::Motion;
-use crate::sway::{SixDof, Sway};
+use crate::kinematics::{CaseMotion, Node, Whereabouts};
+use crate::six_dof::SixDof;
+use crate::sway::Sway;
 use crate::trig::{Near, rx_t, ry_t, rz_t};
 use crate::window::Window;
 use nalgebra::Vector3;
@@ -21,17 +23,18 @@ pub(crate) struct Ship {
     mean: CaseAttitude,
     heading_sincos: (f64, f64),
     mooring_offset_m: [f64; 3],
-    /// Inverse of R_M + h and of (R_N + h) cos L of the dock: metres to latitude and longitude.
+    /// Reciprocals of R_M + h and of (R_N + h) cos L at the dock: from metres to latitude and
+    /// longitude.
     per_north_m: f64,
     per_east_m: f64,
-    /// Whether anything asks for the angular acceleration.
+    /// True if the angular acceleration is needed.
     pub(crate) accelerations: bool,
     latitude: Near,
     heading: Near,
     pitch: Near,
     roll: Near,
     pub(crate) sway: Sway,
-    /// Motion of many samples at once, where nothing asks for more than rate and specific force.
+    /// Motion of many samples at once, where only rate and specific force are needed.
     window: Option<Box<Window>>,
 }
 
@@ -52,7 +55,7 @@ pub(crate) fn into_case(
     rx_t(&ry_t(&rz_t(v, heading), pitch), roll)
 }
 
-/// A motion in six degrees of freedom with a displacement added.
+/// Adds a displacement to a motion in six degrees of freedom.
 pub(crate) fn with(mut six: SixDof, motion: &Motion) -> SixDof {
     for axis in 0..3 {
         for (dof, jet) in [(axis, &motion.turn), (3 + axis, &motion.displacement)] {
@@ -65,7 +68,7 @@ pub(crate) fn with(mut six: SixDof, motion: &Motion) -> SixDof {
 }
 
 impl Ship {
-    /// A case at rest that can be moved.
+    /// Makes a case at rest that can be moved.
     pub(crate) fn at_rest(site: Site, mean: CaseAttitude) -> Self {
         let earth = Ellipsoid::at(site.latitude_rad, site.height_m);
         Self::new(&Dockside::calm(mean), site, &earth, 1.0, &[], true)
@@ -97,13 +100,13 @@ impl Ship {
         }
     }
 
-    /// From here on rate and specific force at the regular nodes are computed for many samples at
-    /// once, where that saves work. A course puts an end to it.
+    /// Lets rate and specific force at the regular nodes be computed for many samples at once from
+    /// here on, where that saves work. A course ends this.
     pub(crate) fn open_windows(&mut self, period_ns: u64, nodes: &[(f64, f64)]) {
         self.window = Window::new(&self.sway, period_ns, nodes).map(Box::new);
     }
 
-    /// The window of the present interval, where the motion is that of the sway alone.
+    /// Window of the present interval; `None` if the motion isn't that of the sway alone.
     #[inline]
     pub(crate) fn window(&self) -> Option<&Window> {
         if self.sway.course.is_none() { self.window.as_deref() } else { None }
@@ -114,7 +117,7 @@ impl Ship {
         if self.sway.course.is_none() { self.window.as_deref_mut() } else { None }
     }
 
-    /// Goes to the interval that starts at a time; intervals follow each other.
+    /// Goes to the interval that starts at a time; intervals follow one another.
     #[inline]
     pub(crate) fn enter(&mut self, start_s: f64, start_ns: u64) {
         match self.window.take() {
@@ -130,7 +133,7 @@ impl Ship {
         }
     }
 
-    /// Rate and specific force, of whatever the ship did before.
+    /// Rate and specific force, independent of the ship's earlier motion.
     fn feel(&self, six: &SixDof) -> (Vector3<f64>, Vector3<f64>) {
         let (latitude, height) = self.latitude_and_height(six);
         let turned = [
@@ -143,7 +146,7 @@ impl Ship {
         (motion.rate, motion.force)
     }
 
-    /// North and east of a pair along and to starboard of the mean heading.
+    /// North and east components of components along and to starboard of the mean heading.
     #[inline]
     fn north_east(&self, surge: f64, sway: f64) -> (f64, f64) {
         let (s, c) = self.heading_sincos;
@@ -160,7 +163,8 @@ impl Ship {
         )
     }
 
-    /// Motion at a node, with what comes from outside. Out of the way of a ship that has none of it.
+    /// Motion at a node, with the motion from outside. Not inlined, so that a ship without such a
+    /// motion doesn't pay for it.
     #[inline(never)]
     pub(crate) fn motion_on_course(&mut self, node: Node) -> CaseMotion {
         let six = match node {
@@ -170,8 +174,8 @@ impl Ship {
         self.motion::<true>(&six)
     }
 
-    /// `DISTURBED` changes nothing: it makes a copy of its own for who is disturbed, so that the
-    /// other one is inlined where every sample passes.
+    /// Motion of the case. `DISTURBED` doesn't change the result: it makes a separate copy for
+    /// disturbed motion, so that the other copy is inlined into the path of every sample.
     #[inline]
     pub(crate) fn motion<const DISTURBED: bool>(&mut self, six: &SixDof) -> CaseMotion {
         let (latitude, height) = self.latitude_and_height(six);
@@ -184,7 +188,7 @@ impl Ship {
         self.motion_of(six, height, turned)
     }
 
-    /// `turned`: sine and cosine of latitude, heading, pitch and roll.
+    /// Motion of the case; `turned`: sine and cosine of latitude, heading, pitch and roll.
     #[inline(always)]
     fn motion_of(&self, six: &SixDof, height: f64, turned: [(f64, f64); 4]) -> CaseMotion {
         let [(sin_latitude, cos_latitude), heading, pitch, roll] = turned;

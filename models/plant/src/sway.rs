@@ -3,19 +3,9 @@
 
 use crate::config::{Dockside, Sinusoid};
 use crate::course::Course;
+use crate::six_dof::{Dof, SixDof};
 
-/// Value, rate and acceleration of one degree of freedom.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Dof {
-    pub(crate) value: f64,
-    pub(crate) rate: f64,
-    pub(crate) acceleration: f64,
-}
-
-/// Roll, pitch, yaw (rad), surge, sway, heave (m).
-pub(crate) type SixDof = [Dof; 6];
-
-/// Samples after which the phasors are set anew from the time, before rounding adds up.
+/// Samples after which the phasors are computed anew from the time, before rounding errors add up.
 const RESET_SAMPLES: u32 = 256;
 
 #[derive(Clone, Copy, Debug)]
@@ -46,7 +36,7 @@ impl Component {
         libm::sincos(turn + self.phase_rad)
     }
 
-    /// Sine and cosine of the phase that is a rotation away from that at the middle.
+    /// Sine and cosine of the phase that differs by a rotation from the phase at the middle.
     #[inline(always)]
     fn turned(&self, (s, c): (f64, f64)) -> (f64, f64) {
         (self.sin * c + self.cos * s, self.cos * c - self.sin * s)
@@ -64,7 +54,7 @@ impl Component {
 #[derive(Clone, Debug)]
 pub(crate) struct Sway {
     components: Vec<Component>,
-    /// Where the components of each degree of freedom end.
+    /// End index of the components of each degree of freedom.
     ends: [usize; 6],
     /// Phase gained from the middle of the interval to each regular node, by node and component.
     to_node: Vec<(f64, f64)>,
@@ -74,7 +64,7 @@ pub(crate) struct Sway {
     start_s: f64,
     /// Regular nodes, s from the start of an interval.
     nodes_s: Vec<f64>,
-    /// A motion from outside; who gives it gives it before every interval.
+    /// Motion from outside, to be given anew before every interval.
     pub(crate) course: Option<Box<Course>>,
 }
 
@@ -97,7 +87,7 @@ impl Sway {
 }
 
 impl Sway {
-    /// `nodes_s`: the regular nodes, s from the start of an interval.
+    /// Makes a sway; `nodes_s`: the regular nodes, s from the start of an interval.
     pub(crate) fn new(dockside: &Dockside, period_s: f64, nodes_s: &[f64]) -> Self {
         let groups: [&[Sinusoid]; 6] = [
             &dockside.roll,
@@ -158,20 +148,20 @@ impl Sway {
         self.components.iter().map(|component| component.omega).fold(0.0, f64::max)
     }
 
-    /// Goes to the interval that starts at `start_s`, wherever it was.
+    /// Goes to the interval that starts at `start_s`, from any other.
     pub(crate) fn enter_anew(&mut self, start_s: f64) {
         self.until_reset = 0;
         self.enter(start_s);
     }
 
-    /// Passes over the interval that starts at `start_s`: nobody asks for its regular nodes.
+    /// Passes over the interval that starts at `start_s`: its regular nodes are not needed.
     #[inline]
     pub(crate) fn pass(&mut self, start_s: f64) {
         self.until_reset = 0;
         self.start_s = start_s;
     }
 
-    /// Goes to the interval that starts at `start_s`; intervals follow each other.
+    /// Goes to the interval that starts at `start_s`; intervals follow one another.
     #[inline]
     pub(crate) fn enter(&mut self, start_s: f64) {
         self.start_s = start_s;
@@ -204,7 +194,7 @@ impl Sway {
         })
     }
 
-    /// At a regular node of the present interval.
+    /// Sway at a regular node of the present interval.
     #[inline(always)]
     pub(crate) fn at_node(&self, node: usize) -> SixDof {
         let n = self.components.len();
@@ -212,18 +202,19 @@ impl Sway {
         self.sum(|i, component| component.turned(to_node[i]))
     }
 
-    /// At `offset_s` after the start of the present interval.
+    /// Sway at `offset_s` after the start of the present interval.
     pub(crate) fn at_offset(&self, offset_s: f64) -> SixDof {
         let from_middle_s = offset_s - 0.5 * self.period_s;
         self.sum(|_, component| component.turned(libm::sincos(component.omega * from_middle_s)))
     }
 
-    /// With the motion from outside, where there is one: at a regular node.
+    /// Sway and motion from outside, if there is one, at a regular node.
     pub(crate) fn at_node_on_course(&self, node: usize) -> SixDof {
         self.on_course(self.at_node(node), self.start_s + self.nodes_s[node])
     }
 
-    /// With the motion from outside: at `offset_s` after the start of the present interval.
+    /// Sway and motion from outside, if there is one, at `offset_s` after the start of the present
+    /// interval.
     pub(crate) fn at_offset_on_course(&self, offset_s: f64) -> SixDof {
         self.on_course(self.at_offset(offset_s), self.start_s + offset_s)
     }
@@ -235,12 +226,13 @@ impl Sway {
         six
     }
 
-    /// At `offset_s` after the start of an interval that was passed over.
+    /// Sway and motion from outside at `offset_s` after the start of an interval that was passed
+    /// over.
     pub(crate) fn at_offset_passed(&self, offset_s: f64) -> SixDof {
         self.at_time(self.start_s + offset_s)
     }
 
-    /// At any time, s since the start, with the motion from outside.
+    /// Sway and motion from outside at any time, s since the start.
     pub(crate) fn at_time(&self, time_s: f64) -> SixDof {
         self.on_course(self.sum(|_, component| component.phase_at(time_s)), time_s)
     }

@@ -1,13 +1,13 @@
 //! The turntable alone: the plant's gimbals without an instrument on them.
 //!
-//! For what plays the controller of a table: the same drives, rates and play as in a run, by a clock
-//! that the caller reads.
+//! For a simulated table controller: the same drives, rates and play as in a run, by a clock that
+//! the caller reads.
 
 use crate::config::Turntable;
 use crate::gimbal::Gimbal;
 use octant_sample::GimbalAngles;
 
-/// One of the gimbals.
+/// Gimbal of the table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Axis {
     /// Inner gimbal.
@@ -16,14 +16,14 @@ pub enum Axis {
     Roll,
 }
 
-/// Where a gimbal is.
+/// Present motion of a gimbal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AxisMotion {
-    /// What the encoder reads, rad.
+    /// Angle that the encoder reads, rad.
     pub angle_rad: f64,
     /// Rate of the drive, rad/s.
     pub rate_radps: f64,
-    /// A move goes on.
+    /// True while a move goes on.
     pub moves: bool,
 }
 
@@ -37,7 +37,8 @@ pub struct Table {
 }
 
 impl Table {
-    /// With the rates, accelerations and play of a configuration, and encoders without error.
+    /// Makes a table with the rates, accelerations and play of a configuration, and encoders
+    /// without error.
     #[must_use]
     pub fn new(config: &Turntable) -> Self {
         let gimbal =
@@ -45,8 +46,8 @@ impl Table {
         Self { azimuth: gimbal, roll: gimbal, rate_radps: config.rate_radps, now_ns: 0 }
     }
 
-    /// Turns to an angle with at most a rate. Not a number is not a move; a rate beyond that of the
-    /// drive is the drive's.
+    /// Turns to an angle at no more than a rate. An angle that isn't finite, or a rate that isn't
+    /// above 0, is ignored; a rate above that of the drive is limited to it.
     pub fn go_to(&mut self, axis: Axis, angle_rad: f64, rate_radps: f64, now_ns: u64) {
         if !angle_rad.is_finite() || !(rate_radps > 0.0) {
             return;
@@ -57,7 +58,7 @@ impl Table {
         self.gimbal(axis).aim(target, rate, now_ns);
     }
 
-    /// Turns on with a rate; 0 brakes and stands.
+    /// Turns on with a constant rate; 0 brakes and stops. A rate that isn't finite is ignored.
     pub fn run_on(&mut self, axis: Axis, rate_radps: f64, now_ns: u64) {
         if !rate_radps.is_finite() {
             return;
@@ -67,7 +68,7 @@ impl Table {
         self.gimbal(axis).run_on(rate, now_ns);
     }
 
-    /// Where a gimbal is.
+    /// Present motion of a gimbal.
     #[must_use]
     pub fn motion(&self, axis: Axis, now_ns: u64) -> AxisMotion {
         let gimbal = match axis {
@@ -89,7 +90,7 @@ impl Table {
         }
     }
 
-    /// Time goes on, never back.
+    /// Advances the time, never back.
     fn at(&mut self, now_ns: u64) -> u64 {
         self.now_ns = self.now_ns.max(now_ns);
         self.now_ns
@@ -122,12 +123,12 @@ mod tests {
         assert!((at(&table, 5000).angle_rad - 45f64.to_radians()).abs() < 1e-8);
         assert!((at(&table, 5000).rate_radps - 10f64.to_radians()).abs() < 1e-12);
         assert!(at(&table, 9999).moves && !at(&table, 10_001).moves);
-        // The same again from there is no move, and back is one.
+        // The same set point again is no move; the way back is one.
         table.go_to(Axis::Roll, 90f64.to_radians(), 1.0, 11 * SECOND_NS);
         assert!(!at(&table, 11_001).moves);
         table.go_to(Axis::Roll, 0.0, 5f64.to_radians(), 12 * SECOND_NS);
         assert!((at(&table, 20_000).rate_radps + 5f64.to_radians()).abs() < 1e-12);
-        // Stopped from 5 °/s: half a second, 1.25°.
+        // Stop from 5 °/s: half a second, 1.25°.
         let before = at(&table, 20_000).angle_rad;
         table.run_on(Axis::Roll, 0.0, 20 * SECOND_NS);
         let after = at(&table, 21_000);

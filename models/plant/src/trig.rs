@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-/// Largest distance from the reference, rad. The series below are exact to a bit or two there.
+/// Largest distance from the reference, rad. Within it the series below are exact to a bit or two.
 const REACH_RAD: f64 = 0.1;
 
 /// Sine and cosine of a small angle, |angle| ≤ 0.1 rad.
@@ -16,7 +16,7 @@ pub(crate) fn small_sincos(angle: f64) -> (f64, f64) {
     (sin, cos)
 }
 
-/// An angle near which sines and cosines are wanted.
+/// Reference angle, near which sines and cosines are computed.
 #[derive(Clone, Copy, Debug, serde::Serialize, serde::Deserialize)]
 pub(crate) struct Near {
     angle: f64,

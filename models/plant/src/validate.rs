@@ -1,18 +1,18 @@
-//! Checks of a configuration: what gets past here can be computed with.
+//! Checks of a configuration: every configuration that passes can be computed with.
 
 use crate::config::{AidingKind, Config, Dockside, Extensions, GaussMarkov, Motion, Sinusoid};
 use octant_earth::units::DEG;
 use octant_sample::counts::{DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS};
 
-/// A field that can't be what it is.
+/// Field of a configuration with a value out of its range.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{field} is {found}, expected {expected}")]
 pub struct ConfigError {
     /// The field, as a path in the configuration.
     pub field: String,
-    /// What it is.
+    /// Value found.
     pub found: String,
-    /// What it may be.
+    /// Values expected.
     pub expected: String,
 }
 

@@ -8,7 +8,7 @@ use crate::config::Vibration;
 use crate::disturbed::Motion;
 use nalgebra::Vector3;
 
-/// The vibration as a motion, to be added to others.
+/// Returns the vibration as a motion, to be added to others.
 pub(crate) fn motion(vibration: &Vibration, time_s: f64) -> Motion {
     let cycles = time_s * vibration.frequency_hz;
     let turn = 2.0 * core::f64::consts::PI * (cycles - libm::floor(cycles));

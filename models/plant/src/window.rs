@@ -1,32 +1,33 @@
 //! Many samples of a ship's motion at once.
 //!
-//! A ship moves slowly against the samples of its instrument. Rate and specific force of the case
-//! are computed at a few nodes of a window and interpolated between them (Lagrange on Chebyshev's
-//! nodes): in a window in which no sinusoid's phase gets further than ±0.17 rad, ten nodes leave
-//! 0.17¹⁰/(10!·2⁹) = 1e-17 of a sinusoid, 1e-14 of its second harmonic and 6e-13 of its third
-//! (Trefethen, 2013, Approximation Theory and Approximation Practice, ch. 8): less than rounding
-//! does to a sample.
+//! A ship moves slowly against the sample period of its instrument. Rate and specific force of the
+//! case are computed at a few nodes of a window and interpolated between them (Lagrange on
+//! Chebyshev's nodes): in a window in which no sinusoid's phase moves further than ±0.17 rad, ten
+//! nodes leave an error of 0.17¹⁰/(10!·2⁹) = 1e-17 of a sinusoid, 1e-14 of its second harmonic and
+//! 6e-13 of its third (Trefethen, 2013, Approximation Theory and Approximation Practice, ch. 8):
+//! less than the rounding of a sample.
 //!
-//! What is in a window depends on its number alone. Who comes to it from elsewhere, with a restored
-//! state, finds the same bits.
+//! The content of a window depends on its number alone, so that a plant that enters it with a
+//! restored state finds the same bits.
 
-use crate::sway::{SixDof, Sway};
+use crate::six_dof::SixDof;
+use crate::sway::Sway;
 use nalgebra::Vector3;
 
 /// Nodes of a window.
 const NODES: usize = 10;
-/// Phase, rad, that the fastest sinusoid gains in half a window, at most.
+/// Largest phase that the fastest sinusoid gains in half a window, rad.
 const REACH_RAD: f64 = 0.17;
-/// Most samples of a window: their weights have to stay in the cache.
+/// Most samples of a window, so that their weights stay in the cache.
 const SAMPLES_MAX: f64 = 64.0;
 
 /// Angular rate and specific force, side by side.
 type Six = [f64; 6];
 
-/// Weights of the nodes in a sum of them.
+/// Weights of the nodes in a sum over them.
 type Weights = [f64; NODES];
 
-/// A frame that rests against the case: sine and cosine of the gimbals' angles.
+/// Frame at rest against the case: sine and cosine of the gimbal angles.
 pub(crate) type Frame = [(f64, f64); 2];
 
 #[derive(Clone, Debug)]
@@ -34,26 +35,26 @@ pub(crate) struct Window {
     period_ns: u64,
     length_ns: u64,
     samples: u64,
-    /// The sway that is asked once for each window.
+    /// Sway, evaluated once for each window.
     sway: Sway,
-    /// Weights by sample and regular node of it.
+    /// Weights of a sample's regular nodes, by sample and node.
     at_node: Vec<Weights>,
     /// Weights of the integral, by sample.
     integral: Vec<Weights>,
-    /// The window that is held.
+    /// Number of the window that is held.
     number: u64,
     values: [Six; NODES],
-    /// The same in a frame, and which: turned once for all samples of the window.
+    /// Values turned into a frame, and that frame: turned once for all samples of the window.
     turned: [Six; NODES],
     turned_into: Option<Frame>,
-    /// The interval that is at hand, and the start of the next one.
+    /// Index of the present interval, and start of the next one.
     sample: usize,
     next_ns: u64,
 }
 
 impl Window {
-    /// A window for samples with some regular nodes (s from the start of their interval, and
-    /// weight); `None` where it would take more work than it saves.
+    /// Makes a window for samples with these regular nodes (s from the start of their interval, and
+    /// weight); `None` if it would cost more work than it saves.
     pub(crate) fn new(sway: &Sway, period_ns: u64, nodes: &[(f64, f64)]) -> Option<Self> {
         let period_s = period_ns as f64 * 1e-9;
         let fastest_radps = sway.fastest_radps();
@@ -62,7 +63,7 @@ impl Window {
             return None;
         }
         let length_s = samples as f64 * period_s;
-        // Of the first kind, on (−1, 1).
+        // Chebyshev nodes of the first kind, on (−1, 1).
         let chebyshev: Weights = core::array::from_fn(|i| {
             libm::cos(core::f64::consts::PI * (i as f64 + 0.5) / NODES as f64)
         });
@@ -106,8 +107,8 @@ impl Window {
         })
     }
 
-    /// Goes to the interval that starts at `start_ns`. `feel` gives rate and specific force of a
-    /// point of the sway.
+    /// Goes to the interval that starts at `start_ns`. `feel` computes rate and specific force for
+    /// a state of the sway.
     #[inline]
     pub(crate) fn enter(
         &mut self,
@@ -144,7 +145,7 @@ impl Window {
         sum(&self.values, &self.at_node[self.sample * nodes + node])
     }
 
-    /// Their integrals over the interval, in a frame into which `turn` takes them.
+    /// Integrals of both over the interval, in the frame into which `turn` takes them.
     #[inline]
     pub(crate) fn integral_in(
         &mut self,

@@ -1,13 +1,13 @@
-//! Whatever disturbances come and go, in whatever order: nothing panics, work stays bounded, and a
-//! clone, and what was saved and loaded, goes on as the original.
+//! Any disturbances in any order: no panic, bounded work, and a clone, or a plant that was saved
+//! and loaded, continues as the original.
 
 use crate::common::*;
-use octant_faults::disturbance::*;
 use octant_plant::config::Motion;
 use octant_plant::{Plant, motion};
+use octant_sample::disturbance::*;
 use proptest::prelude::*;
 
-/// Usual sizes, and what no kind would let through.
+/// Usual sizes, and values that every kind would refuse.
 fn number() -> impl Strategy<Value = f64> {
     prop_oneof![
         6 => (-4.0..1.0f64, any::<bool>())
@@ -81,7 +81,7 @@ fn disturbance() -> impl Strategy<Value = Disturbance> {
     ]
 }
 
-/// One thing that happens: it sets in, something ends, or the turntable gets a set point.
+/// One event: a disturbance begins or ends, or the turntable gets a set point.
 #[derive(Clone, Debug)]
 enum Event {
     Begin(u32, Disturbance),

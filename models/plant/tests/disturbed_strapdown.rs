@@ -1,15 +1,15 @@
-//! Whatever faults do to the physical world, a perfect strapdown that integrates the samples
-//! arrives at truth while they do it and after: gyros and accelerometers feel one motion.
+//! A perfect strapdown that integrates the samples agrees with truth during any disturbance by
+//! faults and after it: gyros and accelerometers feel one motion.
 
 use crate::common::strapdown::Strapdown;
 use crate::common::*;
 use octant_earth::units::DEG;
-use octant_faults::disturbance::*;
 use octant_plant::config::*;
 use octant_plant::{Plant, motion};
 use octant_sample::counts::{DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS};
+use octant_sample::disturbance::*;
 
-/// Samples at 2 kHz, so that the strapdown's own errors are small.
+/// Sample period at 2 kHz, ns: short, so that the strapdown's own errors are small.
 const FINE_NS: u64 = 500_000;
 const FINE_S: f64 = 5e-4;
 
@@ -37,8 +37,8 @@ fn on_roll(action: GimbalAction) -> Disturbance {
     Disturbance::Gimbal { gimbal: Gimbal::Roll, action }
 }
 
-/// Runs 12 s with moves at 0 s, 3 s and 8 s; the worst errors of position, velocity and attitude at
-/// every tenth sample, and how far truth was from where it would have been.
+/// Runs 12 s with moves at 0 s, 3 s and 8 s; returns the largest errors of position, velocity and
+/// attitude at every tenth sample, and the distance of truth from that of the undisturbed plant.
 fn worst(config: &Config, lives: &[Life]) -> ([f64; 3], f64) {
     let mut plant = Plant::new(config).unwrap();
     let mut calm = Plant::new(config).unwrap();
@@ -79,9 +79,10 @@ fn worst(config: &Config, lives: &[Life]) -> ([f64; 3], f64) {
     (worst, apart)
 }
 
-/// Position within 1 µm, velocity within 0.1 µm/s, attitude within 2e-10 rad. The counts' resolution
-/// is 1.5e-11 rad and 9e-10 m/s; the rest is what the strapdown's parabola through two samples loses
-/// where an acceleration or, of a gear with play, a rate jumps, and to coning of 17 Hz at 2 kHz.
+/// Checks position within 1 µm, velocity within 0.1 µm/s, attitude within 2e-10 rad. The counts'
+/// resolution is 1.5e-11 rad and 9e-10 m/s; the rest is the error of the strapdown's parabola
+/// through two samples where an acceleration or, for a gear with play, a rate jumps, and the error
+/// of coning of 17 Hz at 2 kHz.
 fn agrees(name: &str, config: &Config, lives: &[Life]) {
     let ([position, velocity, attitude], apart) = worst(config, lives);
     let found = format!("{name}: {position:.1e} m, {velocity:.1e} m/s, {attitude:.1e} rad");
@@ -117,7 +118,7 @@ fn of_vibration_with_coning_and_sculling() {
     agrees("vibration", &fine(), &[life(vibration, 0.5, 6.0)]);
 }
 
-/// The configured vibration, that of a fault and a shock add up to one rigid motion.
+/// The configured vibration, the vibration of a fault and a shock add up to one rigid motion.
 #[test]
 fn of_vibration_beside_vibration() {
     let mut config = fine();
@@ -125,8 +126,8 @@ fn of_vibration_beside_vibration() {
     let vibration = || Disturbance::Vibration { lines: lines.clone(), edge_s: 0.3 };
     let twice = [life(vibration(), 1.0, 4.0), life(vibration(), 2.0, 4.1)];
     agrees("two vibrations", &config, &twice);
-    // Truth leaves the configured vibration out: with it, attitude is that of the body before and
-    // after, and the strapdown's starts with the swing of the first moment.
+    // Truth excludes the configured vibration: with it, attitude is that of the body before and
+    // after, and the strapdown's attitude starts with the swing of the first moment.
     config.imu.extensions.vibration = Some(Vibration {
         frequency_hz: 10.0,
         displacement_m: [0.0; 3],
@@ -201,8 +202,8 @@ fn of_what_happens_to_a_gimbal() {
     agrees("all together on a ship", &ship, &together);
 }
 
-/// Size effect: what the accelerometers feel besides is `ω̇ × r + ω × (ω × r)` of the block's rate,
-/// taken here from the gyros' samples.
+/// Size effect: the accelerometers feel `ω̇ × r + ω × (ω × r)` of the block's rate in addition; the
+/// rate is taken from the gyros' samples.
 #[test]
 fn of_the_size_effect_under_vibration() {
     let arms = [[0.05, 0.0, 0.0], [0.0, 0.0, 0.04], [0.0, 0.03, 0.0]];
@@ -238,8 +239,8 @@ fn of_the_size_effect_under_vibration() {
         for axis in 0..3 {
             let expected =
                 cross(acceleration, arms[axis])[axis] + cross(rate, cross(rate, arms[axis]))[axis];
-            // Of at most 0.57 m/s²: the difference is good to (Ω dt)²/6, 4.8e-4, and a count more
-            // or less is 2e-6 m/s².
+            // The largest value is 0.57 m/s²: the difference is accurate to (Ω dt)²/6, 4.8e-4, and
+            // a count more or less is 2e-6 m/s².
             let error = (force[axis] - expected).abs();
             assert!(error < 4.8e-4 * 0.57 + 4e-6, "{axis} {error}");
         }

@@ -1,4 +1,5 @@
-//! Kinds of faults of motion and environment: what their pages say, by closed forms written here.
+//! Kinds of faults of motion and environment against independent closed forms of their
+//! documentation.
 
 use crate::common::bench::*;
 use crate::common::*;
@@ -38,7 +39,7 @@ fn sine_vibration_is_the_sine_of_its_page() {
     let spec = sine([0.0, 0.0, a], [0.0, 0.0, alpha], phase, 201, 400);
     let pairs = run_pair(&noisy(), &[spec], 1000, level);
     nothing_before(&pairs, 201);
-    // It ends with sample 601 and fades over 50 more.
+    // The fault ends with sample 601 and fades over 50 more.
     nothing_after(&pairs, 652);
     let omega = 2.0 * PI * 37.0;
     let (angles, speeds) = (gathered(&pairs, 2), gathered(&pairs, 5));
@@ -54,12 +55,12 @@ fn sine_vibration_is_the_sine_of_its_page() {
         assert!((angles[k] - angle).abs() <= 1.01 * RAD, "{k}");
         assert!((speeds[k] - speed).abs() <= 1.01 * MPS, "{k} {}", speeds[k] - speed);
     }
-    // At full window velocity swings by a/Ω.
+    // At full window velocity has the amplitude a/Ω.
     let largest = speeds[300..500].iter().fold(0.0f64, |m, s| m.max(s.abs()));
     assert!((largest / (a / omega) - 1.0).abs() < 0.01);
 }
 
-/// In step: −½ cos φ α × a, and the swing's curvature ¼ α² g across the axis.
+/// In phase: −½ cos φ α × a, and the swing's curvature ¼ α² g across the axis.
 #[test]
 fn sine_vibration_sculls_as_its_page_says() {
     let (a, alpha) = (20.0, 1e-3);
@@ -71,7 +72,7 @@ fn sine_vibration_sculls_as_its_page_says() {
         let mean = (speeds[2199] - speeds[199]) / 10.0;
         let gravity = Ellipsoid::at(LATITUDE, 40.0).gravity_mps2;
         let expected = -0.5 * phase.cos() * alpha * a + 0.25 * alpha * alpha * gravity;
-        // Fourth order: α² of it; and a count in 10 s.
+        // Fourth order: α² of it; and one count in 10 s.
         assert!((mean - expected).abs() < 2e-6 * expected.abs() + 1e-9, "{mean} {expected}");
     }
 }
@@ -141,7 +142,7 @@ fn random_vibration_has_its_spectrum() {
         [(&x, level_si), (&z, 0.5 * level_si), (&rate, 0.02 * 0.02 / (high - low))]
     {
         let psd = welch(signal, n, dt);
-        // Bands of 15 lines. What leaks at their ends and lines that beat in 16 s: a tenth.
+        // Bands of 15 lines. Leakage at their ends and lines that beat in 16 s: a tenth.
         for band in 0..5 {
             let from = low + 30.0 * f64::from(band);
             let bins = (from / width).round() as usize..((from + 30.0) / width).round() as usize;
@@ -155,7 +156,7 @@ fn random_vibration_has_its_spectrum() {
             assert!(psd[bin] < 1e-3 * expected, "{outside} Hz: {}", psd[bin] / expected);
         }
     }
-    // Rms √(S (f2 − f1)), less what the mean over a sample takes off the power.
+    // Rms √(S (f2 − f1)), less the power lost by the mean over a sample.
     let rms = (x.iter().map(|x| x * x).sum::<f64>() / x.len() as f64).sqrt();
     let steps = 1000;
     let taken = (0..steps)
@@ -194,9 +195,9 @@ fn a_shock_gives_its_velocity_and_takes_it_back() {
             assert!((speed[100 + k as usize] - expected).abs() < 1e-6);
         }
         assert!((speed[119] - 2.0 * peak * width / PI).abs() < 1e-6);
-        // All of it, and what Coriolis gave, is taken back.
+        // The recoil takes back the whole velocity, with the part by Coriolis.
         assert!(speed[180].abs() <= 1.01 * MPS, "{}", speed[180]);
-        // Truth is the block's: level and heading north.
+        // Truth is that of the block: level and heading north.
         let truth = |k: usize| pairs[k].truth.velocity_mps[axis];
         assert!((truth(119) - 2.0 * peak * width / PI).abs() < 1e-9);
     }
@@ -204,7 +205,7 @@ fn a_shock_gives_its_velocity_and_takes_it_back() {
         * Ellipsoid::at(LATITUDE, 40.0).meridian_radius_m;
     assert!((moved - peak * width * width / PI).abs() < 1e-8, "{moved}");
     for pair in &pairs {
-        // Nothing turns.
+        // No rotation.
         assert_eq!(pair.step.sample.delta_theta, pair.twin.sample.delta_theta);
     }
 }
@@ -326,7 +327,7 @@ fn a_jerk_of_the_mooring_moves_truth_and_sensors_and_not_the_reference() {
         // The meridian's radius changes by 6e-9 of itself.
         assert!((speed - north * slope / length).abs() < 1e-8, "{k}");
         // The gyro about the vertical has turned with the case. Further north the vertical Earth
-        // rate is another: Ω cos L · 0.3 m / R over 64/140 of the length, 7e-12 rad.
+        // rate differs: Ω cos L · 0.3 m / R over 64/140 of the length, 7e-12 rad.
         let error = heading[k] - turn * value;
         assert!(error.abs() <= 1.01 * RAD + 7e-12, "{k} {error:e}");
         assert_eq!(pair.step.aiding, pair.twin.aiding);
@@ -334,7 +335,7 @@ fn a_jerk_of_the_mooring_moves_truth_and_sensors_and_not_the_reference() {
     }
     assert_eq!(aided, 7);
 
-    // What measures velocity sees it.
+    // A reference of velocity shows the motion.
     let mut config = noisy();
     config.aiding.kind = AidingKind::Velocity { sigma_mps: 1e-3 };
     let pairs = run_pair(&config, &[spec()], 1500, level);
@@ -347,8 +348,8 @@ fn a_jerk_of_the_mooring_moves_truth_and_sensors_and_not_the_reference() {
     }
 }
 
-/// Without knowing the phase: at full window a sine and itself a quarter of a period later are the
-/// sides of a right angle.
+/// Without knowledge of the phase: at full window a sine and the same sine a quarter of a period
+/// later are the sides of a right angle.
 #[test]
 fn sway_has_its_amplitudes_and_periods_and_the_reference_denies_it() {
     let values = |angles: [f64; 3], displacement: [f64; 3]| {
@@ -378,11 +379,11 @@ fn sway_has_its_amplitudes_and_periods_and_the_reference_denies_it() {
     let height = |k: usize| heave[k].truth.height_m - heave[k].twin_truth.height_m;
     assert!((square(&height, 8.0) - 0.2).abs() < 1e-9);
     assert!(heave.iter().all(|pair| pair.step.aiding == pair.twin.aiding));
-    // The gyro along the roll axis reads the roll, Earth rate along it stays.
+    // The gyro along the roll axis measures the roll; Earth rate along it is unchanged.
     let roll = run_pair(&perfect(), &[values([3.0 * DEG, 0.0, 0.0], [0.0; 3])], 3800, level);
     let angle = gathered(&roll, 0);
     assert!((square(&|k| angle[k], 8.0) - 3.0 * DEG).abs() < 1e-9);
-    // All six at once: what each onset draws differs from the next.
+    // All six at once: each onset draws other numbers.
     let all = || values([3.0 * DEG, 1.5 * DEG, 1.0 * DEG], [0.2; 3]);
     let once = run_pair(&perfect(), &[all()], 1000, level);
     let mut other = perfect();

@@ -1,5 +1,5 @@
-//! Kinds of faults of gimbals, drives and encoders: what their pages say, by closed forms written
-//! here.
+//! Kinds of faults of gimbals, drives and encoders against independent closed forms of their
+//! documentation.
 
 use crate::common::bench::*;
 use crate::common::*;
@@ -17,7 +17,7 @@ fn roll(degrees: f64) -> octant_sample::GimbalCommand {
     command(0.0, degrees)
 }
 
-/// Gyros and accelerometers are bit for bit those of the twin, and so is truth.
+/// Checks that gyros, accelerometers and truth are bit for bit those of the twin.
 fn nothing_moves(pairs: &[Pair]) {
     for pair in pairs {
         assert_eq!(pair.step.sample.delta_theta, pair.twin.sample.delta_theta);
@@ -27,7 +27,7 @@ fn nothing_moves(pairs: &[Pair]) {
     }
 }
 
-/// What the encoder reads, less what that of the twin reads, counts.
+/// Difference of the encoder's reading from that of the twin, counts.
 fn encoder(pair: &Pair) -> i32 {
     pair.step.sample.gimbal.roll - pair.twin.sample.gimbal.roll
 }
@@ -60,15 +60,15 @@ fn a_slip_is_felt_and_stays_and_the_encoder_sees_it_or_not() {
             assert!((truth(pair) - pair.twin_truth.gimbal_rad[1] - slipped).abs() < 1e-15);
             assert!((felt[k] - slipped).abs() <= 1.01 * RAD, "{k}");
             let seen = if seat == "body" { slipped / GIMBAL_LSB_RAD } else { 0.0 };
-            // Each reading is rounded for itself.
+            // Each reading is rounded on its own.
             assert!((f64::from(encoder(pair)) - seen).abs() <= 1.0, "{k} {seen}");
         }
-        // Every later position is off.
+        // Every later position is wrong by the slip.
         assert!((truth(&pairs[999]) - (to(1000).target.roll_rad() + angle)).abs() < 1e-15);
     }
 }
 
-/// An encoder that slipped by some angle reads what one reads that was turned there.
+/// An encoder that slipped by some angle reads the same as one that was turned by it.
 #[test]
 fn an_encoder_slip_turns_the_encoder_alone() {
     let mut config = noisy();
@@ -102,7 +102,7 @@ fn an_encoder_without_index_counts_from_zero() {
         nothing_moves(&pairs);
         nothing_after(&pairs, 1301);
         let lost = &pairs[700..1300];
-        // At 20° it starts from zero, at 30° it reads 10°.
+        // At 20° the encoder starts from zero, at 30° it reads 10°.
         assert_eq!(lost[0].step.sample.gimbal.roll, 0);
         let ten = roll(30.0).target.roll - roll(20.0).target.roll;
         assert_eq!(lost[599].step.sample.gimbal.roll, ten);
@@ -129,12 +129,12 @@ fn backlash_lags_by_half_of_the_play_and_closes() {
         let body = truth(&pairs[k]) - pairs[k].twin_truth.gimbal_rad[1];
         assert!((body - lag * play).abs() < 1e-15, "{k}");
     }
-    // The body stands until the drive has turned half of the play: ½ a t² with 10 °/s².
+    // The body rests until the drive has turned by half of the play: ½ a t² with 10 °/s².
     let delay = (play / (10.0 * DEG)).sqrt();
     let stands = (delay / DT) as usize;
     assert_eq!(truth(&pairs[199 + stands]), 0.0);
     assert!(truth(&pairs[201 + stands]) > 0.0);
-    // Sample 2001 is the first after the end, 0.1 s later it has closed.
+    // Sample 2001 is the first after the end; 0.1 s later the play has closed.
     let felt = gathered(&pairs, 0);
     for k in 0..40 {
         let left = 0.5 * play * (1.0 - rise(f64::from(k + 1) * DT / 0.1).0);
@@ -150,7 +150,7 @@ fn backlash_lags_by_half_of_the_play_and_closes() {
     assert!(sums(0) <= RAD && sums(1) <= RAD && sums(2) <= RAD);
 }
 
-/// Braked from 10 °/s with 10 °/s²: 1 s and 5° on. Then the way from there as if from rest.
+/// Brakes from 10 °/s with 10 °/s² in 1 s and 5°; later completes the way as from rest.
 #[test]
 fn a_stalled_drive_stands_and_goes_on_when_it_can() {
     let spec = fault("stall", &[ROLL], 601, 1400);
@@ -185,12 +185,12 @@ fn a_stall_in_a_dwell_shows_at_the_next_move() {
     }
     assert!(pairs[300..500].iter().all(|pair| truth(pair) == 0.0));
     assert_eq!(pairs[1100].step.sample.gimbal, roll(-10.0).target);
-    // What the gyros felt in all is the way in all.
+    // The gyros' total is the total turn.
     let felt = gathered(&pairs, 0);
     assert!(felt[1199].abs() < 2.0 * RAD);
 }
 
-/// From rest with 10 °/s² to −15 °/s, on, and back.
+/// From rest with 10 °/s² to −15 °/s, constant, and back.
 #[test]
 fn a_runaway_runs_and_comes_back() {
     let rate = ("rate", quantity(-15.0 * DEG, AngularRate));
@@ -224,7 +224,7 @@ fn an_overshoot_goes_beyond_and_comes_back() {
         _ => roll(20.0),
     };
     let pairs = run_pair(&noisy(), &[spec], 2500, to);
-    // Nothing until the next move.
+    // No effect until the next move.
     assert!(pairs[..200].iter().all(Pair::is_twin));
     let target = to(200).target.roll_rad();
     let farthest = pairs.iter().map(truth).fold(0.0, f64::max);
@@ -235,7 +235,7 @@ fn an_overshoot_goes_beyond_and_comes_back() {
     let arrival = 200 + (5.44 / DT) as usize;
     assert!(truth(&pairs[arrival - 2]) > target + 1e-8);
     assert_eq!(truth(&pairs[arrival]), target);
-    // The move after the end of the fault doesn't; nothing is left of it.
+    // The move after the end of the fault has no overshoot; no effect remains.
     nothing_after(&pairs, arrival as u64 + 2);
     let felt = gathered(&pairs, 0);
     let moved = truth(&pairs[1240]) - pairs[1240].twin_truth.gimbal_rad[1];
@@ -264,7 +264,7 @@ fn the_body_rings_after_the_move() {
     let pairs = run_pair(&noisy(), &[spec], 4500, to);
     assert!(pairs[..600].iter().all(Pair::is_twin));
     let felt = gathered(&pairs, 0);
-    // The set point is 10° to half a count: that much later or earlier is the end of the move.
+    // The set point is 10° to half a count, by which the end of the move shifts.
     let way = roll(10.0).target.roll_rad() / DEG;
     let end = 200.0 * DT + 1.0 + way / 10.0;
     for k in 600..4500 {

@@ -1,4 +1,4 @@
-//! The tests of the plant, in one program.
+//! Integration tests of the plant, in one program.
 #![allow(clippy::unwrap_used)]
 
 mod common;

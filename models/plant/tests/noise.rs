@@ -162,7 +162,7 @@ fn gauss_markov_starts_in_its_stationary_distribution() {
         }
     }
     let n = 3.0 * seeds as f64;
-    // Both plants round to counts, of which 1 °/h in 5 ms is 1670: that adds 1/6 of a count².
+    // Both plants round to counts, of which 1 °/h in 5 ms is 1670: this adds 1/6 of a count².
     let count = DELTA_THETA_LSB_RAD / (DEG_PER_HOUR * DT);
     let expected = 1.0 + count * count / 6.0;
     assert!((sum / n - expected).abs() < 5.0 * (2.0 / n).sqrt() * expected, "{}", sum / n);
@@ -190,7 +190,7 @@ fn what_is_added_to_one_sensor_moves_no_other() {
         }
     }
     assert!(base.iter().zip(&other).any(|(a, b)| a.sample.delta_theta != b.sample.delta_theta));
-    // And the gyros' white noise under a random walk is the same white noise.
+    // The gyros' white noise doesn't change when a random walk is added.
     let mut config = noisy();
     config.imu.extensions.gyro_rate_random_walk = DEG_PER_HOUR;
     let mut alone = perfect();
@@ -212,7 +212,7 @@ fn navigation_meets_the_same_noise_after_any_calibration() {
     let (short, long) = (navigation(500), navigation(1700));
     for (a, b) in short.iter().zip(&long) {
         for axis in 0..6 {
-            // The remainders carried into the navigation differ: a count here and there.
+            // The remainders carried into the navigation differ: by a few counts.
             let lsb = if axis < 3 { DELTA_THETA_LSB_RAD } else { DELTA_VELOCITY_LSB_MPS };
             assert!((a[axis] - b[axis]).abs() <= 4.0 * lsb);
         }

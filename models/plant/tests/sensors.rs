@@ -26,7 +26,7 @@ fn mean(steps: &[Step]) -> ([f64; 3], [f64; 3]) {
     )
 }
 
-/// At rest at gimbal angles, in the dwell after the move.
+/// Means at rest at gimbal angles, in the dwell after the move.
 fn at_rest(config: &Config, azimuth: f64, roll: f64, samples: u64) -> ([f64; 3], [f64; 3]) {
     let mut plant = Plant::new(config).unwrap();
     let go = command(azimuth, roll);
@@ -66,7 +66,7 @@ fn gravity_in_body_follows_the_gimbals() {
     }
 }
 
-/// Every parameter by itself, in an attitude in which all components are felt.
+/// Every parameter alone, in an attitude in which all components have an effect.
 #[test]
 fn every_parameter_adds_what_the_model_says() {
     let (azimuth, roll) = (35.0, 50.0);
@@ -126,7 +126,7 @@ fn table_1_parameters_do_not_saturate_and_a_range_does() {
     let flagged: Vec<_> =
         steps.iter().filter(|s| s.sample.status == Status::GYRO_SATURATED).collect();
     assert_eq!(plant.saturated_samples(), flagged.len() as u64);
-    // 10 s less 0.4 s at each end, and what Earth rate adds.
+    // 10 s less 0.4 s at each end, and the part of Earth rate.
     assert!((1839..=1842).contains(&flagged.len()), "{}", flagged.len());
     let clipped = 4.0 * DEG * DT / DELTA_THETA_LSB_RAD;
     for step in flagged {
@@ -138,7 +138,7 @@ fn table_1_parameters_do_not_saturate_and_a_range_does() {
     assert!((force[2] + 9.0).abs() <= FORCE_RESOLUTION);
 }
 
-/// The format itself: a count that doesn't fit saturates, is flagged and counted.
+/// The format itself: a count beyond the format saturates, is flagged and counted.
 #[test]
 fn beyond_the_format_the_counts_saturate() {
     let mut config = perfect();
@@ -200,8 +200,8 @@ fn temperature_ramps_to_its_plateau_and_acts_on_bias_and_scale() {
     }
 }
 
-/// Angular vibration about an axis, seen sample by sample: Δθ is the difference of the angle.
-/// Linear vibration: Δv is the difference of the velocity.
+/// Angular vibration about an axis, sample by sample: Δθ is the difference of the angle. Linear
+/// vibration: Δv is the difference of the velocity.
 #[test]
 fn vibration_is_felt_as_the_difference_of_its_angle_and_velocity() {
     let mut config = perfect();
@@ -229,8 +229,8 @@ fn vibration_is_felt_as_the_difference_of_its_angle_and_velocity() {
     }
 }
 
-/// Sculling: angular and linear vibration in step rectify to a mean specific force
-/// `½ Ω² cos φ (α × d)`, less the curvature of the swing `−¼ α² f` across the axis.
+/// Sculling: angular and linear vibration in phase rectify to a mean specific force `½ Ω² cos φ (α
+/// × d)`, less the curvature of the swing `−¼ α² f` across the axis.
 #[test]
 fn vibration_in_step_sculls() {
     let (frequency, alpha, d) = (50.0, 1e-3, 1e-4);
@@ -249,7 +249,7 @@ fn vibration_in_step_sculls() {
         let sculling = 0.5 * omega * omega * alpha * d * libm::cos(phase);
         let swing = 0.25 * alpha * alpha * gravity();
         let error = force[2] - still[2] - sculling - swing;
-        // Of fourth order: α² times what is left.
+        // Fourth order: α² times the rest.
         assert!(error.abs() < 2.0 * FORCE_RESOLUTION + alpha * alpha * sculling.abs(), "{error}");
     }
 }

@@ -1,19 +1,19 @@
-//! The state of a plant as bytes: what was saved and loaded goes on bit for bit, with everything that
-//! can be under way; other bytes are refused.
+//! The state of a plant as bytes: a plant that was saved and loaded continues bit for bit, with
+//! everything that can be under way; other bytes are refused.
 
 use crate::common::*;
 use octant_earth::units::{ARCSEC, DEG, DEG_PER_HOUR, MICRO_G, PPM};
-use octant_faults::disturbance::*;
 use octant_plant::config::*;
 use octant_plant::course::{Course, Point};
 use octant_plant::{Plant, STATE_FORMAT, draw, motion};
 use octant_sample::GimbalCommand;
+use octant_sample::disturbance::*;
 use octant_state::{StateError, Writer, assert_layout, outline_of};
 use proptest::prelude::*;
 use std::sync::LazyLock;
 use std::time::Instant;
 
-/// Everything that sensors and turntable can have.
+/// Configuration with every imperfection of sensors and turntable.
 fn everything(motion: Motion, time_skew_s: f64) -> Config {
     let mut config = noisy();
     config.calibration_samples = 900;
@@ -73,7 +73,7 @@ fn line(frequency_hz: f64) -> Line {
     }
 }
 
-/// One of each kind that a plant can suffer.
+/// One disturbance of each kind.
 fn disturbances() -> Vec<Disturbance> {
     let gimbal = |gimbal, action| Disturbance::Gimbal { gimbal, action };
     let (azimuth, roll) = (Gimbal::Azimuth, Gimbal::Roll);
@@ -120,8 +120,8 @@ fn target(k: u64) -> GimbalCommand {
     command(10.0 * turn, if k < 700 { 0.0 } else { -6.0 * turn })
 }
 
-/// What happens before sample k: each disturbance of the list sets in after the one before, and ends
-/// in the same order.
+/// Begins and ends disturbances before sample k: each disturbance of the list sets in after the one
+/// before, and they end in the same order.
 fn happen(plant: &mut Plant, these: &[Disturbance], k: u64) {
     for (handle, disturbance) in (0..).zip(these) {
         let onset = 150 + 40 * u64::from(handle);
@@ -134,7 +134,7 @@ fn happen(plant: &mut Plant, these: &[Disturbance], k: u64) {
     }
 }
 
-/// Runs with disturbances, and what was saved and loaded at some samples beside it.
+/// Runs a plant with disturbances, and beside it copies that were saved and loaded at some samples.
 fn goes_on(config: &Config, these: &[Disturbance], points: &[u64]) {
     let mut plant = Plant::new(config).unwrap();
     let mut copies: Vec<Plant> = Vec::new();
@@ -170,7 +170,7 @@ fn a_loaded_plant_goes_on_bit_for_bit_with_each_disturbance_and_with_all() {
         }
         goes_on(&config, &all, &[1, 152, 313, 640, 700, 899, 900, 901, 1111, 1440]);
     }
-    // Plain ones, whose samples are made in one go while they rest.
+    // Plain plants, whose samples are made in one step while they rest.
     for motion in [ground(), ship()] {
         let config = Config { motion, ..perfect() };
         goes_on(&config, &[], &[1, 200, 420, 700]);
@@ -197,7 +197,7 @@ fn a_command_before_a_sample_is_the_step_in_the_other_order() {
     other.sample_into(&mut sample, &mut aiding);
     for k in 1..1500 {
         assert_eq!((sample, aiding), (step.sample, step.aiding));
-        // The step before has had its command at its end; here it comes at the beginning.
+        // The earlier call had its command at its end; here the command comes at the beginning.
         other.command(&target(k - 1));
         other.sample_into(&mut sample, &mut aiding);
         step = one.step(&target(k));
@@ -269,7 +269,7 @@ fn the_layout_is_the_stored_one() {
     }
     assert_layout(&format!("{folder}/plant.txt"), STATE_FORMAT.version, &outlines);
 
-    // And bytes of that version are still read.
+    // Bytes of that version have to remain readable.
     let path = format!("{folder}/plant-{}.bin", STATE_FORMAT.version);
     let (_, plant) = &plants[1];
     if std::env::var_os("OCTANT_WRITE_FIXTURES").is_some() {
@@ -281,7 +281,7 @@ fn the_layout_is_the_stored_one() {
     assert_eq!(Writer::outline(&loaded), Writer::outline(plant));
 }
 
-/// The frame with a payload replaced and its checksum made right.
+/// Makes a frame with another payload and the right checksum.
 fn reframed(payload: &[u8]) -> Vec<u8> {
     let mut bytes = Vec::new();
     STATE_FORMAT.write(&mut bytes, |to| payload.iter().for_each(|byte| to.value("byte", byte)));
@@ -332,7 +332,7 @@ proptest! {
         prop_assert!(!matches!(error, StateError::Value { .. }), "{error}");
     }
 
-    /// Whatever a right checksum stands for: it is refused, or what comes of it doesn't panic.
+    /// Any bytes with a right checksum are refused, or the plant made from them doesn't panic.
     #[test]
     fn nonsense_with_a_right_checksum_does_not_panic(
         which in 0..4usize,
@@ -366,7 +366,7 @@ proptest! {
     }
 }
 
-/// For reading: how long it takes, and how large it is.
+/// Prints the duration and the size, for information.
 #[test]
 fn figures() {
     for (name, plant) in plants() {

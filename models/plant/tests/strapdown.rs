@@ -6,7 +6,7 @@ use crate::common::*;
 use octant_plant::config::*;
 use octant_plant::{Plant, motion};
 
-/// Walks through the commands, each for its seconds; the worst errors seen at whole seconds.
+/// Runs through the commands, each for its seconds; returns the largest errors at whole seconds.
 fn worst(config: &Config, commands: &[(f64, f64, u64)], hold_height: bool) -> (f64, f64, f64) {
     let mut plant = Plant::new(config).unwrap();
     let mut strapdown = Strapdown::start(&plant.truth(), hold_height, DT);

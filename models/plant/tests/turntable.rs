@@ -6,7 +6,8 @@ use octant_plant::Plant;
 use octant_sample::counts::{DELTA_THETA_LSB_RAD, GIMBAL_LSB_RAD};
 use proptest::prelude::*;
 
-/// Samples in which the gyros feel a move; the first is that after the one whose call latched it.
+/// Number of samples in which the gyros feel a move; the first is the one after that whose call
+/// latched it.
 fn move_samples(azimuth: f64, roll: f64) -> u64 {
     let mut plant = Plant::new(&perfect()).unwrap();
     plant.step(&command(azimuth, roll));
@@ -41,7 +42,7 @@ fn a_command_is_first_felt_two_samples_later() {
     let first = plant.step(&level).sample;
     assert_eq!((first.sequence, first.device_time.ns), (1, PERIOD_NS));
     let quiet = run(&mut plant, &level, 9)[8].sample;
-    // Computed from sample 10, so handed over with the call that delivers sample 11.
+    // Computed from sample 10, so that it is passed with the call that delivers sample 11.
     let go = command(0.0, 90.0);
     let eleventh = plant.step(&go).sample;
     assert_eq!(eleventh.sequence, 11);
@@ -119,7 +120,8 @@ fn the_body_lags_by_half_of_the_play_on_the_side_that_it_came_from() {
         let target = go.target.roll_rad();
         assert!((body - (target + lag * play)).abs() < 1e-12, "{roll}");
         assert_eq!(steps[3999].sample.gimbal, go.target, "the encoder is on the drive");
-        // The gyros integrate what the body did, Earth rate about the gimbal's axis aside.
+        // The gyros integrate the motion of the body, apart from Earth rate about the gimbal's
+        // axis.
         let sum: i64 = steps.iter().map(|s| i64::from(s.sample.delta_theta[0])).sum();
         let earth = 7.292115e-5 * libm::cos(30.5 * DEG) * 20.0;
         let turned = sum as f64 * DELTA_THETA_LSB_RAD - earth;
@@ -133,20 +135,20 @@ fn non_orthogonality_tilts_the_inner_axis_towards_the_outer() {
     let mut config = perfect();
     config.turntable.non_orthogonality_rad = 1e-3;
     let mut plant = Plant::new(&config).unwrap();
-    // At (0, 0) the inner axis leans by 1 mrad, and the x accelerometer feels g sin η.
+    // At (0, 0) the inner axis leans by 1 mrad, and the x accelerometer measures g sin η.
     let steps = run(&mut plant, &command(0.0, 0.0), 1000);
     let sum = |axis: usize| -> f64 {
         steps.iter().map(|step| f64::from(step.sample.delta_velocity[axis])).sum()
     };
     let ratio = sum(0) / sum(2);
-    // Half a count in 5e10 of them.
+    // Half a count in 5e10 counts.
     assert!((ratio + libm::tan(1e-3)).abs() < 2e-11, "{ratio}");
 }
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(48))]
 
-    /// Any finite sequence of set points: limits kept at every sample, no overshoot once the last
+    /// Any finite sequence of set points: limits hold at every sample, no overshoot once the last
     /// one is approached from rest or from behind, and it is reached.
     #[test]
     fn any_commands_keep_the_limits_and_arrive(
@@ -166,7 +168,7 @@ proptest! {
         }
         let (azimuth, roll, _) = commands[commands.len() - 1];
         let go = command(azimuth, roll);
-        // 1600° at 10 °/s, and brakes and accelerations.
+        // 1600° at 10 °/s, with braking and acceleration.
         for _ in 0..33_000 {
             plant.step(&go);
             angles.push(plant.truth().gimbal_rad);
@@ -182,7 +184,7 @@ proptest! {
                     prop_assert!((speed(k) - speed(k - 1)).abs() / DT <= acceleration + 1e-7);
                 }
             }
-            // Once it moves towards the last target with room to stop, it never passes it.
+            // Once the gimbal moves towards the last target with room to stop, it never passes it.
             let side = |k: usize| target[axis] - angle(k);
             let room = |k: usize| {
                 let v = speed(k);

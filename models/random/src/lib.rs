@@ -1,8 +1,8 @@
-//! Named, counter-based streams of random numbers: what a model draws depends on the seed, the
-//! stream's name and the sample number, and on nothing that was drawn before.
+//! Named, counter-based streams of random numbers: a number depends on the seed, the stream's name
+//! and the sample number, and on no number drawn before.
 //!
-//! Adding a sensor, a fault or a stream moves no number of any other; a run with a fault minus the
-//! run without it is a controlled experiment.
+//! Adding a sensor, a fault or a stream changes no number of any other stream; a run with a fault
+//! minus the run without it is a controlled experiment.
 #![no_std]
 
 extern crate alloc;

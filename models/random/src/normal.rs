@@ -7,7 +7,7 @@ use alloc::boxed::Box;
 use once_cell::race::OnceBox;
 
 const LAYERS: usize = 256;
-/// Where the tail begins, for 256 layers.
+/// Start of the tail, for 256 layers.
 const TAIL: f64 = 3.654_152_885_361_008_8;
 
 /// Edges and densities of the layers.
@@ -27,7 +27,7 @@ pub fn uniform(word: u64) -> f64 {
     ((word >> 11) as f64 + 0.5) * (1.0 / (1u64 << 53) as f64)
 }
 
-/// The block of a counter.
+/// Random words of one counter.
 #[inline(always)]
 pub fn words(key: Key, counter: u64) -> [u64; 4] {
     block(key, [counter, 0, 0, 0])
@@ -38,7 +38,7 @@ fn density(x: f64) -> f64 {
 }
 
 impl Ziggurat {
-    /// The tables, made once per process.
+    /// Returns the tables, which are made once per process.
     pub fn shared() -> &'static Self {
         ZIGGURAT.get_or_init(|| Box::new(Self::new()))
     }
@@ -71,11 +71,11 @@ impl Ziggurat {
         ]
     }
 
-    /// The candidate that a word stands for, and its layer.
+    /// Candidate for a normal number from one word, with its layer.
     #[inline(always)]
     fn candidate(&self, word: u64) -> (f64, usize) {
         let layer = (word & 0xFF) as usize;
-        // Bits 10 to 63, signed: apart from the layer's bits 0 to 7.
+        // Bits 10 to 63, signed: disjoint from bits 0 to 7, which choose the layer.
         let u = ((word as i64) >> 10) as f64 * (1.0 / (1u64 << 53) as f64);
         (u * self.x[layer], layer)
     }
@@ -86,8 +86,8 @@ impl Ziggurat {
         if x.abs() < self.x[layer + 1] { x } else { self.rejected(key, counter, lane, word) }
     }
 
-    /// Wedge and tail. Further words come from a sub-counter of this sample and lane, so that no
-    /// other number moves.
+    /// Draws from the wedge or the tail. Further words come from a sub-counter of this sample and
+    /// lane, so that no other number changes.
     #[cold]
     #[inline(never)]
     fn rejected(&self, key: Key, counter: u64, lane: u64, word: u64) -> f64 {
@@ -169,7 +169,7 @@ mod tests {
         }
         // Kolmogorov's 0.1 % point.
         assert!(distance * libm::sqrt(n) < 1.95, "{}", distance * libm::sqrt(n));
-        // And the tail, which the distance hardly sees: P(|x| > R) = erfc(R/√2).
+        // The tail, to which the distance is hardly sensitive: P(|x| > R) = erfc(R/√2).
         let beyond = all.iter().filter(|x| x.abs() > TAIL).count() as f64;
         let expected = n * libm::erfc(TAIL * core::f64::consts::FRAC_1_SQRT_2);
         assert!((beyond - expected).abs() < 5.0 * libm::sqrt(expected), "{beyond} {expected}");

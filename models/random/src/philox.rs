@@ -1,9 +1,9 @@
 //! Philox4x64-10: the counter-based generator of Salmon, Moraes, Dror and Shaw, "Parallel random
 //! numbers: as easy as 1, 2, 3" (SC 2011).
 //!
-//! Any block is had from its key and counter alone, so a sample's noise needs no history and costs
-//! one call. (The `rand` family's implementations keep a buffer and a position, which a random
-//! access per sample would throw away each time.)
+//! Any block follows from its key and counter alone, so that the noise of a sample needs no history
+//! and costs one call. (The `rand` family's implementations keep a buffer and a position, which
+//! random access per sample would discard each time.)
 
 const MULTIPLIER: [u64; 2] = [0xD2E7_470E_E14C_6C93, 0xCA5A_8263_9512_1157];
 const WEYL: [u64; 2] = [0x9E37_79B9_7F4A_7C15, 0xBB67_AE85_84CA_A73B];
@@ -37,7 +37,7 @@ pub fn block(key: Key, counter: [u64; 4]) -> [u64; 4] {
 mod tests {
     use super::*;
 
-    /// Known answers of the Random123 distribution (kat_vectors, philox4x64 10).
+    /// Known-answer test of the Random123 distribution (kat_vectors, philox4x64 10).
     #[test]
     fn known_answers_of_random123() {
         assert_eq!(

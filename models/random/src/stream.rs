@@ -1,11 +1,11 @@
-//! Named random streams. A stream's key depends on the seed, its name and the phase alone, its
-//! counter is the sample number in the phase: adding a stream, or lengthening the calibration,
-//! moves no number of any other.
+//! Named random streams. The key of a stream depends only on the seed, its name and the phase, and
+//! its counter is the sample number in the phase: adding a stream, or lengthening the calibration,
+//! changes no number of any other.
 
 use crate::normal::Ziggurat;
 use crate::philox::Key;
 
-/// The part of a run that a stream counts in.
+/// Part of a run in which a stream counts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[repr(u8)]
 pub enum Phase {
@@ -56,30 +56,30 @@ impl Triad {
         }
     }
 
-    /// From here on the numbers are those of navigation.
+    /// Switches to the numbers of the navigation phase.
     pub fn navigate(&mut self) {
         self.current = self.navigation;
     }
 
-    /// The numbers of a sample of the present phase.
+    /// Numbers of a sample of the present phase.
     #[inline(always)]
     pub fn at(&self, sample: u64) -> [f64; 3] {
         self.ziggurat.three(self.current, sample)
     }
 
-    /// The numbers drawn once, for an initial state.
+    /// Numbers drawn once, for an initial state.
     pub fn initial(&self) -> [f64; 3] {
         self.ziggurat.three(self.initial, 0)
     }
 }
 
-/// Samples whose numbers are made at once.
+/// Number of samples whose numbers are made at once.
 const AHEAD: usize = 64;
-/// No sample has this number.
+/// Sample number that no sample has.
 const NO_SAMPLE: u64 = 1 << 63;
 
 /// A [`Triad`] whose numbers are made ahead, many samples at a time: their long chains of
-/// multiplications then overlap with each other and not with what a sample is used for.
+/// multiplications then overlap with one another and don't delay the use of a sample.
 #[derive(Clone, Debug)]
 pub struct Ahead {
     triad: Triad,
@@ -89,19 +89,19 @@ pub struct Ahead {
 }
 
 impl Ahead {
-    /// Nothing is made yet.
+    /// Makes no numbers yet: the first call of [`Self::at`] does.
     #[must_use]
     pub fn new(triad: Triad) -> Self {
         Self { triad, first: NO_SAMPLE, numbers: [[0.0; 3]; AHEAD] }
     }
 
-    /// From here on the numbers are those of navigation.
+    /// Switches to the numbers of the navigation phase.
     pub fn navigate(&mut self) {
         self.triad.navigate();
         self.first = NO_SAMPLE;
     }
 
-    /// The numbers of a sample of the present phase.
+    /// Numbers of a sample of the present phase.
     #[inline(always)]
     pub fn at(&mut self, sample: u64) -> [f64; 3] {
         if sample.wrapping_sub(self.first) >= AHEAD as u64 {

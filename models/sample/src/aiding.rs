@@ -2,7 +2,7 @@
 
 use crate::DeviceTime;
 
-/// What the reference measured.
+/// Quantity that the reference measured.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Reference {
@@ -19,7 +19,7 @@ pub enum Reference {
     },
 }
 
-/// One aiding message. It carries the stamp of the sample that it goes with.
+/// One aiding message, with the stamp of its sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Aiding {
@@ -30,7 +30,7 @@ pub struct Aiding {
 }
 
 impl Aiding {
-    /// Bit for bit the same: NaN is equal to itself and zero differs from minus zero.
+    /// Compares bit for bit: NaN is equal to itself and zero differs from minus zero.
     #[must_use]
     pub fn same_bits(&self, other: &Self) -> bool {
         let bits = |reference: &Reference| match *reference {

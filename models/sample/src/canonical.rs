@@ -1,4 +1,4 @@
-//! The canonical bytes: what the stream hash is taken over, the same for every realisation.
+//! Canonical bytes, over which the stream hash is taken: the same for every realisation.
 //!
 //! Little-endian, fixed layout, no padding; f64 as its 64 bits. Host time is not part of it.
 
@@ -33,7 +33,7 @@ impl Writer<'_> {
     }
 }
 
-/// A sample: sequence u64, device time ns u64, delta_theta 3×i32, delta_velocity 3×i32,
+/// Writes a sample: sequence u64, device time ns u64, delta_theta 3×i32, delta_velocity 3×i32,
 /// azimuth i32, roll i32, status u16.
 #[inline]
 pub fn sample(sample: &Sample, bytes: &mut [u8; SAMPLE_BYTES]) {
@@ -48,8 +48,8 @@ pub fn sample(sample: &Sample, bytes: &mut [u8; SAMPLE_BYTES]) {
     w.put(&sample.status.bits().to_le_bytes());
 }
 
-/// An aiding message: device time ns u64, kind u8 (0 velocity, 1 position), three f64 (north, east,
-/// down in m/s; or latitude, longitude in rad and height in m).
+/// Writes an aiding message: device time ns u64, kind u8 (0 velocity, 1 position), three f64
+/// (north, east, down in m/s; or latitude, longitude in rad and height in m).
 #[inline]
 pub fn aiding(aiding: &Aiding, bytes: &mut [u8; AIDING_BYTES]) {
     let mut w = Writer { rest: bytes };
@@ -66,9 +66,9 @@ pub fn aiding(aiding: &Aiding, bytes: &mut [u8; AIDING_BYTES]) {
     }
 }
 
-/// An output: sequence u64, device time ns u64, mode u8, stop u16, moving u8, azimuth and roll set
-/// points i32, latitude, longitude, height, velocity 3×, q_nb 4× as f64, health u32, NIS f64,
-/// parameters revision u32.
+/// Writes an output: sequence u64, device time ns u64, mode u8, stop u16, moving u8, azimuth and
+/// roll set points i32, latitude, longitude, height, velocity 3×, q_nb 4× as f64, health u32, NIS
+/// f64, parameters revision u32.
 #[inline]
 pub fn output(output: &Output, bytes: &mut [u8; OUTPUT_BYTES]) {
     let mut w = Writer { rest: bytes };
@@ -91,7 +91,7 @@ pub fn output(output: &Output, bytes: &mut [u8; OUTPUT_BYTES]) {
     w.put(&output.parameters_revision.to_le_bytes());
 }
 
-/// Parameters and σ: the thirty estimates, then their thirty 1σ, as f64, in the order of
+/// Writes parameters and σ: the thirty estimates, then their thirty 1σ, as f64, in the order of
 /// [`crate::parameters::NAMES`].
 #[inline]
 pub fn parameters(

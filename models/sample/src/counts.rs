@@ -1,8 +1,8 @@
 //! Integer counts: the resolution in which increments and gimbal angles travel.
 //!
-//! A count is the difference of the rounded running integral, the way the fringes of a ring laser
-//! come: the remainder is carried ([`Accumulator`]). Rounding every sample on its own would bias a
-//! still base by 2.6e-4 °/h. Every count is exact in f64.
+//! A count is the difference of the rounded running integral, as for the fringes of a ring laser:
+//! the remainder is carried ([`Accumulator`]). Rounding every sample on its own would bias a still
+//! base by 2.6e-4 °/h. Every count is exact in f64.
 
 /// Radians per count of `delta_theta`: 2⁻³⁶.
 pub const DELTA_THETA_LSB_RAD: f64 = 1.0 / (1u64 << 36) as f64;
@@ -11,15 +11,15 @@ pub const DELTA_VELOCITY_LSB_MPS: f64 = 1.0 / (1u64 << 30) as f64;
 /// Radians per count of a gimbal angle: 2⁻²⁷ (±16 rad in an i32).
 pub const GIMBAL_LSB_RAD: f64 = 1.0 / (1u64 << 27) as f64;
 
-/// Adding and subtracting 1.5·2⁵² rounds an f64 below 2⁵¹ to an integer, ties to even, without a
-/// call to a library.
+/// Rounding constant 1.5·2⁵²: adding and subtracting it rounds an f64 below 2⁵¹ to an integer, ties
+/// to even, without a call to a library.
 const ROUND: f64 = 6_755_399_441_055_744.0;
 
-/// One axis of an integrating sensor: turns increments into counts and keeps what was left over.
+/// One axis of an integrating sensor: turns increments into counts and carries the remainder.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Accumulator {
-    /// What the counts so far have not yet delivered, in counts, within ±½ unless saturated.
+    /// Remainder that the counts so far have not delivered, in counts, within ±½ unless saturated.
     pub remainder: f64,
 }
 
@@ -28,7 +28,7 @@ pub struct Accumulator {
 pub struct Count {
     /// The count to send.
     pub value: i32,
-    /// The true increment did not fit; the excess is lost, as in a real counter.
+    /// True if the increment did not fit; the excess is lost, as in a real counter.
     pub saturated: bool,
 }
 
@@ -43,7 +43,7 @@ impl Accumulator {
         if total.abs() < 2_147_483_647.0 {
             let shifted = total + ROUND;
             self.remainder = total - (shifted - ROUND);
-            // The integer stands in the lowest bits of the mantissa, in two's complement.
+            // The integer is in the lowest bits of the mantissa, in two's complement.
             Count { value: shifted.to_bits() as i32, saturated: false }
         } else {
             Count { value: total as i32, saturated: true }

@@ -2,7 +2,7 @@
 
 use crate::{Aiding, Sample};
 
-/// What the source delivers in one step, and what the core steps on.
+/// One step of the source, and one step of the core.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Epoch {
@@ -13,7 +13,7 @@ pub struct Epoch {
 }
 
 impl Epoch {
-    /// Bit for bit the same: NaN is equal to itself and zero differs from minus zero.
+    /// Compares bit for bit: NaN is equal to itself and zero differs from minus zero.
     #[must_use]
     #[inline]
     pub fn same_bits(&self, other: &Self) -> bool {
@@ -25,7 +25,7 @@ impl Epoch {
             }
     }
 
-    /// Takes what was found; `false` if that is nothing.
+    /// Replaces the epoch by `found`; returns `false`, and changes nothing, if `found` is `None`.
     pub fn take(&mut self, found: Option<Self>) -> bool {
         found.map(|found| *self = found).is_some()
     }

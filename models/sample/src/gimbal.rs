@@ -39,8 +39,8 @@ impl GimbalAngles {
     }
 }
 
-/// Where the core wants the gimbals. A set point, not an event: it stands in every output, so a
-/// lost message costs time and not a position.
+/// Gimbal angles that the core commands. They are a set point, not an event, and are in every
+/// output, so that a lost message costs time but not a position.
 ///
 /// A command computed from sample k acts from the end of interval k + 1, and is first felt in
 /// sample k + 2.

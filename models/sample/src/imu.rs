@@ -3,7 +3,7 @@
 use crate::{DeviceTime, GimbalAngles};
 
 bitflags::bitflags! {
-    /// What the instrument says about a sample.
+    /// Flags that the instrument sets on a sample.
     #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
     #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
     pub struct Status: u16 {

@@ -1,13 +1,21 @@
-//! What crosses between the stations: inertial samples, aiding, gimbal commands, core outputs.
+//! Data exchanged between the stations: inertial samples, aiding, gimbal commands, core outputs.
 //!
-//! The plant and the calibration core share this vocabulary and nothing else. Everything here is
+//! The plant and the calibration core share this vocabulary and nothing else. What they exchange is
 //! plain data with one canonical byte form ([`canonical`]), so that a run in one process, through
 //! an FMU or over a wire can be compared bit for bit.
+//!
+//! With the feature `alloc` there is also what faults do to a plant (`disturbance`); no core gets to
+//! see it.
 #![no_std]
+
+#[cfg(feature = "alloc")]
+extern crate alloc;
 
 pub mod aiding;
 pub mod canonical;
 pub mod counts;
+#[cfg(feature = "alloc")]
+pub mod disturbance;
 pub mod epoch;
 pub mod gimbal;
 pub mod imu;

@@ -1,4 +1,4 @@
-//! What the core answers to one sample.
+//! Answer of the core to one sample.
 
 use crate::{DeviceTime, GimbalCommand};
 
@@ -12,7 +12,7 @@ pub enum Mode {
     Aligning = 0,
     /// Turning through the positions of the sequence.
     Calibrating = 1,
-    /// The calibration ended and can't be vouched for; the core navigates no further.
+    /// The calibration ended and is not valid; the core stops navigating.
     Refused = 2,
     /// Free inertial navigation with compensated sensors.
     Navigating = 3,
@@ -60,20 +60,20 @@ bitflags::bitflags! {
         const INERTIAL_INVALID = 1 << 6;
         /// The encoders do not show the commanded position in a dwell.
         const GIMBAL_DISAGREES = 1 << 7;
-        /// Aiding is due and did not come.
+        /// Aiding is due and did not arrive.
         const AIDING_LOST = 1 << 8;
         /// The innovations contradict the tuning; a calibration in this state is refused.
         const INCONSISTENT = 1 << 9;
         /// A number that is not finite was kept out of the state.
         const NUMERIC = 1 << 10;
-        /// Increments jumped as no motion can; they were not believed.
+        /// Increments jumped further than any motion allows; they were rejected.
         const JUMP = 1 << 11;
         /// Gyros and encoders do not show the same turn: one of them, or the gimbal, slipped.
         const GIMBAL_SLIPPED = 1 << 12;
-        /// A parameter's corrections are larger than its uncertainty allows; a calibration in which
-        /// this was so is refused.
+        /// The corrections of a parameter are larger than its uncertainty allows; a calibration in
+        /// which this happened is refused.
         const DRIFTING = 1 << 13;
-        /// A reference carried another stamp than its sample; it was not used.
+        /// A reference had a stamp other than that of its sample; it was not used.
         const AIDING_STALE = 1 << 14;
     }
 }
@@ -106,7 +106,7 @@ pub struct Output {
     pub mode: Mode,
     /// Stop of the sequence that the gimbals are at or move to, from 0, over all passes.
     pub stop: u16,
-    /// The gimbals are on their way to `stop`.
+    /// True while the gimbals move to `stop`.
     pub moving: bool,
     /// Set point of the gimbals.
     pub gimbal_command: GimbalCommand,
@@ -114,10 +114,10 @@ pub struct Output {
     pub navigation: Navigation,
     /// Health flags of this epoch.
     pub health: Health,
-    /// Normalized innovation squared of the measurement used in this epoch (three axes), NaN where
+    /// Normalized innovation squared of the measurement used in this epoch (three axes), NaN if
     /// there was none.
     pub nis: f64,
-    /// Number of times that the parameters have changed so far; the parameters and their σ travel
-    /// when this number does.
+    /// Number of times that the parameters have changed so far; the parameters and their σ are sent
+    /// when this number changes.
     pub parameters_revision: u32,
 }

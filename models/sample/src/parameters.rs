@@ -12,7 +12,8 @@ pub const PARAMETER_COUNT: usize = 30;
 const STANDARD_GRAVITY: f64 = 9.806_65;
 const RAD_PER_DEG: f64 = core::f64::consts::PI / 180.0;
 
-/// The parameters in SI, in the order of the filter's states. Errors: compensation subtracts them.
+/// Parameters in SI, in the order of the filter's states. They are errors: compensation subtracts
+/// them.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Parameters {
@@ -92,7 +93,7 @@ impl Group {
         }
     }
 
-    /// The unit that users see.
+    /// Unit shown to users.
     #[must_use]
     pub const fn unit(self) -> &'static str {
         match self {
@@ -104,7 +105,7 @@ impl Group {
         }
     }
 
-    /// SI value of one unit that users see.
+    /// SI value of one unit shown to users.
     #[must_use]
     pub const fn si_per_unit(self) -> f64 {
         match self {
@@ -168,7 +169,7 @@ pub const NAMES: [&str; PARAMETER_COUNT] = [
 ];
 
 impl Parameters {
-    /// The parameters as one vector, in the order of [`NAMES`].
+    /// Returns the parameters as one vector, in the order of [`NAMES`].
     #[must_use]
     pub fn to_array(&self) -> [f64; PARAMETER_COUNT] {
         let mut all = [0.0; PARAMETER_COUNT];
@@ -182,7 +183,7 @@ impl Parameters {
         all
     }
 
-    /// The parameters from one vector, in the order of [`NAMES`].
+    /// Makes the parameters from one vector, in the order of [`NAMES`].
     #[must_use]
     pub fn from_array(all: &[f64; PARAMETER_COUNT]) -> Self {
         let mut parameters = Self::default();

@@ -1,5 +1,5 @@
 //! Clocks. Device time is the instrument's own; simulated and host time never enter a computation
-//! of the core, and the types keep them from being mixed up.
+//! of the core, and the types prevent mixing them up.
 
 /// Time of the instrument's clock, integer nanoseconds since its first interval began.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -29,7 +29,7 @@ pub struct HostTime {
 macro_rules! seconds {
     ($($clock:ty),*) => {$(
         impl $clock {
-            /// A time from its nanoseconds.
+            /// Makes a time from nanoseconds.
             #[must_use]
             pub const fn from_ns(ns: u64) -> Self {
                 Self { ns }

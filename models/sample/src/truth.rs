@@ -1,8 +1,8 @@
-//! What is really so: for scoring, never for the core.
+//! True state: for scoring, never for the core.
 
 /// Truth at one instant, at the centre of rotation of the gimbals. While a fault shakes the sensor
-/// block against the gimballed body, that of the block: position, velocity and attitude of what the
-/// sensors feel.
+/// block against the gimballed body, position, velocity and attitude are those of the block: of the
+/// motion that the sensors feel.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Truth {
     /// Simulated time, ns since the start.

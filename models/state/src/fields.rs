@@ -2,10 +2,10 @@
 
 use crate::{Reader, State, StateError, Writer};
 
-/// Makes [`State`] of a structure from its fields: `values` that serde writes, `parts` that are states
-/// themselves, and what is `kept` because it follows from the configuration. Every field has to be
-/// named, so none is forgotten. `check` is called when all is read, and refuses values that would be
-/// an index or a count out of range.
+/// Implements [`State`] for a structure by its fields: `values` that serde writes, `parts` that are
+/// states themselves, and fields that are `kept` because they follow from the configuration. Every
+/// field has to be named, so none is forgotten. `check` is called after all fields are read, and
+/// refuses values that would be an index or a count out of range.
 ///
 /// ```
 /// struct Counter { limit: u32, count: u32, ring: [f64; 4] }
@@ -49,7 +49,7 @@ macro_rules! state {
     };
 }
 
-/// Something that the configuration says to be there or not.
+/// An optional part: the configuration decides whether it exists.
 impl<T: State> State for Option<T> {
     fn save(&self, to: &mut Writer) {
         to.value("is there", &self.is_some());
@@ -70,7 +70,7 @@ impl<T: State> State for Option<T> {
     }
 }
 
-/// A number of them that is known.
+/// A fixed number of parts.
 impl<T: State, const N: usize> State for [T; N] {
     fn save(&self, to: &mut Writer) {
         self.iter().for_each(|part| part.save(to));
@@ -81,7 +81,7 @@ impl<T: State, const N: usize> State for [T; N] {
     }
 }
 
-/// As many of them as the configuration says.
+/// As many parts as the configuration says.
 impl<T: State> State for alloc::vec::Vec<T> {
     fn save(&self, to: &mut Writer) {
         self.iter().for_each(|part| part.save(to));
@@ -92,7 +92,7 @@ impl<T: State> State for alloc::vec::Vec<T> {
     }
 }
 
-/// What is kept elsewhere.
+/// A part on the heap.
 impl<T: State + ?Sized> State for alloc::boxed::Box<T> {
     fn save(&self, to: &mut Writer) {
         T::save(self, to);

@@ -3,15 +3,15 @@
 use crate::{Reader, StateError, Writer};
 use alloc::vec::Vec;
 
-/// What the states of a model look like from outside. Layout, little-endian: eight letters of magic,
-/// version u16, length of the values u64, the values, CRC-32 (ISO-HDLC) of all before.
+/// Outer form of the states of a model. Layout, little-endian: eight letters of magic, version u16,
+/// length of the values u64, the values, CRC-32 (ISO-HDLC) of all before.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Format {
-    /// How it begins: eight ASCII letters.
+    /// Magic at the start: eight ASCII letters.
     pub magic: &'static str,
-    /// Version of the layout: to be raised whenever the layout changes.
+    /// Version of the layout; raise it whenever the layout changes.
     pub version: u16,
-    /// What it is, for messages: "the state of a plant".
+    /// Name of the content for messages: "the state of a plant".
     pub what: &'static str,
 }
 
@@ -25,7 +25,7 @@ fn array<const N: usize>(bytes: &[u8]) -> [u8; N] {
 }
 
 impl Format {
-    /// Appends a frame with what `fill` writes.
+    /// Appends a frame with the values that `fill` writes.
     pub fn write(&self, bytes: &mut Vec<u8>, fill: impl FnOnce(&mut Writer)) {
         let start = bytes.len();
         let mut magic = [0; 8];
@@ -42,15 +42,15 @@ impl Format {
         let length = (bytes.len() - start - HEAD) as u64;
         bytes[start + 10..start + HEAD].copy_from_slice(&length.to_le_bytes());
         let checksum = crc32fast::hash(&bytes[start..]);
-        // What could not be written whole must not be taken for a state.
+        // A frame that could not be written whole must not be accepted as a state.
         let checksum = if sound { checksum } else { !checksum };
         bytes.extend_from_slice(&checksum.to_le_bytes());
     }
 
-    /// The values in a frame that fills `bytes`.
+    /// Checks a frame that fills `bytes`, and returns a reader of its values.
     ///
     /// # Errors
-    /// If it isn't one of this format, or not whole, or damaged.
+    /// If the frame is not of this format, not whole, or damaged.
     pub fn read<'a>(&self, bytes: &'a [u8]) -> Result<Reader<'a>, StateError> {
         let what = self.what;
         let magic = self.magic.as_bytes();

@@ -1,16 +1,16 @@
-//! States of models as bytes: what a model needs to go on exactly as it would have.
+//! States of models as bytes: the data with which a model continues bit for bit.
 //!
 //! A state is a [`Format`]'s frame: magic, version, length, the values, and a CRC-32 over all of it.
 //! Values are written by postcard (f64 as their 64 bits, so that NaN stays the same NaN), in the
 //! order in which [`State::save`] names them; the same state gives the same bytes.
 //!
-//! What follows from a model's configuration is not in its state. A model is made anew from its
-//! configuration, and [`State::load`] puts into it what has changed since: so no bytes, whatever is
-//! in them, can contradict what the configuration says of sizes and limits. A frame that is
-//! truncated, altered, of another model or of a newer version is refused. Bytes whose checksum is
-//! right and whose values no model would have written are refused where a value would be an index,
-//! a length or a count out of range; beyond that they are numbers, and the model computes with them
-//! what it can. It doesn't panic.
+//! A state holds nothing that follows from a model's configuration. A model is made anew from its
+//! configuration, and [`State::load`] puts into it the values that have changed since: no bytes,
+//! whatever their content, can contradict the sizes and limits of the configuration. A frame that
+//! is truncated, altered, of another model or of another version is refused. Bytes with a correct
+//! checksum but with values that no model would have written are refused where a value would be an
+//! index, a length or a count out of range; any other value is accepted as a number, and the model
+//! computes with it. It doesn't panic.
 #![no_std]
 
 extern crate alloc;
@@ -33,36 +33,36 @@ pub use writer::Writer;
 
 use alloc::string::String;
 
-/// What changes in a model while it runs.
+/// Part of a model that changes while it runs.
 pub trait State {
-    /// Writes it.
+    /// Writes the values.
     fn save(&self, to: &mut Writer);
 
-    /// Reads it into a model that was made from the same configuration.
+    /// Reads the values into a model that was made from the same configuration.
     ///
     /// # Errors
-    /// If the bytes are not those of such a model. It is then in no useful state.
+    /// If the bytes are not those of such a model. The model is then in no useful state.
     fn load(&mut self, from: &mut Reader<'_>) -> Result<(), StateError>;
 }
 
-/// A count above this is none that a run reaches: what is added to it can't overflow.
+/// Largest count accepted: no run reaches it, and additions to a count below it can't overflow.
 pub const COUNT_MAX: u64 = 1 << 62;
 
-/// Why bytes are not a state.
+/// Reason why bytes are not a state.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum StateError {
-    /// Something else, or the state of another model.
+    /// No state at all, or the state of another model.
     #[error("not {what}: it does not begin with {magic}")]
     Magic {
-        /// What is expected.
+        /// Name of the expected content.
         what: &'static str,
-        /// How it begins.
+        /// Expected magic.
         magic: &'static str,
     },
-    /// A version that isn't known here.
+    /// A version that this program doesn't read.
     #[error("{what} has version {found}, this program reads version {expected}")]
     Version {
-        /// What is expected.
+        /// Name of the expected content.
         what: &'static str,
         /// Version found.
         found: u16,
@@ -72,42 +72,42 @@ pub enum StateError {
     /// Wrong length.
     #[error("{what} has {found} bytes, {expected} are expected")]
     Length {
-        /// What is expected.
+        /// Name of the expected content.
         what: &'static str,
         /// Bytes found.
         found: usize,
-        /// Bytes that it says to have, or the fewest that it can have.
+        /// Length given in the frame, or the smallest possible length.
         expected: u64,
     },
-    /// Damaged.
+    /// Wrong checksum.
     #[error("{what} is damaged: checksum {found:#010x}, computed {computed:#010x}")]
     Checksum {
-        /// What is expected.
+        /// Name of the expected content.
         what: &'static str,
         /// Checksum in the bytes.
         found: u32,
         /// Checksum of the bytes.
         computed: u32,
     },
-    /// A value that isn't one.
+    /// A value that can't be read, or is out of range.
     #[error("{field}: {problem}")]
     Value {
-        /// Its name.
+        /// Name of the value.
         field: &'static str,
-        /// What was found and what is expected.
+        /// Value found and values expected.
         problem: String,
     },
 }
 
 impl StateError {
-    /// A value that isn't one.
+    /// Makes [`StateError::Value`].
     #[must_use]
     pub fn value(field: &'static str, problem: impl Into<String>) -> Self {
         Self::Value { field, problem: problem.into() }
     }
 }
 
-/// A count that a run reaches.
+/// Checks that a count is one that a run can reach.
 ///
 /// # Errors
 /// If it is above [`COUNT_MAX`].
@@ -115,7 +115,7 @@ pub fn check_count(field: &'static str, found: u64) -> Result<(), StateError> {
     check_below(field, found, COUNT_MAX)
 }
 
-/// A number that is at most `largest`.
+/// Checks that a number is at most `largest`.
 ///
 /// # Errors
 /// If it is larger.

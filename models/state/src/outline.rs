@@ -1,5 +1,5 @@
-//! What a state is made of, as text: names and kinds of its values without the values. A test that
-//! compares it with a stored one finds a layout that changed without its version.
+//! Content of a state as text: names and kinds of its values without the values. A test that
+//! compares it with a stored outline finds a layout that changed without its version.
 
 use crate::{State, Writer};
 use alloc::string::String;
@@ -30,7 +30,7 @@ impl Outline {
         self.depth -= 1;
     }
 
-    /// Equal lines that follow each other are told once, with their number.
+    /// Adds a line; equal lines in sequence become one line with their number.
     fn line(&mut self, line: &str) {
         if self.last == line {
             self.count += 1;
@@ -66,8 +66,8 @@ fn close(out: &mut String, last: &mut Option<(&str, usize)>) {
     }
 }
 
-/// JSON with its numbers, truths and nulls (NaN is one) replaced by a letter, and equal neighbours
-/// counted.
+/// Replaces the numbers, booleans and nulls (NaN is one) of JSON by a letter, and counts equal
+/// neighbours.
 fn kinds(json: &str) -> String {
     let mut out = String::new();
     let mut rest = json;
@@ -101,7 +101,7 @@ fn kinds(json: &str) -> String {
                     last = Some((kind, 1));
                 }
             }
-            // A comma before another one of these is not told yet: it may be part of a count.
+            // A comma before another such value is not written yet: it may be part of a count.
             if let Some(after) = rest.strip_prefix(',')
                 && after.starts_with(|c: char| c.is_ascii_alphanumeric() || c == '-')
             {
@@ -119,7 +119,7 @@ fn kinds(json: &str) -> String {
 }
 
 impl Writer {
-    /// Names and kinds of the values of a state, one a line.
+    /// Lists names and kinds of the values of a state, one a line.
     #[must_use]
     pub fn outline<T: State + ?Sized>(state: &T) -> String {
         let mut writer = Self::default();
@@ -131,7 +131,7 @@ impl Writer {
     }
 }
 
-/// Name and kinds of one value that isn't a state, such as a configuration.
+/// Lists name and kinds of one value that isn't a state, such as a configuration.
 #[must_use]
 pub fn outline_of<T: Serialize>(name: &str, value: &T) -> String {
     let mut outline = Outline::default();
@@ -140,11 +140,11 @@ pub fn outline_of<T: Serialize>(name: &str, value: &T) -> String {
     outline.text
 }
 
-/// For tests: a layout, made of outlines with their names, against the stored one, which begins with
-/// its version. With `OCTANT_WRITE_FIXTURES` set it is written instead.
+/// Compares a layout, made of outlines with their names, with the stored one, which begins with its
+/// version; for tests. With `OCTANT_WRITE_FIXTURES` set, writes the stored one instead.
 ///
 /// # Panics
-/// If it is another one.
+/// If the layouts differ.
 pub fn assert_layout(path: &str, version: u16, outlines: &[(&str, String)]) {
     let mut text = alloc::format!("version {version}\n");
     for (name, outline) in outlines {

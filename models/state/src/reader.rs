@@ -1,9 +1,9 @@
-//! Bytes to values.
+//! Reading of values from bytes.
 
 use crate::{State, StateError};
 use serde::Deserialize;
 
-/// Gives the values of a state back, in the order in which they were written.
+/// Returns the values of a state, in the order in which they were written.
 #[derive(Debug)]
 pub struct Reader<'a> {
     rest: &'a [u8],
@@ -14,10 +14,10 @@ impl<'a> Reader<'a> {
         Self { rest }
     }
 
-    /// A value.
+    /// Reads a value.
     ///
     /// # Errors
-    /// If the bytes end before it, or are none of such a value.
+    /// If the bytes end before it, or are not a value of its type.
     pub fn value<T: Deserialize<'a>>(&mut self, name: &'static str) -> Result<T, StateError> {
         match postcard::take_from_bytes(self.rest) {
             Ok((value, rest)) => {
@@ -28,10 +28,10 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// A part that has values of its own.
+    /// Reads a part that has values of its own.
     ///
     /// # Errors
-    /// Those of the part.
+    /// The errors of the part.
     pub fn part<T: State + ?Sized>(
         &mut self,
         _name: &'static str,
@@ -40,10 +40,10 @@ impl<'a> Reader<'a> {
         part.load(self)
     }
 
-    /// Nothing is left.
+    /// Checks that no bytes are left.
     ///
     /// # Errors
-    /// If something is.
+    /// If bytes are left.
     pub fn end(&self) -> Result<(), StateError> {
         match self.rest.len() {
             0 => Ok(()),

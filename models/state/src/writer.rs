@@ -1,4 +1,4 @@
-//! Values to bytes.
+//! Writing of values to bytes.
 
 use crate::State;
 use alloc::vec::Vec;
@@ -38,12 +38,12 @@ impl Flavor for Append<'_> {
 }
 
 impl Writer {
-    /// Appends to what is there.
+    /// Makes a writer that appends to `bytes`.
     pub(crate) fn onto(bytes: Vec<u8>) -> Self {
         Self { bytes, ..Self::default() }
     }
 
-    /// A value.
+    /// Writes a value.
     #[inline]
     pub fn value<T: Serialize + ?Sized>(&mut self, name: &'static str, value: &T) {
         #[cfg(feature = "outline")]
@@ -56,7 +56,7 @@ impl Writer {
         self.failed |= value.serialize(&mut serializer).is_err();
     }
 
-    /// A part that has values of its own.
+    /// Writes a part that has values of its own.
     #[inline]
     pub fn part<T: State + ?Sized>(&mut self, name: &'static str, part: &T) {
         #[cfg(feature = "outline")]
@@ -72,7 +72,7 @@ impl Writer {
         }
     }
 
-    /// Every value could be written.
+    /// Returns whether every value could be written.
     pub(crate) fn is_sound(&self) -> bool {
         !self.failed
     }

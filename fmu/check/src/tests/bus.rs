@@ -1,4 +1,4 @@
-//! Each rule of FMI-LS-BUS is tripped by a change of an FMU on a bus that breaks nothing else.
+//! Each rule of FMI-LS-BUS is broken by a change of an FMU on a bus that breaks no other rule.
 
 use super::super::rules::*;
 use super::{edited, ids, packed, survey};
@@ -58,7 +58,7 @@ fn a_good_node_has_no_finding() {
     assert!(report.findings.is_empty(), "{:#?}", report.findings);
 }
 
-/// Rule, file, what is changed.
+/// Rule, file, original text and replacement.
 type Case = (&'static Rule, usize, &'static str, &'static str);
 
 #[rustfmt::skip]
@@ -93,7 +93,7 @@ fn a_change_of_a_node_is_found_by_one_rule() {
         let text = String::from_utf8(files[*file].1.clone()).expect("text");
         files[*file].1 = edited(&text, &[(from, to)]).into_bytes();
         if std::ptr::eq(*rule, &BUS_VARIABLES) && to.contains("spare") {
-            // The binary variable that is none of the bus takes the place of the one that is.
+            // A binary variable outside of the bus takes the place of the one of the bus.
             let text = String::from_utf8(files[TERMINAL].1.clone()).expect("text");
             let edit = [(r#"variableName="tx" "#, r#"variableName="spare" "#)];
             files[TERMINAL].1 = edited(&text, &edit).into_bytes();
@@ -101,7 +101,8 @@ fn a_change_of_a_node_is_found_by_one_rule() {
         let report = survey(packed(&files));
         let found = ids(&report.findings);
         assert!(found.contains(&rule.id), "{} by {to:?}: {:#?}", rule.id, report.findings);
-        // Without its manifest, with the wrong variable or with no terminal, more is wrong.
+        // Without its manifest, with the wrong variable or without terminal, other rules are broken
+        // too.
         let others = ["bus.", "layered.", "terminals.", "clock."];
         assert!(
             found.iter().all(|id| others.iter().any(|other| id.starts_with(other))),

@@ -1,12 +1,12 @@
-//! What is changed in a good description, and the rule that it breaks.
+//! Edits of a good description, and the rule that each breaks.
 
 use super::super::rules::*;
 use super::{Edit, GOOD2, GOOD3};
 
-/// Rule, description, what is changed, and a part of what is found and expected.
+/// Rule, description, edits, and a part of the message.
 pub(super) type Case = (&'static Rule, &'static str, Vec<Edit<'static>>, &'static str);
 
-/// A case a line: what is changed is to be read beside what it breaks.
+/// One case a line, so that each edit is beside its rule.
 #[rustfmt::skip]
 pub(super) fn cases() -> Vec<Case> {
     vec![

@@ -1,8 +1,9 @@
-//! A library for Windows, byte by byte: the smallest that exports functions and needs libraries.
+//! A library for Windows, byte by byte: the smallest one that exports functions and needs
+//! libraries.
 
-/// Where the one section lies in memory.
+/// Address of the only section in memory.
 const BASE: u32 = 0x1000;
-/// Where it lies in the file.
+/// Offset of the section in the file.
 const FILE: usize = 0x200;
 
 fn put(bytes: &mut Vec<u8>, numbers: &[u32]) {
@@ -11,7 +12,7 @@ fn put(bytes: &mut Vec<u8>, numbers: &[u32]) {
     }
 }
 
-/// A library of x86-64 with these functions, which needs these libraries.
+/// Makes a library for x86-64 with these functions, which needs these libraries.
 pub(super) fn dll(functions: &[&str], libraries: &[&str]) -> Vec<u8> {
     let count = functions.len() as u32;
     // Export directory, addresses, names, ordinals; import descriptors; then all texts.
@@ -29,9 +30,9 @@ pub(super) fn dll(functions: &[&str], libraries: &[&str]) -> Vec<u8> {
     };
     let mut section = Vec::new();
     put(&mut section, &[0, 0, 0, place("good.dll"), 1, count, count, addresses, names, ordinals]);
-    // An address inside the directory would be that of a forwarder.
+    // An address inside the directory would mark a forwarder.
     put(&mut section, &vec![2 * BASE; functions.len()]);
-    // The loader looks names up by halves: they are sorted.
+    // The loader searches names by bisection: they have to be sorted.
     let mut sorted = functions.to_vec();
     sorted.sort_unstable();
     for name in &sorted {
@@ -55,7 +56,7 @@ pub(super) fn dll(functions: &[&str], libraries: &[&str]) -> Vec<u8> {
     file.extend(1u16.to_le_bytes());
     put(&mut file, &[0, 0, 0]);
     file.extend(240u16.to_le_bytes());
-    // An image of 64 bits that is a library.
+    // A 64-bit image that is a library.
     file.extend(0x2022u16.to_le_bytes());
     file.extend(0x20bu16.to_le_bytes());
     file.extend([0; 2]);

@@ -1,170 +1,25 @@
-//! Archives that somebody else made: an `.fmu` or `.ssp` opened, read and unpacked safely.
+//! Archives from others: an `.fmu` or `.ssp` is opened, read and unpacked safely.
 //!
-//! Everything in an archive is hostile until it is shown not to be. Names are checked before anything
-//! is read ([`names`]); sizes are counted while unpacking, since headers can lie; what the standards
-//! don't allow (other compression than Deflate, encryption, links) is refused, not worked around. An
-//! FMU that was unpacked already is a folder, and is taken as one.
+//! Everything in an archive is considered hostile until it is checked. Names are checked before
+//! anything is read ([`names`]); sizes are counted during unpacking, since headers can lie; content
+//! that the standards don't allow (other compression than Deflate, encryption, links) is refused,
+//! not worked around. An unpacked FMU is a folder, and is accepted as one.
 
+mod entry;
+mod error;
+mod limits;
 pub mod names;
 mod zipped;
+
+pub use entry::{Entry, Odd, Oddity};
+pub use error::ArchiveError;
+pub use limits::Limits;
 
 use names::NameProblem;
 use std::fs;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use zipped::Zipped;
-
-/// What an archive may need at most.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Limits {
-    /// Number of entries.
-    pub entries: usize,
-    /// Bytes that are read to know the entries.
-    pub directory_bytes: u64,
-    /// Bytes of all entries together, unpacked.
-    pub unpacked_bytes: u64,
-    /// How many times its packed size an entry may have, where it is larger than `ratio_free_bytes`.
-    pub ratio: u64,
-    /// Size up to which an entry may be packed as well as it can.
-    pub ratio_free_bytes: u64,
-    /// Bytes of one entry that is read into memory.
-    pub read_bytes: u64,
-}
-
-impl Limits {
-    /// The limits for files of others. The largest FMUs in use hold some thousand files and one or two
-    /// gigabytes of tables; descriptions of large Modelica models have some ten megabytes.
-    pub const DEFAULT: Self = Self {
-        // A zip without extensions counts entries in 16 bits.
-        entries: 65_535,
-        // 65 535 entries with names of 400 bytes each; what is read beyond it is no directory.
-        directory_bytes: 32 << 20,
-        // Twice the largest in use, and still room on any disk.
-        unpacked_bytes: 4 << 30,
-        // Deflate reaches 1032 on zeros alone; text and tables stay under 30, libraries under 10.
-        ratio: 100,
-        // A table of zeros of this size harms nobody.
-        ratio_free_bytes: 64 << 20,
-        // A description of this size has a million variables.
-        read_bytes: 256 << 20,
-    };
-}
-
-impl Default for Limits {
-    fn default() -> Self {
-        Self::DEFAULT
-    }
-}
-
-/// Why an archive can't be used.
-#[derive(Debug, thiserror::Error)]
-pub enum ArchiveError {
-    /// The file can't be read.
-    #[error("failed to open {file}: {error}")]
-    Open {
-        /// The file.
-        file: String,
-        /// Why.
-        error: io::Error,
-    },
-    /// It is something else.
-    #[error(
-        "{file} is no zip archive: it {found}, expected an FMU or SSP file, or an unpacked folder"
-    )]
-    NotZip {
-        /// The file.
-        file: String,
-        /// What it is instead.
-        found: String,
-    },
-    /// It is a zip archive, but cut off or damaged.
-    #[error("{file} is damaged: {reason}")]
-    Damaged {
-        /// The file.
-        file: String,
-        /// What is wrong.
-        reason: String,
-    },
-    /// An entry is not to be unpacked.
-    #[error("{file}: entry {:?} {}, expected {}", .problem.name, .problem.found, .problem.expected)]
-    Entry {
-        /// The file.
-        file: String,
-        /// The entry and what is wrong with it.
-        problem: NameProblem,
-    },
-    /// An entry can't be read.
-    #[error("{file}: entry {entry:?} is damaged: {reason}")]
-    Unreadable {
-        /// The file.
-        file: String,
-        /// The entry.
-        entry: String,
-        /// What is wrong.
-        reason: String,
-    },
-    /// There is more in it than is unpacked for anybody.
-    #[error("{file}: {what}, expected at most {limit}")]
-    TooMuch {
-        /// The file.
-        file: String,
-        /// What is too much.
-        what: String,
-        /// The limit.
-        limit: String,
-    },
-    /// An entry isn't there.
-    #[error("{file} has no {entry}")]
-    Missing {
-        /// The file.
-        file: String,
-        /// The entry.
-        entry: String,
-    },
-    /// The temporary folder can't be written.
-    #[error("failed to unpack {file} to {}: {error}", .path.display())]
-    Write {
-        /// The file.
-        file: String,
-        /// What is written.
-        path: PathBuf,
-        /// Why not.
-        error: io::Error,
-    },
-}
-
-/// One file in an archive.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Entry {
-    /// Its path, with forward slashes.
-    pub name: String,
-    /// Its size as the archive states it: for showing, not for trusting.
-    pub stated_bytes: u64,
-}
-
-/// Something about an entry that the standards forbid, but that does no harm here.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Odd {
-    /// The entry; empty: the archive as a whole.
-    pub entry: String,
-    /// What it is.
-    pub what: Oddity,
-}
-
-/// What other tools may stumble over.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Oddity {
-    /// The entry says that it needs this version of the format, times ten.
-    Version(u16),
-    /// It isn't packed, but its size comes after it: who reads from the start can't tell its end.
-    Descriptor,
-    /// Its name isn't ASCII, nor marked as UTF-8: others read it as code page 437.
-    Unmarked,
-    /// Windows can't hold its name: there it isn't unpacked.
-    Windows(String),
-    /// The headers before the entries say something else than the directory at the end.
-    Headers(String),
-}
 
 /// An archive or an unpacked folder whose entries are known.
 #[derive(Debug)]
@@ -183,7 +38,7 @@ enum Contents {
     Folder(PathBuf),
 }
 
-/// A folder with all entries. If it is a temporary one, it goes with this.
+/// A folder with all entries. A temporary folder is removed when this is dropped.
 #[derive(Debug)]
 pub struct Unpacked {
     path: PathBuf,
@@ -192,7 +47,7 @@ pub struct Unpacked {
 }
 
 impl Unpacked {
-    /// The folder.
+    /// Path of the folder.
     #[must_use]
     pub fn path(&self) -> &Path {
         &self.path
@@ -200,15 +55,15 @@ impl Unpacked {
 }
 
 impl Archive {
-    /// Opens an archive, or a folder that was one.
+    /// Opens an archive, or a folder with its unpacked content.
     ///
     /// # Errors
-    /// If it is none, is damaged, or holds anything that isn't to be unpacked.
+    /// If the path is neither, is damaged, or contains an entry that must not be unpacked.
     pub fn open(path: &Path) -> Result<Self, ArchiveError> {
         Self::survey(path, Limits::DEFAULT)?.without_problems()
     }
 
-    /// Opens an archive that is in memory, such as an FMU in an SSP file; `file` names it in messages.
+    /// Opens an archive in memory, such as an FMU in an SSP file; `file` is its name in messages.
     ///
     /// # Errors
     /// As [`Self::open`].
@@ -216,8 +71,8 @@ impl Archive {
         Self::survey_bytes(file, bytes, Limits::DEFAULT)?.without_problems()
     }
 
-    /// As [`Self::open`], but with entries that aren't to be unpacked: [`Self::problems`]. None of
-    /// them can be read, and such an archive isn't unpacked.
+    /// Opens as [`Self::open`], but accepts entries that must not be unpacked: [`Self::problems`].
+    /// Such entries can't be read, and their archive can't be unpacked.
     ///
     /// # Errors
     /// If it is no archive, is damaged or too large.
@@ -231,7 +86,7 @@ impl Archive {
         Self::survey_zip(file.clone(), Box::new(io::BufReader::new(source)), limits)
     }
 
-    /// As [`Self::survey`], of an archive that is in memory.
+    /// Opens as [`Self::survey`], from memory.
     ///
     /// # Errors
     /// As [`Self::survey`].
@@ -249,7 +104,7 @@ impl Archive {
         Ok(Self { file, limits, entries, problems, oddities, contents: Contents::Zip(zip) })
     }
 
-    /// The files below a folder. Links aren't followed.
+    /// Lists the files below a folder. Links aren't followed.
     fn survey_folder(path: &Path, file: String, limits: Limits) -> Result<Self, ArchiveError> {
         let mut entries = Vec::new();
         let mut problems = Vec::new();
@@ -294,52 +149,52 @@ impl Archive {
         }
     }
 
-    /// The name that messages have for it.
+    /// Name of the archive in messages.
     #[must_use]
     pub fn file(&self) -> &str {
         &self.file
     }
 
-    /// It is a folder, not a file.
+    /// Returns whether this is a folder, not a file.
     #[must_use]
     pub fn is_folder(&self) -> bool {
         matches!(self.contents, Contents::Folder(_))
     }
 
-    /// Its files, without those that have a problem.
+    /// Files, without those that have a problem.
     #[must_use]
     pub fn entries(&self) -> &[Entry] {
         &self.entries
     }
 
-    /// Entries that aren't to be unpacked.
+    /// Entries that must not be unpacked.
     #[must_use]
     pub fn problems(&self) -> &[NameProblem] {
         &self.problems
     }
 
-    /// What other tools may stumble over.
+    /// Properties that may confuse other tools.
     #[must_use]
     pub fn oddities(&self) -> &[Odd] {
         &self.oddities
     }
 
-    /// There is a file of this name.
+    /// Returns whether there is a file of this name.
     #[must_use]
     pub fn contains(&self, name: &str) -> bool {
         self.entries.iter().any(|entry| entry.name == name)
     }
 
-    /// There is a file below this folder, whose name ends with a slash.
+    /// Returns whether there is a file below this folder, whose name ends with a slash.
     #[must_use]
     pub fn contains_below(&self, folder: &str) -> bool {
         self.entries.iter().any(|entry| entry.name.starts_with(folder))
     }
 
-    /// One file, in memory.
+    /// Reads one file into memory.
     ///
     /// # Errors
-    /// If it isn't there, is damaged or too large for memory.
+    /// If the file is missing, damaged or too large for memory.
     pub fn read(&mut self, name: &str) -> Result<Vec<u8>, ArchiveError> {
         if !self.contains(name) {
             let entry = names::printable(name.as_bytes());
@@ -379,10 +234,10 @@ impl Archive {
         Ok(bytes)
     }
 
-    /// All files in a folder: a temporary one, or the folder itself where it is one.
+    /// Unpacks all files into a temporary folder, or returns the folder itself if this is one.
     ///
     /// # Errors
-    /// If an entry isn't to be unpacked, is damaged or too large, or the temporary folder can't be
+    /// If an entry must not be unpacked, is damaged or too large, or the temporary folder can't be
     /// written.
     pub fn unpack(&mut self) -> Result<Unpacked, ArchiveError> {
         if let Some(problem) = self.problems.first() {
@@ -401,7 +256,7 @@ impl Archive {
             })?;
         let mut written = 0;
         for entry in &self.entries {
-            // The name was checked part by part: it stays below the folder.
+            // The name was checked part by part, so that it stays below the folder.
             let path = temporary.path().join(&entry.name);
             let write =
                 |error| ArchiveError::Write { file: file.clone(), path: path.clone(), error };
@@ -411,7 +266,7 @@ impl Archive {
             let mut target = fs::File::create_new(&path).map_err(write)?;
             zip.copy(file, &entry.name, &self.limits, &mut written, &mut target, write)?;
             target.flush().map_err(write)?;
-            // Tools that an FMU brings along have to stay programs.
+            // Tools inside an FMU have to stay executable.
             #[cfg(unix)]
             if zip.is_program(&entry.name) {
                 use std::os::unix::fs::PermissionsExt;

@@ -1,32 +1,32 @@
-//! Which names an entry of an archive may have.
+//! Checks of the names of entries in an archive.
 
 use std::collections::BTreeMap;
 
-/// Longest name of an entry, bytes: what Windows and every other file system can still hold below a
+/// Longest name of an entry, bytes, for which Windows and every other file system have room below a
 /// temporary folder.
 pub const NAME_BYTES_MAX: usize = 1024;
 
 /// Longest part of a name between two slashes, bytes: the limit of ext4, NTFS and APFS.
 pub const PART_BYTES_MAX: usize = 255;
 
-/// Deepest nesting of folders: far beyond what any tool writes.
+/// Deepest nesting of folders, far beyond that of any tool.
 pub const DEPTH_MAX: usize = 64;
 
-/// What is wrong with a name.
+/// Problem of a name.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct NameProblem {
-    /// The name, made printable.
+    /// Name, made printable.
     pub name: String,
-    /// What is wrong.
+    /// Problem found.
     pub found: String,
-    /// What would be right.
+    /// Form expected.
     pub expected: &'static str,
 }
 
-/// The name of an entry, if it is a path inside the folder on every platform.
+/// Checks that a name is a path inside the folder on every platform, and returns it.
 ///
 /// # Errors
-/// If it isn't; what is wrong with it.
+/// If it isn't, with its problem.
 pub fn check(raw: &[u8]) -> Result<&str, NameProblem> {
     let problem =
         |found: String, expected| Err(NameProblem { name: printable(raw), found, expected });
@@ -73,10 +73,10 @@ pub fn check(raw: &[u8]) -> Result<&str, NameProblem> {
     Ok(name)
 }
 
-/// What Windows can't hold of a name that [`check`] has passed; other systems can.
+/// Checks a name that [`check`] has passed for Windows; other systems accept it.
 ///
 /// # Errors
-/// If there is something.
+/// If Windows doesn't accept it.
 pub fn check_for_windows(name: &str) -> Result<(), NameProblem> {
     let problem = |found: String, expected| {
         Err(NameProblem { name: printable(name.as_bytes()), found, expected })
@@ -101,7 +101,7 @@ pub fn check_for_windows(name: &str) -> Result<(), NameProblem> {
     Ok(())
 }
 
-/// Names that open a device on Windows, with any ending.
+/// Returns whether a name opens a device on Windows, with any extension.
 fn is_device(part: &str) -> bool {
     let stem = part.split('.').next().unwrap_or(part).trim_end().to_ascii_uppercase();
     match stem.as_str() {
@@ -113,7 +113,8 @@ fn is_device(part: &str) -> bool {
     }
 }
 
-/// Bytes as text for a message: what isn't printable is escaped, and the end of a long one left out.
+/// Converts bytes to text for a message: unprintable characters are escaped, and a long text is
+/// cut.
 #[must_use]
 pub fn printable(raw: &[u8]) -> String {
     let mut text: String = raw
@@ -134,20 +135,20 @@ pub fn printable(raw: &[u8]) -> String {
     text
 }
 
-/// Names that can't stand beside each other: the same twice, the same but for upper and lower case,
-/// or a file that another name takes for a folder.
+/// Names that can't exist side by side: the same twice, the same except for upper and lower case,
+/// or a file that another name uses as a folder.
 #[derive(Debug, Default)]
 pub struct Names {
-    /// By name in lower case: the name as written, and whether it is a folder (perhaps only by being
-    /// in the path of a file).
+    /// By name in lower case: the name as written, and whether it is a folder (perhaps only as part
+    /// of the path of a file).
     seen: BTreeMap<String, (String, bool)>,
 }
 
 impl Names {
-    /// Takes one more name, which [`check`] has passed.
+    /// Adds a name that [`check`] has passed.
     ///
     /// # Errors
-    /// If it collides with an earlier one.
+    /// If the name collides with an earlier one.
     pub fn add(&mut self, name: &str) -> Result<(), NameProblem> {
         let problem = |found: String, expected| {
             Err(NameProblem { name: printable(name.as_bytes()), found, expected })

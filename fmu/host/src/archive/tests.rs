@@ -2,7 +2,7 @@ use super::*;
 use std::io::Write;
 use zip::write::{SimpleFileOptions, ZipWriter};
 
-/// A zip with these files.
+/// Makes a zip with these files.
 fn zip(files: &[(&str, &[u8])]) -> Vec<u8> {
     let mut writer = ZipWriter::new(io::Cursor::new(Vec::new()));
     for (name, contents) in files {
@@ -12,7 +12,7 @@ fn zip(files: &[(&str, &[u8])]) -> Vec<u8> {
     writer.finish().expect("finishes").into_inner()
 }
 
-/// The zip with all places of `from` replaced, headers and directory alike.
+/// Replaces all occurrences of `from` in a zip, in headers and directory alike.
 fn patched(mut bytes: Vec<u8>, from: &[u8], to: &[u8]) -> Vec<u8> {
     assert_eq!(from.len(), to.len());
     let mut at = 0;
@@ -74,7 +74,7 @@ fn every_truncation_is_an_error() {
         let error = refused(whole[..length].to_vec());
         assert!(error.starts_with("h.fmu is "), "{length}: {error}");
     }
-    // Bytes before the archive make it something else that is a zip as well.
+    // With bytes before the archive the file is two things at once.
     let mut polyglot = b"PK\x03\x04 not this".to_vec();
     polyglot.extend(&whole);
     assert!(refused(polyglot).starts_with("h.fmu is damaged: "));
@@ -90,7 +90,8 @@ fn every_changed_byte_is_an_error_or_harmless() {
             let mut bytes = whole.clone();
             bytes[at] ^= change;
             let Ok(mut archive) = Archive::from_bytes("h.fmu", bytes) else { continue };
-            // Names and dates may change; contents have a checksum, but for its own bytes.
+            // Names and dates may change; contents have a checksum, whose own bytes are
+            // unprotected.
             for entry in archive.entries().to_vec() {
                 if let Ok(contents) = archive.read(&entry.name) {
                     assert!(files.iter().any(|(_, known)| *known == contents), "byte {at}");
@@ -117,7 +118,7 @@ fn hostile_names_are_refused() {
             error.starts_with(&format!("h.fmu: entry {:?} {found}, expected ", name)),
             "{error}"
         );
-        // The survey lists it, reads nothing of it and unpacks nothing.
+        // The survey lists the entry, but reads and unpacks nothing of it.
         let mut archive =
             Archive::survey_bytes("h.fmu", bytes, Limits::DEFAULT).expect("is surveyed");
         assert_eq!(archive.problems().len(), 1);
@@ -189,7 +190,7 @@ fn bombs_are_stopped_while_unpacking() {
         error,
         "h.fmu: with entry \"a\" more is unpacked than from any FMU, expected at most 1000 bytes"
     );
-    // What the headers say of the size is no protection: here they say one byte.
+    // The size in the headers is no protection: here it says one byte.
     let mut lying = bytes.clone();
     let size = (1u32 << 20).to_le_bytes();
     lying = patched(lying, &size, &1u32.to_le_bytes());
@@ -200,7 +201,7 @@ fn bombs_are_stopped_while_unpacking() {
 
 #[test]
 fn entries_that_share_bytes_are_refused() {
-    // Both entries of the directory point at the first: how flat bombs are made.
+    // Both entries of the directory point to the first: the principle of flat bombs.
     let mut bytes = zip(&[("aaa", b"111"), ("aab", b"111")]);
     let directory: Vec<usize> =
         (0..bytes.len() - 4).filter(|&at| &bytes[at..at + 4] == b"PK\x01\x02").collect();

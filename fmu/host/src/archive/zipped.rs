@@ -1,7 +1,9 @@
-//! A zip archive: its entries looked through, and read with every byte counted.
+//! A zip archive: its entries are examined, and read with every byte counted.
 
+use super::entry::{Entry, Odd, Oddity};
+use super::error::ArchiveError;
+use super::limits::Limits;
 use super::names::{self, NameProblem, Names};
-use super::{ArchiveError, Entry, Limits, Odd, Oddity};
 use std::collections::BTreeMap;
 use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::sync::Arc;
@@ -9,12 +11,12 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use zip::read::{ArchiveOffset, Config, ZipArchive};
 use zip::{CompressionMethod, result::ZipError};
 
-/// Where the bytes of an archive are.
+/// Source of the bytes of an archive.
 pub(super) trait Source: Read + Seek + Send + std::fmt::Debug {}
 impl<T: Read + Seek + Send + std::fmt::Debug> Source for T {}
 
-/// A source that ends with an error when more is read than was allowed: while the directory is read,
-/// what is in it decides how much is read.
+/// A source that fails after a limit of bytes: the content of the directory decides how much is
+/// read for it.
 #[derive(Debug)]
 struct Metered {
     source: Box<dyn Source>,
@@ -45,11 +47,11 @@ impl Seek for Metered {
 #[derive(Debug)]
 pub(super) struct Zipped {
     archive: ZipArchive<Metered>,
-    /// Number in the archive, and whether it is a program, of each entry that may be unpacked.
+    /// Index in the archive, and whether it is a program, of each entry that may be unpacked.
     places: BTreeMap<String, (usize, bool)>,
 }
 
-/// An archive that was opened.
+/// An opened archive.
 pub(super) struct Opened {
     pub(super) zip: Zipped,
     pub(super) entries: Vec<Entry>,
@@ -58,7 +60,7 @@ pub(super) struct Opened {
 }
 
 impl Zipped {
-    /// Opens it and looks at every entry's header.
+    /// Opens the archive and examines every entry's header.
     pub(super) fn open(
         file: &str,
         mut source: Box<dyn Source>,
@@ -76,7 +78,7 @@ impl Zipped {
         }
         let left = Arc::new(AtomicU64::new(limits.directory_bytes));
         let metered = Metered { source, left: left.clone() };
-        // A zip archive that starts elsewhere than the file is two files in one.
+        // A zip archive with an offset in the file is two files in one.
         let config = Config { archive_offset: ArchiveOffset::Known(0) };
         let damaged = |error: ZipError| match error {
             ZipError::Io(error) if error.kind() == io::ErrorKind::FileTooLarge => {
@@ -96,7 +98,8 @@ impl Zipped {
                 limit: limits.entries.to_string(),
             });
         }
-        // The archive keeps one entry a name, and not every field: the directory is read once more.
+        // The library keeps one entry for a name, and not every field: the directory is read once
+        // more.
         let start = archive.central_directory_start();
         let mut metered = archive.into_inner();
         left.store(limits.directory_bytes, Ordering::Relaxed);
@@ -104,7 +107,7 @@ impl Zipped {
             directory(&mut metered, start).map_err(|error| damaged(ZipError::Io(error)))?;
         left.store(limits.directory_bytes, Ordering::Relaxed);
         let mut archive = ZipArchive::with_config(config, metered).map_err(damaged)?;
-        // Two entries that share bytes: how a small file becomes a huge one.
+        // Two entries that share bytes make a huge archive from a small file.
         if archive.has_overlapping_entries().map_err(damaged)? {
             let reason = "entries overlap".into();
             return Err(ArchiveError::Damaged { file: file.into(), reason });
@@ -141,13 +144,13 @@ impl Zipped {
         Ok(Opened { zip: Self { archive, places }, entries, problems, oddities })
     }
 
-    /// The archive marks the entry as a program.
+    /// Returns whether the archive marks the entry as a program.
     #[cfg(unix)]
     pub(super) fn is_program(&self, name: &str) -> bool {
         self.places.get(name).is_some_and(|&(_, is_program)| is_program)
     }
 
-    /// Copies an entry, counting what comes out: `written` is of all entries so far.
+    /// Copies an entry and counts the bytes; `written`: bytes of all entries so far.
     pub(super) fn copy(
         &mut self,
         file: &str,
@@ -165,7 +168,7 @@ impl Zipped {
         let missing = || ArchiveError::Missing { file: file.into(), entry: name.into() };
         let &(index, _) = self.places.get(name).ok_or_else(missing)?;
         let mut entry = self.archive.by_index(index).map_err(|error| unreadable(reason(&error)))?;
-        // Entries don't overlap: this can't be larger than the file.
+        // Entries don't overlap, so that this is at most the size of the file.
         let packed = entry.compressed_size().max(1);
         let mut unpacked = 0u64;
         let mut buffer = vec![0; 64 << 10];
@@ -200,7 +203,7 @@ impl Zipped {
     }
 }
 
-/// The first bytes of a file, as many as there are.
+/// Reads the first bytes of a file, as many as it has.
 fn read_start(source: &mut impl Source, start: &mut [u8]) -> io::Result<usize> {
     let mut length = 0;
     while length < start.len() {
@@ -213,7 +216,7 @@ fn read_start(source: &mut impl Source, start: &mut [u8]) -> io::Result<usize> {
     Ok(length)
 }
 
-/// An entry's header: a file to unpack, a folder (nothing), or a problem.
+/// Examines an entry's header: a file to unpack, a folder (nothing), or a problem.
 #[allow(clippy::type_complexity, reason = "one caller, which takes it apart at once")]
 fn look(
     archive: &mut ZipArchive<Metered>,
@@ -232,7 +235,7 @@ fn look(
     if entry.encrypted() {
         return problem("is encrypted".into(), "an entry that anybody can read");
     }
-    // Types of files in the mode that Unix zips carry.
+    // File types in the mode field of Unix zips.
     const TYPE: u32 = 0o170_000;
     const FOLDER: u32 = 0o040_000;
     const FILE: u32 = 0o100_000;
@@ -257,8 +260,8 @@ fn look(
     Ok(Ok(Some((Entry { name: name.into(), stated_bytes: entry.size() }, is_program))))
 }
 
-/// What the headers of the directory say that the archive doesn't keep: names that are there twice,
-/// and what other tools may stumble over.
+/// Examines the directory's headers for facts that the library doesn't keep: names that occur
+/// twice, and properties that may confuse other tools.
 fn directory(source: &mut Metered, start: u64) -> io::Result<(Vec<NameProblem>, Vec<Odd>)> {
     source.seek(SeekFrom::Start(start))?;
     let mut seen = std::collections::BTreeSet::new();
@@ -296,7 +299,7 @@ fn directory(source: &mut Metered, start: u64) -> io::Result<(Vec<NameProblem>, 
     }
 }
 
-/// An error of the archive in our words.
+/// Describes an error of the zip library.
 fn reason(error: &ZipError) -> String {
     match error {
         ZipError::Io(error) if error.kind() == io::ErrorKind::UnexpectedEof => {

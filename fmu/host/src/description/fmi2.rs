@@ -1,6 +1,6 @@
-//! What is special to FMI 2.0: scalar variables, simple types, and a structure by indices.
+//! FMI 2.0: scalar variables, simple types, and a structure by indices.
 
-use super::read::{
+use super::attributes::{
     causality, default_initial, default_variability, initial, interface, optional, variability,
 };
 use super::xml::Element;
@@ -21,7 +21,7 @@ const TYPES: [(&str, Kind); 5] = [
 /// A simple type: its element `Real`, `Integer`, … with the attributes.
 type Types<'a, 't> = BTreeMap<&'a str, Element<'a, 't>>;
 
-/// Reads what [`super::read()`] hasn't.
+/// Reads the parts specific to FMI 2.0, after [`super::read()`].
 pub(super) fn read<'a, 't: 'a>(
     root: Element<'a, 't>,
     description: &mut Description,
@@ -42,7 +42,7 @@ pub(super) fn read<'a, 't: 'a>(
     }
     let types = types(root, description)?;
     if let Some(list) = root.child("ModelVariables") {
-        // The index of a derivative's state may point forward: it is resolved when all are read.
+        // The index of a derivative's state may point forward: it is resolved after all are read.
         let mut derivatives = Vec::new();
         for element in list.children() {
             if element.name() != "ScalarVariable" {
@@ -59,7 +59,7 @@ pub(super) fn read<'a, 't: 'a>(
             if state.is_none() {
                 let found = format!("index {index}");
                 let expected = format!("1 to {}", description.variables.len());
-                // Without a state there is nothing to integrate.
+                // Without its state a derivative can't be integrated.
                 if description.model_exchange.is_some() {
                     return Err(element.error(Some("derivative"), found, expected));
                 }
@@ -75,7 +75,7 @@ pub(super) fn read<'a, 't: 'a>(
     structure(root, description)
 }
 
-/// The simple types; enumerations go into the description.
+/// Reads the simple types; enumerations go into the description.
 fn types<'a, 't: 'a>(
     root: Element<'a, 't>,
     description: &mut Description,
@@ -96,7 +96,7 @@ fn types<'a, 't: 'a>(
     Ok(types)
 }
 
-/// The items of an enumeration.
+/// Reads the items of an enumeration.
 pub(super) fn items(element: Element<'_, '_>) -> Result<Vec<(i64, String)>, DescriptionError> {
     let mut items = Vec::new();
     for item in element.children().filter(|child| child.name() == "Item") {
@@ -112,7 +112,7 @@ pub(super) fn items(element: Element<'_, '_>) -> Result<Vec<(i64, String)>, Desc
     Ok(items)
 }
 
-/// A variable, and the index of the variable whose derivative it is.
+/// Reads a variable, and the index of the variable whose derivative it is.
 fn read_variable<'a, 't: 'a>(
     element: Element<'a, 't>,
     types: &Types<'a, 't>,
@@ -131,7 +131,7 @@ fn read_variable<'a, 't: 'a>(
     let variability = match variability(element)? {
         Some(variability) => variability,
         None => {
-            // The default is continuous, which only a Real that isn't a parameter can be.
+            // The default is continuous, which is only possible for a Real that isn't a parameter.
             let variability = default_variability(kind, causality);
             if variability != Variability::Continuous {
                 element.tolerate("missing variability", || {
@@ -226,7 +226,7 @@ fn structure(root: Element<'_, '_>, description: &mut Description) -> Result<(),
             let Some(reference) = by_index(description, index) else {
                 let found = format!("index {index}");
                 let expected = format!("1 to {}", description.variables.len());
-                // Without a state there is nothing to integrate; an output isn't needed here.
+                // Without its state a derivative can't be integrated; an output isn't needed here.
                 if derivatives && description.model_exchange.is_some() {
                     return Err(element.error(Some("index"), found, expected));
                 }

@@ -1,10 +1,9 @@
-//! What is special to FMI 3.0: typed elements, arrays, aliases, clocks, and a structure by value
-//! references.
+//! FMI 3.0: typed elements, arrays, aliases, clocks, and a structure by value references.
 
-use super::fmi2::items;
-use super::read::{
+use super::attributes::{
     causality, default_initial, default_variability, initial, interface, optional, variability,
 };
+use super::fmi2::items;
 use super::xml::Element;
 use super::{
     Alias, Causality, Clock, Description, DescriptionError, Dimension, IntervalVariability, Kind,
@@ -15,7 +14,7 @@ use std::collections::{BTreeMap, BTreeSet};
 /// The type definitions by name.
 type Types<'a, 't> = BTreeMap<&'a str, Element<'a, 't>>;
 
-/// Reads what [`super::read()`] hasn't.
+/// Reads the parts specific to FMI 3.0, after [`super::read()`].
 pub(super) fn read<'a, 't: 'a>(
     root: Element<'a, 't>,
     description: &mut Description,
@@ -57,7 +56,7 @@ pub(super) fn read<'a, 't: 'a>(
         description.variables.push(read_variable(element, kind, &types)?);
     }
     structure(root, description)?;
-    // A map: both lists may have a million entries.
+    // A map, because both lists may have a million entries.
     let variables: BTreeMap<u32, &Variable> =
         description.variables.iter().map(|variable| (variable.reference, variable)).collect();
     let mut indicators = 0usize;
@@ -69,7 +68,7 @@ pub(super) fn read<'a, 't: 'a>(
     Ok(())
 }
 
-/// The type definitions; enumerations go into the description.
+/// Reads the type definitions; enumerations go into the description.
 fn types<'a, 't: 'a>(
     root: Element<'a, 't>,
     description: &mut Description,
@@ -93,7 +92,7 @@ fn types<'a, 't: 'a>(
     Ok(types)
 }
 
-/// The element that is asked for an attribute first, and the type that is asked second.
+/// Sources of an attribute: first the element, second its type.
 #[derive(Clone, Copy)]
 struct Typed<'a, 't> {
     own: Element<'a, 't>,
@@ -267,7 +266,7 @@ fn structure(root: Element<'_, '_>, description: &mut Description) -> Result<(),
             element.error(Some(attribute), "the attribute is missing", "a number")
         })?;
         if !known.contains(&reference) {
-            // Without a state there is nothing to integrate; an output isn't needed here.
+            // Without its state a derivative can't be integrated; an output isn't needed here.
             let needed = matches!(element.name(), "ContinuousStateDerivative" | "EventIndicator");
             if needed && description.model_exchange.is_some() {
                 let found = format!("{reference}, which no variable has");

@@ -1,17 +1,18 @@
-//! What both standards share: the head of the description, units and interfaces.
+//! Parts that both standards share: the head of the description, units and interfaces.
 
+use super::attributes::optional;
 use super::schema::{self, Breaks};
 use super::xml::{Element, File};
 use super::{
-    BaseUnit, Causality, Description, DescriptionError, DisplayUnit, Experiment, Initial,
-    Interface, Kind, Standard, Structure, Unit, Variability, fmi2, fmi3, text,
+    BaseUnit, Causality, Description, DescriptionError, DisplayUnit, Experiment, Initial, Kind,
+    Standard, Structure, Unit, fmi2, fmi3, text,
 };
 use std::collections::BTreeSet;
 
-/// Reads a model description from the bytes of its file; `file` names it in messages.
+/// Reads a model description from the bytes of its file; `file` is its name in messages.
 ///
 /// # Errors
-/// If the encoding is unknown; else as [`read`].
+/// If the encoding is unknown; otherwise as [`read`].
 pub fn read_bytes(bytes: &[u8], file: &str) -> Result<Description, DescriptionError> {
     let (text, mut tolerated) = text::decode(bytes, file)?;
     let mut description = read(&text, file)?;
@@ -20,16 +21,16 @@ pub fn read_bytes(bytes: &[u8], file: &str) -> Result<Description, DescriptionEr
     Ok(description)
 }
 
-/// Reads a model description of FMI 2.0 or FMI 3.0; `file` names it in messages.
+/// Reads a model description of FMI 2.0 or FMI 3.0; `file` is its name in messages.
 ///
 /// # Errors
-/// If it isn't XML, is of another version, or says something that has no meaning: which element and
-/// attribute, what was found and what is expected.
+/// If the text isn't XML, is of another version, or contains a part without a meaning: element and
+/// attribute, the text found and the text expected.
 pub fn read(text: &str, file: &str) -> Result<Description, DescriptionError> {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let tree = text.trim_start();
     let found_blanks = tree.len() < text.len() && tree.starts_with("<?xml ");
-    // Only the declaration has to be first. Blanks take its place, so that lines are counted right.
+    // The declaration has to be first. Blanks replace it, so that line numbers stay right.
     let mut text = std::borrow::Cow::Borrowed(text);
     if found_blanks && let Some(end) = text.find("?>").map(|end| end + 2) {
         let blanks = text[..end].replace(|c: char| c != '\n', " ");
@@ -114,7 +115,7 @@ pub fn read(text: &str, file: &str) -> Result<Description, DescriptionError> {
     Ok(description)
 }
 
-/// The standard that `fmiVersion` says.
+/// Reads the standard from `fmiVersion`.
 fn standard(root: Element<'_, '_>) -> Result<Standard, DescriptionError> {
     let version = root.required("fmiVersion")?;
     match version.trim() {
@@ -125,7 +126,7 @@ fn standard(root: Element<'_, '_>) -> Result<Standard, DescriptionError> {
                 other.split('.').map(|part| part.parse().ok()).collect();
             let standard = match numbers.as_deref() {
                 Some([2, 0, ..]) => Some(Standard::Fmi2),
-                // Minor versions add what importers of 3.0 may leave aside.
+                // Minor versions add parts that importers of 3.0 may ignore.
                 Some([3, ..]) => Some(Standard::Fmi3),
                 _ => None,
             };
@@ -141,12 +142,7 @@ fn standard(root: Element<'_, '_>) -> Result<Standard, DescriptionError> {
     }
 }
 
-/// An attribute, empty where it is missing.
-pub(super) fn optional(element: Element<'_, '_>, attribute: &str) -> String {
-    element.text(attribute).unwrap_or_default().to_owned()
-}
-
-/// Units with their factors.
+/// Reads units with their factors.
 fn units(list: Element<'_, '_>) -> Result<Vec<Unit>, DescriptionError> {
     let mut units: Vec<Unit> = Vec::new();
     for element in list.children().filter(|child| child.name() == "Unit") {
@@ -185,7 +181,7 @@ fn base_unit(element: Element<'_, '_>) -> Result<Option<BaseUnit>, DescriptionEr
     Ok(conversion(element)?.map(base))
 }
 
-/// Factor and offset; none where nothing can be converted with them.
+/// Reads factor and offset; `None` if they can't be used for conversion.
 fn conversion(element: Element<'_, '_>) -> Result<Option<(f64, f64)>, DescriptionError> {
     let factor = element.real("factor")?.unwrap_or(1.0);
     let offset = element.real("offset")?.unwrap_or(0.0);
@@ -198,114 +194,21 @@ fn conversion(element: Element<'_, '_>) -> Result<Option<(f64, f64)>, Descriptio
     Ok(Some((factor, offset)))
 }
 
-/// What the interfaces of both standards have in common. `names`: how the standard spells the
-/// attributes of states and directional derivatives.
-pub(super) fn interface(
-    element: Element<'_, '_>,
-    [state, serialized, directional]: [&str; 3],
-) -> Result<Interface, DescriptionError> {
-    Ok(Interface {
-        model_identifier: element.required("modelIdentifier")?.trim().to_owned(),
-        needs_execution_tool: element.boolean("needsExecutionTool")?,
-        only_once_per_process: element.boolean("canBeInstantiatedOnlyOncePerProcess")?,
-        variable_step: element.boolean("canHandleVariableCommunicationStepSize")?,
-        state: element.boolean(state)?,
-        serialized_state: element.boolean(serialized)?,
-        directional_derivatives: element.boolean(directional)?,
-        output_derivative_order: element.whole("maxOutputDerivativeOrder")?.unwrap_or(0),
-        ..Interface::default()
-    })
-}
-
-/// `causality` as written.
-pub(super) fn causality(element: Element<'_, '_>) -> Result<Option<Causality>, DescriptionError> {
-    element.one_of(
-        "causality",
-        &[
-            ("parameter", Causality::Parameter),
-            ("calculatedParameter", Causality::CalculatedParameter),
-            ("input", Causality::Input),
-            ("output", Causality::Output),
-            ("local", Causality::Local),
-            ("independent", Causality::Independent),
-            ("structuralParameter", Causality::StructuralParameter),
-        ],
-    )
-}
-
-/// `variability` as written.
-pub(super) fn variability(
-    element: Element<'_, '_>,
-) -> Result<Option<Variability>, DescriptionError> {
-    element.one_of(
-        "variability",
-        &[
-            ("constant", Variability::Constant),
-            ("fixed", Variability::Fixed),
-            ("tunable", Variability::Tunable),
-            ("discrete", Variability::Discrete),
-            ("continuous", Variability::Continuous),
-        ],
-    )
-}
-
-/// `initial` as written.
-pub(super) fn initial(element: Element<'_, '_>) -> Result<Option<Initial>, DescriptionError> {
-    element.one_of(
-        "initial",
-        &[
-            ("exact", Initial::Exact),
-            ("approx", Initial::Approx),
-            ("calculated", Initial::Calculated),
-        ],
-    )
-}
-
-/// `variability` of a variable that has none: of FMI 3.0 by its type, and taken for FMI 2.0 as well
-/// where its default, continuous, makes no sense.
-pub(super) fn default_variability(kind: Kind, causality: Causality) -> Variability {
-    match causality {
-        Causality::Parameter | Causality::CalculatedParameter | Causality::StructuralParameter => {
-            Variability::Fixed
-        }
-        _ if kind.is_float() => Variability::Continuous,
-        _ => Variability::Discrete,
-    }
-}
-
-/// `initial` of a variable that has none: the table of both standards (FMI 2.0, 2.2.7; FMI 3.0,
-/// 2.4.7.5). `None`: it can have none, as an input of FMI 2.0.
-pub(crate) fn default_initial(
-    standard: Standard,
-    causality: Causality,
-    variability: Variability,
-) -> Option<Initial> {
-    match (causality, variability) {
-        (Causality::Input, _) if standard == Standard::Fmi3 => Some(Initial::Exact),
-        (Causality::Parameter | Causality::StructuralParameter, _)
-        | (Causality::Output | Causality::Local, Variability::Constant) => Some(Initial::Exact),
-        (Causality::CalculatedParameter | Causality::Output | Causality::Local, _) => {
-            Some(Initial::Calculated)
-        }
-        (Causality::Input | Causality::Independent, _) => None,
-    }
-}
-
-/// Notes elements and attributes that the standard doesn't know: they are left out.
+/// Notes elements and attributes that are not in the standard: they are ignored.
 fn unknown(root: Element<'_, '_>, standard: Standard) {
     let schema = match standard {
         Standard::Fmi2 => &schema::FMI2,
         Standard::Fmi3 => &schema::FMI3,
     };
     schema::walk(root, schema, &mut |violation| {
-        // A start that should be an element is read all the same.
+        // A start attribute that should be an element is read all the same.
         if violation.place.ends_with(", start") {
             return;
         }
         let kind = match violation.breaks {
             Breaks::UnknownElement => "unknown element",
             Breaks::UnknownAttribute => "unknown attribute",
-            // What else is wrong was noted where it was read.
+            // Other violations were noted when they were read.
             _ => return,
         };
         root.file().tolerate(kind, violation.line, || {
@@ -314,7 +217,7 @@ fn unknown(root: Element<'_, '_>, standard: Standard) {
     });
 }
 
-/// Notes names that are there twice and units that aren't defined.
+/// Notes names that occur twice and units that aren't defined.
 fn names_and_units(root: Element<'_, '_>, description: &Description) {
     let mut names = BTreeSet::new();
     let file = root.file();

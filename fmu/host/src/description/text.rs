@@ -1,16 +1,16 @@
-//! Bytes of an XML file become text, whatever their encoding.
+//! Conversion of an XML file in any encoding to text.
 
 use super::DescriptionError;
 use encoding_rs::{Encoding, UTF_8, UTF_16BE, UTF_16LE, WINDOWS_1252};
 
-/// The text of an XML file, without a byte order mark, and what was tolerated on the way.
+/// Decodes the text of an XML file, without a byte order mark; also returns the deviations that
+/// were tolerated.
 ///
-/// The standards demand UTF-8. Others are decoded by their byte order mark or by the name in the XML
-/// declaration; bytes that aren't the UTF-8 that is declared are taken as Windows-1252, the usual
-/// reason for them.
+/// The standards demand UTF-8. Others are decoded by their byte order mark or by the name in the
+/// XML declaration; bytes that aren't the declared UTF-8 are read as Windows-1252, the usual cause.
 ///
 /// # Errors
-/// If the encoding is unknown, or the bytes aren't what it allows.
+/// If the encoding is unknown, or the bytes aren't valid in it.
 pub fn decode(bytes: &[u8], file: &str) -> Result<(String, Vec<String>), DescriptionError> {
     let fail = |found: String, expected: &str| DescriptionError {
         file: file.into(),
@@ -37,7 +37,8 @@ pub fn decode(bytes: &[u8], file: &str) -> Result<(String, Vec<String>), Descrip
     let label = declared.as_deref().unwrap_or("UTF-8");
     let encoding = Encoding::for_label(label.as_bytes())
         .ok_or_else(|| fail(format!("{label:?} is declared"), "UTF-8"))?;
-    // A declaration that is legible as ASCII isn't in UTF-16: .NET writes so what it holds as such.
+    // A declaration that is legible as ASCII isn't in UTF-16: .NET writes this for strings that it
+    // holds as UTF-16.
     let utf16 = encoding == UTF_16LE || encoding == UTF_16BE;
     if utf16 {
         tolerated.push(format!("{label} is declared, but the file is in UTF-8"));
@@ -61,8 +62,8 @@ pub fn decode(bytes: &[u8], file: &str) -> Result<(String, Vec<String>), Descrip
         .ok_or_else(|| fail(format!("bytes that aren't {label}"), "what is declared"))
 }
 
-/// The encoding that the XML declaration names. All encodings that can name themselves begin with
-/// ASCII; the others have a mark.
+/// Encoding in the XML declaration. All encodings in which a declaration is legible are supersets
+/// of ASCII; the others have a mark.
 fn declared(bytes: &[u8]) -> Option<String> {
     let start = bytes.get(..bytes.len().min(200))?;
     let text: String = start.iter().map(|&byte| char::from(byte)).collect();

@@ -1,30 +1,30 @@
 //! Conversion between units, with a check of their dimension.
 //!
-//! A unit is what the description defines under its name; a name that it doesn't define is read by
-//! the grammar of Modelica, in which most tools write (`rad/s`, `N.m`, `m/s2`, `deg/h`).
+//! The definition in the description has priority; a name without one is read by the grammar of
+//! Modelica, in which most tools write (`rad/s`, `N.m`, `m/s2`, `deg/h`).
 
 use super::{BaseUnit, Description, Variable};
 
 /// The base units, in the order of the exponents.
 pub const BASE_NAMES: [&str; 8] = ["kg", "m", "s", "A", "K", "mol", "cd", "rad"];
 
-/// How far the factor of a definition may be from the exact one of a known name, relative, to be meant
-/// as it: tools write `0.0174533` for a degree.
+/// Largest relative distance of a definition's factor from the exact one of a known name, for which
+/// the known unit is meant: tools write `0.0174533` for a degree.
 const SAME_FACTOR: f64 = 1e-5;
 
 /// Standard gravity, m/s².
 const GRAVITY: f64 = 9.806_65;
 
-/// What turns a number in one unit into a number in another: factor · number + offset.
+/// Conversion of a number in one unit to a number in another: factor · number + offset.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Conversion {
-    /// The factor; exactly 1 between units that are the same.
+    /// Factor; exactly 1 between equal units.
     pub factor: f64,
-    /// The offset; exactly 0 between units that have the same zero.
+    /// Offset; exactly 0 between units with the same zero.
     pub offset: f64,
 }
 
-/// Why two units can't be converted.
+/// Reason why two units can't be converted.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum UnitError {
     /// The name is neither defined nor known.
@@ -32,33 +32,33 @@ pub enum UnitError {
         "unit {unit:?} is neither defined in {file} nor a known one, expected one like {wanted:?}"
     )]
     Unknown {
-        /// The file of the description.
+        /// File name of the description.
         file: String,
-        /// The unit.
+        /// Unit.
         unit: String,
-        /// The unit that it is converted to or from.
+        /// Unit to or from which it is converted.
         wanted: String,
     },
     /// The units measure different quantities.
     #[error("unit {from:?} ({}) can't become {to:?} ({})", Dimension(*.from_exponents), Dimension(*.to_exponents))]
     Dimension {
-        /// The unit of the value.
+        /// Unit of the value.
         from: String,
-        /// Its exponents.
+        /// Exponents of that unit.
         from_exponents: [i8; 8],
-        /// The unit that is wanted.
+        /// Unit wanted.
         to: String,
-        /// Its exponents.
+        /// Exponents of the unit wanted.
         to_exponents: [i8; 8],
     },
     /// The variable has no unit.
     #[error("variable {variable:?} of {file} has no unit, expected one like {wanted:?}")]
     None {
-        /// The file of the description.
+        /// File name of the description.
         file: String,
-        /// The variable.
+        /// Variable.
         variable: String,
-        /// The unit that is wanted.
+        /// Unit wanted.
         wanted: String,
     },
 }
@@ -91,11 +91,11 @@ pub fn dimension(exponents: [i8; 8]) -> String {
 }
 
 impl Conversion {
-    /// Nothing is changed, not a bit.
+    /// Identity: no bit is changed.
     pub const IDENTITY: Self = Self { factor: 1.0, offset: 0.0 };
 
-    /// From the unit of a variable to the unit `wanted`. Where the variable holds a difference,
-    /// offsets don't count.
+    /// Makes the conversion from the unit of a variable to the unit `wanted`. For a variable that
+    /// holds a difference, offsets don't count.
     ///
     /// # Errors
     /// If the variable has no unit, its unit is unknown or measures something else.
@@ -116,7 +116,8 @@ impl Conversion {
         })
     }
 
-    /// From one unit to another: names that the description defines, or known ones.
+    /// Makes the conversion from one unit to another: names that the description defines, or known
+    /// ones.
     ///
     /// # Errors
     /// If a unit is unknown, or they measure different quantities.
@@ -151,16 +152,16 @@ impl Conversion {
         })
     }
 
-    /// Between two units of the same dimension.
+    /// Makes the conversion between two units of the same dimension.
     pub fn ratio(from: &BaseUnit, to: &BaseUnit) -> Self {
         if from.factor == to.factor && from.offset == to.offset {
             return Self::IDENTITY;
         }
-        // The quotient is rounded once; by way of SI it would be rounded twice.
+        // The quotient is rounded once; through SI it would be rounded twice.
         Self { factor: from.factor / to.factor, offset: (from.offset - to.offset) / to.factor }
     }
 
-    /// The number in the other unit.
+    /// Converts a number.
     #[must_use]
     pub fn apply(&self, number: f64) -> f64 {
         // Adding 0 would turn -0 into 0.
@@ -170,22 +171,22 @@ impl Conversion {
         }
     }
 
-    /// It changes nothing.
+    /// Returns whether the conversion is the identity.
     #[must_use]
     pub fn is_identity(&self) -> bool {
         *self == Self::IDENTITY
     }
 }
 
-/// What a name may mean: what the description defines, else what it commonly means. More than one
-/// only for `g`, which is a gram and an acceleration.
+/// Possible meanings of a name: that in the description, else the common one. More than one only
+/// for `g`, which is a gram and an acceleration.
 pub fn candidates(description: &Description, name: &str) -> Vec<BaseUnit> {
     let known = known(name);
     if let Some(base) = description.unit(name).and_then(|unit| unit.base) {
         return vec![meant(&base, &known)];
     }
     if known.is_empty() {
-        // A display unit: shown = factor · value + offset.
+        // Unit of a display unit: shown = factor · value + offset.
         let found = description.units.iter().find_map(|unit| {
             let display = unit.display.iter().find(|display| display.name == name)?;
             let base = meant(&unit.base?, &self::known(&unit.name));
@@ -200,9 +201,9 @@ pub fn candidates(description: &Description, name: &str) -> Vec<BaseUnit> {
     known
 }
 
-/// The known unit of angles that a definition means: one of the same dimension, but for a radian that
-/// tools leave out, and with a factor that is the same as far as its digits of π go. Else what it
-/// defines: no other factor needs digits that don't end.
+/// Finds the known unit of angles that a definition means: one of the same dimension, apart from a
+/// radian that tools leave out, and with a factor equal to the digits of π that are given.
+/// Otherwise returns the definition: no other factor needs infinitely many digits.
 pub fn meant(defined: &BaseUnit, known: &[BaseUnit]) -> BaseUnit {
     let close = |a: f64, b: f64| (a - b).abs() <= SAME_FACTOR * b.abs();
     let is_meant = |known: &&BaseUnit| {
@@ -215,7 +216,7 @@ pub fn meant(defined: &BaseUnit, known: &[BaseUnit]) -> BaseUnit {
     *known.iter().find(is_meant).unwrap_or(defined)
 }
 
-/// What a name commonly means; empty where it means nothing.
+/// Common meanings of a name; empty if there is none.
 #[must_use]
 pub fn known(name: &str) -> Vec<BaseUnit> {
     let name = name.trim();
@@ -251,7 +252,7 @@ const ENERGY: [i8; 8] = [1, 2, -2, 0, 0, 0, 0, 0];
 /// One degree, rad.
 const DEGREE: f64 = std::f64::consts::PI / 180.0;
 
-/// Names that stand alone.
+/// Names that can't be combined with others.
 const WHOLE: &[(&[&str], BaseUnit)] = &[
     (&["1", "-", "", "none"], unit(NONE, 1.0, 0.0)),
     (&["degC", "°C", "Celsius"], unit(KELVIN, 1.0, 273.15)),
@@ -279,13 +280,13 @@ const SYMBOLS: &[(&str, BaseUnit)] = &[
     ("mi", unit(LENGTH, 1609.344, 0.0)),
     ("kn", unit([0, 1, -1, 0, 0, 0, 0, 0], 1852.0 / 3600.0, 0.0)),
     ("knot", unit([0, 1, -1, 0, 0, 0, 0, 0], 1852.0 / 3600.0, 0.0)),
-    // A difference of temperatures, where it isn't alone: J/degC.
+    // A difference of temperatures, in a combination such as J/degC.
     ("degC", unit(KELVIN, 1.0, 0.0)),
     ("degK", unit(KELVIN, 1.0, 0.0)),
     ("lb", unit([1, 0, 0, 0, 0, 0, 0, 0], 0.453_592_37, 0.0)),
 ];
 
-/// Symbols that take prefixes.
+/// Symbols that accept prefixes.
 const PREFIXED: &[(&str, BaseUnit)] = &[
     ("m", unit(LENGTH, 1.0, 0.0)),
     ("g", unit([1, 0, 0, 0, 0, 0, 0, 0], 1e-3, 0.0)),
@@ -333,10 +334,10 @@ const PREFIXES: &[(&str, f64)] = &[
     ("p", 1e-12),
 ];
 
-/// Reads `a.b/c`, with exponents `m2`, `m^2`, `s-1`, `s^(-1)` and parentheses.
+/// Parser of `a.b/c`, with exponents `m2`, `m^2`, `s-1`, `s^(-1)` and parentheses.
 struct Parser<'a> {
     rest: &'a str,
-    /// `g` is standard gravity, not a gram.
+    /// True if `g` is standard gravity, not a gram.
     g_is_gravity: bool,
     depth: u8,
 }
@@ -358,7 +359,7 @@ impl Parser<'_> {
     fn power(&mut self) -> Option<BaseUnit> {
         let base = match self.rest.strip_prefix('(') {
             Some(rest) => {
-                // Names come from files of others.
+                // Names come from foreign files, so that the depth is limited.
                 self.depth = self.depth.checked_add(1).filter(|&depth| depth < 16)?;
                 self.rest = rest;
                 let inner = self.product()?;
@@ -373,7 +374,7 @@ impl Parser<'_> {
     }
 
     fn symbol(&mut self) -> Option<BaseUnit> {
-        // `1` stands for nothing: `1/s`.
+        // `1` is no unit: `1/s`.
         if let Some(rest) = self.rest.strip_prefix('1')
             && !rest.starts_with(|c: char| c.is_ascii_digit())
         {
@@ -398,13 +399,13 @@ impl Parser<'_> {
         }
         PREFIXES.iter().find_map(|&(prefix, factor)| {
             let rest = symbol.strip_prefix(prefix)?;
-            // Nobody writes kg for a thousand times gravity.
+            // kg never means a thousand times gravity.
             if self.g_is_gravity && rest == "g" && factor > 1.0 {
                 return None;
             }
             let mut unit = find(PREFIXED, rest)?;
             unit.factor *= factor;
-            // A kilogram is one, not a thousand times a thousandth.
+            // A kilogram is exactly one, not a thousand times a thousandth.
             if symbol == "kg" {
                 unit.factor = 1.0;
             }
@@ -412,7 +413,7 @@ impl Parser<'_> {
         })
     }
 
-    /// The exponent after a symbol; 1 where there is none.
+    /// Reads the exponent after a symbol; 1 if there is none.
     fn exponent(&mut self) -> Option<i8> {
         let marked = self.rest.strip_prefix("**").or_else(|| self.rest.strip_prefix('^'));
         let mut rest = marked.unwrap_or(self.rest);
@@ -440,7 +441,7 @@ impl Parser<'_> {
     }
 }
 
-/// Product, or quotient; each rounded once.
+/// Multiplies or divides two units; each rounded once.
 fn combined(a: &BaseUnit, b: &BaseUnit, divided: bool) -> Option<BaseUnit> {
     let mut exponents = a.exponents;
     for (exponent, other) in exponents.iter_mut().zip(b.exponents) {

@@ -5,14 +5,14 @@ use roxmltree::{Document, Node, ParsingOptions};
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 
-/// Most nodes of a file: a description with a million variables has about eight million. Each is
-/// about 60 bytes in memory.
+/// Largest number of nodes of a file: a description with a million variables has about eight
+/// million. Each needs about 60 bytes of memory.
 const NODES_MAX: u32 = 16_000_000;
 
-/// How many notes of one kind are kept one by one; the others are counted.
+/// Number of notes of one kind that are kept; the others are counted.
 const NOTES_MAX: usize = 20;
 
-/// A file that is read: its name, where its lines begin, and what was tolerated.
+/// A file that is read: its name, the starts of its lines, and its notes.
 #[derive(Debug)]
 pub struct File<'a> {
     name: &'a str,
@@ -24,24 +24,24 @@ pub struct File<'a> {
 #[derive(Debug, Default)]
 struct Notes {
     kept: Vec<String>,
-    /// How many of each kind.
+    /// Number of notes of each kind.
     counts: BTreeMap<&'static str, usize>,
 }
 
 impl<'a> File<'a> {
-    /// A file and its text.
+    /// Makes a file from its name and text.
     pub fn new(name: &'a str, text: &str) -> Self {
         let lines =
             std::iter::once(0).chain(text.match_indices('\n').map(|(at, _)| at + 1)).collect();
         Self { name, lines, notes: RefCell::default() }
     }
 
-    /// The text as a tree.
+    /// Parses the text into a tree.
     ///
     /// # Errors
     /// If it isn't well-formed, has a DOCTYPE, or has more nodes than any description.
     pub fn parse<'t>(&self, text: &'t str) -> Result<Document<'t>, DescriptionError> {
-        // Without a DOCTYPE there are no entities of its own, so none that grow.
+        // Without a DOCTYPE there are no custom entities, so that none can expand.
         let options =
             ParsingOptions { allow_dtd: false, nodes_limit: NODES_MAX, ..Default::default() };
         Document::parse_with_options(text, options).map_err(|error| {
@@ -72,7 +72,7 @@ impl<'a> File<'a> {
         })
     }
 
-    /// The name of the file.
+    /// Name of the file.
     pub fn name(&self) -> &'a str {
         self.name
     }
@@ -82,7 +82,7 @@ impl<'a> File<'a> {
         self.lines.partition_point(|&start| start <= offset) as u32
     }
 
-    /// Notes something that isn't as the standard says. `kind` names what is alike.
+    /// Notes a deviation from the standard. `kind` is the name under which equal ones are counted.
     pub fn tolerate(&self, kind: &'static str, line: u32, what: impl FnOnce() -> String) {
         let mut notes = self.notes.borrow_mut();
         let count = notes.counts.entry(kind).or_default();
@@ -93,7 +93,7 @@ impl<'a> File<'a> {
         }
     }
 
-    /// What was tolerated, in the order in which it was found.
+    /// Notes in their order.
     pub fn tolerated(&self) -> Vec<String> {
         let notes = self.notes.borrow();
         let mut all = notes.kept.clone();
@@ -114,38 +114,38 @@ pub struct Element<'a, 't> {
 }
 
 impl<'a, 't: 'a> Element<'a, 't> {
-    /// The root of a tree.
+    /// Root of a tree.
     pub fn root(file: &'a File<'a>, document: &'a Document<'t>) -> Self {
         Self { node: document.root_element(), file }
     }
 
-    /// Its name, without a namespace.
+    /// Name of the element, without a namespace.
     pub fn name(self) -> &'a str {
         self.node.tag_name().name()
     }
 
-    /// Its line.
+    /// Line of the element.
     pub fn line(self) -> u32 {
         self.file.line(self.node.range().start)
     }
 
-    /// Its file.
+    /// File of the element.
     pub fn file(self) -> &'a File<'a> {
         self.file
     }
 
-    /// The elements in it.
+    /// Child elements.
     pub fn children(self) -> impl Iterator<Item = Self> + 'a {
         let file = self.file;
         self.node.children().filter(Node::is_element).map(move |node| Self { node, file })
     }
 
-    /// The first element of this name in it.
+    /// First child of this name.
     pub fn child(self, name: &str) -> Option<Self> {
         self.children().find(|child| child.name() == name)
     }
 
-    /// Its attributes without a namespace: name and value.
+    /// Attributes without a namespace: name and value.
     pub fn attributes(self) -> impl Iterator<Item = (&'a str, &'a str)> {
         self.node
             .attributes()
@@ -153,18 +153,18 @@ impl<'a, 't: 'a> Element<'a, 't> {
             .map(|attribute| (attribute.name(), attribute.value()))
     }
 
-    /// An attribute.
+    /// Value of an attribute.
     pub fn text(self, attribute: &str) -> Option<&'a str> {
         // Not `Node::attribute`: it would take `xsi:start` for `start`.
         self.attributes().find(|(name, _)| *name == attribute).map(|(_, value)| value)
     }
 
-    /// An attribute of a namespace.
+    /// Value of an attribute in a namespace.
     pub fn text_of(self, namespace: &str, attribute: &str) -> Option<&'a str> {
         self.node.attribute((namespace, attribute))
     }
 
-    /// What an error says of the element's place.
+    /// Describes the element's place for an error.
     pub fn place(self, attribute: Option<&str>) -> String {
         let mut place = self.name().to_owned();
         if let Some(name) = self.text("name") {
@@ -176,7 +176,7 @@ impl<'a, 't: 'a> Element<'a, 't> {
         place
     }
 
-    /// An error at this element, or at one of its attributes.
+    /// Makes an error at this element, or at one of its attributes.
     pub fn error(
         self,
         attribute: Option<&str>,
@@ -192,18 +192,18 @@ impl<'a, 't: 'a> Element<'a, 't> {
         }
     }
 
-    /// Notes something that isn't as the standard says.
+    /// Notes a deviation from the standard.
     pub fn tolerate(self, kind: &'static str, what: impl FnOnce() -> String) {
         self.file.tolerate(kind, self.line(), || format!("{}: {}", self.place(None), what()));
     }
 
-    /// An attribute that has to be there.
+    /// Reads a required attribute.
     pub fn required(self, attribute: &str) -> Result<&'a str, DescriptionError> {
         self.text(attribute)
             .ok_or_else(|| self.error(Some(attribute), "the attribute is missing", "a value"))
     }
 
-    /// A number.
+    /// Reads a number.
     pub fn real(self, attribute: &str) -> Result<Option<f64>, DescriptionError> {
         self.text(attribute)
             .map(|text| {
@@ -214,7 +214,7 @@ impl<'a, 't: 'a> Element<'a, 't> {
             .transpose()
     }
 
-    /// A whole number of the type.
+    /// Reads a whole number of the type.
     pub fn whole<T: std::str::FromStr>(
         self,
         attribute: &str,
@@ -229,14 +229,14 @@ impl<'a, 't: 'a> Element<'a, 't> {
             .transpose()
     }
 
-    /// A Boolean; false where it is missing.
+    /// Reads a Boolean; false if missing.
     pub fn boolean(self, attribute: &str) -> Result<bool, DescriptionError> {
         let Some(text) = self.text(attribute) else { return Ok(false) };
         boolean(text)
             .ok_or_else(|| self.error(Some(attribute), format!("{text:?}"), "true, false, 1 or 0"))
     }
 
-    /// One of some words.
+    /// Reads one of a list of words.
     pub fn one_of<T: Copy>(
         self,
         attribute: &str,
@@ -257,7 +257,7 @@ impl<'a, 't: 'a> Element<'a, 't> {
             })
     }
 
-    /// A list of whole numbers; `None` where the attribute is missing.
+    /// Reads a list of whole numbers; `None` if the attribute is missing.
     pub fn list<T: std::str::FromStr>(
         self,
         attribute: &str,
@@ -270,7 +270,7 @@ impl<'a, 't: 'a> Element<'a, 't> {
     }
 }
 
-/// The beginning of a text, for a message.
+/// Beginning of a text, for a message.
 pub fn shortened(text: &str) -> String {
     match text.char_indices().nth(80) {
         Some((end, _)) => format!("{}…", &text[..end]),
@@ -278,13 +278,13 @@ pub fn shortened(text: &str) -> String {
     }
 }
 
-/// A number as XML Schema writes it, and as vendors do.
+/// Reads a number in the form of XML Schema, or of vendors.
 pub fn real(text: &str) -> Option<f64> {
     // Rust reads `inf`, `infinity` and `nan` in any case, and every decimal form of XML Schema.
     text.trim().parse().ok()
 }
 
-/// A Boolean as XML Schema writes it, and as vendors do.
+/// Reads a Boolean in the form of XML Schema, or of vendors.
 pub fn boolean(text: &str) -> Option<bool> {
     match text.trim() {
         "true" | "1" | "True" | "TRUE" => Some(true),

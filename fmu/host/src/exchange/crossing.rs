@@ -1,14 +1,14 @@
-//! Where event indicators change their sign, found on the dense output of a step.
+//! Detection of sign changes of event indicators, on the dense output of a step.
 
 use super::super::instance::InstanceError;
 use super::super::instance::unit::Continuous;
 use super::solver::Solver;
 
-/// Points of a step at which the indicators are looked at, its end among them: a step of a method
-/// of high order is long, and an indicator can go there and back within it.
+/// Points of a step at which the indicators are evaluated, its end among them: a step of a method
+/// of high order is long, and an indicator can change twice within it.
 const POINTS: u32 = 5;
 
-/// The indicators, and on which side of zero each was when it was last looked at.
+/// The indicators, and the side of zero of each at its last evaluation.
 pub(super) struct Indicators {
     values: Vec<f64>,
     above: Vec<bool>,
@@ -20,7 +20,7 @@ impl Indicators {
         Self { values: vec![0.0; count], above: vec![false; count], states: vec![0.0; states] }
     }
 
-    /// Takes the sides on which they are now: after a start or an event.
+    /// Records the present sides: after a start or an event.
     pub(super) fn settle(&mut self, unit: &mut impl Continuous) -> Result<(), InstanceError> {
         if self.values.is_empty() {
             return Ok(());
@@ -35,8 +35,8 @@ impl Indicators {
         Ok(())
     }
 
-    /// The first time within a step at which an indicator is on another side than before; the FMU is
-    /// then there. `None`: there is none, and the FMU is anywhere within the step.
+    /// Finds the first time within a step at which an indicator has changed its side, and leaves
+    /// the FMU there. `None`: there is no such time, and the FMU is at any time within the step.
     pub(super) fn first_crossing(
         &mut self,
         unit: &mut impl Continuous,
@@ -59,7 +59,7 @@ impl Indicators {
         Ok(None)
     }
 
-    /// Halves the time in which a crossing lies until there is nothing to halve.
+    /// Bisects the interval of a crossing until it can't be divided further.
     fn bisect(
         &mut self,
         unit: &mut impl Continuous,
@@ -70,7 +70,8 @@ impl Indicators {
         loop {
             let middle_s = before_s + 0.5 * (after_s - before_s);
             if middle_s <= before_s || middle_s >= after_s {
-                // The FMU has to be on the far side of its event, or it doesn't see it.
+                // The FMU has to be on the far side of its event, otherwise it doesn't detect the
+                // event.
                 self.crossed(unit, solver.as_deref_mut(), after_s)?;
                 return Ok(after_s);
             }
@@ -82,8 +83,8 @@ impl Indicators {
         }
     }
 
-    /// Brings the FMU to a time within the step; true: an indicator is on another side there. Where
-    /// the FMU can't compute them, nothing is seen.
+    /// Brings the FMU to a time within the step; returns true if an indicator has changed its side
+    /// there. If the FMU can't compute the indicators, no change is detected.
     fn crossed(
         &mut self,
         unit: &mut impl Continuous,

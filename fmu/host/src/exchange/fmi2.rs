@@ -48,7 +48,7 @@ impl Continuous for Component {
     }
 
     fn nominals(&mut self, nominals: &mut [f64]) -> Result<(), InstanceError> {
-        // Many FMUs of older tools lack it: then all are 1.
+        // Many FMUs of older tools lack the function: then all nominals are 1.
         if self.functions.get_nominals_of_continuous_states.is_none() {
             nominals.fill(1.0);
             return Ok(());

@@ -7,7 +7,7 @@ use super::super::instance::fmi3::Component;
 use super::super::instance::unit::Continuous;
 
 impl Continuous for Component {
-    /// The FMU is asked: structural parameters may have changed what the description says.
+    /// Asks the FMU: structural parameters may have changed the numbers in the description.
     fn counts(&mut self) -> Result<(usize, usize), InstanceError> {
         let (mut states, mut indicators) = (0, 0);
         let status = call!(self.get_number_of_continuous_states "fmi3GetNumberOfContinuousStates"(

@@ -1,29 +1,29 @@
-//! From one communication point to the next.
+//! Integration from one communication point to the next.
 
 use super::super::instance::co_simulation::Phase;
 use super::super::instance::unit::Continuous;
 use super::super::instance::{Instance, InstanceError, Outcome, REPEATS_MAX, Stepped};
 use super::{Exchange, ended};
 
-/// Steps of the solver, tried or taken, within one communication step.
+/// Largest number of the solver's attempts at a step within one communication step.
 const SOLVER_STEPS_MAX: usize = 1_000_000;
 
-/// Why the solver stopped.
+/// Reason why the solver stopped.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Stop {
-    /// It is where it was to go.
+    /// The target is reached.
     Target,
-    /// At an event.
+    /// An event occurred.
     Event,
-    /// The FMU wants to end.
+    /// The FMU requests the end of the simulation.
     End,
 }
 
 impl<U: Continuous> Exchange<U> {
-    /// One communication step.
+    /// Makes one communication step.
     pub(super) fn integrate(&mut self, time_s: f64, step_s: f64) -> Result<Stepped, InstanceError> {
         let end_s = time_s + step_s;
-        // Times that differ by rounding alone are the same.
+        // Times that differ only by rounding are equal.
         let close_s = 1e-9 * step_s + 4.0 * f64::EPSILON * end_s.abs();
         if !(step_s > 0.0 && end_s.is_finite() && (time_s - self.own.time_s).abs() <= close_s) {
             return Err(InstanceError::unsupported(
@@ -59,7 +59,7 @@ impl<U: Continuous> Exchange<U> {
                 Stop::Target => {}
                 Stop::End => return Ok(ended(self.own.time_s)),
                 Stop::Event => {
-                    // Events that don't let time go on have no end.
+                    // Events at which time doesn't advance would never end.
                     if self.own.time_s > last_event_s + close_s {
                         events = 0;
                         last_event_s = self.own.time_s;
@@ -71,7 +71,8 @@ impl<U: Continuous> Exchange<U> {
                             what: format!("{REPEATS_MAX} events at {last_event_s} s"),
                         });
                     }
-                    // The FMU compares its time with that of the event: it has to be that to the bit.
+                    // The FMU compares its time with that of the event, so that both have to agree
+                    // to the bit.
                     if let Some(next_s) = self.own.next_event_s.filter(|_| due)
                         && next_s > self.own.time_s
                     {
@@ -87,8 +88,8 @@ impl<U: Continuous> Exchange<U> {
         }
     }
 
-    /// Updates the discrete states until the FMU needs none, and back to continuous time; true: it
-    /// wants to end.
+    /// Updates the discrete states until the FMU needs no more updates, and returns to continuous
+    /// time; returns true if the FMU requests the end.
     pub(super) fn settle(&mut self) -> Result<bool, InstanceError> {
         let mut nominals = false;
         for _ in 0..REPEATS_MAX {
@@ -108,7 +109,7 @@ impl<U: Continuous> Exchange<U> {
         })
     }
 
-    /// Goes on until the target or an event before it.
+    /// Integrates until the target or an event before it.
     fn go(&mut self, target_s: f64) -> Result<Stop, InstanceError> {
         if self.states.is_empty() {
             let from_s = self.own.time_s;
@@ -124,7 +125,7 @@ impl<U: Continuous> Exchange<U> {
                 continue;
             }
             let (from_s, mut to_s) = self.solver.span();
-            // A step to the target arrives there, whatever rounding made of its length.
+            // A step to the target ends exactly there, regardless of rounding.
             let rounding_s = 8.0 * f64::EPSILON * target_s.abs();
             if to_s >= target_s - rounding_s {
                 to_s = target_s;
@@ -159,7 +160,7 @@ impl<U: Continuous> Exchange<U> {
         })
     }
 
-    /// The FMU has arrived somewhere for good.
+    /// Reports a completed step to the FMU.
     fn completed(
         &mut self,
         time_s: f64,

@@ -1,16 +1,16 @@
-//! Model exchange as co-simulation: our solver takes the FMU from one communication point to the
-//! next, with its events.
+//! Model exchange as co-simulation: Octant's solver takes the FMU from one communication point to
+//! the next, with its events.
 //!
 //! | module | idea |
 //! |---|---|
-//! | `solver` | the equations integrated, with error control and dense output |
-//! | `crossing` | where event indicators change their sign |
-//! | `integrate` | from one communication point to the next |
+//! | `solver` | integration of the equations, with error control and dense output |
+//! | `crossing` | detection of sign changes of event indicators |
+//! | `integrate` | integration from one communication point to the next |
 //! | `fmi2`, `fmi3` | the functions of each standard |
 //!
-//! Between communication points inputs are constant, so setting one is an event: discrete equations
-//! follow, and the solver starts anew. The method is explicit: a stiff model is integrated rightly,
-//! in as many small steps as that takes, up to a limit.
+//! Between communication points inputs are constant, so that setting one is an event: the discrete
+//! equations are updated, and the solver restarts. The method is explicit: a stiff model is
+//! integrated correctly, but in many small steps, up to a limit.
 
 mod crossing;
 mod fmi2;
@@ -28,16 +28,16 @@ use crossing::Indicators;
 use serde::{Deserialize, Serialize};
 use solver::Solver;
 
-/// The relative tolerance where neither who runs the FMU nor its description has one.
+/// Relative tolerance if neither the user nor the description gives one.
 const TOLERANCE: f64 = 1e-6;
 
-/// Continuous states and event indicators that an FMU may have.
+/// Largest number of continuous states, and of event indicators, of an FMU.
 const COUNT_MAX: usize = 1 << 24;
 
 /// A model exchange FMU with its solver.
 pub(super) struct Exchange<U: Continuous> {
     unit: U,
-    /// The end of each step of the solver is to be told.
+    /// True if the FMU has to be told the end of each step of the solver.
     tells_steps: bool,
     own: Own,
     tolerance: f64,
@@ -48,7 +48,7 @@ pub(super) struct Exchange<U: Continuous> {
     kept: States<Own>,
 }
 
-/// What belongs to a kept state beside the FMU's. The FMU is in continuous-time mode in
+/// Part of a stored state beside the FMU's own. The FMU is in continuous-time mode in
 /// [`Phase::Step`].
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 struct Own {
@@ -82,7 +82,7 @@ impl<U: Continuous> Exchange<U> {
         }
     }
 
-    /// Makes room for the states and indicators that the FMU has now.
+    /// Makes room for the FMU's present numbers of states and indicators.
     fn make_room(&mut self) -> Result<(), InstanceError> {
         let (states, indicators) = self.unit.counts()?;
         if states > COUNT_MAX || indicators > COUNT_MAX {
@@ -99,7 +99,7 @@ impl<U: Continuous> Exchange<U> {
         Ok(())
     }
 
-    /// Takes what the FMU has after a start, an event or a restored state.
+    /// Reads the FMU's states after a start, an event or a restored state.
     fn take_states(&mut self, nominals: bool) -> Result<(), InstanceError> {
         self.solver.forget();
         if !self.states.is_empty() {
@@ -112,7 +112,8 @@ impl<U: Continuous> Exchange<U> {
         self.indicators.settle(&mut self.unit)
     }
 
-    /// Brings the FMU where a group can be set, sets it, and leaves configuration mode again.
+    /// Brings the FMU to a mode in which a group can be set, sets it, and leaves configuration mode
+    /// again.
     fn with_access(
         &mut self,
         group: &Group,
@@ -220,7 +221,8 @@ impl<U: Continuous> Instance for Exchange<U> {
         self.expect("the end of event mode", &[Phase::Event])?;
         self.unit.enter_continuous_time_mode()?;
         self.own.phase = Phase::Step;
-        // Who led the FMU through its events doesn't say what changed: all is taken anew.
+        // A caller that handled the FMU's events itself doesn't report the changes: everything is
+        // read again.
         self.take_states(true)
     }
 
@@ -276,14 +278,14 @@ impl<U: Continuous> Drop for Exchange<U> {
     fn drop(&mut self) {
         let runs = matches!(self.own.phase, Phase::Step | Phase::Event);
         if runs && self.unit.base().condition == Condition::Sound {
-            // It goes in any case; what it answers changes nothing.
+            // The instance is freed in any case, so that the answer doesn't matter.
             let _ = self.unit.terminate();
         }
         self.kept.clear(&mut self.unit);
     }
 }
 
-/// A step of an FMU that wants to end before its end.
+/// Result of a step at which the FMU requests the end before the step's end.
 fn ended(time_s: f64) -> Stepped {
     Stepped { time_s, outcome: Outcome::Early, event: false, terminate: true }
 }

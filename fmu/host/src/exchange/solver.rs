@@ -1,5 +1,5 @@
-//! The equations of an FMU, integrated: Dormand and Prince's method of order 8 with error control
-//! and dense output.
+//! Integration of an FMU's equations: Dormand and Prince's method of order 8 with error control and
+//! dense output.
 
 use super::super::instance::InstanceError;
 use super::super::instance::unit::Continuous;
@@ -12,13 +12,13 @@ use std::cell::{Cell, RefCell};
 
 type Method = ExplicitRungeKutta<Ordinary, DormandPrince, f64, Vec<f64>, 8, 12, 16>;
 
-/// The smallest relative tolerance: below, rounding is all that there is.
+/// Smallest relative tolerance: below it rounding dominates.
 const TOLERANCE_MIN: f64 = 1e-13;
 
-/// A solver that goes from where the FMU is to a target, step by step.
+/// A solver that goes from the FMU's present time to a target, step by step.
 pub(super) struct Solver {
     method: Method,
-    /// Whether the solver stands where the FMU does; else it has to start there.
+    /// True if the solver has the FMU's present state; otherwise it has to start from that.
     ready: bool,
 }
 
@@ -26,7 +26,7 @@ pub(super) struct Solver {
 struct Equations<'a, U> {
     unit: RefCell<&'a mut U>,
     failed: RefCell<Option<InstanceError>>,
-    /// A value could not be computed.
+    /// True if a value could not be computed.
     refused: Cell<bool>,
 }
 
@@ -43,9 +43,9 @@ impl<'a, U: Continuous> Equations<'a, U> {
 }
 
 impl<U: Continuous> ODE<f64, Vec<f64>> for Equations<'_, U> {
-    /// What can't be computed is not a number, with which the method rejects the step.
+    /// Computes the derivatives; NaN if the FMU can't, upon which the method rejects the step.
     fn diff(&self, t: f64, x: &Vec<f64>, dx: &mut Vec<f64>) {
-        // A solver that doesn't know its step tries with one that isn't finite: not with the FMU.
+        // A solver without an initial step tries one that isn't finite, which the FMU must not see.
         let sound = t.is_finite() && x.iter().all(|x| x.is_finite());
         if !sound || self.failed.borrow().is_some() {
             dx.fill(f64::NAN);
@@ -66,7 +66,7 @@ impl<U: Continuous> ODE<f64, Vec<f64>> for Equations<'_, U> {
 }
 
 impl Solver {
-    /// With a relative tolerance, and the usual size of each state.
+    /// Makes a solver with a relative tolerance, and the usual size of each state.
     pub(super) fn new(tolerance: f64, nominals: &[f64]) -> Self {
         let tolerance = tolerance.max(TOLERANCE_MIN);
         let mut method = Method::dop853().rtol(tolerance).max_steps(usize::MAX);
@@ -74,28 +74,28 @@ impl Solver {
         Self { method, ready: false }
     }
 
-    /// States have another usual size.
+    /// Changes the usual sizes of the states.
     pub(super) fn set_nominals(&mut self, tolerance: f64, nominals: &[f64]) {
         self.method.atol = absolute(tolerance.max(TOLERANCE_MIN), nominals).into();
     }
 
-    /// The equations, inputs or states have jumped: what is known of the past is of no use.
+    /// Discards the history: the equations, inputs or states have jumped.
     pub(super) fn forget(&mut self) {
         self.ready = false;
     }
 
-    /// The step that it would take next, s; 0: not known yet.
+    /// Next step that the solver would take, s; 0: not known yet.
     pub(super) fn natural_s(&self) -> f64 {
         self.method.h()
     }
 
-    /// It is to try this step next, s.
+    /// Sets the next step to try, s.
     pub(super) fn set_natural(&mut self, step_s: f64) {
         self.method.set_h(step_s);
     }
 
-    /// Tries one step towards the target; true: it was accepted, and [`Self::span`] is what it went
-    /// over.
+    /// Tries one step towards the target; returns true if it was accepted, with its interval in
+    /// [`Self::span`].
     pub(super) fn step<U: Continuous>(
         &mut self,
         unit: &mut U,
@@ -113,7 +113,7 @@ impl Solver {
         }
         let left_s = target_s - self.method.t();
         let natural_s = self.method.h();
-        // A last step that is a little short, or that leaves a crumb, is stretched.
+        // The last step ends at the target, also if the natural step is slightly shorter.
         let last = natural_s >= 0.99 * left_s;
         if last {
             self.method.set_h(left_s);
@@ -124,7 +124,7 @@ impl Solver {
         }
         match done {
             Ok(_) => {}
-            // A hint, not a failure: small steps remain right, and their number is limited.
+            // A hint, not a failure: small steps remain correct, and their number is limited.
             Err(Error::Stiffness { .. }) => {
                 self.ready = false;
                 return Ok(false);
@@ -150,7 +150,7 @@ impl Solver {
         Ok(true)
     }
 
-    /// Starts where the FMU is, with the step that it last would have taken.
+    /// Starts at the FMU's present state, with the last natural step.
     fn start<U: Continuous>(
         &mut self,
         equations: &Equations<U>,
@@ -178,19 +178,19 @@ impl Solver {
         Ok(())
     }
 
-    /// From when to when the last accepted step went, s.
+    /// Start and end of the last accepted step, s.
     pub(super) fn span(&self) -> (f64, f64) {
         (self.method.t_prev(), self.method.t())
     }
 
-    /// The states at the end of the last accepted step.
+    /// States at the end of the last accepted step.
     pub(super) fn states(&self) -> &[f64] {
         self.method.y()
     }
 
-    /// The states at a time within the last accepted step.
+    /// Interpolates the states at a time within the last accepted step.
     pub(super) fn states_at(&mut self, time_s: f64, states: &mut [f64]) {
-        // Outside of the step by rounding alone: its ends are meant.
+        // Times outside of the step by rounding are moved to its ends.
         let (from_s, to_s) = self.span();
         if let Ok(within) = self.method.interpolate(time_s.clamp(from_s, to_s)) {
             states.copy_from_slice(&within);
@@ -198,7 +198,7 @@ impl Solver {
     }
 }
 
-/// Absolute tolerances as the standard proposes them.
+/// Absolute tolerances as proposed by the standard.
 fn absolute(tolerance: f64, nominals: &[f64]) -> Vec<f64> {
     nominals.iter().map(|nominal| 0.01 * tolerance * nominal.abs().max(1e-300)).collect()
 }

@@ -1,4 +1,4 @@
-//! One call of a function of an FMU: its name, its status, what it means.
+//! One call of a function of an FMU: its name, its status, and the meaning of the status.
 
 use super::super::description::Description;
 use super::message::{Log, status_name};
@@ -7,22 +7,22 @@ use octant_fmi::{fmi2, fmi3};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// A word that always holds the number of the function that runs, for who watches from outside.
+/// A word that holds the number of the running function, for an observer in another process.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Mark(pub(crate) Option<&'static AtomicU64>);
 
-/// No function runs.
+/// No function is running.
 pub(crate) const NOWHERE: u32 = 0;
 
-/// The library is being loaded, or goes; its constructors or destructors may run.
+/// The library is being loaded or unloaded; its constructors or destructors may run.
 pub(crate) const LOADING: u32 = 1;
 
-/// Numbers of the functions of FMI 2.0 and FMI 3.0 start here.
+/// First numbers of the functions of FMI 2.0 and FMI 3.0.
 const FIRST_FMI2: u32 = 1000;
 const FIRST_FMI3: u32 = 2000;
 
 impl Mark {
-    /// A function begins; [`NOWHERE`]: it has ended.
+    /// Marks the begin of a function; [`NOWHERE`]: its end.
     pub(crate) fn set(self, function: u32) {
         if let Some(word) = self.0 {
             word.store(u64::from(function), Ordering::Relaxed);
@@ -30,7 +30,7 @@ impl Mark {
     }
 }
 
-/// The name of a function, for the number that a mark held.
+/// Name of a function by the number in a mark.
 #[cfg_attr(not(target_os = "linux"), allow(dead_code, reason = "who watches is on Linux"))]
 pub(crate) fn function_name(function: u32) -> Option<&'static str> {
     let at = |names: &[&'static str], first: u32| {
@@ -42,7 +42,7 @@ pub(crate) fn function_name(function: u32) -> Option<&'static str> {
     at(fmi3::NAMES, FIRST_FMI3).or_else(|| at(fmi2::NAMES, FIRST_FMI2))
 }
 
-/// The number of a function, found when the program is compiled.
+/// Number of a function, determined at compile time.
 pub(crate) const fn function_number(name: &str) -> u32 {
     const fn find(names: &[&str], name: &str) -> Option<u32> {
         let mut i = 0;
@@ -68,21 +68,21 @@ pub(crate) const fn function_number(name: &str) -> u32 {
     }
 }
 
-/// Size of a state, bytes.
+/// Largest size of a state, bytes.
 const STATE_MAX: usize = 1 << 30;
 
-/// Whether the FMU may still be called.
+/// Condition of the FMU: whether it may still be called.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Condition {
-    /// It may.
+    /// The FMU may be called.
     Sound,
-    /// It answered error: it can be reset, restored or freed.
+    /// The FMU answered error: it can be reset, restored or freed.
     Failed,
-    /// It answered fatal: it isn't touched again.
+    /// The FMU answered fatal: it must not be called again.
     Lost,
 }
 
-/// A status that is no failure.
+/// A status other than a failure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Answer {
     Fine,
@@ -90,7 +90,7 @@ pub(crate) enum Answer {
     Pending,
 }
 
-/// What every instance has, whatever its standard.
+/// Common part of every instance of both standards.
 pub(crate) struct Base {
     pub(crate) name: String,
     pub(crate) description: Arc<Description>,
@@ -100,7 +100,7 @@ pub(crate) struct Base {
 }
 
 impl Base {
-    /// The library has no function of this name.
+    /// Error for a missing function.
     #[cold]
     pub(crate) fn missing(&self, function: &str) -> InstanceError {
         InstanceError::unsupported(
@@ -110,7 +110,7 @@ impl Base {
         )
     }
 
-    /// Refuses a call of an FMU that isn't sound (or, with `mend`, that can't be mended).
+    /// Refuses a call of an FMU that isn't sound (or, with `mend`, that can't be recovered).
     pub(crate) fn ready(&self, function: &str, mend: bool) -> Result<(), InstanceError> {
         match self.condition {
             Condition::Sound => Ok(()),
@@ -120,13 +120,13 @@ impl Base {
         }
     }
 
-    /// It is asked for at a time at which the standard forbids it.
+    /// Error for a call at a time at which the standard forbids it.
     #[cold]
     pub(crate) fn order(&self, what: &str, when: &str) -> InstanceError {
         InstanceError::Order { fmu: self.name.clone(), what: what.into(), when: when.into() }
     }
 
-    /// What a status means.
+    /// Interprets a status.
     pub(crate) fn answer(&mut self, function: &str, status: i32) -> Result<Answer, InstanceError> {
         match status {
             fmi2::OK | fmi2::WARNING => Ok(Answer::Fine),
@@ -136,7 +136,7 @@ impl Base {
                 self.condition = Condition::Failed;
                 Err(self.failed(function, status_name(status)))
             }
-            // A status that the standard doesn't have says nothing of what still works.
+            // After an unknown status it is unknown what still works.
             _ => {
                 self.condition = Condition::Lost;
                 Err(self.failed(function, status_name(status)))
@@ -144,7 +144,7 @@ impl Base {
         }
     }
 
-    /// What a status means where only success will do. A discarded call leaves the FMU sound.
+    /// Interprets a status for a call that needs success. A discarded call leaves the FMU sound.
     #[inline]
     pub(crate) fn check(&mut self, function: &str, status: i32) -> Result<(), InstanceError> {
         if status == fmi2::OK { Ok(()) } else { self.look_closer(function, status) }
@@ -158,7 +158,7 @@ impl Base {
         }
     }
 
-    /// A function failed.
+    /// Error for a failed function.
     #[cold]
     pub(crate) fn failed(&self, function: &str, status: &str) -> InstanceError {
         InstanceError::Failed {
@@ -169,7 +169,7 @@ impl Base {
         }
     }
 
-    /// Memory for a state of the size that the FMU says.
+    /// Allocates memory for a state of the size that the FMU reports.
     pub(crate) fn state_buffer(&self, size: usize) -> Result<Vec<u8>, InstanceError> {
         let mut bytes = Vec::new();
         if size > STATE_MAX || bytes.try_reserve_exact(size).is_err() {
@@ -182,14 +182,14 @@ impl Base {
         Ok(bytes)
     }
 
-    /// What it logged.
+    /// Messages that the FMU logged.
     pub(crate) fn messages(&self) -> Vec<Message> {
         self.log.drain(&self.description)
     }
 }
 
-/// Calls a function of an FMU's table with its instance first; gives its status, or the error that
-/// it is not there or must not be called. With `mend`: also after the FMU answered error.
+/// Calls a function of an FMU's table with its instance first; returns its status, or the error
+/// that it is missing or must not be called. With `mend`: also after the FMU answered error.
 macro_rules! call {
     ($unit:ident.$field:ident $name:literal ($($argument:expr),* $(,)?)) => {
         $crate::instance::call::call!(@ $unit $field $name false ($($argument),*))

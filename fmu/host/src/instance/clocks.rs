@@ -1,12 +1,12 @@
-//! Clocks that tick in time (FMI 3.0): when each is due. Their FMU doesn't stop there by itself; who
-//! steps it does, and lets them tick.
+//! Time-based clocks (FMI 3.0): the times of their ticks. The FMU doesn't stop at a tick by itself;
+//! the importer ends its step there, and activates the clock.
 
 use super::super::description::{Causality, Description, IntervalVariability, Kind};
 use super::InstanceError;
 use super::unit::{Interval, Steps};
 use serde::{Deserialize, Serialize};
 
-/// The input clocks of an FMU that tick in time.
+/// Time-based input clocks of an FMU.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Clocks(Vec<TimeClock>);
 
@@ -15,31 +15,32 @@ struct TimeClock {
     reference: u32,
     kind: TimeKind,
     shift_s: f64,
-    /// Where the description has it.
+    /// Interval in the description.
     described_s: Option<f64>,
     interval_s: Option<f64>,
-    /// Ticks at multiples of the interval are counted from here, so that rounding doesn't add up.
+    /// Start from which ticks at multiples of the interval are counted, so that rounding doesn't
+    /// accumulate.
     base_s: f64,
     ticks: u64,
-    /// When it ticks next.
+    /// Time of the next tick.
     next_s: Option<f64>,
 }
 
-/// How a clock goes on.
+/// Type of a clock's interval.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 enum TimeKind {
-    /// With one interval.
+    /// One constant interval.
     Periodic,
-    /// With an interval that may be another after each event.
+    /// An interval that may change at each event.
     Tunable,
-    /// With another interval after each tick.
+    /// A new interval after each tick.
     Changing,
-    /// Once after each time that it is asked to.
+    /// One tick after each request.
     Countdown,
 }
 
 impl Clocks {
-    /// Those of a description.
+    /// Finds the clocks of a description.
     pub(crate) fn of(description: &Description) -> Self {
         let clocks = description.variables.iter().filter(|variable| {
             variable.kind == Kind::Clock && variable.causality == Causality::Input
@@ -78,17 +79,17 @@ impl Clocks {
         )
     }
 
-    /// Whether there are none: nothing has to be done for them.
+    /// Returns whether there are no clocks.
     pub(crate) fn is_empty(&self) -> bool {
         self.0.is_empty()
     }
 
-    /// When the next one ticks.
+    /// Time of the next tick of any clock.
     pub(crate) fn next_s(&self) -> Option<f64> {
         self.0.iter().filter_map(|clock| clock.next_s).min_by(f64::total_cmp)
     }
 
-    /// The first ticks, at the end of the initialization.
+    /// Determines the first ticks, at the end of the initialization.
     pub(crate) fn start(
         &mut self,
         unit: &mut impl Steps,
@@ -116,7 +117,7 @@ impl Clocks {
         Ok(())
     }
 
-    /// Lets all tick that are due at a time, in event mode before the first update.
+    /// Activates all clocks that are due at a time, in event mode before the first update.
     pub(crate) fn tick(
         &mut self,
         unit: &mut impl Steps,
@@ -130,7 +131,7 @@ impl Clocks {
                     (TimeKind::Periodic | TimeKind::Tunable, Some(interval_s)) => {
                         Some(clock.base_s + clock.ticks as f64 * interval_s)
                     }
-                    // It is asked after the update.
+                    // Clocks of other kinds are asked after the update.
                     _ => None,
                 };
             }
@@ -152,14 +153,14 @@ impl Clocks {
             }
             let interval_s = match (unit.interval(clock.reference)?, clock.kind) {
                 (Interval::Unknown, _) | (Interval::Unchanged(_), TimeKind::Tunable) => continue,
-                // A countdown that was asked for before runs on.
+                // A countdown that is already running continues.
                 (Interval::Unchanged(_), TimeKind::Countdown) => continue,
                 (Interval::Unchanged(interval_s) | Interval::Changed(interval_s), _) => interval_s,
             };
             if clock.kind == TimeKind::Tunable && clock.interval_s == Some(interval_s) {
                 continue;
             }
-            // It counts from here on.
+            // The interval counts from here.
             clock.interval_s = Some(interval_s);
             clock.base_s = time_s;
             clock.ticks = 1;
@@ -171,7 +172,7 @@ impl Clocks {
 }
 
 impl TimeClock {
-    /// Its interval is one.
+    /// Checks that the interval is valid.
     fn check(&self, unit: &impl Steps) -> Result<(), InstanceError> {
         let least_s = if self.kind == TimeKind::Countdown { 0.0 } else { f64::MIN_POSITIVE };
         match self.interval_s {

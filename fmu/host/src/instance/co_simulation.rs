@@ -1,4 +1,4 @@
-//! Co-simulation in the order that the standards ask for.
+//! Co-simulation in the order of calls that the standards require.
 
 use super::super::description::Description;
 use super::call::Condition;
@@ -11,7 +11,7 @@ use super::{
 };
 use serde::{Deserialize, Serialize};
 
-/// Where in its life an instance is.
+/// Phase in the life of an instance.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) enum Phase {
     /// After instantiation or reset.
@@ -27,7 +27,7 @@ pub(crate) enum Phase {
 }
 
 impl Phase {
-    /// When that is, for an error.
+    /// Describes the phase for an error.
     pub(crate) fn words(self) -> &'static str {
         match self {
             Self::New => "before the initialization",
@@ -47,7 +47,7 @@ pub(super) struct CoSimulation<U: Steps> {
     held: Held,
 }
 
-/// What belongs to a kept state beside the FMU's.
+/// Part of a stored state beside the FMU's own.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 struct Own {
     phase: Phase,
@@ -74,7 +74,7 @@ impl<U: Steps> CoSimulation<U> {
         }
     }
 
-    /// Updates until the FMU needs none, and back to step mode.
+    /// Updates the discrete states until the FMU needs no more updates, and returns to step mode.
     fn settle(&mut self) -> Result<bool, InstanceError> {
         let mut terminate = false;
         for _ in 0..REPEATS_MAX {
@@ -95,7 +95,7 @@ impl<U: Steps> CoSimulation<U> {
         })
     }
 
-    /// A step that stops where clocks are due, and lets them tick.
+    /// Makes a step that stops where clocks are due, and activates them.
     fn step_with_clocks(&mut self, time_s: f64, step_s: f64) -> Result<Stepped, InstanceError> {
         let end_s = time_s + step_s;
         let close_s = 1e-9 * step_s;
@@ -129,7 +129,8 @@ impl<U: Steps> CoSimulation<U> {
             if stepped.outcome == Outcome::Done {
                 stepped.time_s = target_s;
             }
-            // Its own events and ends are for who steps it; before the end that is an early return.
+            // Events and ends of the FMU are handled by the caller; before the end of the step this
+            // is an early return.
             if stepped.outcome != Outcome::Done || stepped.event || stepped.terminate {
                 self.own.time_s = stepped.time_s;
                 if stepped.outcome == Outcome::Done && target_s < end_s {
@@ -140,7 +141,8 @@ impl<U: Steps> CoSimulation<U> {
         }
     }
 
-    /// Brings the FMU where a group can be set, sets it, and leaves configuration mode again.
+    /// Brings the FMU to a mode in which a group can be set, sets it, and leaves configuration mode
+    /// again.
     fn with_access(
         &mut self,
         group: &Group,
@@ -216,7 +218,7 @@ impl<U: Steps> Instance for CoSimulation<U> {
         }
         let done = self.with_access(group, |unit| unit.set(group, values));
         if done.is_err() {
-            // It may have taken a part.
+            // The FMU may have taken a part.
             self.held.forget();
         } else if can_be_held {
             self.held.keep(place, group, values);
@@ -245,7 +247,7 @@ impl<U: Steps> Instance for CoSimulation<U> {
     }
 
     fn step(&mut self, time_s: f64, step_s: f64) -> Result<Stepped, InstanceError> {
-        // A step of no length would be an event, of a negative one a way back: neither is a step.
+        // A step of length zero would be an event, a negative one a return to the past.
         if !(time_s.is_finite() && step_s.is_finite() && step_s > 0.0) {
             return Err(InstanceError::unsupported(
                 self.name(),
@@ -349,7 +351,7 @@ impl<U: Steps> Drop for CoSimulation<U> {
     fn drop(&mut self) {
         let runs = matches!(self.own.phase, Phase::Step | Phase::Event);
         if runs && self.unit.base().condition == Condition::Sound {
-            // It goes in any case; what it answers changes nothing.
+            // The instance is freed in any case, so that the answer doesn't matter.
             let _ = self.unit.terminate();
         }
         self.states.clear(&mut self.unit);

@@ -1,47 +1,48 @@
-//! Why an FMU could not go on.
+//! Errors of a running FMU.
 
 use super::Group;
 use serde::{Deserialize, Serialize};
 
-/// Why an FMU could not go on. It crosses processes, so it holds text and no sources.
+/// Reason why an FMU could not continue. The error crosses processes, so that it holds text and no
+/// sources.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, thiserror::Error)]
 pub enum InstanceError {
-    /// There is nothing to load.
+    /// The FMU can't be loaded.
     #[error("load {fmu}: {reason}")]
     Load {
         /// Name of the FMU.
         fmu: String,
-        /// What was found and what is expected.
+        /// State found and state expected.
         reason: String,
     },
-    /// A function answered that it failed.
+    /// A function reported a failure.
     #[error("{function} of {fmu} answered {status}{said}")]
     Failed {
         /// Name of the FMU.
         fmu: String,
-        /// The function.
+        /// Name of the function.
         function: String,
         /// `error`, `fatal`, `discard`.
         status: String,
-        /// What the FMU logged, after a colon; else empty.
+        /// Messages of the FMU, after a colon; empty if there are none.
         said: String,
     },
-    /// The FMU hasn't what is asked for.
+    /// The FMU doesn't support the request.
     #[error("{fmu} can't {what}: {reason}")]
     Unsupported {
         /// Name of the FMU.
         fmu: String,
-        /// What is asked for.
+        /// Request.
         what: String,
-        /// Why it can't.
+        /// Reason.
         reason: String,
     },
-    /// It is asked for at a time at which the standard forbids it.
+    /// The standard forbids the request at this time.
     #[error("{fmu}: {what} isn't possible {when}")]
     Order {
         /// Name of the FMU.
         fmu: String,
-        /// What is asked for.
+        /// Request.
         what: String,
         /// `before the initialization`, `after it failed`.
         when: String,
@@ -51,27 +52,27 @@ pub enum InstanceError {
     Value {
         /// Name of the FMU.
         fmu: String,
-        /// The variable.
+        /// Name of the variable.
         variable: String,
-        /// The value.
+        /// Value.
         value: String,
-        /// Its type.
+        /// Type of the variable.
         kind: String,
     },
-    /// Something doesn't come to an end.
+    /// A repetition doesn't end.
     #[error("{fmu}: {what}, and no end of them")]
     Endless {
         /// Name of the FMU.
         fmu: String,
-        /// What, and how often.
+        /// Repeated action, with its number.
         what: String,
     },
-    /// A state that isn't one of this FMU.
+    /// A state that doesn't belong to this FMU.
     #[error("{fmu}: the state {reason}")]
     State {
         /// Name of the FMU.
         fmu: String,
-        /// What is wrong with it.
+        /// Problem of the state.
         reason: String,
     },
     /// The equations can't be integrated.
@@ -79,12 +80,12 @@ pub enum InstanceError {
     Integration {
         /// Name of the FMU.
         fmu: String,
-        /// How far it went.
+        /// Time reached, s.
         time_s: f64,
-        /// Why.
+        /// Reason.
         reason: String,
     },
-    /// The process of the FMU is gone or hangs.
+    /// The process of the FMU has ended or hangs.
     #[error("the process of {fmu} {what}")]
     Process {
         /// Name of the FMU.
@@ -95,12 +96,12 @@ pub enum InstanceError {
 }
 
 impl InstanceError {
-    /// There is nothing to load.
+    /// Makes [`InstanceError::Load`].
     pub(crate) fn load(fmu: &str, reason: impl Into<String>) -> Self {
         Self::Load { fmu: fmu.into(), reason: reason.into() }
     }
 
-    /// The FMU hasn't what is asked for.
+    /// Makes [`InstanceError::Unsupported`].
     pub(crate) fn unsupported(
         fmu: &str,
         what: impl Into<String>,
@@ -109,7 +110,7 @@ impl InstanceError {
         Self::Unsupported { fmu: fmu.into(), what: what.into(), reason: reason.into() }
     }
 
-    /// The values don't belong to the groups.
+    /// Error for a number of values that doesn't fit the groups.
     pub(crate) fn numbers(fmu: &str, groups: &[Group], found: usize) -> Self {
         let expected: usize = groups.iter().map(|group| group.elements).sum();
         let kinds: Vec<String> = groups.iter().map(|group| format!("{:?}", group.kind)).collect();

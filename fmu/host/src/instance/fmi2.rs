@@ -20,15 +20,15 @@ const STRING_MAX: usize = 1 << 24;
 
 /// An instance of FMI 2.0.
 pub(crate) struct Component {
-    /// Before what its code may still use when it goes.
+    /// Dropped before the objects that its code may still use.
     library: Arc<Library>,
     callbacks: Arc<fmi2::CallbackFunctions>,
     pub(crate) base: Base,
     pub(crate) functions: fmi2::Functions,
     pub(crate) instance: fmi2::Component,
-    /// A step that is pending may take so long.
+    /// Longest time of a pending step.
     time_limit: Duration,
-    /// Whether states may be restored: then the FMU is told to keep what it needs for it.
+    /// True if states may be restored: then the FMU is told to keep the data needed for it.
     pub(crate) restorable: bool,
     integers: Vec<i32>,
     truths: Vec<Truth<i32>>,
@@ -98,7 +98,7 @@ impl Component {
         })
     }
 
-    /// One function of every pair that gets and sets, by type.
+    /// Error for a type that is no number type in FMI 2.0.
     fn unsupported_kind(&self, group: &Group, what: &str) -> InstanceError {
         InstanceError::unsupported(
             &self.base.name,
@@ -128,11 +128,13 @@ impl Component {
         }
     }
 
-    /// What it says of a step that it discarded: until when it came, and whether it wants to end.
+    /// Reads the result of a discarded step: the time reached, and whether the FMU requests the
+    /// end.
     fn discarded(&mut self, time_s: f64) -> Result<Stepped, InstanceError> {
         let mut reached_s = time_s;
         let mut terminated = fmi2::FALSE;
-        // Both are optional in practice: who can't answer has done nothing and wants to go on.
+        // Both functions are optional in practice: without them the FMU is assumed to have made no
+        // step and to continue.
         if self.functions.get_real_status.is_some() {
             let status = call!(self.get_real_status "fmi2GetRealStatus"(
                 fmi2::LAST_SUCCESSFUL_TIME, &mut reached_s));
@@ -158,7 +160,7 @@ impl Component {
     }
 }
 
-/// Numbers of another type than f64, got into `scratch` and from there into `values`.
+/// Gets numbers of another type than f64 into `scratch` and from there into `values`.
 macro_rules! get_through {
     ($unit:ident, $group:ident, $values:ident, $scratch:ident, $field:ident $name:literal) => {{
         let mut scratch = std::mem::take(&mut $unit.$scratch);
@@ -177,7 +179,7 @@ macro_rules! get_through {
     }};
 }
 
-/// Numbers of another type than f64, set from `values` through `scratch`.
+/// Sets numbers of another type than f64 from `values` through `scratch`.
 macro_rules! set_through {
     ($unit:ident, $group:ident, $values:ident, $scratch:ident, $field:ident $name:literal) => {{
         let mut scratch = std::mem::take(&mut $unit.$scratch);
@@ -407,7 +409,7 @@ impl Steps for Component {
 impl Drop for Component {
     fn drop(&mut self) {
         if self.base.condition == Condition::Lost {
-            // It isn't touched again, so what it may still use has to stay.
+            // A lost FMU isn't called again, so that the objects it may still use have to stay.
             std::mem::forget((
                 Arc::clone(&self.library),
                 Arc::clone(&self.callbacks),
@@ -419,7 +421,7 @@ impl Drop for Component {
             self.base.mark.set(function_number("fmi2FreeInstance"));
             // SAFETY: the instance is alive, and this is the last that is done with it.
             unsafe { free(self.instance) };
-            // The library may go next, and its destructors run.
+            // The library may be unloaded next, which runs its destructors.
             self.base.mark.set(super::call::LOADING);
         }
     }

@@ -5,7 +5,7 @@ use super::super::description::Kind;
 use super::super::library::{Functions, Library};
 use super::call::{Answer, Base, Condition, LOADING, NOWHERE, call, function_number};
 use super::message::{Log, log_message, text};
-use super::number::Truth;
+use super::scratch::Scratch;
 use super::setup::{Setup, c_text};
 use super::unit::{Interval, RawState, Steps, Unit};
 use super::{Group, InstanceError, Outcome, Stepped, Update, group};
@@ -17,31 +17,16 @@ use std::sync::Arc;
 /// Longest text and longest bytes that a variable may have.
 const VALUE_MAX: usize = 1 << 28;
 
-/// Room for numbers of each type on their way.
-#[derive(Default)]
-struct Scratch {
-    float32: Vec<f32>,
-    int8: Vec<i8>,
-    uint8: Vec<u8>,
-    int16: Vec<i16>,
-    uint16: Vec<u16>,
-    int32: Vec<i32>,
-    uint32: Vec<u32>,
-    int64: Vec<i64>,
-    uint64: Vec<u64>,
-    truths: Vec<Truth<u8>>,
-}
-
 /// An instance of FMI 3.0.
 pub(crate) struct Component {
-    /// Before what its code may still use when it goes.
+    /// Dropped before the objects that its code may still use.
     library: Arc<Library>,
     pub(crate) base: Base,
     pub(crate) functions: fmi3::Functions,
     pub(crate) instance: fmi3::Instance,
-    /// Event mode is the importer's.
+    /// True if the importer uses event mode.
     event_mode: bool,
-    /// Whether states may be restored: then the FMU is told to keep what it needs for it.
+    /// True if states may be restored: then the FMU is told to keep the data needed for it.
     pub(crate) restorable: bool,
     scratch: Scratch,
 }
@@ -50,7 +35,7 @@ pub(crate) struct Component {
 // one thread after another, which the standard allows.
 unsafe impl Send for Component {}
 
-/// How it is instantiated.
+/// Interface with which the FMU is instantiated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Use {
     CoSimulation,
@@ -144,7 +129,8 @@ impl Component {
     }
 }
 
-/// An update between communication points: nothing is set and nothing is got, and the FMU goes on.
+/// Callback for an update between communication points: it sets and gets nothing, and the FMU
+/// continues.
 unsafe extern "C" fn intermediate_update(
     _environment: fmi3::Environment,
     _time: f64,
@@ -464,7 +450,7 @@ impl Steps for Component {
         };
         let time_s = match outcome {
             Outcome::Done => time_s + step_s,
-            // A time that is none says that nothing was done.
+            // A reported time outside of the step means that no part of it was made.
             _ if reached_s >= time_s && reached_s <= time_s + step_s => reached_s,
             _ => time_s,
         };
@@ -492,7 +478,7 @@ impl Steps for Component {
 impl Drop for Component {
     fn drop(&mut self) {
         if self.base.condition == Condition::Lost {
-            // It isn't touched again, so what it may still use has to stay.
+            // A lost FMU isn't called again, so that the objects it may still use have to stay.
             std::mem::forget((Arc::clone(&self.library), Arc::clone(&self.base.log)));
             return;
         }
@@ -500,7 +486,7 @@ impl Drop for Component {
             self.base.mark.set(function_number("fmi3FreeInstance"));
             // SAFETY: the instance is alive, and this is the last that is done with it.
             unsafe { free(self.instance) };
-            // The library may go next, and its destructors run.
+            // The library may be unloaded next, which runs its destructors.
             self.base.mark.set(LOADING);
         }
     }

@@ -1,4 +1,4 @@
-//! Variables that are set or got together, and where their numbers lie.
+//! Variables that are set or got together, and the positions of their numbers.
 
 use super::super::description::{Causality, Description, Kind, Standard, Variability, Variable};
 use super::InstanceError;
@@ -7,13 +7,13 @@ use super::number::Number;
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
 
-/// When variables can be set.
+/// Time at which variables can be set.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Access {
     /// Between steps.
     Step,
-    /// At events, where the FMU has them (FMI 3.0 with event mode): discrete inputs, tunable
-    /// parameters, clocks and what belongs to clocks.
+    /// At events, if the FMU has them (FMI 3.0 with event mode): discrete inputs, tunable
+    /// parameters, clocks and clocked variables.
     Event,
     /// In configuration mode: structural parameters.
     Configuration,
@@ -21,25 +21,25 @@ pub enum Access {
 
 /// Variables of one type that are set or got together.
 ///
-/// Numbers of every type, Booleans, enumerations and clocks travel as f64 (whole numbers exact up
-/// to 2⁵³); text and bytes by functions of their own.
+/// Numbers of every type, Booleans, enumerations and clocks are exchanged as f64 (whole numbers
+/// exact up to 2⁵³); text and bytes by separate functions.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Group {
-    /// Their type.
+    /// Type of the variables.
     pub kind: Kind,
-    /// When they can be set.
+    /// Time at which they can be set.
     pub access: Access,
-    /// Their value references.
+    /// Value references.
     pub references: Vec<u32>,
     /// Number of elements of all of them together.
     pub elements: usize,
 }
 
 impl Group {
-    /// A group of one variable.
+    /// Makes a group of one variable.
     ///
     /// # Errors
-    /// If the number of its elements can't be told.
+    /// If the number of its elements is unknown.
     pub fn of(description: &Description, variable: &Variable) -> Result<Self, InstanceError> {
         Ok(Self {
             kind: variable.kind,
@@ -50,13 +50,13 @@ impl Group {
     }
 }
 
-/// Groups for a list of variables, as few as it takes, and the place of each variable in the
-/// numbers that belong to all groups one after another.
+/// Smallest set of groups for a list of variables, and the position of each variable in the
+/// concatenated numbers of all groups.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Plan {
-    /// The groups, for [`super::Instance::exchange`].
+    /// Groups, for [`super::Instance::exchange`].
     pub groups: Vec<Group>,
-    /// Where the elements of each variable lie, in the order of the list.
+    /// Positions of the elements of each variable, in the order of the list.
     pub places: Vec<Range<usize>>,
     /// Number of elements of all groups together.
     pub elements: usize,
@@ -66,7 +66,7 @@ impl Plan {
     /// Groups variables that are numbers.
     ///
     /// # Errors
-    /// If a variable is a String or a Binary, or the number of its elements can't be told.
+    /// If a variable is a String or a Binary, or the number of its elements is unknown.
     pub fn new(description: &Description, variables: &[&Variable]) -> Result<Self, InstanceError> {
         let mut groups: Vec<Group> = Vec::new();
         let mut within = Vec::with_capacity(variables.len());
@@ -105,7 +105,7 @@ impl Plan {
     }
 }
 
-/// When a variable can be set.
+/// Time at which a variable can be set.
 fn access(description: &Description, variable: &Variable) -> Access {
     let discrete = match variable.causality {
         Causality::StructuralParameter => return Access::Configuration,
@@ -132,7 +132,7 @@ fn elements(description: &Description, variable: &Variable) -> Result<usize, Ins
     })
 }
 
-/// Name of the variable that an element of a group belongs to, with the element's number where the
+/// Name of the variable to which an element of a group belongs, with the element's number if the
 /// group has arrays.
 pub(super) fn element_name(description: &Description, group: &Group, element: usize) -> String {
     let mut first = 0;
@@ -157,7 +157,7 @@ pub(super) fn element_name(description: &Description, group: &Group, element: us
     format!("element {element}")
 }
 
-/// The values belong to the group.
+/// Checks that the number of values fits the group.
 pub(super) fn expect_elements(
     base: &Base,
     group: &Group,
@@ -170,7 +170,7 @@ pub(super) fn expect_elements(
     }
 }
 
-/// The values belong to the group, which has no arrays.
+/// Checks that the number of values fits the group, which has no arrays.
 pub(super) fn expect_scalars(
     base: &Base,
     group: &Group,
@@ -187,7 +187,7 @@ pub(super) fn expect_scalars(
     }
 }
 
-/// Numbers of the FMU as f64.
+/// Converts numbers of the FMU to f64.
 pub(super) fn numbers_to_f64<T: Number>(
     base: &Base,
     group: &Group,
@@ -200,7 +200,7 @@ pub(super) fn numbers_to_f64<T: Number>(
     Ok(())
 }
 
-/// Numbers for the FMU from f64.
+/// Converts f64 to numbers for the FMU.
 pub(super) fn numbers_from_f64<T: Number>(
     base: &Base,
     group: &Group,

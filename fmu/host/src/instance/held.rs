@@ -1,18 +1,18 @@
-//! Inputs that an FMU has already: it holds what was set until something else is.
+//! Inputs that an FMU already has: it holds the values that were set until other ones are set.
 
 use super::super::description::Kind;
 use super::group::{Access, Group};
 
-/// What the groups of an exchange were set to last.
+/// Values to which the groups of an exchange were set last.
 #[derive(Debug, Default)]
 pub(super) struct Held {
     groups: Vec<Option<(Vec<u32>, Vec<f64>)>>,
 }
 
 impl Held {
-    /// Whether setting a group to what it has changes nothing. Numbers with a fraction and those of 64
-    /// bits, which count, hardly ever stay; a clock ticks when it is set; and what is set at events
-    /// makes one.
+    /// Returns whether setting a group to its present values can be skipped. Floating-point numbers
+    /// and 64-bit integers, which are often counters, hardly ever stay the same; a clock ticks when
+    /// it is set; and values that are set at events cause one.
     #[inline]
     pub(super) fn can_be(group: &Group, event_mode: bool) -> bool {
         let changes = matches!(group.kind, Kind::Int64 | Kind::UInt64 | Kind::Clock);
@@ -25,14 +25,14 @@ impl Held {
         rarely_changes && !makes_event
     }
 
-    /// Whether the FMU has these numbers.
+    /// Returns whether the FMU has these numbers.
     #[inline]
     pub(super) fn is(&self, place: usize, group: &Group, values: &[f64]) -> bool {
         let Some(Some((references, held))) = self.groups.get(place) else { return false };
         *references == group.references && held == values
     }
 
-    /// The FMU took these numbers.
+    /// Records that the FMU took these numbers.
     pub(super) fn keep(&mut self, place: usize, group: &Group, values: &[f64]) {
         if self.groups.len() <= place {
             self.groups.resize_with(place + 1, || None);
@@ -43,7 +43,7 @@ impl Held {
         held.extend_from_slice(values);
     }
 
-    /// What it has may be something else.
+    /// Forgets all values: the FMU may have others.
     pub(super) fn forget(&mut self) {
         self.groups.iter_mut().for_each(|group| *group = None);
     }

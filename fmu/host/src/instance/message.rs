@@ -1,4 +1,4 @@
-//! What an FMU logs.
+//! Messages that an FMU logs.
 #![allow(unsafe_code, reason = "C strings of the FMU are read, and C calls back")]
 
 use super::super::description::{Description, Standard};
@@ -8,20 +8,20 @@ use std::ffi::{CStr, c_char, c_int, c_void};
 use std::fmt;
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// Messages that are held until someone takes them; what is beyond is counted.
+/// Largest number of messages held until they are read; further ones are counted.
 const MESSAGES_MAX: usize = 1000;
 
-/// Length of a message, bytes.
+/// Largest length of a message, bytes.
 const TEXT_MAX: usize = 65536;
 
 /// One message of an FMU.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Message {
-    /// `ok`, `warning`, `discard`, `error`, `fatal`: how serious it is.
+    /// Severity: `ok`, `warning`, `discard`, `error`, `fatal`.
     pub status: String,
-    /// Its category, one of the description's where the FMU keeps to it.
+    /// Category, normally one of the description's.
     pub category: String,
-    /// What it says.
+    /// Text of the message.
     pub text: String,
 }
 
@@ -31,7 +31,7 @@ impl fmt::Display for Message {
     }
 }
 
-/// The name of a status, the same in both standards.
+/// Name of a status, the same in both standards.
 pub(super) fn status_name(status: i32) -> &'static str {
     match status {
         fmi2::OK => "ok",
@@ -44,8 +44,8 @@ pub(super) fn status_name(status: i32) -> &'static str {
     }
 }
 
-/// Where the callbacks of one instance put what it says. The callback of FMI 2.0 finds `take` at
-/// its beginning.
+/// Log of one instance, to which its callbacks write. The callback of FMI 2.0 finds `take` at its
+/// beginning.
 #[repr(C)]
 pub(super) struct Log {
     take: unsafe extern "C" fn(*const Log, c_int, *const c_char, *const c_char),
@@ -63,7 +63,7 @@ impl Log {
         Arc::new(Self { take, said: Mutex::default() })
     }
 
-    /// Takes everything out.
+    /// Removes and returns all messages.
     pub(super) fn drain(&self, description: &Description) -> Vec<Message> {
         let mut said = self.said.lock().unwrap_or_else(PoisonError::into_inner);
         let mut messages = std::mem::take(&mut said.messages);
@@ -82,7 +82,7 @@ impl Log {
         messages
     }
 
-    /// The last of what sounds like a failure, in one line after a colon; empty if there is none.
+    /// Last message that indicates a failure, in one line after a colon; empty if there is none.
     pub(super) fn last(&self, description: &Description) -> String {
         let said = self.said.lock().unwrap_or_else(PoisonError::into_inner);
         let last = said.messages.iter().rev().find(|message| message.status != "ok");
@@ -101,7 +101,7 @@ impl Log {
     }
 }
 
-/// A text of the FMU, which needn't be UTF-8; null is empty.
+/// Reads a text of the FMU, which needn't be UTF-8; null is empty.
 ///
 /// # Safety
 /// The pointer is null or points to a text that ends with a null byte.
@@ -128,7 +128,7 @@ unsafe extern "C" fn take(
     log.push(status, category, message);
 }
 
-/// The callback of FMI 3.0.
+/// Callback of FMI 3.0.
 pub(super) unsafe extern "C" fn log_message(
     environment: fmi3::Environment,
     status: fmi3::Status,
@@ -155,19 +155,19 @@ unsafe extern "C" {
     fn free(memory: *mut c_void);
 }
 
-/// The callbacks of an instance of FMI 2.0, with its log as the environment.
+/// Callbacks of an instance of FMI 2.0, with its log as the environment.
 pub(super) fn callbacks(log: &Arc<Log>) -> fmi2::CallbackFunctions {
     fmi2::CallbackFunctions {
         logger: Some(octant_fmi2_logger),
         allocate_memory: Some(calloc),
         free_memory: Some(free),
-        // Null: whether a pending step is finished is asked for.
+        // Null: the host polls whether a pending step is finished.
         step_finished: None,
         environment: Arc::as_ptr(log).cast_mut().cast(),
     }
 }
 
-/// Writes the names of variables for `#r12#` (FMI 2.0) and `#12#` (FMI 3.0), and `#` for `##`.
+/// Replaces `#r12#` (FMI 2.0) and `#12#` (FMI 3.0) by names of variables, and `##` by `#`.
 fn with_names(text: &str, description: &Description) -> String {
     if !text.contains('#') {
         return text.into();
@@ -194,7 +194,7 @@ fn with_names(text: &str, description: &Description) -> String {
     out
 }
 
-/// The variable behind a reference in a message.
+/// Finds the variable for a reference in a message.
 fn name_of(reference: &str, description: &Description) -> Option<String> {
     use super::super::description::Kind;
     let (kinds, number): (&[Kind], &str) = match description.standard {

@@ -1,20 +1,22 @@
-//! An FMU that runs, of both standards and both kinds, behind one trait.
+//! A running FMU, of both standards and both kinds, behind one trait.
 //!
 //! | module | idea |
 //! |---|---|
-//! | [`group`] | variables that are set or got together, and where their numbers lie |
-//! | [`options`] | how an FMU is opened |
-//! | [`open`] | opening it: its archive, its description, its library, an instance |
-//! | `setup` | what an instance is told when it is made |
-//! | [`error`] | why an FMU could not go on |
-//! | `message` | what an FMU logs |
-//! | `call` | one call of a function: its name, its status, what it means |
-//! | `number` | f64 and the number types of FMI, checked |
-//! | `unit` | what the functions of both standards do, in one form |
+//! | [`group`] | variables that are set or got together, and the positions of their numbers |
+//! | [`options`] | options for opening an FMU |
+//! | [`open`] | opening an FMU: its archive, its description, its library, an instance |
+//! | `once` | FMUs that allow only one instance in a process |
+//! | `setup` | data with which an instance is made |
+//! | [`error`] | errors of a running FMU |
+//! | `message` | messages that an FMU logs |
+//! | `call` | one call of a function: its name, its status, the meaning of the status |
+//! | `number` | conversion between f64 and the number types of FMI, checked |
+//! | `scratch` | buffers for numbers of the types of FMI 3.0 |
+//! | `unit` | functions of both standards in one form |
 //! | `fmi2`, `fmi3` | the functions of each standard |
-//! | `states` | kept states, and states as bytes |
-//! | `clocks` | when clocks tick in time |
-//! | `co_simulation` | co-simulation in the order that the standards ask for |
+//! | `states` | stored states, and states as bytes |
+//! | `clocks` | ticks of time-based clocks |
+//! | `co_simulation` | co-simulation in the order of calls that the standards require |
 
 pub(super) mod call;
 mod clocks;
@@ -26,8 +28,10 @@ pub mod group;
 mod held;
 mod message;
 mod number;
+pub(super) mod once;
 pub mod open;
 pub mod options;
+mod scratch;
 pub(super) mod setup;
 pub(super) mod states;
 pub(super) mod unit;
@@ -41,61 +45,62 @@ pub use options::{InterfaceKind, Options, Place};
 use super::description::Description;
 use serde::{Deserialize, Serialize};
 
-/// How a step ended.
+/// Result of a step.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Stepped {
-    /// The time that was reached, s: the end of the step, or earlier.
+    /// Time reached, s: the end of the step, or earlier.
     pub time_s: f64,
-    /// What happened.
+    /// Outcome.
     pub outcome: Outcome,
-    /// Events wait to be handled: [`Instance::handle_events`].
+    /// True if events have to be handled: [`Instance::handle_events`].
     pub event: bool,
-    /// The FMU wants the simulation to end.
+    /// True if the FMU requests the end of the simulation.
     pub terminate: bool,
 }
 
-/// What became of a step.
+/// Outcome of a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Outcome {
-    /// It was done.
+    /// The step was completed.
     Done,
-    /// The FMU returned before its end, at an event.
+    /// The FMU returned before the end of the step, at an event.
     Early,
-    /// The FMU refused it, or could do only a part: another step may be tried from a kept state.
+    /// The FMU refused the step, or made only a part of it: another step may be tried from a stored
+    /// state.
     Discarded,
 }
 
-/// What an update of the discrete states answered.
+/// Result of an update of the discrete states.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Update {
-    /// Another update is needed.
+    /// True if another update is needed.
     pub again: bool,
-    /// The FMU wants the simulation to end.
+    /// True if the FMU requests the end of the simulation.
     pub terminate: bool,
-    /// Nominals of the continuous states have changed.
+    /// True if nominals of the continuous states have changed.
     pub nominals_changed: bool,
-    /// Continuous states have changed.
+    /// True if continuous states have changed.
     pub states_changed: bool,
-    /// The next time event, s, where there is one.
+    /// Next time event, s, if there is one.
     pub next_event_time_s: Option<f64>,
 }
 
-/// Early returns within one exchange, and updates of the discrete states at one event, before it
-/// is said that there is no end to them.
+/// Largest number of early returns within one exchange, and of updates of the discrete states at
+/// one event, before they count as endless.
 pub const REPEATS_MAX: usize = 1000;
 
-/// What is done with one FMU, in this process or in another.
+/// Operations on one FMU, in this process or in another.
 pub trait Instance: Send {
-    /// Its name in errors: the file's, or the model's.
+    /// Name in errors: the file's, or the model's.
     fn name(&self) -> &str;
 
-    /// What it says of itself.
+    /// Description of the FMU.
     fn description(&self) -> &Description;
 
-    /// Start of the initialization. Variables are set before and within it.
+    /// Starts the initialization. Variables are set before and during it.
     ///
     /// # Errors
-    /// If the FMU fails; so for all that follow.
+    /// If the FMU fails; the same holds for all following functions.
     fn enter_initialization(
         &mut self,
         start_s: f64,
@@ -103,22 +108,22 @@ pub trait Instance: Send {
         tolerance: Option<f64>,
     ) -> Result<(), InstanceError>;
 
-    /// End of the initialization, and of the first events; true if the FMU wants the simulation to
-    /// end at once.
+    /// Ends the initialization, and handles the first events; returns true if the FMU requests the
+    /// end of the simulation at once.
     ///
     /// # Errors
     /// If the FMU fails.
     fn exit_initialization(&mut self) -> Result<bool, InstanceError>;
 
-    /// Sets numbers. What may be set at events alone ([`Access::Event`]) is set at one, which lasts
-    /// until the next step.
+    /// Sets numbers. Values that may only be set at events ([`Access::Event`]) are set at one,
+    /// which lasts until the next step.
     ///
     /// # Errors
     /// If the FMU fails or refuses a value, or a number doesn't fit the type.
     fn set(&mut self, group: &Group, values: &[f64]) -> Result<(), InstanceError>;
 
-    /// [`Self::set`] of the group that stands at `place` in an [`Self::exchange`]: who knows what the FMU
-    /// has already can leave out what changes nothing.
+    /// Sets as [`Self::set`] the group at `place` in an [`Self::exchange`]: an implementation that
+    /// knows the FMU's present values can skip unchanged ones.
     ///
     /// # Errors
     /// As [`Self::set`].
@@ -161,18 +166,18 @@ pub trait Instance: Send {
     /// If the FMU fails.
     fn get_binaries(&mut self, group: &Group) -> Result<Vec<Vec<u8>>, InstanceError>;
 
-    /// One communication step. Model exchange is integrated over it, with its events; clocks of
-    /// co-simulation that are due tick on the way and at its end.
+    /// Makes one communication step. Model exchange is integrated over it, with its events; clocks
+    /// of co-simulation that are due tick during it and at its end.
     ///
     /// # Errors
     /// If the FMU fails.
     fn step(&mut self, time_s: f64, step_s: f64) -> Result<Stepped, InstanceError>;
 
-    /// Sets, steps and gets in one go: in another process, one way there and back. `set` and `get`
-    /// are groups with the place of their numbers in `inputs` and `outputs`, one after another.
+    /// Sets, steps and gets in one call: for another process, in one round trip. `set` and `get`
+    /// are groups whose numbers follow one another in `inputs` and `outputs`.
     ///
-    /// Where the FMU returns early its events are handled and it goes on, so that the answer is
-    /// [`Outcome::Done`], [`Outcome::Discarded`], or an early end because it wants to terminate.
+    /// At an early return the FMU's events are handled and it continues, so that the outcome is
+    /// [`Outcome::Done`], [`Outcome::Discarded`], or an early end because the FMU requests it.
     ///
     /// # Errors
     /// If the FMU fails.
@@ -206,7 +211,7 @@ pub trait Instance: Send {
         Ok(stepped)
     }
 
-    /// [`Self::step`] to the end of the step, over early returns and their events.
+    /// Makes [`Self::step`] to the end of the step, through early returns and their events.
     ///
     /// # Errors
     /// If the FMU fails, or its early returns don't come to an end.
@@ -221,7 +226,7 @@ pub trait Instance: Send {
             if stepped.outcome != Outcome::Early || stepped.terminate {
                 return Ok(stepped);
             }
-            // What is left may be rounding alone: then the end is reached.
+            // The rest may be rounding alone: then the end is reached.
             let left_s = end_s - stepped.time_s;
             if left_s <= 1e-9 * step_s {
                 return Ok(Stepped { time_s: end_s, outcome: Outcome::Done, ..stepped });
@@ -234,19 +239,20 @@ pub trait Instance: Send {
         })
     }
 
-    /// Handles events until there are none; true if the FMU wants the simulation to end.
+    /// Handles events until there are none; returns true if the FMU requests the end of the
+    /// simulation.
     ///
     /// # Errors
     /// If the FMU fails, or its events don't come to an end.
     fn handle_events(&mut self) -> Result<bool, InstanceError>;
 
-    /// Enters event mode, for who handles events together with those of other FMUs.
+    /// Enters event mode, for a caller that handles events together with those of other FMUs.
     ///
     /// # Errors
-    /// If the FMU fails or has no event mode that is open to the outside.
+    /// If the FMU fails or offers no event mode to the importer.
     fn enter_event_mode(&mut self) -> Result<(), InstanceError>;
 
-    /// One update of the discrete states, in event mode.
+    /// Makes one update of the discrete states, in event mode.
     ///
     /// # Errors
     /// If the FMU fails or isn't in event mode.
@@ -258,48 +264,54 @@ pub trait Instance: Send {
     /// If the FMU fails or isn't in event mode.
     fn leave_event_mode(&mut self) -> Result<(), InstanceError>;
 
-    /// Keeps the state of the FMU; the number names it.
+    /// Stores the state of the FMU and returns its number.
     ///
     /// # Errors
-    /// If the FMU can't.
+    /// If the FMU can't store states.
     fn keep_state(&mut self) -> Result<u64, InstanceError>;
 
-    /// Back to a kept state.
+    /// Returns to a stored state.
     ///
     /// # Errors
-    /// If the FMU can't, or the state isn't one of its.
+    /// If the FMU can't, or the state doesn't belong to it.
     fn restore_state(&mut self, state: u64) -> Result<(), InstanceError>;
 
-    /// Forgets a kept state.
+    /// Frees a stored state.
     ///
     /// # Errors
-    /// If the state isn't one of its.
+    /// If the state doesn't belong to the FMU.
     fn forget_state(&mut self, state: u64) -> Result<(), InstanceError>;
 
-    /// A kept state as bytes.
+    /// Converts a stored state to bytes.
     ///
     /// # Errors
     /// If the FMU can't.
     fn state_to_bytes(&mut self, state: u64) -> Result<Vec<u8>, InstanceError>;
 
-    /// A kept state from bytes.
+    /// Stores a state given as bytes.
     ///
     /// # Errors
-    /// If the FMU can't, or the bytes are none of its.
+    /// If the FMU can't, or the bytes don't belong to it.
     fn state_from_bytes(&mut self, bytes: &[u8]) -> Result<u64, InstanceError>;
 
-    /// Back to where it was after instantiation.
+    /// Returns to the state after instantiation.
     ///
     /// # Errors
     /// If the FMU fails.
     fn reset(&mut self) -> Result<(), InstanceError>;
 
-    /// End of the simulation.
+    /// Ends the simulation.
     ///
     /// # Errors
     /// If the FMU fails.
     fn terminate(&mut self) -> Result<(), InstanceError>;
 
-    /// What the FMU logged since the last call.
+    /// Messages that the FMU logged since the last call.
     fn messages(&mut self) -> Vec<Message>;
+}
+
+/// Last message of an FMU, after a colon; empty where it sent none.
+pub fn said(instance: &mut dyn Instance) -> String {
+    let messages = instance.messages();
+    messages.last().map_or(String::new(), |message| format!(": {}", message.text.trim()))
 }

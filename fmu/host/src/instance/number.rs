@@ -1,16 +1,17 @@
-//! f64 and the number types of FMI, checked: what a type can't hold is no number of it.
+//! Conversion between f64 and the number types of FMI, checked: a value outside of a type is
+//! refused.
 
 /// A number type of FMI.
 pub(super) trait Number: Copy + Default {
-    /// From f64, where the type has this number.
+    /// Converts f64 to the type, if the type has this number.
     fn from_f64(value: f64) -> Option<Self>;
-    /// As f64, where f64 has this number.
+    /// Converts the number to f64, if f64 has it.
     fn to_f64(self) -> Option<f64>;
-    /// In words, for an error.
+    /// Text of the number, for an error.
     fn words(self) -> String;
 }
 
-/// f64 has every whole number up to here.
+/// Limit below which f64 has every whole number.
 const EXACT_BELOW: f64 = 9_007_199_254_740_992.0;
 
 macro_rules! whole {
@@ -18,19 +19,20 @@ macro_rules! whole {
         impl Number for $kind {
             #[inline]
             fn from_f64(value: f64) -> Option<Self> {
-                // What is less than 2⁶³ needs no arithmetic of 128 bits, which is slow.
+                // Numbers below 2⁶³ avoid 128-bit arithmetic, which is slow.
                 let whole = value as i64;
                 if whole as f64 == value && whole != i64::MAX {
                     return <$kind>::try_from(whole).ok();
                 }
-                // Both bounds are powers of two or exact, and what is beyond i128 saturates.
+                // Both bounds are powers of two or exact, and a value beyond i128 saturates.
                 let whole = value as i128;
                 (whole as f64 == value).then(|| <$kind>::try_from(whole).ok()).flatten()
             }
             #[inline]
             fn to_f64(self) -> Option<f64> {
                 let value = self as f64;
-                // All of these are exact, and no other becomes one of them.
+                // Whole numbers below this limit are exact, and no other number is rounded to one
+                // of them.
                 if value.abs() < EXACT_BELOW {
                     return Some(value);
                 }
@@ -45,7 +47,7 @@ macro_rules! whole {
 whole!(i8, u8, i16, u16, i32, u32, i64, u64);
 
 impl Number for f32 {
-    /// Rounded to the nearest; what is finite stays so.
+    /// Rounds to the nearest; a finite number stays finite.
     fn from_f64(value: f64) -> Option<Self> {
         let narrow = value as f32;
         (narrow.is_finite() || !value.is_finite()).then_some(narrow)
@@ -58,7 +60,7 @@ impl Number for f32 {
     }
 }
 
-/// A Boolean of either standard: zero is false, and what C gives for true is any other number.
+/// A Boolean of either standard: zero is false, any other number is C's true.
 #[derive(Clone, Copy, Debug, Default)]
 #[repr(transparent)]
 pub(super) struct Truth<T>(pub(super) T);

@@ -8,31 +8,31 @@ use super::super::process;
 use super::call::{LOADING, Mark, NOWHERE};
 use super::clocks::Clocks;
 use super::co_simulation::CoSimulation;
+use super::once::Once;
 use super::options::{InterfaceKind, Options, Place};
 use super::setup::Setup;
 use super::{Instance, InstanceError, fmi2, fmi3};
-use std::collections::BTreeSet;
 use std::path::Path;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::Arc;
 
-/// Why an FMU can't be opened.
+/// Reason why an FMU can't be opened.
 #[derive(Debug, thiserror::Error)]
 pub enum OpenError {
-    /// Its archive.
+    /// Error of the archive.
     #[error(transparent)]
     Archive(#[from] ArchiveError),
-    /// Its description.
+    /// Error of the description.
     #[error(transparent)]
     Description(#[from] DescriptionError),
-    /// Its code.
+    /// Error of the code.
     #[error(transparent)]
     Instance(#[from] InstanceError),
 }
 
-/// Opens an FMU, or a folder that was one.
+/// Opens an FMU, or a folder with its unpacked content.
 ///
 /// # Errors
-/// If its archive or description can't be used, it hasn't the interface, its library can't be
+/// If its archive or description can't be used, it lacks the interface, its library can't be
 /// loaded, or it makes no instance.
 pub fn open(path: &Path, options: &Options) -> Result<Box<dyn Instance>, OpenError> {
     let mut archive = Archive::open(path)?;
@@ -47,14 +47,15 @@ pub fn open_archive(
     archive: &mut Archive,
     options: &Options,
 ) -> Result<Box<dyn Instance>, OpenError> {
-    // The description first: nobody wants to unpack gigabytes to learn that it is of FMI 1.0.
+    // The description comes first, so that an FMU of FMI 1.0 is refused before gigabytes are
+    // unpacked.
     let description = read_description(archive)?;
     let name = name_of(archive.file());
     let folder = archive.unpack()?;
     Ok(open_unpacked(&name, folder, description, options)?)
 }
 
-/// Opens the FMU in a folder that another process unpacked and keeps.
+/// Opens the FMU in a folder that another process has unpacked and owns.
 #[cfg(target_os = "linux")]
 pub(crate) fn open_folder(
     name: &str,
@@ -74,16 +75,16 @@ fn read_description(archive: &mut Archive) -> Result<Description, OpenError> {
     Ok(description::read_bytes(&bytes, &format!("{}/{NAME}", archive.file()))?)
 }
 
-/// The last part of a path: what errors call the FMU.
+/// Last part of a path: the name of the FMU in errors.
 fn name_of(file: &str) -> String {
     let name = Path::new(file).file_name();
     name.map_or_else(|| file.into(), |name| name.to_string_lossy().into_owned())
 }
 
-/// Opens an unpacked FMU. `name` is what errors call it.
+/// Opens an unpacked FMU. `name` is its name in errors.
 ///
 /// # Errors
-/// If it hasn't the interface, its library can't be loaded, or it makes no instance.
+/// If the FMU lacks the interface, its library can't be loaded, or it makes no instance.
 pub fn open_unpacked(
     name: &str,
     folder: Unpacked,
@@ -178,7 +179,7 @@ pub(crate) fn open_here(
     })
 }
 
-/// The interface that is used; true: it is model exchange.
+/// Chooses the interface; returns true for model exchange.
 fn interface(
     name: &str,
     description: &Description,
@@ -205,30 +206,4 @@ fn interface(
         let has = if has.is_empty() { "no interface".into() } else { has.join(" and ") };
         InstanceError::unsupported(name, format!("run by {wanted}"), format!("it has {has}"))
     })
-}
-
-/// The tokens of FMUs in this process that can be there only once.
-static ONCE: Mutex<BTreeSet<String>> = Mutex::new(BTreeSet::new());
-
-/// The right to be there; it goes with the library.
-pub(crate) struct Once(String);
-
-impl Once {
-    fn take(name: &str, token: &str) -> Result<Self, InstanceError> {
-        let mut once = ONCE.lock().unwrap_or_else(PoisonError::into_inner);
-        if once.insert(token.into()) {
-            return Ok(Self(token.into()));
-        }
-        Err(InstanceError::unsupported(
-            name,
-            "run in this process",
-            "there is one already, and it can be there only once",
-        ))
-    }
-}
-
-impl Drop for Once {
-    fn drop(&mut self) {
-        ONCE.lock().unwrap_or_else(PoisonError::into_inner).remove(&self.0);
-    }
 }

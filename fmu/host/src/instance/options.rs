@@ -1,52 +1,53 @@
-//! How an FMU is opened.
+//! Options for opening an FMU.
 
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 use std::time::Duration;
 
-/// Which of its interfaces is used.
+/// Interface to be used.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum InterfaceKind {
-    /// Co-simulation where it has it, else model exchange.
+    /// Co-simulation if available, else model exchange.
     #[default]
     Any,
     /// Co-simulation.
     CoSimulation,
-    /// Model exchange, with our solver.
+    /// Model exchange, with Octant's solver.
     ModelExchange,
 }
 
-/// Where its code runs.
+/// Process in which the code of an FMU runs.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Place {
-    /// In a process of its own: it can crash, hang and print as it likes. On Linux only.
+    /// In a process of its own, in which it can crash, hang and print without harm. On Linux only.
     #[default]
     OwnProcess,
-    /// In this process: quicker, and for code that is trusted.
+    /// In this process: faster, but only for trusted code.
     ThisProcess,
 }
 
-/// How an FMU is opened.
+/// Options for opening an FMU.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Options {
-    /// Which of its interfaces is used.
+    /// Interface to be used.
     pub interface: InterfaceKind,
-    /// Where its code runs.
+    /// Process of the code.
     pub place: Place,
-    /// The name that the instance is told; `None`: the model's.
+    /// Name of the instance; `None`: the model's name.
     pub instance_name: Option<String>,
-    /// It is asked to log.
+    /// True to switch on logging.
     pub log: bool,
-    /// Its event mode is used where it has one (FMI 3.0); else it handles events by itself.
+    /// True to use the FMU's event mode if it has one (FMI 3.0); otherwise the FMU handles events
+    /// by itself.
     pub event_mode: bool,
-    /// It may return early from a step (FMI 3.0).
+    /// True to allow early returns from a step (FMI 3.0).
     pub early_return: bool,
     /// Longest time for loading, instantiation and initialization, together with each reset.
     pub start_limit: Duration,
     /// Longest time for any other call.
     pub time_limit: Duration,
-    /// The program that holds an FMU in a process of its own; `None`: this program, or the `octant`
-    /// beside it. It has to be an `octant` of the same version.
+    /// Program that hosts an FMU in a process of its own; `None`: this program, or the `octant`
+    /// beside it. The program has to be an `octant` of the same version.
     pub program: Option<PathBuf>,
 }
 

@@ -1,4 +1,4 @@
-//! What an instance is told when it is made.
+//! Data with which an instance is made.
 
 use super::super::description::{Description, Interface};
 use super::InstanceError;
@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
 
-/// What an instance needs to know to be made.
+/// Data with which an instance is made.
 pub(crate) struct Setup {
     pub(crate) name: String,
     pub(crate) description: Arc<Description>,
@@ -24,7 +24,7 @@ pub(crate) struct Setup {
 }
 
 impl Setup {
-    /// What every instance has.
+    /// Makes the common part of an instance.
     pub(super) fn base(&self, log: &Arc<Log>) -> Base {
         Base {
             name: self.name.clone(),
@@ -35,12 +35,12 @@ impl Setup {
         }
     }
 
-    /// The folder of resources as FMI 2.0 wants it: a URI.
+    /// Folder of resources in the form of FMI 2.0: a URI.
     pub(super) fn resource_uri(&self) -> String {
         uri(&self.folder.join("resources"))
     }
 
-    /// The folder of resources as FMI 3.0 wants it: a path with a separator at its end.
+    /// Folder of resources in the form of FMI 3.0: a path with a separator at its end.
     pub(super) fn resource_path(&self) -> Result<CString, InstanceError> {
         let mut path = self.folder.join("resources").into_os_string();
         path.push(std::path::MAIN_SEPARATOR_STR);
@@ -49,7 +49,7 @@ impl Setup {
     }
 }
 
-/// A path as a file URI.
+/// Converts a path to a file URI.
 fn uri(path: &Path) -> String {
     let mut uri = String::from("file://");
     let bytes = path.as_os_str().as_encoded_bytes();
@@ -67,7 +67,7 @@ fn uri(path: &Path) -> String {
     uri
 }
 
-/// A text for C.
+/// Converts a text to a C string.
 pub(super) fn c_text(fmu: &str, what: &str, value: &str) -> Result<CString, InstanceError> {
     CString::new(value).map_err(|_| {
         InstanceError::unsupported(fmu, format!("pass {what} {value:?}"), "it has a null byte")

@@ -1,4 +1,4 @@
-//! Kept states, and states as bytes.
+//! Stored states, and states as bytes.
 
 use super::super::description::Description;
 use super::InstanceError;
@@ -7,13 +7,13 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 use std::collections::BTreeMap;
 
-/// The beginning of a state as bytes, with the version of the form.
+/// Beginning of a state as bytes, with the version of the format.
 const MAGIC: &[u8; 8] = b"OCTFMU\x00\x01";
 
-/// Length of the checksum.
+/// Length of the checksum, bytes.
 const SUM: usize = 32;
 
-/// States by number. What the importer knows besides the FMU is kept with each.
+/// States by number. The importer's own data is stored with each.
 pub(crate) struct States<Own> {
     next: u64,
     kept: BTreeMap<u64, (RawState, Own)>,
@@ -29,13 +29,13 @@ impl<Own: Clone + Serialize + DeserializeOwned> States<Own> {
         Self { next: 1, kept: BTreeMap::new() }
     }
 
-    /// Keeps the present state.
+    /// Stores the present state.
     pub(crate) fn keep(&mut self, unit: &mut impl Unit, own: Own) -> Result<u64, InstanceError> {
         let raw = unit.state()?;
         Ok(self.insert(raw, own))
     }
 
-    /// Back to a state; gives what was kept with it.
+    /// Returns to a state; returns the data stored with it.
     pub(crate) fn restore(
         &mut self,
         unit: &mut impl Unit,
@@ -53,7 +53,7 @@ impl<Own: Clone + Serialize + DeserializeOwned> States<Own> {
         unit.free_state(raw)
     }
 
-    /// Frees all states, as far as the FMU lets itself be called.
+    /// Frees all states, as far as the FMU can be called.
     pub(crate) fn clear(&mut self, unit: &mut impl Unit) {
         for (_, (raw, _)) in std::mem::take(&mut self.kept) {
             if unit.free_state(raw).is_err() {
@@ -62,7 +62,8 @@ impl<Own: Clone + Serialize + DeserializeOwned> States<Own> {
         }
     }
 
-    /// A state as bytes: the FMU's own, with what was kept beside it, whose it is, and a checksum.
+    /// Converts a state to bytes: the FMU's own state, the data stored beside it, the identity of
+    /// the FMU, and a checksum.
     pub(crate) fn save(
         &mut self,
         unit: &mut impl Unit,
@@ -83,7 +84,7 @@ impl<Own: Clone + Serialize + DeserializeOwned> States<Own> {
         Ok(bytes)
     }
 
-    /// A state from bytes. Only bytes that are whole and of this FMU get to it.
+    /// Reads a state from bytes. Only bytes that are whole and of this FMU are passed to it.
     pub(crate) fn load(
         &mut self,
         unit: &mut impl Unit,
@@ -125,7 +126,7 @@ impl<Own: Clone + Serialize + DeserializeOwned> States<Own> {
     }
 }
 
-/// Whose states these are: the token changes with the FMU.
+/// Identity of the FMU for its states: the token changes with the FMU.
 fn whose(description: &Description) -> String {
     format!("{} {}", description.model_name, description.token)
 }

@@ -1,14 +1,14 @@
-//! What the functions of both standards do, in one form. Each is one call, or the few that one
-//! standard needs where the other needs one; the order of calls is the business of who uses it.
+//! Functions of both standards in one form. Each is one call, or the few that one standard needs
+//! where the other needs one; the user of the trait is responsible for the order of calls.
 
 use super::call::Base;
 use super::{Group, InstanceError, Stepped, Update};
 use std::ffi::c_void;
 
-/// A state of the FMU, as it gives it.
+/// A state as returned by the FMU.
 pub(crate) type RawState = *mut c_void;
 
-/// What co-simulation and model exchange have in common.
+/// Common functions of co-simulation and model exchange.
 pub(crate) trait Unit: Send {
     fn base(&self) -> &Base;
 
@@ -44,29 +44,29 @@ pub(crate) trait Unit: Send {
 
 /// Co-simulation.
 pub(crate) trait Steps: Unit {
-    /// Event mode is the importer's.
+    /// Returns whether the importer uses event mode.
     fn has_event_mode(&self) -> bool;
     fn enter_step_mode(&mut self) -> Result<(), InstanceError>;
     fn do_step(&mut self, time_s: f64, step_s: f64) -> Result<Stepped, InstanceError>;
-    /// The interval of a clock.
+    /// Interval of a clock.
     fn interval(&mut self, clock: u32) -> Result<Interval, InstanceError>;
-    /// Lets a clock tick.
+    /// Activates a clock.
     fn activate(&mut self, clock: u32) -> Result<(), InstanceError>;
 }
 
-/// What an FMU says of a clock's interval.
+/// Answer of an FMU on a clock's interval.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Interval {
-    /// It isn't known yet.
+    /// The interval isn't known yet.
     Unknown,
-    /// It is as it was, s.
+    /// The interval is unchanged, s.
     Unchanged(f64),
-    /// It is new, s.
+    /// The interval is new, s.
     Changed(f64),
 }
 
-/// Model exchange. Where a value can't be computed (the FMU discards the call), that is no failure
-/// but the answer `false`: the solver tries elsewhere.
+/// Model exchange. If a value can't be computed (the FMU discards the call), this is no failure but
+/// the answer `false`: the solver tries elsewhere.
 pub(crate) trait Continuous: Unit {
     /// Numbers of continuous states and of event indicators.
     fn counts(&mut self) -> Result<(usize, usize), InstanceError>;
@@ -77,6 +77,7 @@ pub(crate) trait Continuous: Unit {
     fn derivatives(&mut self, derivatives: &mut [f64]) -> Result<bool, InstanceError>;
     fn indicators(&mut self, indicators: &mut [f64]) -> Result<bool, InstanceError>;
     fn nominals(&mut self, nominals: &mut [f64]) -> Result<(), InstanceError>;
-    /// A step of the solver is done: whether there is an event, and whether the FMU wants to end.
+    /// Reports a completed step of the solver; returns whether there is an event, and whether the
+    /// FMU requests the end.
     fn completed_step(&mut self) -> Result<(bool, bool), InstanceError>;
 }

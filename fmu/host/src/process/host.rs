@@ -1,4 +1,4 @@
-//! The other process: holds one FMU and does what it is asked to.
+//! The other process: it hosts one FMU and executes requests.
 
 use super::super::instance::call::Mark;
 use super::super::instance::open::{OpenError, open_folder};
@@ -15,45 +15,72 @@ use std::os::unix::net::UnixStream;
 use std::path::Path;
 use std::sync::atomic::Ordering;
 
-/// Messages that are held for the other process.
+/// Largest number of messages held for the other process.
 const MESSAGES_MAX: usize = 10_000;
 
-/// Serves the process that started this one, until it has done with the FMU.
+/// Reason why the process of an FMU ends early.
+#[derive(Debug, thiserror::Error)]
+pub enum ServeError {
+    /// No process that provides its input and output started this one.
+    #[error("octant fmu host is started by octant itself, for an FMU that runs apart ({error})")]
+    NotStarted {
+        /// Error of the operating system.
+        error: io::Error,
+    },
+    /// The other process can't be watched.
+    #[error("{error}")]
+    Watch {
+        /// Error of the operating system.
+        error: io::Error,
+    },
+    /// The thread that watches the other process can't be started.
+    #[error("start a thread: {error}")]
+    Thread {
+        /// Error of the operating system.
+        error: io::Error,
+    },
+    /// The other process is gone.
+    #[error("octant fmu host lost the process that it serves: {error}")]
+    Lost {
+        /// Error of the operating system.
+        error: io::Error,
+    },
+}
+
+/// Serves the process that started this one, until that has finished with the FMU.
 ///
 /// # Errors
-/// If no such process did: standard input and output are not what it gives.
-pub fn serve() -> Result<(), String> {
+/// If no such process started this one: standard input and output are not those that it provides.
+pub fn serve() -> Result<(), ServeError> {
     let connect = || -> io::Result<(UnixStream, Shared)> {
         let socket: OwnedFd = rustix::io::fcntl_dupfd_cloexec(io::stdin(), 3)?;
         rustix::net::sockopt::socket_type(&socket)?;
         let memory = rustix::io::fcntl_dupfd_cloexec(io::stdout(), 3)?;
         let shared = Shared::open(&memory)?;
-        // From here on the FMU may read and print.
+        // From here on the FMU may use standard input and output.
         let empty = std::fs::File::open("/dev/null")?;
         rustix::stdio::dup2_stdin(&empty)?;
         rustix::stdio::dup2_stdout(io::stderr())?;
         Ok((socket.into(), shared))
     };
-    let (socket, shared) = connect().map_err(|e| {
-        format!("octant fmu host is started by octant itself, for an FMU that runs apart ({e})")
-    })?;
-    // The mapping stays to the very end: the FMU's last calls are marked there.
+    let (socket, shared) = connect().map_err(|error| ServeError::NotStarted { error })?;
+    // The mapping stays to the end of the process: the FMU's last calls are marked there.
     let shared: &'static Shared = Box::leak(Box::new(shared));
     watch_parent(&socket)?;
     Host { socket, shared, spin: Spin::new(), plans: Vec::new(), messages: Vec::new() }
         .run()
-        .map_err(|e| format!("octant fmu host lost the process that it serves: {e}"))
+        .map_err(|error| ServeError::Lost { error })
 }
 
-/// Ends this process when the other is gone, whatever the FMU is doing.
-fn watch_parent(socket: &UnixStream) -> Result<(), String> {
-    let socket = socket.try_clone().map_err(|e| e.to_string())?;
+/// Ends this process when the other has ended, whatever the FMU is doing.
+fn watch_parent(socket: &UnixStream) -> Result<(), ServeError> {
+    let socket = socket.try_clone().map_err(|error| ServeError::Watch { error })?;
     let watch = move || {
         loop {
-            // No event is asked for: what comes is that the other end is closed.
+            // No event is requested: the only one reported is that the other end is closed.
             let mut ends = [PollFd::new(&socket, PollFlags::empty())];
             if poll(&mut ends, None).is_ok() && !ends[0].revents().is_empty() {
-                // Nothing of the FMU's runs any more, no destructor either.
+                // A kill, so that no code of the FMU runs any more, not even a destructor.
                 let _ = rustix::process::kill_process(
                     rustix::process::getpid(),
                     rustix::process::Signal::KILL,
@@ -62,10 +89,10 @@ fn watch_parent(socket: &UnixStream) -> Result<(), String> {
         }
     };
     let thread = std::thread::Builder::new().name("parent".into()).stack_size(64 * 1024);
-    thread.spawn(watch).map(|_| ()).map_err(|e| format!("start a thread: {e}"))
+    thread.spawn(watch).map(|_| ()).map_err(|error| ServeError::Thread { error })
 }
 
-/// An exchange: its groups, and room for its numbers.
+/// An exchange: its groups, and buffers for its numbers.
 struct Plan {
     set: Vec<Group>,
     get: Vec<Group>,
@@ -78,7 +105,7 @@ struct Host {
     shared: &'static Shared,
     spin: Spin,
     plans: Vec<Plan>,
-    /// Taken from the FMU, not yet asked for.
+    /// Messages taken from the FMU, but not requested yet.
     messages: Vec<Message>,
 }
 
@@ -107,7 +134,7 @@ impl Host {
         }
     }
 
-    /// The FMU that the first request names.
+    /// Opens the FMU of the first request.
     fn open(&mut self) -> io::Result<Result<Box<dyn Instance>, InstanceError>> {
         loop {
             match message::read(&mut self.socket)? {
@@ -125,7 +152,7 @@ impl Host {
         }
     }
 
-    /// The next request; `None`: an exchange through shared memory.
+    /// Reads the next request; `None`: an exchange through shared memory.
     fn next(&mut self, done: &mut u64) -> io::Result<Option<Request>> {
         let word = self.shared.word(Word::Request);
         loop {
@@ -159,7 +186,7 @@ impl Host {
         }
     }
 
-    /// One exchange through shared memory.
+    /// Executes one exchange through shared memory.
     fn exchange(&mut self, instance: &mut dyn Instance) -> io::Result<()> {
         let shared = self.shared;
         let number = shared.word(Word::Plan).load(Ordering::Relaxed);
@@ -185,7 +212,7 @@ impl Host {
             }
         };
         self.gather(instance);
-        // Either the other process sees the answer, or this one sees that it sleeps.
+        // Either the other process sees the answer, or this one sees that the other sleeps.
         shared.word(Word::Answer).fetch_add(1, Ordering::SeqCst);
         if shared.word(Word::ParentSleeps).load(Ordering::SeqCst) != 0 {
             message::wake(&mut self.socket)?;
@@ -196,7 +223,7 @@ impl Host {
         }
     }
 
-    /// Takes what the FMU logged, and says whether there is something to ask for.
+    /// Takes the FMU's messages, and reports whether there are some to request.
     fn gather(&mut self, instance: &mut dyn Instance) {
         let mut new = instance.messages();
         if !new.is_empty() {
@@ -206,7 +233,7 @@ impl Host {
         }
     }
 
-    /// The answer to a request.
+    /// Executes a request and makes its answer.
     fn reply(&mut self, instance: &mut dyn Instance, request: Request) -> Reply {
         Ok(match request {
             Request::EnterInitialization { start_s, stop_s, tolerance } => {
@@ -275,13 +302,13 @@ impl Host {
                 self.shared.word(Word::MessagesWait).store(0, Ordering::Relaxed);
                 Answer::Messages(std::mem::take(&mut self.messages))
             }
-            // The first and the last, which don't come here.
+            // The first and the last request are handled elsewhere.
             Request::Open { .. } | Request::Quit => Answer::Done,
         })
     }
 }
 
-/// How a step ended, in the bits of a word.
+/// Encodes the result of a step in the bits of a word.
 fn bits(stepped: &Stepped) -> u64 {
     let outcome = match stepped.outcome {
         Outcome::Done => 0,

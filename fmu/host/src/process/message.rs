@@ -1,21 +1,21 @@
-//! What the two processes say to each other: postcard, each message after its length. A message of
-//! no length only wakes the other.
+//! Messages between the two processes: postcard, each message after its length. A message of length
+//! zero only wakes the other process.
 
 use super::super::instance::{Group, InstanceError, Message, Options, Stepped, Update};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use std::io::{self, Read, Write};
 
-/// The version of this conversation: both are the same program, or they don't talk.
+/// Version of the protocol: both are the same program, otherwise they refuse.
 pub(super) const VERSION: &str = concat!("octant ", env!("CARGO_PKG_VERSION"), " fmu 1");
 
-/// Bytes of a message.
+/// Largest length of a message, bytes.
 const LENGTH_MAX: u32 = 1 << 31;
 
-/// What this process asks for.
+/// Request of the parent process.
 #[derive(Debug, Serialize, Deserialize)]
 pub(super) enum Request {
-    /// The first: which FMU.
+    /// The first request, with the FMU.
     Open {
         version: String,
         name: String,
@@ -53,7 +53,8 @@ pub(super) enum Request {
         time_s: f64,
         step_s: f64,
     },
-    /// An exchange with these groups gets a number, under which it goes through shared memory.
+    /// Registers an exchange with these groups; it gets a number for exchanges through shared
+    /// memory.
     Plan {
         set: Vec<Group>,
         get: Vec<Group>,
@@ -70,11 +71,11 @@ pub(super) enum Request {
     Reset,
     Terminate,
     Messages,
-    /// The last: the FMU is freed.
+    /// The last request: the FMU is freed.
     Quit,
 }
 
-/// What the other process answers.
+/// Answer of the child process.
 #[derive(Debug, Serialize, Deserialize)]
 pub(super) enum Answer {
     Done,
@@ -103,12 +104,12 @@ pub(super) fn write(to: &mut impl Write, message: &impl Serialize) -> io::Result
     to.write_all(&bytes)
 }
 
-/// Wakes the other.
+/// Wakes the other process.
 pub(super) fn wake(to: &mut impl Write) -> io::Result<()> {
     to.write_all(&[0; 4])
 }
 
-/// Reads a message; `None`: it only woke.
+/// Reads a message; `None`: it only woke this process.
 pub(super) fn read<T: DeserializeOwned>(from: &mut impl Read) -> io::Result<Option<T>> {
     let mut length = [0; 4];
     from.read_exact(&mut length)?;
@@ -119,7 +120,7 @@ pub(super) fn read<T: DeserializeOwned>(from: &mut impl Read) -> io::Result<Opti
     if length > LENGTH_MAX {
         return Err(io::Error::new(io::ErrorKind::InvalidData, "a message is too long"));
     }
-    // As it comes, so that a length alone needs no memory.
+    // Read as it arrives, so that a length alone needs no memory.
     let mut bytes = Vec::new();
     from.take(u64::from(length)).read_to_end(&mut bytes)?;
     if bytes.len() < length as usize {

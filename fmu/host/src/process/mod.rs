@@ -1,19 +1,19 @@
-//! An FMU in a process of its own: it can crash, hang, end the process and print what it likes, and
-//! who steps it gets an error that says which.
+//! An FMU in a process of its own: it can crash, hang, end the process and print without harm, and
+//! the caller gets an error that names the case.
 //!
 //! | module | idea |
 //! |---|---|
-//! | `message` | what the two processes say to each other, over a socket |
-//! | `shared` | memory of both, through which an exchange goes |
-//! | `watch` | the child: how long it may take, and how it ended |
+//! | `message` | messages between the two processes, over a socket |
+//! | `shared` | memory of both processes, for exchanges |
+//! | `watch` | the child process: its time limit, and its end |
 //! | `remote` | the FMU seen from this process |
 //! | [`host`] | the other process: `octant fmu host` |
 //!
 //! The other process gets its end of the socket as standard input and the shared memory as standard
-//! output, and moves both away before it loads anything: what the FMU reads is empty, and what it
-//! prints goes to standard error. An exchange is one way there and back through shared memory, for
-//! which both sides look a while before they sleep; everything else goes over the socket. When this
-//! process ends, however it does, the socket closes, and the other process ends too.
+//! output, and moves both away before it loads anything: standard input is then empty for the FMU,
+//! and its output goes to standard error. An exchange is one round trip through shared memory, for
+//! which both sides poll a while before they sleep; everything else goes over the socket. When this
+//! process ends, for whatever reason, the socket closes, and the other process ends too.
 
 #[cfg(target_os = "linux")]
 pub mod host;

@@ -14,7 +14,7 @@ use std::os::unix::net::UnixStream;
 use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 
-/// Different exchanges that go through shared memory; more go over the socket.
+/// Largest number of different exchanges through shared memory; more go over the socket.
 const PLANS_MAX: usize = 64;
 
 /// An FMU in another process.
@@ -28,7 +28,7 @@ struct Remote {
     plans: Vec<(Vec<Group>, Vec<Group>)>,
     start_limit: Duration,
     time_limit: Duration,
-    /// Goes after the process.
+    /// Dropped after the process.
     _folder: Unpacked,
 }
 
@@ -43,7 +43,7 @@ pub(crate) fn open(
         fmu: name.into(),
         what: format!("can't be started: {e}"),
     };
-    // Room for all variables at once. Where a size isn't known, there is the least.
+    // Room for all variables at once; for unknown sizes the smallest.
     let numbers = description
         .variables
         .iter()
@@ -76,11 +76,11 @@ pub(crate) fn open(
     Ok(Box::new(remote))
 }
 
-/// Reads until a time, and stops where the process is gone.
+/// Reader with a deadline, which stops when the process has ended.
 struct Patient<'a> {
     remote: &'a mut Remote,
     until: Instant,
-    /// Why it stopped.
+    /// Reason why it stopped.
     error: Option<InstanceError>,
     limit: Duration,
     request: &'a str,
@@ -108,7 +108,7 @@ impl Read for Patient<'_> {
 }
 
 impl Remote {
-    /// The next message; `None`: it only woke this process.
+    /// Reads the next message; `None`: it only woke this process.
     fn hear(
         &mut self,
         request: &str,
@@ -125,7 +125,7 @@ impl Remote {
         }
     }
 
-    /// One request over the socket, and its answer.
+    /// Sends one request over the socket, and reads its answer.
     fn ask(&mut self, request: &Request) -> Result<Answer, InstanceError> {
         self.watch.gone()?;
         let (what, limit) = match request {
@@ -136,7 +136,7 @@ impl Remote {
             Request::Step { .. } => ("a step", self.time_limit),
             _ => ("a call", self.time_limit),
         };
-        // Which tells a child that looks at the memory to look at the socket.
+        // Tells a child that polls the memory to read the socket.
         self.shared.word(Word::Plan).store(u64::MAX, Ordering::Relaxed);
         self.shared.word(Word::Request).fetch_add(1, Ordering::Release);
         if let Err(e) = message::write(&mut self.socket, request) {
@@ -150,7 +150,7 @@ impl Remote {
         }
     }
 
-    /// An answer of another kind than the request.
+    /// Error for an answer that doesn't fit the request.
     fn confused<T>(&mut self) -> Result<T, InstanceError> {
         Err(self.watch.lost(&self.shared, &io::Error::other("an answer to another question")))
     }
@@ -176,7 +176,7 @@ impl Remote {
         }
     }
 
-    /// The number of an exchange with these groups; `None`: it doesn't go through shared memory.
+    /// Number of an exchange with these groups; `None`: it doesn't go through shared memory.
     fn plan(&mut self, set: &[Group], get: &[Group]) -> Result<Option<usize>, InstanceError> {
         if let Some(plan) = self.plans.iter().position(|(a, b)| a == set && b == get) {
             return Ok(Some(plan));
@@ -196,7 +196,7 @@ impl Remote {
         Ok(Some(self.plans.len() - 1))
     }
 
-    /// Waits for the answer to an exchange; true: it succeeded.
+    /// Waits for the answer to an exchange; returns true if it succeeded.
     fn wait(&mut self, before: u64) -> Result<bool, InstanceError> {
         if !self.spin.until_changed(self.shared.word(Word::Answer), before) {
             // Either the child sees that this process sleeps, or this process sees the answer.
@@ -256,7 +256,7 @@ impl Instance for Remote {
         shared.word(Word::Time).store(time_s.to_bits(), Ordering::Relaxed);
         shared.word(Word::Step).store(step_s.to_bits(), Ordering::Relaxed);
         let before = shared.word(Word::Answer).load(Ordering::Relaxed);
-        // Either the child sees the request, or this process sees that it sleeps.
+        // Either the child sees the request, or this process sees that the child sleeps.
         shared.word(Word::Request).fetch_add(1, Ordering::SeqCst);
         if shared.word(Word::ChildSleeps).load(Ordering::SeqCst) != 0
             && let Err(e) = message::wake(&mut self.socket)
@@ -397,7 +397,7 @@ impl Instance for Remote {
         self.done(&Request::Terminate)
     }
 
-    /// None come from a process that is gone.
+    /// Returns no messages from a process that has ended.
     fn messages(&mut self) -> Vec<Message> {
         if self.watch.gone().is_err()
             || self.shared.word(Word::MessagesWait).load(Ordering::Relaxed) == 0
@@ -411,7 +411,7 @@ impl Instance for Remote {
     }
 }
 
-/// An exchange whose numbers don't go through shared memory.
+/// Makes an exchange whose numbers don't go through shared memory.
 fn by_parts(
     remote: &mut Remote,
     set: &[Group],
@@ -438,7 +438,7 @@ fn by_parts(
 impl Drop for Remote {
     fn drop(&mut self) {
         if self.watch.gone().is_ok() {
-            // It frees the FMU and ends; if it doesn't, it is ended.
+            // The child frees the FMU and ends; if it doesn't, it is killed.
             self.shared.word(Word::Plan).store(u64::MAX, Ordering::Relaxed);
             self.shared.word(Word::Request).fetch_add(1, Ordering::Release);
             let _ = message::write(&mut self.socket, &Request::Quit);

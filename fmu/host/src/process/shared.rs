@@ -1,5 +1,5 @@
-//! Memory of both processes, through which an exchange goes. It is atomic numbers alone: whatever the
-//! other process writes there, and whenever, is a number.
+//! Memory of both processes, for exchanges. It consists of atomic numbers: anything that the other
+//! process writes there, at any time, is a valid number.
 #![allow(unsafe_code, reason = "memory is mapped")]
 
 use rustix::fs::{MemfdFlags, SealFlags};
@@ -11,13 +11,13 @@ use std::ptr::{self, NonNull};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
-/// Words before the numbers. What one side writes has cache lines of its own.
+/// Number of words before the numbers. The words that one side writes have their own cache lines.
 const HEAD: usize = 32;
 
-/// In the first word: what memory this is.
+/// Magic in the first word.
 const MAGIC: u64 = u64::from_le_bytes(*b"octant1\0");
 
-/// Numbers each way, at least and at most.
+/// Smallest and largest capacity in each direction, numbers.
 const NUMBERS_MIN: usize = 1 << 10;
 const NUMBERS_MAX: usize = 1 << 20;
 
@@ -32,29 +32,29 @@ unsafe impl Send for Shared {}
 // SAFETY: as above.
 unsafe impl Sync for Shared {}
 
-/// The words of the head.
+/// Words of the head.
 #[derive(Clone, Copy)]
 pub(super) enum Word {
     Magic = 0,
-    // The parent writes these.
+    // Written by the parent.
     Request = 8,
     Plan,
     Time,
     Step,
     ParentSleeps,
-    // The child writes these.
+    // Written by the child.
     Answer = 16,
     Outcome,
     Reached,
     ChildSleeps,
     MessagesWait,
-    // And this at every call.
+    // Written by the child at every call.
     Function = 24,
 }
 
 impl Shared {
-    /// Memory for so many numbers each way, and its file. No one can change its size: it would end
-    /// this process.
+    /// Allocates memory for a number of numbers in each direction, and its file. The size is
+    /// sealed: a change would end this process.
     pub(super) fn create(numbers: usize) -> io::Result<(Self, OwnedFd)> {
         let numbers = numbers.clamp(NUMBERS_MIN, NUMBERS_MAX);
         let count = HEAD + 2 * numbers;
@@ -69,7 +69,7 @@ impl Shared {
         Ok((shared, file))
     }
 
-    /// The memory of a file that [`Self::create`] made.
+    /// Maps a file that [`Self::create`] made.
     pub(super) fn open(file: impl AsFd) -> io::Result<Self> {
         let bytes = rustix::fs::fstat(&file)?.st_size;
         let count = usize::try_from(bytes).unwrap_or(0) / 8;
@@ -146,10 +146,11 @@ pub(super) fn take(from: &[AtomicU64], numbers: &mut [f64]) {
     }
 }
 
-/// Looks at a word for as long as looking is cheaper than sleeping.
+/// Polls a word for as long as polling is cheaper than sleeping.
 ///
-/// Where the other side has no processor to answer on, looking only keeps it from getting one: each look in
-/// vain halves the next, down to none, and one look in [`TRY_AGAIN`] finds out whether that has changed.
+/// If the other side has no processor on which to answer, polling only keeps it from getting one:
+/// each failed poll halves the next, down to none, and one poll in [`TRY_AGAIN`] tests whether that
+/// has changed.
 pub(super) struct Spin {
     patience: Duration,
     since_in_vain: u32,
@@ -160,7 +161,7 @@ impl Spin {
         Self { patience: if *SPINS { SPIN } else { Duration::ZERO }, since_in_vain: 0 }
     }
 
-    /// Looks at a word until it isn't `old`; false: it still was when patience ended.
+    /// Polls a word until it isn't `old`; returns false if it still was at the end of the time.
     pub(super) fn until_changed(&mut self, word: &AtomicU64, old: u64) -> bool {
         if self.patience < SPIN && *SPINS {
             self.since_in_vain += 1;
@@ -201,13 +202,14 @@ fn changes_within(word: &AtomicU64, old: u64, patience: Duration) -> bool {
     }
 }
 
-/// How long a side looks before it sleeps: some times what sleeping and waking costs.
+/// Longest time for which a side polls before it sleeps: a multiple of the cost of sleeping and
+/// waking.
 const SPIN: Duration = Duration::from_micros(50);
 
-/// Exchanges without patience before it is tried anew.
+/// Number of exchanges without polling before the next attempt.
 const TRY_AGAIN: u32 = 64;
 
-/// With one processor nothing changes while one looks.
+/// With one processor nothing can change while one side polls.
 static SPINS: std::sync::LazyLock<bool> = std::sync::LazyLock::new(|| {
     std::thread::available_parallelism().is_ok_and(|processors| processors.get() > 1)
 });

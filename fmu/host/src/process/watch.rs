@@ -1,4 +1,4 @@
-//! The child: how it is started, how long it may take, and how it ended.
+//! The child process: its start, its time limit, and its end.
 
 use super::super::instance::call::{NOWHERE, function_name};
 use super::super::instance::{InstanceError, Options};
@@ -13,11 +13,11 @@ use std::process::{Child, ExitStatus, Stdio};
 use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 
-/// While it waits for an answer, this process looks so often whether the child still lives: its end of
-/// the socket may live on in a process that the FMU started.
+/// Interval at which this process, while it waits for an answer, checks that the child still lives:
+/// the child's end of the socket may stay open in a process that the FMU started.
 pub(super) const LOOK: Duration = Duration::from_millis(100);
 
-/// The process of an FMU.
+/// Process of an FMU.
 pub(super) struct Watch {
     name: String,
     child: Child,
@@ -25,7 +25,7 @@ pub(super) struct Watch {
 }
 
 impl Watch {
-    /// Starts the program that holds the FMU.
+    /// Starts the program that hosts the FMU.
     pub(super) fn start(
         name: &str,
         options: &Options,
@@ -42,19 +42,19 @@ impl Watch {
             .stdin(Stdio::from(OwnedFd::from(socket)))
             .stdout(Stdio::from(memory))
             .stderr(Stdio::inherit())
-            // Ctrl-C on the terminal is for this process, which ends the run in order.
+            // Ctrl-C on the terminal is for this process only, which ends the run in order.
             .process_group(0)
             .spawn()
             .map_err(|e| cannot(format!("can't be started: {}: {e}", program.display())))?;
         Ok(Self { name: name.into(), child, ended: None })
     }
 
-    /// Why it is gone, if it is.
+    /// Returns the reason why the child has ended, if it has.
     pub(super) fn gone(&self) -> Result<(), InstanceError> {
         self.ended.clone().map_or(Ok(()), Err)
     }
 
-    /// The end of the child, if it came by itself.
+    /// Checks whether the child has ended by itself.
     pub(super) fn look(&mut self, shared: &Shared) -> Option<InstanceError> {
         if self.ended.is_none()
             && let Ok(Some(status)) = self.child.try_wait()
@@ -64,7 +64,7 @@ impl Watch {
         self.ended.clone()
     }
 
-    /// The child closed its end or speaks another language: it is on its way out, or is helped.
+    /// Ends a child that closed its end or sent an invalid answer; it has 2 s to end by itself.
     pub(super) fn lost(&mut self, shared: &Shared, why: &io::Error) -> InstanceError {
         let until = Instant::now() + Duration::from_secs(2);
         while Instant::now() < until {
@@ -79,7 +79,7 @@ impl Watch {
         error
     }
 
-    /// The child took too long.
+    /// Handles a child that exceeded the time limit.
     pub(super) fn hangs(
         &mut self,
         shared: &Shared,
@@ -99,7 +99,7 @@ impl Watch {
         error
     }
 
-    /// Waits for the end that it was asked for; else makes it.
+    /// Waits for the end that was requested; otherwise kills the child.
     pub(super) fn finish(&mut self, limit: Duration) {
         let until = Instant::now() + limit;
         let mut pause = Duration::from_micros(50);
@@ -115,12 +115,12 @@ impl Watch {
         }
     }
 
-    /// Ends it and what it started.
+    /// Kills the child and the processes that it started.
     fn kill(&mut self) {
         if let Ok(pid) = i32::try_from(self.child.id())
             && let Some(group) = Pid::from_raw(pid)
         {
-            // It is a child that wasn't waited for: nobody else has its number.
+            // The child hasn't been waited for, so that its number isn't used by another process.
             let _ = kill_process_group(group, Signal::KILL);
         }
         let _ = self.child.wait();
@@ -132,8 +132,8 @@ impl Watch {
     }
 }
 
-/// This program, or, where the library is used by another, the `octant` beside it: in its folder, or
-/// in the one above, where Cargo puts it for tests.
+/// Finds the program: this one, or, if the library is used by another program, the `octant` beside
+/// it: in its folder, or in the one above, where Cargo puts it for tests.
 fn octant() -> io::Result<PathBuf> {
     let program = std::env::current_exe()?;
     if program.file_name().is_some_and(|name| name == "octant") {
@@ -146,13 +146,13 @@ fn octant() -> io::Result<PathBuf> {
         .ok_or_else(|| io::Error::other(format!("there is no octant beside {}", program.display())))
 }
 
-/// The function in which it is, or was when it ended.
+/// Function in which the child is, or was when it ended.
 fn function(shared: &Shared) -> Option<&'static str> {
     let number = u32::try_from(shared.word(Word::Function).load(Ordering::Relaxed)).ok()?;
     (number != NOWHERE).then(|| function_name(number)).flatten()
 }
 
-/// How a process ended.
+/// Describes the end of a process.
 fn describe(status: ExitStatus) -> String {
     let Some(signal) = status.signal() else {
         let code = status.code().unwrap_or(-1);

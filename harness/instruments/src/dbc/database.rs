@@ -1,11 +1,11 @@
-//! A CAN database as a file.
+//! CAN databases (DBC files).
 
 use super::Problem;
 use can_dbc::{Dbc, DbcError, Message, MessageId, Signal, SignalExtendedValueType};
 use std::format;
 use std::string::{String, ToString};
 
-/// A DBC file that was read.
+/// A parsed DBC file.
 #[derive(Clone, Debug)]
 pub struct Database {
     pub(super) file: String,
@@ -14,10 +14,10 @@ pub struct Database {
 }
 
 impl Database {
-    /// Reads a database; `file` is its name, for messages.
+    /// Parses a database; `file` is its name in messages.
     ///
     /// # Errors
-    /// If it is none: with file and line.
+    /// If the text is no database, with file and line.
     pub fn parse(file: &str, text: &str) -> Result<Self, Problem> {
         let dbc = Dbc::try_from(text).map_err(|error| {
             let (line, what) = said(&error, text);
@@ -27,7 +27,7 @@ impl Database {
         Ok(Self { file: file.into(), dbc, text: text.into() })
     }
 
-    /// File and line of a message, or of a signal of it.
+    /// File and line of a message, or of one of its signals.
     pub(super) fn place(&self, message: &Message, signal: Option<&str>) -> String {
         let id = message.id.raw().to_string();
         let mut inside = false;
@@ -52,7 +52,7 @@ impl Database {
         self.file.clone()
     }
 
-    /// How the bits of a signal are to be read: as an IEEE float of 32 or 64 bits, or as an integer.
+    /// Type of a signal's bits: an IEEE float of 32 or 64 bits, or an integer.
     pub(super) fn value_type(&self, id: MessageId, signal: &Signal) -> SignalExtendedValueType {
         self.dbc
             .signal_extended_value_type_list
@@ -68,14 +68,14 @@ impl Database {
 fn said(error: &DbcError, text: &str) -> (Option<usize>, String) {
     let words = error.to_string();
     if matches!(error, DbcError::Pest(_)) {
-        // The parser says ` --> line:column`, the line itself, a mark, and ` = what`.
+        // The parser's text has ` --> line:column`, the line itself, a mark, and ` = what`.
         let line = words
             .split_once("-->")
             .and_then(|(_, rest)| rest.trim_start().split(':').next()?.parse().ok());
         let what = words.rsplit_once("= ").map_or(words.as_str(), |(_, what)| what);
         return (line, what.trim().to_string());
     }
-    // A value that is out of range is named, and stands in the file.
+    // A value out of range is quoted in the text, and its line is found in the file.
     let line = words.split('\'').nth(1).and_then(|value| {
         text.lines().position(|line| !value.is_empty() && line.contains(value)).map(|at| at + 1)
     });

@@ -1,4 +1,4 @@
-//! Messages to readings.
+//! Readings from CAN messages.
 
 use super::signal::{Extract, Named};
 use super::units::Quantity;
@@ -11,21 +11,21 @@ use std::format;
 use std::string::String;
 use std::vec::Vec;
 
-/// A frame as it came from a bus.
+/// A frame from a bus.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CanFrame<'a> {
     /// Identifier.
     pub id: u32,
-    /// It has 29 bits.
+    /// True for an identifier of 29 bits.
     pub extended: bool,
     /// Data.
     pub data: &'a [u8],
 }
 
-/// What came so far.
+/// Counts of the traffic so far.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct CanCounters {
-    /// Frames, all of them.
+    /// All frames.
     pub frames: u64,
     /// Frames with messages that the mapping doesn't name.
     pub other: u64,
@@ -33,20 +33,20 @@ pub struct CanCounters {
     pub readings: u64,
     /// Frames shorter than their message.
     pub short: u64,
-    /// Readings of which a message is missing.
+    /// Readings with a missing message.
     pub incomplete: u64,
     /// Messages whose reading had not begun, or was given up.
     pub orphaned: u64,
     /// Readings whose messages had different counters.
     pub mixed: u64,
-    /// Readings that never came, by gaps in their sequence.
+    /// Missing readings, from gaps in their sequence.
     pub missing: u64,
-    /// Readings that came again or too late, or a unit that was switched on anew.
+    /// Readings repeated or too late, or restarts of the unit.
     pub behind: u64,
 }
 
 impl CanCounters {
-    /// Nothing is lost, damaged, missing or doubled.
+    /// True if nothing was lost, damaged, missing or repeated.
     #[must_use]
     pub fn is_clean(&self) -> bool {
         let Self { frames, other, readings, .. } = *self;
@@ -54,7 +54,7 @@ impl CanCounters {
     }
 }
 
-/// Where a value goes.
+/// Destination of a value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Channel {
     Rotation(usize),
@@ -76,7 +76,7 @@ struct Source {
     values: Vec<(Channel, Extract)>,
 }
 
-/// Time from a counter.
+/// Time of a counter.
 #[derive(Clone, Copy, Debug)]
 struct Ticks {
     counter: Rollover,
@@ -87,7 +87,7 @@ impl Ticks {
     fn ns(&mut self, raw: u64) -> u64 {
         let ticks = self.counter.continued(raw);
         let whole = libm::rint(self.tick_ns);
-        // An integer of nanoseconds stays exact however long it runs.
+        // A whole number of nanoseconds stays exact for any length of time.
         if (whole - self.tick_ns).abs() < 1e-9 * whole && whole >= 1.0 {
             ticks.saturating_mul(whole as u64)
         } else {
@@ -96,7 +96,7 @@ impl Ticks {
     }
 }
 
-/// Puts readings together from messages. Receiving allocates nothing.
+/// Gathers readings from messages. Receiving allocates nothing.
 #[derive(Clone, Debug)]
 pub struct Gatherer {
     sources: Vec<Source>,
@@ -105,9 +105,9 @@ pub struct Gatherer {
     valid_equals: u64,
     sequence: Option<Rollover>,
     stamp: Option<Ticks>,
-    /// Which message is next.
+    /// Index of the next message expected.
     next: usize,
-    /// The reading as far as it came.
+    /// Values of the reading so far.
     reading: Reading,
     gimbal: [Option<f64>; 2],
     counter: Option<u64>,
@@ -116,7 +116,7 @@ pub struct Gatherer {
     counters: CanCounters,
 }
 
-/// What a mapping asks for, as far as it was looked up.
+/// A mapping with the signals looked up so far.
 struct Lookup<'a> {
     database: &'a Database,
     mapping: &'a Mapping,
@@ -196,10 +196,10 @@ impl<'a> Lookup<'a> {
         Ok(named)
     }
 
-    /// Puts the messages in the order in which they come.
+    /// Sorts the messages by their order on the bus.
     fn in_order(&mut self) -> Result<(), Problem> {
         let Some(order) = &self.mapping.order else {
-            // The lower identifier goes first; of the same number that with 11 bits.
+            // The lower identifier comes first; of equal numbers the one with 11 bits.
             self.sources.sort_by_key(|source| match source.id {
                 MessageId::Standard(id) => (u32::from(id) << 18, false),
                 MessageId::Extended(id) => (id, true),
@@ -230,10 +230,10 @@ impl<'a> Lookup<'a> {
 }
 
 impl Gatherer {
-    /// For a database and a mapping.
+    /// Makes a gatherer for a database and a mapping.
     ///
     /// # Errors
-    /// If a message or signal isn't there, a signal doesn't fit its message, or a unit is missing,
+    /// If a message or signal doesn't exist, a signal doesn't fit its message, or a unit is missing, is
     /// unsuitable or contradicts the database.
     pub fn new(database: &Database, mapping: &Mapping) -> Result<Self, Problem> {
         let mut lookup = Lookup { database, mapping, sources: Vec::new(), names: Vec::new() };
@@ -297,7 +297,7 @@ impl Gatherer {
         })
     }
 
-    /// Identifiers of the messages, with 29 bits or 11: what a filter of the bus has to let pass.
+    /// Identifiers of the messages, and true for 29 bits: the filter of the bus has to pass them.
     pub fn identifiers(&self) -> impl Iterator<Item = (u32, bool)> + '_ {
         self.sources.iter().map(|source| match source.id {
             MessageId::Standard(id) => (id.into(), false),
@@ -305,13 +305,13 @@ impl Gatherer {
         })
     }
 
-    /// What came so far.
+    /// Counts of the traffic so far.
     #[must_use]
     pub fn counters(&self) -> &CanCounters {
         &self.counters
     }
 
-    /// Takes a frame; the reading that it completes.
+    /// Takes a frame, and returns the reading that it completes.
     pub fn receive(&mut self, frame: &CanFrame<'_>) -> Option<Reading> {
         self.counters.frames += 1;
         let found = self.sources.iter().position(|source| match source.id {
@@ -355,7 +355,7 @@ impl Gatherer {
         Some(self.complete())
     }
 
-    /// What was gathered is no reading.
+    /// Drops an incomplete reading.
     fn give_up(&mut self) {
         if self.next > 0 {
             self.counters.incomplete += 1;
@@ -379,7 +379,8 @@ impl Gatherer {
                 }
                 Channel::Azimuth => self.gimbal[0] = Some(extract.value(data)),
                 Channel::Roll => self.gimbal[1] = Some(extract.value(data)),
-                // Continued when the reading is whole: one that is given up moves no counter.
+                // The raw number is continued when the reading is complete: a dropped reading moves no
+                // counter.
                 Channel::Sequence => reading.sequence = Some(extract.raw(data)),
                 Channel::Stamp => {
                     reading.stamp = Some(Stamp { ns: extract.raw(data), clock: Clock::Startup });

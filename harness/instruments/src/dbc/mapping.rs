@@ -1,4 +1,4 @@
-//! Which signals are which channels.
+//! Mapping of signals to channels.
 
 use super::Problem;
 use std::string::{String, ToString};
@@ -8,15 +8,15 @@ use std::vec::Vec;
 #[derive(Clone, Debug, PartialEq, serde::Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Three {
-    /// Signal of the unit's x axis, `Message.signal`, with a minus where it points the other way.
+    /// Signal of the unit's x axis, `Message.signal`, with a minus if it points the other way.
     pub x: String,
     /// Signal of y.
     pub y: String,
     /// Signal of z.
     pub z: String,
-    /// Unit, where the database has none.
+    /// Unit, if the database has none.
     pub unit: Option<String>,
-    /// What the values are multiplied with beside their unit.
+    /// Factor of the values, beside their unit.
     pub scale: Option<f64>,
 }
 
@@ -28,7 +28,7 @@ pub struct Gimbal {
     pub azimuth: String,
     /// Signal of the outer gimbal.
     pub roll: String,
-    /// Unit, where the database has none.
+    /// Unit, if the database has none.
     pub unit: Option<String>,
 }
 
@@ -38,21 +38,21 @@ pub struct Gimbal {
 pub struct One {
     /// The signal.
     pub signal: String,
-    /// Unit, where the database has none.
+    /// Unit, if the database has none.
     pub unit: Option<String>,
 }
 
-/// A signal that says whether a reading can be used.
+/// A signal that tells whether a reading is valid.
 #[derive(Clone, Debug, PartialEq, serde::Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Valid {
     /// The signal.
     pub signal: String,
-    /// What it is when the reading can be used.
+    /// Value of the signal for a valid reading.
     pub equals: u64,
 }
 
-/// Which signals are which channels.
+/// Mapping of signals to channels.
 #[derive(Clone, Debug, PartialEq, serde::Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Mapping {
@@ -65,7 +65,7 @@ pub struct Mapping {
     pub velocity: Three,
     /// Angles of the gimbals.
     pub gimbal: Option<Gimbal>,
-    /// A counter of the readings; it may roll over.
+    /// Counter of the readings; it may roll over.
     pub sequence: Option<One>,
     /// Time of the unit at the end of the interval; it may roll over.
     pub stamp: Option<One>,
@@ -73,9 +73,9 @@ pub struct Mapping {
     pub interval: Option<One>,
     /// Temperature of the unit.
     pub temperature: Option<One>,
-    /// Whether the reading can be used.
+    /// Validity of the reading.
     pub valid: Option<Valid>,
-    /// Order in which the messages of a reading come; without it that of their identifiers.
+    /// Order of the messages of a reading; by default, that of their identifiers.
     pub order: Option<Vec<String>>,
     /// Signals that are equal in all messages of a reading.
     #[serde(default)]
@@ -83,10 +83,10 @@ pub struct Mapping {
 }
 
 impl Mapping {
-    /// Reads a mapping; `file` is its name, for messages.
+    /// Parses a mapping; `file` is its name in messages.
     ///
     /// # Errors
-    /// If it is none: with file, line and key.
+    /// If the text is no mapping, with file, line and key.
     pub fn parse(file: &str, text: &str) -> Result<Self, Problem> {
         let mapping: Self = toml::from_str(text).map_err(|error| {
             let line = error.span().map(|span| 1 + text[..span.start].matches('\n').count());

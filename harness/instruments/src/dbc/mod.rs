@@ -1,7 +1,6 @@
 //! Any inertial unit on a CAN bus, by its database (DBC) and a mapping.
 //!
-//! A [`Database`] is the maker's DBC file. A [`Mapping`] says which of its signals are which channels, in
-//! TOML:
+//! A [`Database`] is the maker's DBC file. A [`Mapping`] assigns its signals to channels, in TOML:
 //!
 //! ```toml
 //! rotation = { x = "Gyro.rate_x", y = "Gyro.rate_y", z = "-Gyro.rate_z", unit = "deg/s" }
@@ -11,12 +10,13 @@
 //! counters = ["Gyro.counter", "Accel.counter"]
 //! ```
 //!
-//! A signal is `Message.signal`; a minus before it turns the axis. A unit is needed where the database has
-//! none, and may not contradict it. Angles and velocities are increments, rates and accelerations means.
+//! A signal is `Message.signal`; a minus before it reverses the axis. A unit is needed if the database
+//! has none, and must not contradict it. Angles and velocities are increments, rates and accelerations
+//! means.
 //!
-//! A reading is complete when each of its messages came, once and in order: that of `order`, or of their
-//! identifiers, which is how a bus delivers what is queued together. A message that is missing costs
-//! the reading, and where all have a counter (`counters`) no reading mixes two samples.
+//! A reading is complete when each of its messages has arrived, once and in order: that of `order`, or
+//! of the identifiers, in which a bus delivers messages that are queued together. A missing message
+//! costs the reading. If all messages have a counter (`counters`), no reading mixes two samples.
 
 mod database;
 mod gather;
@@ -30,12 +30,12 @@ pub use mapping::{Gimbal, Mapping, One, Three, Valid};
 
 use std::string::String;
 
-/// What is wrong with a database or a mapping.
+/// Error in a database or a mapping.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{place}: {what}")]
 pub struct Problem {
     /// File with line, or key of the mapping.
     pub place: String,
-    /// What is wrong, and what was expected.
+    /// Error, with the expected form.
     pub what: String,
 }

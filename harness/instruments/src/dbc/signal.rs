@@ -1,4 +1,4 @@
-//! The bits of a signal.
+//! Bits of a signal.
 
 use super::units::{self, Quantity};
 use super::{Database, Mapping, Problem};
@@ -7,7 +7,7 @@ use std::format;
 use std::string::{String, ToString};
 use std::vec::Vec;
 
-/// What the bits are.
+/// Type of the bits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Bits {
     Unsigned,
@@ -16,12 +16,12 @@ enum Bits {
     Double,
 }
 
-/// Where a value stands in the data of a message, and what it means.
+/// Position of a value in the data of a message, and its scale.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Extract {
-    /// First byte that is looked at.
+    /// First byte read.
     byte: usize,
-    /// Bits to the right of the value in the 16 bytes from there, in their order.
+    /// Number of bits to the right of the value in the 16 bytes from there, in their order.
     shift: u32,
     little_endian: bool,
     /// Length in bits, 1 to 64.
@@ -33,7 +33,7 @@ pub(super) struct Extract {
 }
 
 impl Extract {
-    /// The number in the bits as they stand.
+    /// Raw number in the bits.
     #[inline]
     pub(super) fn raw(&self, data: &[u8]) -> u64 {
         let mut window = [0; 16];
@@ -48,13 +48,13 @@ impl Extract {
         (all >> self.shift) as u64 & (u64::MAX >> (64 - self.size))
     }
 
-    /// The value in SI units.
+    /// Value in SI units.
     #[inline]
     pub(super) fn value(&self, data: &[u8]) -> f64 {
         let raw = self.raw(data);
         let number = match self.bits {
             Bits::Unsigned => raw as f64,
-            // The sign bit to the top and back.
+            // Shifts the sign bit to the top and back.
             Bits::Signed => (((raw << (64 - self.size)) as i64) >> (64 - self.size)) as f64,
             Bits::Float => f64::from(f32::from_bits(raw as u32)),
             Bits::Double => f64::from_bits(raw),
@@ -62,19 +62,19 @@ impl Extract {
         number * self.factor + self.offset
     }
 
-    /// What one count is worth, where there are counts.
+    /// Value of one count, for integers.
     pub(super) fn lsb(&self) -> Option<f64> {
         let counts = matches!(self.bits, Bits::Unsigned | Bits::Signed) && self.offset == 0.0;
         counts.then_some(self.factor.abs())
     }
 
-    /// The bits are those of an unsigned integer which is the value itself.
+    /// True if the bits are an unsigned integer without offset and with a positive factor.
     pub(super) fn is_counter(&self) -> bool {
         self.bits == Bits::Unsigned && self.offset == 0.0 && self.factor > 0.0
     }
 }
 
-/// A signal that a mapping names.
+/// A signal named by a mapping.
 pub(super) struct Named<'a> {
     pub(super) message: &'a Message,
     signal: &'a Signal,
@@ -86,7 +86,7 @@ pub(super) struct Named<'a> {
 }
 
 impl<'a> Named<'a> {
-    /// Finds a signal by `Message.signal`, with a minus before it for the opposite.
+    /// Finds a signal by `Message.signal`, reversed by a minus before it.
     pub(super) fn find(
         database: &'a Database,
         mapping: &'a Mapping,
@@ -129,7 +129,8 @@ impl<'a> Named<'a> {
         Problem { place: format!("{}: {}", self.mapping, self.key), what }
     }
 
-    /// Gives the value its unit: that of the database, or the given one, which may not contradict it.
+    /// Sets the unit of the value: that of the database, or the given one, which must not contradict
+    /// it.
     pub(super) fn in_unit(
         &mut self,
         given: Option<&str>,
@@ -173,7 +174,7 @@ impl<'a> Named<'a> {
         Ok(unit.0)
     }
 
-    /// The value has to be a counter: an unsigned integer.
+    /// Checks that the value is a counter: an unsigned integer.
     pub(super) fn counter(&self) -> Result<(), Problem> {
         if self.extract.is_counter() {
             return Ok(());
@@ -185,7 +186,7 @@ impl<'a> Named<'a> {
     }
 }
 
-/// How a signal is taken from the data; else what is wrong with it.
+/// Position and scale of a signal in the data, or the error in it.
 fn extract(
     database: &Database,
     message: &Message,
@@ -222,7 +223,7 @@ fn extract(
         return Err(format!("is in a message of {} bytes, a frame has at most 64", message.size));
     }
     let little_endian = signal.byte_order == ByteOrder::LittleEndian;
-    // Of a big-endian signal the start is its highest bit, counted from the low end of its byte.
+    // The start of a big-endian signal is its highest bit, counted from the low end of its byte.
     let first = if little_endian {
         Some(start)
     } else {

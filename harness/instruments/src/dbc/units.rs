@@ -1,6 +1,6 @@
-//! Units that signals have.
+//! Units of signals.
 
-/// What a unit measures.
+/// Quantity that a unit measures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Quantity {
     Angle,
@@ -11,7 +11,7 @@ pub(super) enum Quantity {
     Temperature,
 }
 
-/// A unit: what it measures, and what one is in SI units (°C for temperatures).
+/// A unit: its quantity, and its size in SI units (°C for temperatures).
 pub(super) type Unit = (Quantity, f64);
 
 const DEGREE_RAD: f64 = core::f64::consts::PI / 180.0;
@@ -42,12 +42,12 @@ const UNITS: [(&[&str], Unit); 21] = [
     (&["degC", "°C", "C"], (Quantity::Temperature, 1.0)),
 ];
 
-/// The unit of a text.
+/// Unit of a text.
 pub(super) fn unit(text: &str) -> Option<Unit> {
     UNITS.iter().find(|(names, _)| names.contains(&text)).map(|(_, unit)| *unit)
 }
 
-/// What units of some quantities are called.
+/// Names of the units of some quantities.
 pub(super) fn names(quantities: &[Quantity]) -> std::string::String {
     let of = UNITS.iter().filter(|(_, (quantity, _))| quantities.contains(quantity));
     let names: std::vec::Vec<&str> = of.map(|(names, _)| names[0]).collect();

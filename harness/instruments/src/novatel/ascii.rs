@@ -1,21 +1,22 @@
-//! The log as a line of text.
+//! ASCII form of the log, a line of text.
 
-use super::RawImu;
+use super::raw::RawImu;
 use crate::checksum;
 use crate::framing::{Cause, Extent};
 use core::fmt::{self, Write};
 
-/// A line with the short header begins with it.
+/// First byte of a line with the short header.
 pub(super) const BEGIN: u8 = b'%';
-/// Then comes the CRC.
+/// Separator before the CRC.
 const MARK: u8 = b'*';
 const CRC_DIGITS: usize = 8;
-/// With the end of the line.
+/// CRC digits and end of the line, bytes.
 const TAIL_BYTES: usize = CRC_DIGITS + END.len();
 const END: &str = "\r\n";
 const NAME: &str = "RAWIMUSXA";
 
-/// From `%` to the CRC: printable characters, the mark, eight digits, end of the line.
+/// Length from `%` to the end of the line: printable characters, the separator, eight digits, CR and
+/// LF.
 pub(super) fn extent(bytes: &[u8], most: usize) -> Extent {
     let printable = |byte: &u8| (0x20..0x7F).contains(byte);
     let text = bytes.iter().position(|byte| *byte == MARK || !printable(byte));
@@ -25,18 +26,18 @@ pub(super) fn extent(bytes: &[u8], most: usize) -> Extent {
         }
         Some(_) => Extent::None,
         None if bytes.len() + TAIL_BYTES >= most => Extent::None,
-        // The mark at least, and what follows it.
+        // At least the separator and the bytes after it are missing.
         None => Extent::Open(1 + TAIL_BYTES),
     }
 }
 
-/// The log in a line.
+/// Reads the log from a line.
 pub(super) fn read(frame: &[u8]) -> Result<Option<RawImu>, Cause> {
     let text = core::str::from_utf8(frame).map_err(|_| Cause::Malformed)?;
     let text = text.strip_prefix(char::from(BEGIN)).ok_or(Cause::Malformed)?;
     let text = text.strip_suffix(END).ok_or(Cause::Malformed)?;
     let (text, digits) = text.split_once('*').ok_or(Cause::Malformed)?;
-    // A sign is no digit, though it is parsed as one.
+    // A sign must be refused here, because the number parser accepts it.
     if !digits.bytes().all(|digit| digit.is_ascii_hexdigit()) {
         return Err(Cause::Malformed);
     }
@@ -78,7 +79,7 @@ pub(super) fn read(frame: &[u8]) -> Result<Option<RawImu>, Cause> {
     Ok(Some(raw))
 }
 
-/// Writes a line up to its CRC.
+/// Writes a line up to its CRC, without the separator.
 ///
 /// # Errors
 /// If `to` has no room.

@@ -2,18 +2,20 @@
 //!
 //! The binary form has the short header: `0xAA 0x44 0x13`, length of the data, message, week and
 //! milliseconds of GPS time; then the data and a CRC-32, all little-endian. The ASCII form is a line
-//! from `%` to `*`, with the same CRC as eight hexadecimal digits, and ends with CR and LF. Both say the kind of unit that is
-//! connected, and raw increments as integers, whose worth depends on that kind ([`scale_of`]): z, −y, x
-//! of velocity and of rotation, in the axes of the unit. Stamps are GPS week and seconds. There is no
-//! number of the reading, and no interval.
+//! from `%` to `*`, with the same CRC as eight hexadecimal digits, and ends with CR and LF. Both have
+//! the kind of unit that is connected, and raw increments as integers, whose scale depends on that kind
+//! ([`scale_of`]): z, −y, x of velocity and of rotation, in the axes of the unit. Stamps are GPS week
+//! and seconds. Readings have neither number nor interval.
 //!
-//! Other logs with the short header pass as frames without a reading. Logs with the long one
-//! (`0xAA 0x44 0x12`) are not looked at: their bytes count as lost.
+//! Other logs with the short header pass as frames without a reading. Logs with the long header (`0xAA
+//! 0x44 0x12`) are not decoded: their bytes count as lost.
 
 mod ascii;
+mod raw;
 mod scale;
 
 pub use ascii::write_line;
+pub use raw::RawImu;
 pub use scale::{Scale, scale_of};
 
 use crate::bytes::{Frame, Reader};
@@ -25,10 +27,10 @@ use crate::{Clock, Kind, Measured, Reading, Stamp};
 use octant_sample::Status;
 
 const SYNC: [u8; 3] = [0xAA, 0x44, 0x13];
-/// Sync, length, message, week, milliseconds.
+/// Size of sync, length, message, week and milliseconds.
 const HEADER_BYTES: usize = 12;
 const CRC_BYTES: usize = 4;
-/// The length of the data has one byte. Lines are shorter.
+/// Most bytes of a frame: the length of the data has one byte, and lines are shorter.
 const MAX_BYTES: usize = HEADER_BYTES + 255 + CRC_BYTES;
 const RAWIMUSX: u16 = 1462;
 const RAWIMUSX_BYTES: usize = 40;
@@ -37,37 +39,18 @@ const RAWIMUSX_BYTES: usize = 40;
 const ERROR: u8 = 1 << 0;
 const ENCRYPTED: u8 = 1 << 1;
 
-/// Nanoseconds of a week.
+/// Duration of a week, ns.
 const WEEK_NS: u64 = 604_800_000_000_000;
 
-/// The protocol.
+/// NovAtel's protocol.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct NovAtel {
-    /// What a count is worth, where the kind of unit doesn't say it. `None`: by the kind.
+    /// Size of a count, if the kind of unit doesn't determine it. `None`: by the kind.
     pub scale: Option<Scale>,
 }
 
 /// Finds readings in a stream of bytes.
 pub type Decoder = crate::framing::Decoder<NovAtel>;
-
-/// The fields of `RAWIMUSX`.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct RawImu {
-    /// IMU info: bit 0 error, bit 1 encrypted.
-    pub info: u8,
-    /// Kind of unit.
-    pub kind: u8,
-    /// GPS week.
-    pub week: u16,
-    /// Seconds into the week.
-    pub seconds: f64,
-    /// Status of the unit; its bits depend on the kind.
-    pub status: u32,
-    /// Velocity increments: z, −y, x, counts.
-    pub velocity: [i32; 3],
-    /// Rotation increments: z, −y, x, counts.
-    pub rotation: [i32; 3],
-}
 
 impl Framing for NovAtel {
     type Room = [u8; MAX_BYTES];
@@ -101,7 +84,7 @@ impl Framing for NovAtel {
     }
 }
 
-/// The log in a binary frame.
+/// Reads the log from a binary frame.
 fn binary(frame: &[u8]) -> Result<Option<RawImu>, Cause> {
     let (bare, crc) = frame.split_last_chunk::<CRC_BYTES>().ok_or(Cause::Malformed)?;
     let (found, computed) = (u32::from_le_bytes(*crc), checksum::novatel(bare));
@@ -128,7 +111,7 @@ fn binary(frame: &[u8]) -> Result<Option<RawImu>, Cause> {
     }))
 }
 
-/// From z, −y, x to x, y, z.
+/// Reorders z, −y, x to x, y, z.
 fn xyz([z, minus_y, x]: [i32; 3]) -> [i32; 3] {
     [x, minus_y.saturating_neg(), z]
 }
@@ -157,7 +140,7 @@ impl NovAtel {
     }
 }
 
-/// Makes binary frames of `RAWIMUSX`, or lines.
+/// Encodes readings as binary frames of `RAWIMUSX`, or as lines.
 #[derive(Clone, Debug)]
 pub struct Encoder {
     kind: u8,
@@ -168,18 +151,18 @@ pub struct Encoder {
 }
 
 impl Encoder {
-    /// For a kind of unit and what its counts are worth ([`scale_of`]).
+    /// Makes an encoder for a kind of unit and the size of its counts ([`scale_of`]).
     #[must_use]
     pub const fn new(kind: u8, scale: Scale) -> Self {
         let (rotation, velocity) = (Carry::new(), Carry::new());
         Self { kind, scale, frame: Frame::new(), rotation, velocity }
     }
 
-    /// The binary frame of a reading. What the counts leave over is carried to the next one. A stamp
-    /// that isn't GPS time is sent as if it were.
+    /// Encodes a reading as a binary frame, and carries the remainder of its counts to the next
+    /// reading. A stamp that isn't GPS time is sent as if it were.
     ///
     /// # Errors
-    /// If the reading lacks rotation, velocity or stamp, has means without an interval, or a stamp
+    /// If the reading lacks rotation, velocity or stamp, has means without an interval, or has a stamp
     /// after the last week.
     pub fn encode(&mut self, reading: &Reading) -> Result<&[u8], CannotCarry> {
         let raw = self.raw(reading)?;
@@ -202,14 +185,14 @@ impl Encoder {
         Ok(frame.bytes())
     }
 
-    /// The line of a reading, as [`Encoder::encode`]; nanoseconds are cut.
+    /// Encodes a reading as a line, like [`Encoder::encode`]; the stamp has nine decimals.
     ///
     /// # Errors
     /// As [`Encoder::encode`].
     pub fn encode_line(&mut self, reading: &Reading) -> Result<&[u8], CannotCarry> {
         let raw = self.raw(reading)?;
         self.frame.clear();
-        // The room is that of the longest line.
+        // The buffer has room for the longest line.
         let _ = write_line(&raw, &mut self.frame);
         let crc = checksum::novatel(&self.frame.bytes()[1..]);
         let _ = core::fmt::write(&mut self.frame, format_args!("*{crc:08x}\r\n"));

@@ -1,12 +1,12 @@
-//! What a count is worth, by the kind of unit.
+//! Size of a count, by the kind of unit.
 //!
-//! From the table "Raw IMU Scale Factors" of the receiver's documentation (OEM7, log `RAWIMUSX`), in the
-//! units given there. Units whose line can be read in two ways (KVH 1750 and KVH COTS: 0.1 / (3600 · 256)
-//! without saying of what) are left out: their scale has to be given.
+//! Values from the table "Raw IMU Scale Factors" of the receiver's documentation (OEM7, log
+//! `RAWIMUSX`), in the units given there. Units whose entry is ambiguous (KVH 1750 and KVH COTS: 0.1 /
+//! (3600 · 256) of an unnamed unit) are left out: their scale must be given.
 
 use core::f64::consts::PI;
 
-/// What one count is worth.
+/// Size of one count.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scale {
     /// Rotation, rad.
@@ -23,7 +23,8 @@ const fn two_to_minus(power: u32) -> f64 {
     1.0 / (1u64 << power) as f64
 }
 
-/// Epson's units count rates: degrees a second, mg, in 16.16 bits, at a rate in Hz.
+/// Scale of Epson's units, whose counts are rates in 16.16 bits: degrees a second and mg, at a rate in
+/// Hz.
 const fn epson(degrees_per_s: f64, milli_g: f64, rate_hz: f64) -> Scale {
     Scale {
         rotation_rad: degrees_per_s / 65536.0 / rate_hz * DEGREE_RAD,
@@ -31,7 +32,7 @@ const fn epson(degrees_per_s: f64, milli_g: f64, rate_hz: f64) -> Scale {
     }
 }
 
-/// The scale of a kind of unit, as its number stands in the log; `None`: not in the table.
+/// Scale of a kind of unit, by its number in the log; `None`: not in the table.
 #[must_use]
 pub const fn scale_of(kind: u8) -> Option<Scale> {
     match kind {

@@ -1,10 +1,10 @@
-//! What the tests share.
+//! Shared parts of the tests.
 
 use octant_instruments::{
     AnyDecoder, AnyEncoder, Clock, Event, Measured, Protocol, Reading, Stamp,
 };
 
-/// Bytes from hexadecimal digits.
+/// Parses hexadecimal digits.
 pub(crate) fn unhex(text: &str) -> Vec<u8> {
     let digits: String = text.split_whitespace().collect();
     (0..digits.len())
@@ -13,7 +13,7 @@ pub(crate) fn unhex(text: &str) -> Vec<u8> {
         .collect()
 }
 
-/// All events of bytes.
+/// Decodes bytes into all of their events.
 pub(crate) fn events(decoder: &mut AnyDecoder, mut bytes: &[u8]) -> Vec<Event> {
     let mut events = Vec::new();
     while let Some(event) = decoder.next(&mut bytes) {
@@ -22,7 +22,7 @@ pub(crate) fn events(decoder: &mut AnyDecoder, mut bytes: &[u8]) -> Vec<Event> {
     events
 }
 
-/// The readings among events.
+/// Extracts the readings from events.
 pub(crate) fn readings(events: &[Event]) -> Vec<Reading> {
     let reading = |event: &Event| match event {
         Event::Reading(reading) => Some(*reading),
@@ -31,7 +31,7 @@ pub(crate) fn readings(events: &[Event]) -> Vec<Reading> {
     events.iter().filter_map(reading).collect()
 }
 
-/// The one reading of bytes that hold nothing else.
+/// Decodes bytes that hold exactly one reading.
 pub(crate) fn only(protocol: Protocol, bytes: &[u8]) -> Reading {
     let mut decoder = AnyDecoder::new(protocol);
     let found = readings(&events(&mut decoder, bytes));
@@ -41,7 +41,7 @@ pub(crate) fn only(protocol: Protocol, bytes: &[u8]) -> Reading {
     found[0]
 }
 
-/// A reading of a unit that turns and shakes; every protocol can carry it.
+/// Reading of a unit that turns and shakes; every protocol can carry it.
 pub(crate) fn reading(number: u64) -> Reading {
     let k = number as f64;
     Reading {
@@ -55,13 +55,13 @@ pub(crate) fn reading(number: u64) -> Reading {
     }
 }
 
-/// The frames of readings 1 to `count`.
+/// Frames of readings 1 to `count`.
 pub(crate) fn frames(protocol: Protocol, count: u64) -> Vec<Vec<u8>> {
     let mut encoder = AnyEncoder::new(protocol);
     (1..=count).map(|number| encoder.encode(&reading(number)).unwrap().to_vec()).collect()
 }
 
-/// The lines of readings 1 to `count`.
+/// Lines of readings 1 to `count`.
 pub(crate) fn lines(count: u64) -> Vec<Vec<u8>> {
     let AnyEncoder::NovAtel(mut encoder) = AnyEncoder::new(Protocol::NovAtel) else {
         unreachable!()

@@ -6,27 +6,27 @@ use crate::port::{Bytes, PortError};
 use octant_faults::wire::{Altered, Way, WireAction, WireFault, Wired};
 use std::time::{Duration, Instant};
 
-/// A port of bytes on which faults can be done.
+/// A port of bytes with faults on it.
 #[derive(Debug)]
 pub struct FaultyBytes {
     inner: Box<dyn Bytes>,
     table: Table,
     there: Lane<Vec<u8>>,
     back: Lane<Vec<u8>>,
-    /// What came of a frame that isn't whole, on a line.
+    /// Bytes received of an incomplete frame, on a line.
     begun: Vec<u8>,
-    /// Frames between two faults.
+    /// Frames between two faults, with the delay so far.
     flight: Vec<(Vec<u8>, Duration)>,
     landed: Vec<(Vec<u8>, Duration)>,
-    /// A hang-up has closed the port.
+    /// True after a hang-up closed the port.
     closed: bool,
 }
 
-/// Bytes without a zero after which a stretch of a line is taken for a frame.
+/// Number of bytes after which a stretch of a line without a zero is taken for a frame.
 const STRETCH_MAX: usize = 600;
 
 impl FaultyBytes {
-    /// Without faults for now.
+    /// Wraps a port, without faults at first.
     #[must_use]
     pub fn new(inner: Box<dyn Bytes>) -> Self {
         Self {
@@ -41,7 +41,7 @@ impl FaultyBytes {
         }
     }
 
-    /// A frame goes its way, through all faults.
+    /// Passes a frame through all faults, and queues the result.
     fn pass(&mut self, way: Way, frame: &[u8]) {
         let now = Instant::now();
         let lane = match way {
@@ -67,7 +67,7 @@ impl FaultyBytes {
                     entry.altered(&frame, came);
                 }
             }
-            // Of what was cut to nothing there is nothing left to act on.
+            // A frame cut to nothing leaves no byte for the next fault to act on.
             self.landed.retain(|(frame, _)| !frame.is_empty());
             std::mem::swap(&mut self.flight, &mut self.landed);
         }
@@ -76,7 +76,7 @@ impl FaultyBytes {
         }
     }
 
-    /// Takes what came from the port, and cuts a line into frames.
+    /// Takes bytes from the port, and cuts a line into frames.
     fn take(&mut self, bytes: &[u8]) {
         if self.inner.datagrams() {
             self.pass(Way::ToHarness, bytes);
@@ -92,7 +92,7 @@ impl FaultyBytes {
         }
     }
 
-    /// Sends what is due.
+    /// Sends the frames that are due.
     fn send_due(&mut self, wait: Duration) -> Result<bool, PortError> {
         let mut taken = true;
         while let Some(frame) = self.there.pop(Instant::now()) {
@@ -101,7 +101,7 @@ impl FaultyBytes {
         Ok(taken)
     }
 
-    /// Whether the port is there, as faults have it.
+    /// Returns an error while a hang-up keeps the port closed.
     fn there(&mut self) -> Result<(), PortError> {
         let pulled = |action: &WireAction| matches!(action, WireAction::HangUp { .. });
         if let Some((entry, _)) = self.table.lasting(Instant::now(), pulled)
@@ -122,7 +122,7 @@ impl FaultyBytes {
     }
 }
 
-/// One that a fault doesn't act on, and after it the one that waited for it.
+/// Passes a frame that a fault doesn't act on, then the frame that was held back for it.
 fn release(
     lane: &mut Lane<Vec<u8>>,
     landed: &mut Vec<(Vec<u8>, Duration)>,
@@ -146,7 +146,7 @@ fn release(
     }
 }
 
-/// What comes of a frame goes to `landed`; true: it is held back.
+/// Applies a fault to a frame, and puts the results into `landed`; true: the frame is held back.
 #[expect(clippy::too_many_arguments, reason = "all that is known of one frame")]
 fn act(
     fault: &WireFault,
@@ -179,10 +179,11 @@ fn act(
             one(changed);
         }
         WireAction::Checksum => {
-            // The last byte that isn't zero is of the checksum, or tells that its end is zeros.
+            // The last byte that isn't zero belongs to the checksum, or is the code byte that stands
+            // for its trailing zeros.
             if let Some(byte) = changed.iter_mut().rfind(|byte| **byte != 0) {
                 let bit = 1 << below(b, 8);
-                // Not to zero, which would be another end of the frame.
+                // The byte must not become zero, which would end the frame early.
                 *byte ^= if *byte == bit { bit | bit.rotate_left(1) } else { bit };
             }
             one(changed);
@@ -219,7 +220,8 @@ fn act(
             one((0..count).map(byte).collect());
             one(changed);
         }
-        // Of what comes while the line is held one zero is left, and it may be any of them.
+        // A line held low reads as zeros, of which one is kept. Each frame of that time leaves a zero
+        // of its own.
         WireAction::Break { .. } => one(vec![0]),
         WireAction::Framing => {
             let inner = 1 + below(a, frame.len().saturating_sub(2));
@@ -299,7 +301,7 @@ impl Bytes for FaultyBytes {
         }
         self.inner.reopen()?;
         self.closed = false;
-        // What was on its way is lost.
+        // Bytes that were on their way are lost.
         let mut bytes = [0; 4096];
         while self.inner.receive(&mut bytes, Duration::ZERO)? > 0 {}
         Ok(())
@@ -317,7 +319,7 @@ impl Wired for FaultyBytes {
 
     fn end(&mut self, handle: u32) {
         self.table.end(handle);
-        // What it held back goes on.
+        // Releases frames that a fault held back.
         let now = Instant::now();
         for lane in [&mut self.there, &mut self.back] {
             if let Some(held) = lane.held.take() {

@@ -8,7 +8,7 @@ use octant_wire::can::{Format, Frame};
 use std::collections::VecDeque;
 use std::time::{Duration, Instant};
 
-/// A CAN port on which faults can be done.
+/// A CAN port with faults on it.
 #[derive(Debug)]
 pub struct FaultyFrames {
     inner: Box<dyn Frames>,
@@ -17,18 +17,18 @@ pub struct FaultyFrames {
     back: Lane<Frame>,
     flight: Vec<(Frame, Duration)>,
     landed: Vec<(Frame, Duration)>,
-    /// What the controller has to report.
+    /// Events that the controller has to report.
     reports: VecDeque<Trouble>,
-    /// A hang-up has closed the port.
+    /// True after a hang-up closed the port.
     closed: bool,
-    /// A fault took the controller off the bus.
+    /// True while a fault keeps the controller off the bus.
     off: bool,
 }
 
-/// Time in which a sender sends a frame again that was broken up.
+/// Time until a sender repeats a frame that an error frame broke up, s.
 const AGAIN_S: f64 = 200e-6;
 
-/// What a frame is, for checksums.
+/// Bytes of a frame, for checksums.
 fn digest(frame: &Frame) -> [u8; 66] {
     let mut bytes = [0; 66];
     bytes[..2].copy_from_slice(&frame.id().to_le_bytes());
@@ -37,7 +37,7 @@ fn digest(frame: &Frame) -> [u8; 66] {
 }
 
 impl FaultyFrames {
-    /// Without faults for now.
+    /// Wraps a port, without faults at first.
     #[must_use]
     pub fn new(inner: Box<dyn Frames>) -> Self {
         Self {
@@ -53,7 +53,7 @@ impl FaultyFrames {
         }
     }
 
-    /// A frame goes its way, through all faults.
+    /// Passes a frame through all faults, and queues the result.
     fn pass(&mut self, way: Way, frame: &Frame) {
         let now = Instant::now();
         let lane = match way {
@@ -98,7 +98,7 @@ impl FaultyFrames {
         Ok(taken)
     }
 
-    /// Whether the port is there, and the controller on its bus.
+    /// Applies hang-up and bus-off; returns an error while a hang-up keeps the port closed.
     fn there(&mut self) -> Result<(), PortError> {
         let now = Instant::now();
         let pulled = |action: &WireAction| matches!(action, WireAction::HangUp { .. });
@@ -131,13 +131,13 @@ impl FaultyFrames {
     }
 }
 
-/// A frame of another node that wins every arbitration.
+/// Frame of another node, with identifier 0, which wins every arbitration.
 fn foreign(fault: &WireFault, way: Way, nth: u64, i: u64, format: Format) -> Option<Frame> {
     let data: [u8; 8] = std::array::from_fn(|k| fault.byte(way, nth, 8 * i + k as u64));
     Frame::new(0, format, &data)
 }
 
-/// What comes of a frame goes to `landed`; and what the controller reports of it.
+/// Applies a fault to a frame: puts the results into `landed`, and returns the controller's report.
 fn act(
     fault: &WireFault,
     way: Way,
@@ -207,7 +207,7 @@ fn act(
             }
             landed.push((frame, after + seconds(each_s * f64::from(frames))));
         }
-        // Nothing passes.
+        // No frame passes.
         WireAction::BusOff { .. } => {}
         _ => landed.push((frame, after)),
     }

@@ -1,19 +1,19 @@
-//! One way of a wire: what is on it, in order, and when it arrives.
+//! One direction of a wire: the frames on it, in order, and their times of arrival.
 
 use std::collections::VecDeque;
 use std::time::{Duration, Instant};
 
-/// Frames that are remembered, to be sent again.
+/// Number of frames that are remembered for replay.
 const HISTORY: usize = 33;
 
-/// One way.
+/// One direction of a wire.
 #[derive(Clone, Debug)]
 pub(super) struct Lane<U> {
-    /// On their way, by the time of their arrival.
+    /// Frames on their way, with their times of arrival.
     queue: VecDeque<(Instant, U)>,
-    /// As they were given, the last one first.
+    /// Frames as they were sent, the last one first.
     history: VecDeque<U>,
-    /// Waits for the next one.
+    /// Frame held back until the next one.
     pub(super) held: Option<U>,
 }
 
@@ -26,14 +26,14 @@ impl<U: Clone> Lane<U> {
         }
     }
 
-    /// It arrives after a time, and not before those that are on their way already.
+    /// Queues a frame that arrives after a delay, and not before those already queued.
     pub(super) fn push(&mut self, unit: U, now: Instant, after: Duration) {
         let due = now + after;
         let due = self.queue.back().map_or(due, |(last, _)| due.max(*last));
         self.queue.push_back((due, unit));
     }
 
-    /// The next one that has arrived.
+    /// Takes the next frame that has arrived.
     pub(super) fn pop(&mut self, now: Instant) -> Option<U> {
         match self.queue.front() {
             Some((due, _)) if *due <= now => self.queue.pop_front().map(|(_, unit)| unit),
@@ -41,35 +41,35 @@ impl<U: Clone> Lane<U> {
         }
     }
 
-    /// How long until the next one arrives.
+    /// Time until the next frame arrives.
     pub(super) fn next_in(&self, now: Instant) -> Option<Duration> {
         self.queue.front().map(|(due, _)| due.saturating_duration_since(now))
     }
 
-    /// Remembers one as it was given.
+    /// Remembers a frame as it was sent.
     pub(super) fn remember(&mut self, unit: &U) {
         self.history.push_front(unit.clone());
         self.history.truncate(HISTORY);
     }
 
-    /// The one that was given so many ago; 0 is the present one.
+    /// Frame sent `age` frames ago; 0 is the present one.
     pub(super) fn ago(&self, age: u32) -> Option<&U> {
         self.history.get(age as usize)
     }
 
-    /// All that is on its way is lost.
+    /// Drops all frames on their way.
     pub(super) fn clear(&mut self) {
         self.queue.clear();
         self.held = None;
     }
 }
 
-/// A time of a fault.
+/// Duration of a fault's time, s, limited to 1e6 s.
 pub(super) fn seconds(seconds: f64) -> Duration {
     Duration::from_secs_f64(seconds.clamp(0.0, 1e6))
 }
 
-/// A whole number below `count` from one in (0, 1).
+/// Maps a number in (0, 1) to an integer below `count`.
 pub(super) fn below(number: f64, count: usize) -> usize {
     ((number * count as f64) as usize).min(count.saturating_sub(1))
 }

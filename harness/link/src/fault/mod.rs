@@ -1,7 +1,7 @@
-//! What can go wrong on a wire, done on purpose: a port around a port.
+//! Faults injected on a wire: a port around a port.
 //!
-//! What a fault is says [`octant_faults::wire`]; here it happens, on the harness's side of the wire and in
-//! both directions. What was altered is counted by comparing what went in with what came out.
+//! [`octant_faults::wire`] defines the faults; this module applies them on the harness's side of the
+//! wire, in both directions. Altered frames are counted by comparing input and output.
 
 mod bytes;
 mod frames;
@@ -13,7 +13,7 @@ pub use frames::FaultyFrames;
 
 use crate::port::Port;
 
-/// A port on which faults can be done.
+/// Wraps a port so that faults can be injected on it.
 #[must_use]
 pub fn around(port: Port) -> Port {
     match port {

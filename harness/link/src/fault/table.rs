@@ -9,9 +9,9 @@ pub(super) struct Entry {
     handle: u32,
     pub(super) fault: WireFault,
     active: bool,
-    /// When it set in.
+    /// Time at which it began.
     pub(super) since: Instant,
-    /// Frames of each way that it has seen.
+    /// Number of frames that it has seen in each direction.
     seen: [u64; 2],
     altered: u64,
     clean: crc32fast::Hasher,
@@ -19,7 +19,8 @@ pub(super) struct Entry {
 }
 
 impl Entry {
-    /// It lasts; what lasts for a time of its own does so beyond the fault's end.
+    /// True if the fault acts now. A fault with a duration of its own may outlast the end of its
+    /// window.
     pub(super) fn acts(&self, now: Instant) -> bool {
         match own_time(&self.fault.action) {
             Some(time) => now.saturating_duration_since(self.since) < time,
@@ -27,14 +28,14 @@ impl Entry {
         }
     }
 
-    /// Whether it acts on the next frame of a way: the frame's number and the numbers for it.
+    /// If the fault acts on the next frame of a direction, the frame's number and its random numbers.
     pub(super) fn next(&mut self, way: Way) -> Option<(u64, [f64; 3])> {
         let nth = self.seen[way as usize];
         self.seen[way as usize] += 1;
         self.fault.acts_on(way, nth).map(|numbers| (nth, numbers))
     }
 
-    /// It altered a frame: what it was, and what came of it.
+    /// Counts an altered frame and adds it, before and after, to the checksums.
     pub(super) fn altered<'a>(
         &mut self,
         clean: &[u8],
@@ -46,7 +47,7 @@ impl Entry {
     }
 }
 
-/// The time that a fault takes by itself.
+/// Duration that an action has by itself.
 fn own_time(action: &WireAction) -> Option<Duration> {
     let seconds = match *action {
         WireAction::Break { lasts_s } => lasts_s,
@@ -58,7 +59,7 @@ fn own_time(action: &WireAction) -> Option<Duration> {
     Some(Duration::from_secs_f64(seconds.clamp(0.0, 1e6)))
 }
 
-/// All of them.
+/// All faults of a wire.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Table {
     entries: Vec<Entry>,
@@ -83,7 +84,7 @@ impl Table {
                     clean: crc32fast::Hasher::new(),
                     faulted: crc32fast::Hasher::new(),
                 });
-                // They act in the order of the scenario.
+                // Faults act in the order of the scenario.
                 self.entries.sort_by_key(|entry| entry.handle);
             }
         }
@@ -106,12 +107,12 @@ impl Table {
         }
     }
 
-    /// Those that act.
+    /// Faults that act now.
     pub(super) fn acting(&mut self, now: Instant) -> impl Iterator<Item = &mut Entry> {
         self.entries.iter_mut().filter(move |entry| entry.acts(now))
     }
 
-    /// The first one that acts and is of some kind, with the time that it still lasts.
+    /// First acting fault with a matching action, and the time that it still lasts.
     pub(super) fn lasting(
         &mut self,
         now: Instant,

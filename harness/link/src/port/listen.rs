@@ -1,15 +1,15 @@
-//! A CAN bus that is only listened to: what others send, with identifiers of 11 or 29 bits.
+//! Listening to a CAN bus: the frames of all nodes, with identifiers of 11 or 29 bits.
 
 use super::{PortError, Slcan};
 use crate::Uri;
 use std::time::Duration;
 
-/// A frame that was heard.
+/// A frame of any node.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub struct Heard {
-    /// Its identifier.
+    /// Identifier.
     pub id: u32,
-    /// That has 29 bits.
+    /// True for an identifier of 29 bits.
     pub extended: bool,
     pub(super) length: u8,
     pub(super) bytes: [u8; 64],
@@ -23,7 +23,7 @@ impl Heard {
         Self { id, extended, length: length as u8, bytes }
     }
 
-    /// Its data.
+    /// Data bytes.
     #[must_use]
     pub fn data(&self) -> &[u8] {
         &self.bytes[..usize::from(self.length)]
@@ -36,7 +36,7 @@ impl std::fmt::Debug for Heard {
     }
 }
 
-/// Who listens to a bus.
+/// A listener on a CAN bus, which sends nothing.
 #[derive(Debug)]
 pub struct Listener {
     bus: Bus,
@@ -50,8 +50,8 @@ enum Bus {
 }
 
 impl Listener {
-    /// Listens to the messages of some identifiers, with 29 bits or 11. An adapter on a serial line passes
-    /// on others too.
+    /// Opens a bus to listen for messages of some identifiers, with 29 bits or 11. An adapter on a
+    /// serial line passes on other messages too.
     ///
     /// # Errors
     /// If the port is no CAN bus, or can't be opened.
@@ -72,7 +72,8 @@ impl Listener {
         Ok(Self { bus })
     }
 
-    /// The next frame within a time; `None`: none came, or something else did.
+    /// Receives the next frame within a time; `None`: nothing came, or an event that is no frame with
+    /// data.
     ///
     /// # Errors
     /// If the port is gone.

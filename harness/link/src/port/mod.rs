@@ -1,4 +1,4 @@
-//! Ports as they are: lines of bytes, datagrams, CAN frames.
+//! Open ports: lines of bytes, datagrams, CAN frames.
 
 mod listen;
 mod pty;
@@ -24,23 +24,23 @@ use octant_wire::can::{Format, Frame};
 use std::fmt::Debug;
 use std::time::Duration;
 
-/// Why a port can't be opened, or went away.
+/// Error of a port: it can't be opened, or went away.
 #[derive(Debug, thiserror::Error)]
 pub enum PortError {
-    /// It can't be opened.
+    /// The port can't be opened.
     #[error("open {port}: {reason}")]
     Open {
         /// The port.
         port: String,
-        /// Why.
+        /// Reason.
         reason: String,
     },
-    /// It was there and isn't any more.
+    /// The port was open and went away.
     #[error("{port} went away: {reason}")]
     Gone {
         /// The port.
         port: String,
-        /// What happened.
+        /// Reason.
         reason: String,
     },
 }
@@ -55,112 +55,114 @@ impl PortError {
     }
 }
 
-/// A port that carries bytes: a line, or datagrams. What is sent in one call is one frame.
+/// A port that carries bytes: a line, or datagrams. The bytes of one call of [`Self::send`] are one
+/// frame.
 pub trait Bytes: Debug + Send {
-    /// Hands over all bytes within a time. False: it did not take them all, and what it took is a
-    /// piece of a frame.
+    /// Sends all bytes within a time. False: the port did not accept them all, and those that it did
+    /// are a piece of a frame.
     ///
     /// # Errors
     /// If the port is gone.
     fn send(&mut self, bytes: &[u8], wait: Duration) -> Result<bool, PortError>;
 
-    /// What has come, at least a byte, within a time; 0: nothing came. With no time it doesn't wait.
+    /// Receives at least one byte within a time; 0: nothing came. With a zero wait it returns at once.
     ///
     /// # Errors
     /// If the port is gone.
     fn receive(&mut self, buffer: &mut [u8], wait: Duration) -> Result<usize, PortError>;
 
-    /// What [`Self::receive`] gives is a datagram, not a piece of a line.
+    /// True if [`Self::receive`] gives whole datagrams, not pieces of a line.
     fn datagrams(&self) -> bool;
 
-    /// The name by which the other end reaches it.
+    /// Name under which the other end reaches this port.
     fn reached_at(&self) -> String;
 
-    /// A session begins with the peer that was heard last, or it ends: until then nobody else is
-    /// heard.
+    /// Binds the port to the peer that was heard last, for a session, or releases it. While it is
+    /// bound, nobody else is heard.
     fn hold_peer(&mut self, hold: bool);
 
-    /// Closes the port; until it is opened again it is gone.
+    /// Closes the port, which is gone until it is opened again.
     fn close(&mut self);
 
-    /// Opens it again after it went away.
+    /// Opens the port again after it went away.
     ///
     /// # Errors
-    /// If it isn't back.
+    /// If the port isn't back.
     fn reopen(&mut self) -> Result<(), PortError>;
 
-    /// Who does faults on it, where somebody does.
+    /// Fault injection of this port, if it has one.
     fn wired(&mut self) -> Option<&mut dyn Wired> {
         None
     }
 }
 
-/// What a CAN port reports.
+/// Event on a CAN port.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BusEvent {
-    /// A frame came.
+    /// A frame arrived.
     Frame(Frame),
-    /// Something else did.
+    /// The controller reported a problem, or a foreign frame arrived.
     Trouble(Trouble),
 }
 
-/// What can be wrong with a bus.
+/// Problem of a bus.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Trouble {
     /// An error frame that is none of the following.
     ErrorFrame,
     /// Arbitration was lost; the controller sends again by itself.
     ArbitrationLost,
-    /// A frame was not acknowledged: nobody else is on the bus.
+    /// A frame was not acknowledged: no other node is on the bus.
     NotAcknowledged,
-    /// The controller has counted so many errors that it warns.
+    /// The controller reached its warning limit of errors.
     Warning,
-    /// The controller has counted so many errors that it only listens to those of others.
+    /// The controller is error-passive: it counted so many errors that it no longer signals errors of
+    /// its own.
     Passive,
-    /// The controller gave up and left the bus.
+    /// The controller is bus-off.
     Off,
     /// The controller is back on the bus.
     Restarted,
     /// Frames were lost because they were not taken in time.
     Overrun,
-    /// A frame that can't be one of ours came: remote, or with 29 bits.
+    /// A frame that can't belong to this protocol arrived: remote, or with 29 bits.
     Foreign,
 }
 
 /// A port that carries CAN frames.
 pub trait Frames: Debug + Send {
-    /// Hands a frame to the controller within a time. False: it had no room.
+    /// Hands a frame to the controller within a time. False: the controller had no room.
     ///
     /// # Errors
     /// If the port is gone.
     fn send(&mut self, frame: &Frame, wait: Duration) -> Result<bool, PortError>;
 
-    /// What has come within a time. With no time it doesn't wait.
+    /// Receives the next event within a time. With a zero wait it returns at once.
     ///
     /// # Errors
     /// If the port is gone.
     fn receive(&mut self, wait: Duration) -> Result<Option<BusEvent>, PortError>;
 
-    /// Which frames it carries.
+    /// Format of the frames that it carries.
     fn format(&self) -> Format;
 
-    /// The controller left the bus: tries to bring it back. False: it can't be done from here, and
-    /// it comes back by itself or not.
+    /// Tries to bring back a controller that left the bus. False: that is impossible from here; the
+    /// controller comes back by itself or not at all.
     ///
     /// # Errors
     /// If the port is gone.
     fn restart(&mut self) -> Result<bool, PortError>;
 
-    /// Closes the port; until it is opened again it is gone.
+    /// Closes the port, which is gone until it is opened again.
     fn close(&mut self);
 
-    /// Opens it again after it went away.
+    /// Opens the port again after it went away.
     ///
     /// # Errors
-    /// If it isn't back.
+    /// If the port isn't back.
     fn reopen(&mut self) -> Result<(), PortError>;
 
-    /// Who does faults on it, where somebody does.
+    /// Fault injection of this port, if it has one.
     fn wired(&mut self) -> Option<&mut dyn Wired> {
         None
     }
@@ -175,11 +177,11 @@ pub enum Port {
     Frames(Box<dyn Frames>),
 }
 
-/// Opens a port. `role` is that of this end: the device end of UDP listens, and only it makes a
+/// Opens a port for the end of a role. The device end of UDP listens, and only the device end creates a
 /// pseudo terminal.
 ///
 /// # Errors
-/// If it can't be opened.
+/// If the port can't be opened.
 pub fn open(uri: &Uri, role: Role) -> Result<Port, PortError> {
     match (uri, role) {
         (Uri::Serial(serial), _) => Ok(Port::Bytes(Box::new(SerialLine::open(serial)?))),
@@ -211,7 +213,7 @@ fn open_can(can: &crate::uri::Can, _: Role) -> Result<Port, PortError> {
     ))
 }
 
-/// What an end tells of its port to who wants to reach it.
+/// Text that tells an operator how to reach a port.
 #[must_use]
 pub fn announcement(uri: &Uri, port: &Port) -> String {
     match (uri, port) {

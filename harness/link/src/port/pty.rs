@@ -3,11 +3,11 @@
 use super::{Bytes, PortError};
 use std::time::Duration;
 
-/// The near end of a pseudo terminal; the far end is opened by its name like a serial port.
+/// Near end of a pseudo terminal; the far end is opened by its name, like a serial port.
 #[derive(Debug)]
 pub struct Pty {
     link: String,
-    /// `None` while it is closed.
+    /// `None` while the terminal is closed.
     #[cfg(unix)]
     inner: Option<unix::Pair>,
 }
@@ -21,17 +21,18 @@ mod unix {
     #[derive(Debug)]
     pub(super) struct Pair {
         pub(super) near: TTYPort,
-        /// Held open: a near end whose far end was closed by its last user reads errors.
+        /// The far end is held open: reading fails at a near end whose far end was closed by its last
+        /// user.
         _far: TTYPort,
         pub(super) name: String,
-        /// Removed in the end.
+        /// Link to the far end, removed on drop.
         link: Option<PathBuf>,
     }
 
     impl Pair {
         pub(super) fn open(link: &str) -> Result<Self, PortError> {
             let refused = |reason: String| PortError::open(format!("pty:{link}"), reason);
-            // The far end takes no lock as it comes from here: its user's open will.
+            // The far end of a new pair isn't locked; the user who opens it locks it.
             let (near, far) = TTYPort::pair().map_err(|error| refused(error.to_string()))?;
             let name = far.name().ok_or_else(|| refused("it has no name".to_owned()))?;
             let link = match link {
@@ -45,7 +46,7 @@ mod unix {
         }
     }
 
-    /// Makes a link, also over one that a device left behind.
+    /// Makes a link, replacing a dangling one that an earlier device left behind.
     fn make(name: &str, link: &str) -> std::io::Result<()> {
         let stale = std::fs::symlink_metadata(link).is_ok_and(|about| {
             about.file_type().is_symlink() && !std::fs::exists(link).unwrap_or(true)
@@ -59,7 +60,7 @@ mod unix {
     impl Drop for Pair {
         fn drop(&mut self) {
             if let Some(link) = &self.link {
-                // It may be gone already.
+                // The link may be gone already.
                 let _ = std::fs::remove_file(link);
             }
         }
@@ -67,19 +68,19 @@ mod unix {
 }
 
 impl Pty {
-    /// Makes one; with a link to its far end, unless that is empty.
+    /// Creates a pseudo terminal; with a link to its far end, unless `link` is empty.
     ///
     /// # Errors
-    /// If there are none on this system, none is free, or the link can't be made.
+    /// If the system has no pseudo terminals, none is free, or the link can't be made.
     #[cfg(unix)]
     pub fn open(link: &str) -> Result<Self, PortError> {
         Ok(Self { inner: Some(unix::Pair::open(link)?), link: link.to_owned() })
     }
 
-    /// Makes one.
+    /// Fails, because the system has no pseudo terminals.
     ///
     /// # Errors
-    /// Always: there are none on this system.
+    /// Always.
     #[cfg(not(unix))]
     pub fn open(link: &str) -> Result<Self, PortError> {
         Err(PortError::open(format!("pty:{link}"), "there are no pseudo terminals on this system"))
@@ -125,7 +126,7 @@ impl Bytes for Pty {
         self.inner = None;
     }
 
-    /// A new one, under the same link and another name.
+    /// Creates a new terminal, under the same link and another name.
     fn reopen(&mut self) -> Result<(), PortError> {
         self.inner = None;
         *self = Self::open(&self.link)?;

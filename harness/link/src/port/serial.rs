@@ -7,11 +7,11 @@ use serialport::{DataBits, FlowControl, Parity, SerialPort, StopBits};
 use std::io::ErrorKind;
 use std::time::Duration;
 
-/// A serial line: 8 data bits, no parity, 1 stop bit, no flow control, for this program alone.
+/// A serial line: 8 data bits, no parity, 1 stop bit, no flow control, opened exclusively.
 pub struct SerialLine {
     serial: Serial,
     uri: String,
-    /// `None` while it is closed.
+    /// `None` while the line is closed.
     port: Option<Box<dyn SerialPort>>,
 }
 
@@ -22,10 +22,10 @@ impl std::fmt::Debug for SerialLine {
 }
 
 impl SerialLine {
-    /// Opens it, for this program alone.
+    /// Opens the line exclusively.
     ///
     /// # Errors
-    /// If it isn't there, is in use, or its driver gives another rate than was asked for.
+    /// If the port isn't there or is in use, or if its driver sets another rate than requested.
     pub fn open(serial: &Serial) -> Result<Self, PortError> {
         let uri = Uri::Serial(serial.clone()).to_string();
         let refused = |reason: String| PortError::open(&uri, reason);
@@ -37,7 +37,7 @@ impl SerialLine {
             .timeout(Duration::ZERO)
             .open()
             .map_err(|error| refused(explain(&error)))?;
-        // A driver that can't do a rate may take another one without a word.
+        // A driver that can't set a rate may silently take another one.
         let found = port.baud_rate().map_err(|error| refused(error.to_string()))?;
         if found != serial.baud {
             return Err(refused(format!(
@@ -45,13 +45,13 @@ impl SerialLine {
                 serial.baud
             )));
         }
-        // What came before is of no session.
+        // Bytes from before the opening belong to no session.
         port.clear(serialport::ClearBuffer::Input).map_err(|error| refused(error.to_string()))?;
         Ok(Self { serial: serial.clone(), uri, port: Some(port) })
     }
 }
 
-/// What a user can do about it.
+/// Error text with a remedy for the user.
 fn explain(error: &serialport::Error) -> String {
     let what = error.to_string();
     match error.kind {
@@ -91,7 +91,7 @@ impl Bytes for SerialLine {
         self.uri.clone()
     }
 
-    /// A line has one other end.
+    /// A line has only one other end.
     fn hold_peer(&mut self, _: bool) {}
 
     fn close(&mut self) {
@@ -99,14 +99,14 @@ impl Bytes for SerialLine {
     }
 
     fn reopen(&mut self) -> Result<(), PortError> {
-        // It is held for this program alone, by this one too.
+        // The port is opened exclusively, also against this program: it must be closed first.
         self.port = None;
         *self = Self::open(&self.serial)?;
         Ok(())
     }
 }
 
-/// Of a port that is closed.
+/// Error of a closed port.
 pub(super) fn closed(uri: &str) -> PortError {
     PortError::gone(uri, "it is closed")
 }
@@ -133,7 +133,7 @@ pub(super) fn write(
     Ok(true)
 }
 
-/// Reads what is there, or waits for it.
+/// Reads the bytes available, or waits for some.
 pub(super) fn read(
     port: &mut dyn SerialPort,
     uri: &str,
@@ -142,7 +142,7 @@ pub(super) fn read(
 ) -> Result<usize, PortError> {
     let gone = |reason: &dyn std::fmt::Display| PortError::gone(uri, reason);
     if wait.is_zero() {
-        // Without this an empty line would be an error that is made up in memory, each time.
+        // Without this check, each read of an empty line would allocate an error.
         if port.bytes_to_read().map_err(|error| gone(&error))? == 0 {
             return Ok(0);
         }

@@ -1,4 +1,4 @@
-//! CAN adapters behind a serial line that speak slcan: a line of text for each frame.
+//! CAN adapters behind a serial line that speak slcan, with a line of text for each frame.
 //!
 //! `tIIILDD…` is a classic frame, `dIIILDD…` an FD frame and `bIIILDD…` one whose data is faster; each
 //! ends with a carriage return. Adapters answer `\r` (done), `\x07` (not done) and `z\r` (sent).
@@ -23,7 +23,7 @@ pub struct Slcan {
 /// Bytes of the longest line: `B`, identifier, length, 64 bytes of data.
 const LINE_MAX: usize = 1 + 8 + 1 + 128;
 
-/// How long an adapter has for its answer to a command.
+/// Longest wait for an adapter's answer to a command.
 const COMMAND_WAIT: Duration = Duration::from_millis(100);
 
 impl Slcan {
@@ -51,7 +51,7 @@ impl Slcan {
     /// Sets the bit rate and opens the channel.
     fn set_up(&mut self) -> Result<(), PortError> {
         let bus = self.slcan.bus;
-        // A channel that is open takes no rate; one that is closed may refuse to be closed.
+        // An open channel accepts no bit rate; a closed one may refuse to be closed.
         self.command("C\r")?;
         let code = SLCAN_BITRATES.iter().position(|rate| *rate == bus.nominal_bps);
         let data = bus.data_bps.map(|rate| rate / 1_000_000);
@@ -69,7 +69,7 @@ impl Slcan {
         Ok(())
     }
 
-    /// Sends a command; false: the adapter refused it. Many answer nothing.
+    /// Sends a command; false: the adapter refused it. Many adapters don't answer at all.
     fn command(&mut self, command: &str) -> Result<bool, PortError> {
         self.line.send(command.as_bytes(), COMMAND_WAIT)?;
         let begun = Instant::now();
@@ -80,7 +80,7 @@ impl Slcan {
             for (index, byte) in answer[..count].iter().enumerate() {
                 match byte {
                     b'\r' => {
-                        // What came with the answer are the first frames.
+                        // Bytes after the answer are the first frames.
                         let rest = &answer[index + 1..count];
                         self.buffer[..rest.len()].copy_from_slice(rest);
                         (self.from, self.to) = (0, rest.len());
@@ -96,7 +96,7 @@ impl Slcan {
 }
 
 impl Slcan {
-    /// The next frame of anybody within a time.
+    /// Receives the next frame of any node within a time.
     ///
     /// # Errors
     /// If the port is gone.
@@ -174,10 +174,10 @@ impl Frames for Slcan {
     }
 }
 
-/// Lengths by their code.
+/// Numbers of data bytes, by their length code.
 const LENGTHS: [usize; 16] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 12, 16, 20, 24, 32, 48, 64];
 
-/// A frame as a line; how many bytes it has.
+/// Writes a frame as a line, and returns its number of bytes.
 fn write_line(frame: &Frame, line: &mut [u8; LINE_MAX + 1]) -> usize {
     const DIGITS: &[u8; 16] = b"0123456789ABCDEF";
     line[0] = match frame.format() {
@@ -200,12 +200,12 @@ fn write_line(frame: &Frame, line: &mut [u8; LINE_MAX + 1]) -> usize {
     at + 1
 }
 
-/// Finds frames in what an adapter says.
+/// Parser of an adapter's output, which finds the frames in it.
 #[derive(Debug)]
 struct Lines {
     line: [u8; LINE_MAX],
     length: usize,
-    /// The line is longer than any.
+    /// True if the line is longer than any valid one.
     long: bool,
 }
 
@@ -215,13 +215,13 @@ impl Default for Lines {
     }
 }
 
-/// What a byte ends.
+/// Unit that a byte completes.
 enum Taken {
-    /// A line of so many bytes.
+    /// A line of that many bytes.
     Line(usize),
-    /// A line that is longer than any.
+    /// A line longer than any valid one.
     Long,
-    /// A command.
+    /// The adapter refused a command.
     NotDone,
 }
 
@@ -234,7 +234,7 @@ impl Lines {
         }
     }
 
-    /// As [`Self::push`], for who only listens: of any frame.
+    /// As [`Self::push`], for a listener: frames of any node.
     fn heard(&mut self, byte: u8) -> Option<Heard> {
         match self.take(byte)? {
             Taken::Line(length) => any_frame(&self.line[..length]),
@@ -249,7 +249,7 @@ impl Lines {
                 let length = std::mem::take(&mut self.length);
                 Some(if long { Taken::Long } else { Taken::Line(length) })
             }
-            // Not done: the channel is closed, or the adapter's queue is full.
+            // Refused: the channel is closed, or the adapter's queue is full.
             0x07 => {
                 self.length = 0;
                 self.long = false;
@@ -269,7 +269,7 @@ impl Lines {
     }
 }
 
-/// What a line says; `None`: nothing of frames.
+/// Parses a line; `None`: it has nothing to do with frames.
 fn read_line(line: &[u8]) -> Option<BusEvent> {
     let foreign = Some(BusEvent::Trouble(Trouble::Foreign));
     let (first, rest) = line.split_first()?;
@@ -277,7 +277,7 @@ fn read_line(line: &[u8]) -> Option<BusEvent> {
         b't' => Format::Classic,
         b'd' | b'b' => Format::Fd,
         b'T' | b'r' | b'R' | b'D' | b'B' => return foreign,
-        // Flags of the adapter: bit 7 bus error, 5 passive, 2 warning, 3 overrun.
+        // Status flags of the adapter: bit 7 bus error, 5 passive, 2 warning, 3 overrun.
         b'F' => {
             let [high, low] = rest else { return foreign };
             let flags = digit(*high)? << 4 | digit(*low)?;
@@ -300,7 +300,7 @@ fn frame(format: Format, rest: &[u8]) -> Option<Frame> {
     Frame::new(u16::try_from(heard.id).ok()?, format, heard.data())
 }
 
-/// A frame of any identifier; `None`: a line that is none with data.
+/// Parses a frame with any identifier; `None`: the line is no frame with data.
 fn any_frame(line: &[u8]) -> Option<Heard> {
     let (first, rest) = line.split_first()?;
     let classic = matches!(first, b't' | b'T');
@@ -313,7 +313,7 @@ fn any_frame(line: &[u8]) -> Option<Heard> {
     (heard.id < most && !(classic && heard.data().len() > 8)).then_some(heard)
 }
 
-/// Identifier of so many digits, length and data.
+/// Parses an identifier of that many digits, a length and data.
 fn identified(digits: usize, rest: &[u8]) -> Option<Heard> {
     let (id, rest) = rest.split_at_checked(digits)?;
     let id = id.iter().try_fold(0, |id, byte| Some(id << 4 | u32::from(digit(*byte)?)))?;

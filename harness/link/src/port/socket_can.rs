@@ -13,23 +13,23 @@ use socketcan::{
 use std::io::ErrorKind;
 use std::time::{Duration, Instant};
 
-/// A CAN interface that hears what is meant for its role, and what is wrong with the bus.
+/// A CAN interface that receives the messages for its role, and the problems of the bus.
 #[derive(Debug)]
 pub struct SocketCan {
     can: Can,
     role: Role,
     uri: String,
-    /// `None` while it is closed.
+    /// `None` while the interface is closed.
     socket: Option<CanFdSocket>,
 }
 
-/// Bits of an identifier as the kernel has it.
+/// Flags of an identifier in the kernel's format.
 const EXTENDED: u32 = 0x8000_0000;
 const REMOTE: u32 = 0x4000_0000;
-/// Format and slot of an identifier.
+/// Mask of the format and slot in an identifier.
 const SLOT: u32 = 0x7E0;
 
-/// Bits of an error frame's identifier, and of its second byte of data: linux/can/error.h.
+/// Bits of an error frame's identifier and of its second byte of data, from linux/can/error.h.
 mod error {
     pub(super) const ARBITRATION: u32 = 0x02;
     pub(super) const CONTROLLER: u32 = 0x04;
@@ -45,13 +45,13 @@ impl SocketCan {
     /// Opens an interface for a role.
     ///
     /// # Errors
-    /// If it isn't there, is down, can't do CAN FD where that is asked for, or has another bit rate
-    /// than the URI says.
+    /// If the interface isn't there or is down, can't do CAN FD where that is requested, or has another
+    /// bit rate than the URI says.
     pub fn open(can: &Can, role: Role) -> Result<Self, PortError> {
         Self::filtered(can, role, &filters(role, can.format))
     }
 
-    /// Opens an interface to listen to messages of some identifiers, with 29 bits or 11.
+    /// Opens an interface to listen for messages of some identifiers, with 29 bits or 11.
     pub(super) fn listen(can: &Can, identifiers: &[(u32, bool)]) -> Result<Self, PortError> {
         let filter = |&(id, extended): &(u32, bool)| {
             let (id, mask) = if extended { (id | EXTENDED, 0x1FFF_FFFF) } else { (id, 0x7FF) };
@@ -101,7 +101,7 @@ impl SocketCan {
         self.socket.as_ref().ok_or_else(|| PortError::gone(&self.uri, "it is closed"))
     }
 
-    /// The next frame of the kernel within a time.
+    /// Receives the kernel's next frame within a time.
     fn next(&self, wait: Duration) -> Result<Option<CanAnyFrame>, PortError> {
         let mut waited = wait.is_zero();
         loop {
@@ -119,7 +119,7 @@ impl SocketCan {
         }
     }
 
-    /// The next frame of anybody within a time; `None`: none came, or something else.
+    /// Receives the next frame of any node within a time; `None`: nothing came, or no frame with data.
     pub(super) fn hear(&self, wait: Duration) -> Result<Option<Heard>, PortError> {
         let heard = |id: Id, data: &[u8]| match id {
             Id::Standard(id) => Heard::new(u32::from(id.as_raw()), false, data),
@@ -146,7 +146,7 @@ impl SocketCan {
     }
 }
 
-/// The rates of an interface's bus; `None`: it has none, like a virtual one.
+/// Bit rates of an interface's bus; `None`: it has none, like a virtual one.
 #[must_use]
 pub fn interface_bus(interface: &str, format: Format) -> Option<Bus> {
     let interface = CanInterface::open(interface).ok()?;
@@ -162,7 +162,7 @@ pub fn interface_bus(interface: &str, format: Format) -> Option<Bus> {
     Some(Bus { nominal_bps, data_bps })
 }
 
-/// Whether the interface has the rates that the URI says.
+/// Checks that the interface has the rates that the URI says.
 fn compare(can: &Can, found: Option<Bus>) -> Result<(), String> {
     let Some(found) = found else { return Ok(()) };
     let pairs = [
@@ -179,7 +179,7 @@ fn compare(can: &Can, found: Option<Bus>) -> Result<(), String> {
     Ok(())
 }
 
-/// What a role hears: the messages of the others.
+/// Kernel filters of a role: it receives the messages of the other roles.
 fn filters(role: Role, format: Format) -> Vec<CanFilter> {
     let heard = |sender: Role| (sender == Role::Harness) != (role == Role::Harness);
     Slot::ALL
@@ -189,7 +189,8 @@ fn filters(role: Role, format: Format) -> Vec<CanFilter> {
         .collect()
 }
 
-/// What an error frame says. Drivers put several bits into one frame: the worst counts.
+/// Problem that an error frame reports. Drivers combine several bits in one frame: the worst one
+/// counts.
 fn trouble(frame: &CanErrorFrame) -> Trouble {
     let bits = frame.error_bits();
     let controller =
@@ -213,7 +214,7 @@ fn trouble(frame: &CanErrorFrame) -> Trouble {
     }
 }
 
-/// A frame of the kernel as one of ours.
+/// Converts a frame of the kernel to a frame of this protocol.
 fn event(frame: &CanAnyFrame) -> BusEvent {
     let ours = |id: Id, format: Format, data: &[u8]| match id {
         Id::Standard(id) => Frame::new(id.as_raw(), format, data),
@@ -228,18 +229,18 @@ fn event(frame: &CanAnyFrame) -> BusEvent {
     frame.map_or(BusEvent::Trouble(Trouble::Foreign), BusEvent::Frame)
 }
 
-/// The queue of the interface is full.
+/// True if the queue of the interface is full.
 fn is_full(error: &std::io::Error) -> bool {
     error.kind() == ErrorKind::WouldBlock
         || error.raw_os_error() == Some(rustix::io::Errno::NOBUFS.raw_os_error())
 }
 
-/// Time between two looks at a full queue: a frame takes about as long.
+/// Interval at which a full queue is retried: about the duration of a frame.
 const FULL_WAIT: Duration = Duration::from_micros(100);
 
 impl Frames for SocketCan {
     fn send(&mut self, frame: &Frame, wait: Duration) -> Result<bool, PortError> {
-        // Our identifiers have 11 bits.
+        // Identifiers of this protocol have 11 bits.
         let Some(id) = StandardId::new(frame.id()) else { return Ok(false) };
         let socket = self.socket()?;
         let begun = Instant::now();
@@ -280,7 +281,7 @@ impl Frames for SocketCan {
     }
 
     fn restart(&mut self) -> Result<bool, PortError> {
-        // Refused without rights, and where the interface restarts by itself (restart-ms).
+        // The kernel refuses without privileges, and if the interface restarts by itself (restart-ms).
         let interface = CanInterface::open(&self.can.interface)
             .map_err(|error| PortError::gone(&self.uri, error))?;
         Ok(interface.restart().is_ok())
@@ -309,7 +310,8 @@ mod tests {
     fn an_error_frame_is_the_worst_that_it_says() {
         assert_eq!(error_frame(0x40, 0), Trouble::Off);
         assert_eq!(error_frame(0x04, 0x20), Trouble::Passive);
-        // As the sja1000 reports it: protocol violation, bus error and controller in one frame.
+        // Error frames as the sja1000 driver reports them: protocol violation, bus error and controller
+        // in one frame.
         assert_eq!(error_frame(0x8C, 0x10), Trouble::Passive);
         assert_eq!(error_frame(0x8C, 0x08), Trouble::Warning);
         assert_eq!(error_frame(0x88, 0x10), Trouble::ErrorFrame);

@@ -1,4 +1,4 @@
-//! UDP: a frame is a datagram.
+//! UDP, with one frame in each datagram.
 
 use super::{Bytes, PortError};
 use crate::uri::Udp;
@@ -6,23 +6,23 @@ use std::io::ErrorKind;
 use std::net::{IpAddr, Ipv4Addr, Ipv6Addr, SocketAddr, ToSocketAddrs, UdpSocket};
 use std::time::Duration;
 
-/// A socket that hears one peer at a time.
+/// A UDP socket that listens to one peer at a time.
 #[derive(Debug)]
 pub struct UdpPort {
     uri: String,
     socket: UdpSocket,
-    /// Who is answered. Of the harness, always who was named.
+    /// Peer that is answered. At the harness end it is always the one named in the URI.
     peer: Option<SocketAddr>,
-    /// Nobody but the peer is heard.
+    /// True while datagrams of others than the peer are dropped.
     held: bool,
-    /// This end listens: the peer is who said hello.
+    /// True at the device end, where a session binds the port to its peer.
     listens: bool,
     wait: Wait,
-    /// Datagrams of strangers, dropped.
+    /// Number of datagrams from strangers, all dropped.
     strangers: u64,
 }
 
-/// How the socket waits now.
+/// Present timeout of the socket.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Wait {
     Unknown,
@@ -31,10 +31,10 @@ enum Wait {
 }
 
 impl UdpPort {
-    /// The harness end: it sends to one address, and hears nobody else.
+    /// Opens the harness end, which exchanges datagrams with one address only.
     ///
     /// # Errors
-    /// If the address can't be found, or no port is free.
+    /// If the address can't be resolved, or no port is free.
     pub fn connect(udp: &Udp) -> Result<Self, PortError> {
         let peer = resolve(udp)?;
         if peer.port() == 0 {
@@ -53,10 +53,10 @@ impl UdpPort {
         Ok(Self { peer: Some(peer), held: true, ..Self::of(socket, uri.clone()) })
     }
 
-    /// The device end: it listens, and a session binds it to who began it.
+    /// Opens the device end, which listens; a session binds it to the peer that began it.
     ///
     /// # Errors
-    /// If the address isn't one of this host, or the port is taken.
+    /// If the address doesn't belong to this host, or the port is taken.
     pub fn listen(udp: &Udp) -> Result<Self, PortError> {
         let address = resolve(udp)?;
         let refused = |error: std::io::Error| PortError::open(format!("udp:{address}"), error);
@@ -77,7 +77,7 @@ impl UdpPort {
         }
     }
 
-    /// Datagrams that came from others than the peer, and were dropped.
+    /// Number of datagrams that came from others than the peer, and were dropped.
     #[must_use]
     pub fn strangers(&self) -> u64 {
         self.strangers
@@ -105,7 +105,7 @@ impl UdpPort {
     }
 }
 
-/// The address that a name stands for; an empty one is loopback.
+/// Resolves a host name; an empty one is loopback.
 fn resolve(udp: &Udp) -> Result<SocketAddr, PortError> {
     if udp.host.is_empty() {
         return Ok((Ipv4Addr::LOCALHOST, udp.port).into());
@@ -118,14 +118,14 @@ fn resolve(udp: &Udp) -> Result<SocketAddr, PortError> {
         .ok_or_else(|| refused("the name stands for no address".to_owned()))
 }
 
-/// Errors that say something about the other end, or about nothing.
+/// True for errors that concern the other end only, or nothing.
 fn passes(error: &std::io::Error) -> bool {
     matches!(
         error.kind(),
         ErrorKind::WouldBlock
             | ErrorKind::TimedOut
             | ErrorKind::Interrupted
-            // Nobody listens there now: who waits finds out by the silence.
+            // Nobody listens there at the moment: the sender notices by the silence.
             | ErrorKind::ConnectionRefused
             | ErrorKind::ConnectionReset
     )
@@ -171,10 +171,10 @@ impl Bytes for UdpPort {
         }
     }
 
-    /// A socket stays: what comes meanwhile lies in it.
+    /// The socket stays open, and datagrams that arrive meanwhile are queued in it.
     fn close(&mut self) {}
 
-    /// A network that is back needs no other socket.
+    /// A network that is back needs no new socket.
     fn reopen(&mut self) -> Result<(), PortError> {
         Ok(())
     }

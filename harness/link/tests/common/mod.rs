@@ -1,4 +1,4 @@
-//! A core that echoes, as `README.md` of the wire has it; samples; and a device on a thread.
+//! Shared parts: an echoing core as in the `README.md` of the wire, samples, and a device on a thread.
 #![cfg_attr(not(unix), allow(dead_code, reason = "most sessions are tested on Unix alone"))]
 
 use octant_link::device::{Device, Facts, Notice, Steps};
@@ -21,7 +21,7 @@ use std::time::Duration;
 
 pub(crate) const PERIOD_NS: u64 = 5_000_000;
 
-/// A core that answers with what it was given.
+/// A core that answers with its input.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Echo {
     revision: u32,
@@ -88,12 +88,12 @@ pub(crate) fn facts() -> Facts {
         capabilities: Capabilities::all(),
         sample_period_ns: PERIOD_NS,
         configuration: [0; 32],
-        // Of a busy host it may be long that nothing is heard.
+        // On a busy host, the line may be silent for long.
         limits: Limits { window: 16, silence_ms: 60_000, shortest_period_ns: 0 },
     }
 }
 
-/// Longer than any host takes: it ends a test that hangs.
+/// Longer than any host needs: ends a test that hangs.
 pub(crate) const LONG: Duration = Duration::from_secs(60);
 
 pub(crate) fn options() -> Options {
@@ -103,7 +103,7 @@ pub(crate) fn options() -> Options {
     }
 }
 
-/// A sample with a number, and the aiding of every tenth.
+/// Sample with a number, and aiding for every tenth.
 pub(crate) fn sample(k: u64) -> (Sample, Option<Aiding>) {
     let n = k as i32;
     let device_time = DeviceTime { ns: k * PERIOD_NS };
@@ -124,7 +124,7 @@ pub(crate) fn sample(k: u64) -> (Sample, Option<Aiding>) {
     (sample, reference.map(|reference| Aiding { device_time, reference }))
 }
 
-/// The bits of an output.
+/// Canonical bytes of an output.
 pub(crate) fn bits(output: &Output) -> Vec<u8> {
     let mut bytes = [0; octant_sample::canonical::OUTPUT_BYTES];
     octant_sample::canonical::output(output, &mut bytes);
@@ -165,7 +165,7 @@ pub(crate) struct Served {
 }
 
 impl Served {
-    /// Serves echoes over a wire.
+    /// Serves an echoing core over a wire.
     pub(crate) fn over(wire: Wire, facts: Facts) -> Self {
         let stop = Arc::new(AtomicBool::new(false));
         let (sender, notices) = channel();
@@ -176,13 +176,13 @@ impl Served {
                 let _ = sender.send(notice.to_string());
             };
             let mut device = Device::new(wire, facts, &mut echo, &mut notice).unwrap();
-            // A port that goes away ends it here.
+            // A port that goes away ends the device here.
             let _ = device.serve(&until);
         });
         Self { stop, thread: Some(thread), notices }
     }
 
-    /// Serves echoes on a port of a name; and the name by which the harness reaches it.
+    /// Serves an echoing core on the port of a URI; also returns the URI for the harness.
     pub(crate) fn on(uri: &str, facts: Facts) -> (Self, Uri) {
         let uri: Uri = uri.parse().unwrap();
         let port = port::open(&uri, Role::Device).unwrap();
@@ -197,7 +197,7 @@ impl Served {
         }
     }
 
-    /// What the device said so far.
+    /// Notices of the device so far.
     pub(crate) fn said(&self) -> Vec<String> {
         self.notices.try_iter().collect()
     }
@@ -212,7 +212,7 @@ impl Drop for Served {
     }
 }
 
-/// A harness at a port.
+/// Opens a session at a port.
 pub(crate) fn harness(uri: &Uri) -> Harness {
     Harness::open(Wire::open(uri, Role::Harness).unwrap(), options()).unwrap()
 }

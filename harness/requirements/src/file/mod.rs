@@ -1,4 +1,4 @@
-//! `requirements.toml`.
+//! The file `requirements.toml`.
 //!
 //! ```toml
 //! schema = 1
@@ -23,25 +23,25 @@ pub use write::write;
 
 use crate::requirement::Limit;
 
-/// Version of the form of the file.
+/// Version of the file's schema.
 pub const SCHEMA: i64 = 1;
 
-/// Who knows measures and units. Each answers with what is wrong, in plain words.
+/// Checker of measures and limits, which knows the units. Errors are in plain words.
 pub trait Checker {
-    /// Whether a run can have this measure.
+    /// Checks that a run can have this measure.
     ///
     /// # Errors
-    /// What of the name leads nowhere, and what there is.
+    /// The part of the name that leads nowhere, and the names that exist.
     fn measure(&self, measure: &str) -> Result<(), String>;
 
-    /// Whether this is a limit of the measure, in a unit of its kind.
+    /// Checks that this is a limit for the measure, in a unit of its kind.
     ///
     /// # Errors
-    /// What was found, and what was expected.
+    /// Limit found and limit expected.
     fn limit(&self, measure: &str, limit: &Limit) -> Result<(), String>;
 }
 
-/// Takes every measure and every limit: for who only moves requirements between formats.
+/// Accepts every measure and every limit: for moving requirements between formats.
 #[derive(Clone, Copy, Debug)]
 pub struct Anything;
 

@@ -39,7 +39,7 @@ const KINDS: [&str; 7] = ["text", "integer", "real", "boolean", "date", "choice"
 /// Reads the text of a `requirements.toml`.
 ///
 /// # Errors
-/// With everything that is wrong, each with line, column and field.
+/// All problems, each with line, column and field.
 pub fn read(
     text: &str,
     file: &str,
@@ -55,7 +55,7 @@ pub fn read(
         }
     };
     let root = Reader::new(table.get_ref(), 0, "", &problems);
-    // A newer form may have other keys: what is unknown there is not told.
+    // A newer schema may have other keys: unknown ones in it are not reported.
     let found = if schema(&root) { document(&root, checker) } else { Requirements::default() };
     let mut problems = problems.all.into_inner();
     problems.sort_by_key(|p| (p.line, p.column));
@@ -217,7 +217,7 @@ fn requirement(
     Some(read)
 }
 
-/// Tells values that aren't of their attribute's kind.
+/// Reports values that don't fit the kind of their attribute.
 fn fits(table: &Reader<'_>, name: &str, values: &[String], definitions: &[Definition]) {
     let Some(definition) = definitions.iter().find(|d| d.name == name) else { return };
     if let Some(expected) = misfit(&definition.kind, values) {
@@ -225,7 +225,7 @@ fn fits(table: &Reader<'_>, name: &str, values: &[String], definitions: &[Defini
     }
 }
 
-/// What was expected, where values aren't of a kind.
+/// Text of the expected values, if these don't fit a kind.
 pub(crate) fn misfit(kind: &Kind, values: &[String]) -> Option<String> {
     let all = |legal: &dyn Fn(&String) -> bool| values.iter().all(legal);
     let one_of = |options: &[String]| format!("of {}", options.join(", "));
@@ -371,8 +371,8 @@ fn limit(table: &Reader<'_>) -> Option<Limit> {
                     table.problem("limit", message);
                     None
                 }
-                Err(message) => {
-                    table.problem("limit", message);
+                Err(error) => {
+                    table.problem("limit", error.to_string());
                     None
                 }
             };
@@ -390,7 +390,7 @@ fn limit(table: &Reader<'_>) -> Option<Limit> {
 fn ensemble(table: &Reader<'_>) -> Option<Ensemble> {
     let part = |key: &str| {
         let text = table.line_of(key)?;
-        probability(&text).map_err(|message| table.problem(key, message)).ok()
+        probability(&text).map_err(|error| table.problem(key, error.to_string())).ok()
     };
     let (pass, confidence) = (part("pass"), part("confidence"));
     for (key, other) in [("pass", "confidence"), ("confidence", "pass")] {

@@ -1,12 +1,11 @@
-//! Writes `requirements.toml`.
+//! Writing of `requirements.toml`.
 
 use super::SCHEMA;
 use crate::requirement::{Limit, Requirement, Requirements, Verification, percent};
 use std::fmt::Write as _;
 
-/// The text of a `requirements.toml`; [`super::read()`] takes it back to the same requirements. One of
-/// which nobody has said how it is verified is written without that, and is refused there until
-/// somebody has.
+/// Writes a `requirements.toml`; [`super::read()`] gives back the same requirements. A requirement with
+/// an open verification is written without one, and refused by the reader until one is added.
 #[must_use]
 pub fn write(requirements: &Requirements) -> String {
     let mut out = format!("schema = {SCHEMA}\n");
@@ -105,7 +104,8 @@ fn escape(text: &str) -> String {
     serde_json::Value::from(text).to_string().replace('\u{7f}', "\\u007f")
 }
 
-/// JSON escapes what a basic string of TOML must, except DEL. Several lines stay several lines.
+/// Quotes a text: JSON escapes everything that a basic string of TOML must escape, except DEL. Several
+/// lines stay several lines.
 fn quoted(text: &str) -> String {
     if !text.contains('\n') {
         return escape(text);

@@ -1,4 +1,4 @@
-//! Reads a ReqIF file.
+//! Reading of ReqIF files.
 
 use super::types::{Types, Wrong, child, identifier, reference, within};
 use super::{CHAPTER, FOREIGN_ID, NAME, NAMESPACE, TEXT, xhtml};
@@ -11,17 +11,18 @@ use crate::requirement::{
 use roxmltree::{Document, Node};
 use std::collections::{HashMap, HashSet};
 
-/// Sections in sections; deeper is no document that anybody wrote.
+/// Most levels of nested sections; no real document is deeper.
 const DEPTH: usize = 100;
 
-/// Reads the text of a `.reqif`.
+/// Reads a `.reqif`.
 ///
-/// Several specifications in one file become one document, each with its title as first section. A
-/// requirement whose attributes make no complete check is taken as it is, with a note.
+/// Several specifications in one file become one document, in which the title of each is a section of
+/// the first level. A requirement whose attributes make no complete check is read as it is, with a
+/// note.
 ///
 /// # Errors
-/// If it isn't XML or not ReqIF, with the line; if something refers to what isn't in the file; or if an
-/// id is there twice.
+/// If the text isn't XML or not ReqIF, with the line; if a reference has no target in the file; or if
+/// an id occurs twice.
 pub fn read(text: &str, file: &str) -> Result<Imported, RequirementsError> {
     let fail = |line: usize, column: usize, message: String| {
         RequirementsError::one(file, Problem::new((line, column), "", message))
@@ -37,12 +38,12 @@ pub fn read(text: &str, file: &str) -> Result<Imported, RequirementsError> {
 /// Name and kind of an attribute, its values, and its line.
 type Attributed = (String, Kind, Vec<String>, usize);
 
-/// An object as it was written.
+/// An object of the file.
 #[derive(Default)]
 struct Object {
     line: usize,
     identifier: String,
-    /// Name of its type.
+    /// Name of the object's type.
     kind: String,
     values: Vec<Attributed>,
 }
@@ -62,7 +63,7 @@ impl Object {
 struct Reader<'a> {
     document: &'a Document<'a>,
     types: Types,
-    /// StrictDoc writes strings with the escapes of Python.
+    /// True for a file of StrictDoc, which writes strings with the escapes of Python.
     escaped: bool,
     found: Requirements,
     notes: Vec<Note>,
@@ -188,7 +189,7 @@ impl<'a> Reader<'a> {
         Ok(())
     }
 
-    /// The nodes of a specification with their depth, from 1, in the order of the document.
+    /// Nodes of a specification with their depth, from 1, in the order of the document.
     fn hierarchy<'n>(
         &self,
         specification: Node<'n, 'n>,
@@ -221,7 +222,7 @@ impl<'a> Reader<'a> {
         };
         let kind = object_type.name.clone();
         let mut values = self.values(node, &id)?;
-        // In the order in which the type has them, whatever that of the object is.
+        // Attributes are sorted in the order of the type, not of the object.
         let rank: HashMap<&str, usize> = self.types.objects[of]
             .attributes
             .iter()
@@ -232,7 +233,7 @@ impl<'a> Reader<'a> {
         Ok(Object { line, identifier: id, kind, values })
     }
 
-    /// The attributes of an object, or of a document.
+    /// Attributes of an object, or of a document.
     fn values(&mut self, node: Node<'_, '_>, id: &str) -> Result<Vec<Attributed>, Wrong> {
         let mut values = Vec::new();
         for value in within(node, "VALUES") {
@@ -251,7 +252,7 @@ impl<'a> Reader<'a> {
         Ok(values)
     }
 
-    /// The texts of an attribute's value.
+    /// Texts of an attribute's value.
     fn value(&mut self, value: Node<'_, '_>, name: &str, id: &str) -> Result<Vec<String>, Wrong> {
         let line = self.line(value);
         let tag = value.tag_name().name();
@@ -290,7 +291,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Parents of objects: a relation goes from what is derived to what it is derived from.
+    /// Reads the parents of objects: a relation goes from the derived object to its parent.
     fn parents(
         &mut self,
         content: Node<'_, '_>,
@@ -363,9 +364,9 @@ impl<'a> Reader<'a> {
             attributes.push(Attribute { name, values });
         }
         let kind = (object.kind != crate::sdoc::REQUIREMENT).then_some(object.kind);
-        // Made of the id, as this program does it, it says nothing more.
+        // An identifier that this program made from the id adds nothing.
         let identifier =
-            (object.identifier != super::write::identifier(&id)).then_some(object.identifier);
+            (object.identifier != super::identifier::identifier(&id)).then_some(object.identifier);
         self.found.requirements.push(Requirement {
             title,
             clause,
@@ -381,19 +382,19 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// The title of an object that is the head of a section.
+/// Title of an object that is the head of a section.
 fn chapter(object: &Object) -> Option<String> {
     let title = object.get(CHAPTER)?.1.replace('\n', " ");
     object.get(TEXT).is_none().then_some(title)
 }
 
-/// What people call an object.
+/// Id of an object for people.
 fn id_of(object: &Object) -> String {
     let id = object.get(FOREIGN_ID).map_or(object.identifier.as_str(), |(_, id)| id);
     id.replace('\n', " ")
 }
 
-/// Takes back the escapes of Python's `unicode_escape`, with which StrictDoc writes strings.
+/// Reverts the escapes of Python's `unicode_escape`, with which StrictDoc writes strings.
 fn unescape(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     let mut rest = text;

@@ -1,15 +1,15 @@
-//! Types of a ReqIF file: enumerations, and the attributes that objects have.
+//! Types of a ReqIF file: enumerations, and attributes of objects.
 
 use crate::requirement::Kind;
 use roxmltree::Node;
 use std::collections::HashMap;
 
-/// The first child of a name.
+/// First child with a name.
 pub(super) fn child<'a, 'i>(node: Node<'a, 'i>, name: &str) -> Option<Node<'a, 'i>> {
     node.children().find(|n| n.tag_name().name() == name)
 }
 
-/// The elements in a child of a name.
+/// Elements in the first child with a name.
 pub(super) fn within<'a, 'i>(
     node: Node<'a, 'i>,
     name: &str,
@@ -17,21 +17,21 @@ pub(super) fn within<'a, 'i>(
     child(node, name).into_iter().flat_map(|n| n.children()).filter(Node::is_element)
 }
 
-/// The text of the one element in a child of a name: a reference.
+/// Text of the single element in a child with a name: a reference.
 pub(super) fn reference<'a>(node: Node<'a, '_>, name: &str) -> Option<&'a str> {
     within(node, name).next().and_then(|n| n.text()).map(str::trim)
 }
 
-/// An attribute that objects of a type have.
+/// An attribute of an object type.
 pub(super) struct Definition {
     pub(super) name: String,
     pub(super) kind: Kind,
 }
 
-/// A type of objects.
+/// An object type.
 pub(super) struct ObjectType {
     pub(super) name: String,
-    /// Identifiers of its attributes.
+    /// Identifiers of the type's attributes.
     pub(super) attributes: Vec<String>,
 }
 
@@ -41,13 +41,13 @@ pub(super) struct Types {
     /// Attributes by identifier.
     pub(super) attributes: HashMap<String, Definition>,
     pub(super) objects: HashMap<String, ObjectType>,
-    /// Names of types of relations by identifier.
+    /// Names of relation types, by identifier.
     pub(super) relations: HashMap<String, String>,
-    /// Options by the identifier of their value.
+    /// Options, by the identifier of their value.
     pub(super) options: HashMap<String, String>,
 }
 
-/// Line and what is wrong.
+/// Line and text of an error.
 pub(super) type Wrong = (usize, String);
 
 impl Types {
@@ -85,7 +85,7 @@ impl Types {
                 "SPECIFICATION-TYPE" => {
                     types.attributes_of(node, &enumerations, line)?;
                 }
-                // Attributes of relations have no place here.
+                // Attributes of relations are not supported.
                 _ => {}
             }
         }
@@ -135,7 +135,7 @@ impl Types {
     }
 }
 
-/// The identifier that every element of ReqIF has.
+/// Identifier, which every element of ReqIF has.
 pub(super) fn identifier<'a>(
     node: Node<'a, '_>,
     line: &dyn Fn(Node<'_, '_>) -> usize,

@@ -1,8 +1,10 @@
-//! Writes a ReqIF file.
+//! Writing of ReqIF files.
 
+use super::columns::{Column, columns};
+use super::identifier::{identifier, legal, object_id};
 use super::{CHAPTER, FOREIGN_ID, NAME, NAMESPACE, TEXT, TOOL, XHTML, xhtml};
 use crate::error::ExportError;
-use crate::fields::{ALL, own_fields};
+use crate::fields::own_fields;
 use crate::file::misfit;
 use crate::requirement::{Kind, Requirement, Requirements};
 use crate::sdoc::REQUIREMENT;
@@ -11,25 +13,13 @@ use quick_xml::writer::Writer;
 use std::collections::{HashMap, HashSet};
 use std::io;
 
-/// An identifier made of the id that people use: letters, digits, `-` and `.`, the rest as its number.
-pub(super) fn identifier(id: &str) -> String {
-    let mut out = String::from("octant-");
-    for c in id.chars() {
-        match c {
-            c if c.is_ascii_alphanumeric() || c == '-' || c == '.' => out.push(c),
-            c => out.push_str(&format!("_{:x}_", u32::from(c))),
-        }
-    }
-    out
-}
-
-/// Writes the requirements as ReqIF; [`super::read()`] takes it back to the same ones.
+/// Writes requirements as ReqIF; [`super::read()`] gives back the same ones.
 ///
-/// `time` is the time of the export as XML Schema writes it, `2026-01-31T12:00:00Z`: the same
+/// `time` is the time of the export in the form of XML Schema, `2026-01-31T12:00:00Z`: the same
 /// requirements and time give the same bytes.
 ///
 /// # Errors
-/// If an attribute has a value that isn't of its kind, or an identifier is no identifier of XML or there
+/// If an attribute has a value that doesn't fit its kind, an identifier is invalid in XML or occurs
 /// twice, or a parent isn't in the document.
 pub fn write(requirements: &Requirements, time: &str) -> Result<String, ExportError> {
     let mut seen = HashSet::new();
@@ -70,63 +60,6 @@ pub fn write(requirements: &Requirements, time: &str) -> Result<String, ExportEr
     String::from_utf8(file.out.into_inner()).map_err(|error| failed(error.to_string()))
 }
 
-fn object_id(requirement: &Requirement) -> String {
-    requirement.identifier.clone().unwrap_or_else(|| identifier(&requirement.id))
-}
-
-/// Whether this is an NCName: what an identifier has to be in XML.
-fn legal(id: &str) -> bool {
-    let first = |c: char| c.is_alphabetic() || c == '_';
-    id.starts_with(first) && id.chars().all(|c| first(c) || c.is_numeric() || "-.".contains(c))
-}
-
-/// A column of every object type.
-struct Column {
-    name: String,
-    kind: Kind,
-    /// A text that isn't one line of plain ASCII. (StrictDoc writes and reads strings with escapes of
-    /// its own, which would spoil the others; in XHTML it has none.)
-    formatted: bool,
-}
-
-fn columns(requirements: &Requirements) -> Vec<Column> {
-    let all = &requirements.requirements;
-    let plain = |text: &str| text.chars().all(|c| (' '..='~').contains(&c) && c != '\\');
-    let column = |name: &str, kind: Kind, values: &[String]| {
-        let formatted = kind == Kind::Text && !values.iter().all(|text| plain(text));
-        Column { name: name.to_owned(), kind, formatted }
-    };
-    let mut columns = vec![
-        Column { name: FOREIGN_ID.to_owned(), kind: Kind::Text, formatted: false },
-        column(NAME, Kind::Text, &all.iter().filter_map(|r| r.title.clone()).collect::<Vec<_>>()),
-        Column { name: TEXT.to_owned(), kind: Kind::Text, formatted: true },
-    ];
-    for field in ALL {
-        let values: Vec<String> = all
-            .iter()
-            .flat_map(own_fields)
-            .filter(|(name, _)| *name == field)
-            .map(|(_, value)| value)
-            .collect();
-        columns.push(column(field, Kind::Text, &values));
-    }
-    for name in requirements.attribute_names() {
-        let values: Vec<String> = all
-            .iter()
-            .flat_map(|r| &r.attributes)
-            .filter(|a| a.name == name)
-            .map(|a| a.values.join("\n\n"))
-            .collect();
-        let new = column(name, requirements.kind(name), &values);
-        // One of ours is an attribute of a requirement whose own key says nothing.
-        match columns.iter_mut().find(|c| c.name == name) {
-            Some(column) => column.formatted |= new.formatted,
-            None => columns.push(new),
-        }
-    }
-    columns
-}
-
 struct File<'a> {
     out: Writer<Vec<u8>>,
     time: &'a str,
@@ -161,7 +94,7 @@ impl File<'_> {
         self.close(name)
     }
 
-    /// An element that holds a reference: `<TYPE><…-REF>id</…-REF></TYPE>`.
+    /// Writes an element that holds a reference: `<TYPE><…-REF>id</…-REF></TYPE>`.
     fn reference(&mut self, name: &str, to: &str, id: &str) -> io::Result<()> {
         self.open(name, &[])?;
         self.text(to, id)?;
@@ -175,7 +108,7 @@ impl File<'_> {
         self.open("REQ-IF-HEADER", &[("IDENTIFIER", "octant-header")])?;
         self.text("CREATION-TIME", self.time)?;
         self.text("REQ-IF-TOOL-ID", TOOL)?;
-        // The schema of ReqIF 1.2 fixes it to that of 1.0.
+        // The schema of ReqIF 1.2 fixes the version to that of 1.0.
         self.text("REQ-IF-VERSION", "1.0")?;
         self.text("SOURCE-TOOL-ID", TOOL)?;
         self.text("TITLE", &self.requirements.title)?;
@@ -333,7 +266,7 @@ impl File<'_> {
         roles
     }
 
-    /// Writes the objects, and among them the heads of sections.
+    /// Writes the objects, and the heads of sections between them.
     fn objects(&mut self) -> io::Result<()> {
         let time = self.time;
         self.open("SPEC-OBJECTS", &[])?;
@@ -423,7 +356,7 @@ impl File<'_> {
         let mut number = 0;
         for requirement in &requirements.requirements {
             for parent in &requirement.parents {
-                // One that isn't here is refused before.
+                // A parent that isn't in the document was already refused.
                 let Some(target) = ids.get(parent.id.as_str()) else { continue };
                 let role = roles.iter().position(|role| *role == parent.role).unwrap_or(0);
                 let id = format!("octant-relation-{number}");

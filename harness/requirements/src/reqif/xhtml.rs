@@ -1,4 +1,4 @@
-//! Texts as XHTML: paragraphs at empty lines, breaks at the others.
+//! Texts as XHTML: paragraphs at empty lines, breaks at other line ends.
 
 use super::XHTML;
 use quick_xml::events::{BytesEnd, BytesStart, BytesText, Event};
@@ -8,7 +8,7 @@ use std::io;
 
 /// Writes a text as one `div`.
 ///
-/// A line break is written after each `br`, for readers that only look at the text.
+/// A line break is written after each `br`, for readers that take only the text.
 pub(super) fn write(out: &mut Writer<Vec<u8>>, text: &str) -> io::Result<()> {
     out.write_event(Event::Start(BytesStart::new("xhtml:div")))?;
     for (index, line) in text.split('\n').enumerate() {
@@ -21,18 +21,18 @@ pub(super) fn write(out: &mut Writer<Vec<u8>>, text: &str) -> io::Result<()> {
     out.write_event(Event::End(BytesEnd::new("xhtml:div")))
 }
 
-/// A text, and what of its form was lost.
+/// A plain text, and the elements of its formatting that were lost.
 #[derive(Default)]
 pub(super) struct Plain {
     pub(super) text: String,
-    /// Elements that are more than paragraphs and breaks.
+    /// Elements other than paragraphs and breaks.
     pub(super) lost: Vec<String>,
 }
 
-/// The plain text of the children of `THE-VALUE`.
+/// Plain text of the children of `THE-VALUE`.
 pub(super) fn read(value: Node<'_, '_>) -> Plain {
     let mut plain = Plain::default();
-    // Without recursion: a file may be nested as deep as it likes.
+    // Not recursive, because a file may be nested to any depth.
     for edge in value.descendants() {
         if edge.is_element() && edge != value {
             let name = edge.tag_name().name();
@@ -49,7 +49,7 @@ pub(super) fn read(value: Node<'_, '_>) -> Plain {
                 plain.lost.push(name.to_owned());
             }
         } else if edge.is_text() {
-            // What stands after the end of a block is not in it.
+            // Text after the end of a block begins a new one.
             if edge.prev_sibling().is_some_and(|before| is_block(before)) {
                 block(&mut plain.text);
             }
@@ -65,7 +65,7 @@ fn is_block(node: Node<'_, '_>) -> bool {
     matches!(node.tag_name().name(), "div" | "p" | "li" | "table" | "pre" | "blockquote")
 }
 
-/// A block begins on a line of its own, after an empty one if something stands before it.
+/// Begins a block on a line of its own, after an empty one if there is text before it.
 fn block(text: &mut String) {
     while text.ends_with([' ', '\t']) {
         text.pop();
@@ -77,11 +77,11 @@ fn block(text: &mut String) {
     }
 }
 
-/// What XML takes for space.
+/// Characters that are space in XML.
 const SPACE: [char; 4] = [' ', '\t', '\n', '\r'];
 
-/// Adds running text. Space that has a line break in it is indentation, and one space; other space
-/// stays as it is.
+/// Adds running text. Space with a line break in it is indentation and becomes one space; other space
+/// stays.
 fn flow(text: &mut String, more: &str) {
     let mut rest = more;
     while let Some(at) = rest.find(SPACE) {

@@ -1,28 +1,28 @@
-//! The grammar of a document: which fields its nodes have.
+//! Grammar of a document: the fields of its nodes.
 
 use crate::requirement::{Definition, Kind};
 
 /// A field of the grammar.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Field {
-    /// Its name in nodes.
+    /// Name in nodes.
     pub(super) title: String,
-    /// Its name for people.
+    /// Name for people.
     pub(super) human: Option<String>,
     pub(super) kind: Kind,
 }
 
 impl Field {
-    /// The name of the attribute.
+    /// Name of the attribute.
     pub(super) fn name(&self) -> &str {
         self.human.as_deref().unwrap_or(&self.title)
     }
 
-    /// What has to be remembered of it, if anything.
+    /// Definition that has to be kept for the field, if any.
     pub(super) fn definition(&self) -> Option<Definition> {
         let plain = self.kind == Kind::Text;
         let field = self.human.as_ref().map(|_| self.title.clone());
-        // A name that leads to this field by itself needs no memory.
+        // A name from which this field follows needs no definition.
         let field = field.filter(|title| *title != field_of(self.name()));
         (!plain || field.is_some()).then(|| Definition {
             name: self.name().to_owned(),
@@ -32,7 +32,7 @@ impl Field {
     }
 }
 
-/// The field that an attribute is called where it has no other: capitals, digits and `_`.
+/// Default field for an attribute: capitals, digits and `_`.
 pub(super) fn field_of(name: &str) -> String {
     let mut field = String::new();
     for c in name.chars() {
@@ -45,7 +45,7 @@ pub(super) fn field_of(name: &str) -> String {
     if super::legal_field(&field) { field } else { format!("X_{field}") }
 }
 
-/// What a `TYPE` of the grammar means.
+/// Kind of a `TYPE` in the grammar.
 pub(super) fn kind(text: &str) -> Option<Kind> {
     let options = |list: &str| -> Option<Vec<String>> {
         let inner = list.strip_prefix('(')?.strip_suffix(')')?;
@@ -53,7 +53,7 @@ pub(super) fn kind(text: &str) -> Option<Kind> {
     };
     match text {
         "String" => Some(Kind::Text),
-        // Words, separated by commas, of which no list is kept.
+        // Words separated by commas, from no fixed list.
         "Tag" => Some(Kind::Text),
         _ => match (text.strip_prefix("SingleChoice"), text.strip_prefix("MultipleChoice")) {
             (Some(list), _) => options(list).map(Kind::Choice),

@@ -1,8 +1,9 @@
-//! Documents of StrictDoc, `.sdoc`: read and written as its version 0.30 does.
+//! Documents of StrictDoc, `.sdoc`: read and written in the form of its version 0.30.
 //!
-//! A node's UID, TITLE, STATEMENT, RATIONALE and MID are ours by other names; measure, limit and the
-//! rest are fields MEASURE, COMPARISON, LIMIT, PASS, CONFIDENCE, VERIFICATION, TESTS and CLAUSE, declared in
-//! the document's grammar. Every other field is an attribute, and comes out again as it went in.
+//! A node's UID, TITLE, STATEMENT, RATIONALE and MID correspond to keys of a requirement; measure,
+//! limit and the rest are fields MEASURE, COMPARISON, LIMIT, PASS, CONFIDENCE, VERIFICATION, TESTS and
+//! CLAUSE, declared in the document's grammar. Every other field is an attribute, and is written
+//! unchanged.
 
 mod grammar;
 mod read;
@@ -11,7 +12,7 @@ mod write;
 pub use read::read;
 pub use write::write;
 
-/// Fields of which a document's head is made, in the order of StrictDoc's grammar.
+/// Fields of a document's head, in the order of StrictDoc's grammar.
 pub(crate) const HEAD: [&str; 8] =
     ["MID", "UID", "VERSION", "DATE", "CLASSIFICATION", "REQ_PREFIX", "PREFIX", "ROOT"];
 
@@ -29,25 +30,25 @@ pub(crate) const OPTIONS: [&str; 10] = [
     "DEFAULT_VIEW",
 ];
 
-/// What a plain requirement is called.
+/// Type of a plain requirement.
 pub(crate) const REQUIREMENT: &str = "REQUIREMENT";
 
-/// Whether StrictDoc takes this as UID: a letter, digit or `_`, then also `()-/.:` and space.
+/// True if StrictDoc accepts this as UID: a letter, digit or `_`, then also `()-/.:` and space.
 pub(crate) fn legal_uid(id: &str) -> bool {
     let word = |c: char| c.is_alphanumeric() || c == '_';
     id.starts_with(word) && id.chars().all(|c| word(c) || "()-/.: ".contains(c))
 }
 
-/// Whether StrictDoc takes this as the name of a field: a capital, then letters, digits, `_`, `-`.
+/// True if StrictDoc accepts this as the name of a field: a capital, then letters, digits, `_`, `-`.
 pub(crate) fn legal_field(name: &str) -> bool {
     name.starts_with(|c: char| c.is_ascii_uppercase())
         && name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_' || c == '-')
-        // The grammar takes these for the beginning of something else.
+        // The grammar would take these for the beginning of something else.
         && !name.starts_with("RELATIONS")
         && !name.starts_with("UID")
 }
 
-/// Whether StrictDoc takes this as the name of a kind of node: capitals, in words by `_`.
+/// True if StrictDoc accepts this as the type of a node: words of capitals, joined by `_`.
 pub(crate) fn legal_kind(name: &str) -> bool {
     let word = |w: &str| !w.is_empty() && w.chars().all(|c| c.is_ascii_uppercase());
     let reserved = ["DOCUMENT", "GRAMMAR", "SECTION", "DOCUMENT_FROM_FILE", "TEXT"];

@@ -1,4 +1,4 @@
-//! Reads a document of StrictDoc.
+//! Reading of StrictDoc's documents.
 
 use super::grammar::{Field, kind};
 use super::{HEAD, OPTIONS, REQUIREMENT};
@@ -8,14 +8,13 @@ use crate::fields as field;
 use crate::requirement::{Attribute, Kind, Parent, Requirement, Requirements, Verification};
 use std::collections::HashMap;
 
-/// Reads the text of an `.sdoc`.
+/// Reads an `.sdoc`.
 ///
-/// A node whose fields make no complete check is taken as it is: verified in a way that nobody has
-/// said yet. A note says so.
+/// A node whose fields make no complete check is read with an open verification, and a note says so.
 ///
 /// # Errors
-/// If it isn't a document of StrictDoc, with the line; if a requirement has no UID or no statement; or
-/// if a UID is there twice.
+/// If the text isn't a document of StrictDoc, with the line; if a requirement has no UID or no
+/// statement; or if a UID occurs twice.
 pub fn read(text: &str, file: &str) -> Result<Imported, RequirementsError> {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let mut parser = Parser {
@@ -35,18 +34,18 @@ pub fn read(text: &str, file: &str) -> Result<Imported, RequirementsError> {
     }
 }
 
-/// Line and message.
+/// Line and text of an error.
 type Wrong = (usize, String);
 
-/// A node that is open: its children follow.
+/// A node whose children follow.
 struct Open {
     kind: String,
     line: usize,
-    /// A section's title; another node has none.
+    /// Title of a section; `None` for another node.
     section: Option<String>,
 }
 
-/// A field of a node as it was written.
+/// A field of a node.
 struct Written {
     name: String,
     value: String,
@@ -58,7 +57,7 @@ struct Parser<'a> {
     at: usize,
     found: Requirements,
     notes: Vec<Note>,
-    /// Fields of the grammar, by kind of node and name.
+    /// Fields of the grammar, by type of node and name.
     fields: HashMap<(String, String), Field>,
     /// Lines of the UIDs.
     ids: HashMap<String, usize>,
@@ -70,7 +69,7 @@ impl<'a> Parser<'a> {
         self.lines.get(self.at).copied()
     }
 
-    /// The number of the present line, from 1.
+    /// Number of the present line, from 1.
     fn line(&self) -> usize {
         self.at + 1
     }
@@ -118,7 +117,7 @@ impl<'a> Parser<'a> {
         }
     }
 
-    /// The lines after `[DOCUMENT]`, up to the first empty one.
+    /// Reads the lines after `[DOCUMENT]`, up to the first empty one.
     fn head(&mut self) -> Result<(), Wrong> {
         let mut title = None;
         let mut block = "";
@@ -133,7 +132,7 @@ impl<'a> Parser<'a> {
                     self.note(self.line(), "views are left out");
                 }
             } else if block == "VIEWS" && indented {
-                // Told above.
+                // A note was already made above.
             } else if let Some((key, value)) = line.trim_start().split_once(": ") {
                 let value = value.trim().to_owned();
                 match (indented, block) {
@@ -223,7 +222,7 @@ impl<'a> Parser<'a> {
         self.fields.insert((tag.to_owned(), field.title.clone()), field);
     }
 
-    /// A node, or the end of one.
+    /// Reads a node, or the end of one.
     fn node(&mut self) -> Result<(), Wrong> {
         let (line, head) = (self.line(), self.peek().unwrap_or_default());
         let inner = |open: &str, close: &str| {
@@ -245,7 +244,7 @@ impl<'a> Parser<'a> {
         }
         let (composite, kind) = match (inner("[[", "]]"), inner("[", "]")) {
             (Some(kind), _) => (true, kind),
-            // The older form of sections.
+            // `SECTION` in single brackets is the older form of a section.
             (None, Some(kind)) => (kind == "SECTION", kind),
             (None, None) => return self.wrong(format!("{}, expected a node [NAME]", self.found())),
         };
@@ -274,7 +273,7 @@ impl<'a> Parser<'a> {
         Ok(())
     }
 
-    /// Fields and parents of a node, up to the empty line after it.
+    /// Reads fields and parents of a node, up to the empty line after it.
     fn fields(&mut self) -> Result<(Vec<Written>, Vec<Parent>), Wrong> {
         let (mut fields, mut parents) = (Vec::new(), Vec::new());
         while let Some(text) = self.peek().filter(|line| !line.is_empty()) {
@@ -304,7 +303,7 @@ impl<'a> Parser<'a> {
         Ok((fields, parents))
     }
 
-    /// The lines of a value up to `<<<`.
+    /// Reads the lines of a value up to `<<<`.
     fn block(&mut self, line: usize, name: &str) -> Result<String, Wrong> {
         let mut lines = Vec::new();
         while let Some(text) = self.peek() {
@@ -431,7 +430,7 @@ impl Written {
     }
 }
 
-/// How a node says that it is verified, and the fields that say it; `None`: it doesn't say.
+/// Verification of a node, and the fields that describe it; `None`: there are none.
 fn check(fields: &[Written]) -> Result<Option<field::Said>, Wrong> {
     let of =
         |name: &str| fields.iter().find(|f| f.name == name).map(|f| (f.line, f.value.as_str()));

@@ -1,4 +1,4 @@
-//! Writes a document of StrictDoc.
+//! Writing of StrictDoc's documents.
 
 use super::grammar::field_of;
 use super::{HEAD, OPTIONS, REQUIREMENT, legal_field, legal_kind, legal_uid};
@@ -8,11 +8,11 @@ use crate::requirement::{Kind, Requirement, Requirements};
 use std::collections::HashMap;
 use std::fmt::Write as _;
 
-/// Writes the requirements as an `.sdoc`; [`super::read()`] takes it back to the same ones.
+/// Writes requirements as an `.sdoc`; [`super::read()`] gives back the same ones.
 ///
 /// # Errors
-/// If a requirement has what StrictDoc has no place for: an id or kind that it doesn't take, a line
-/// `<<<` in a text.
+/// If StrictDoc can't hold a part of a requirement: an id or type that it refuses, a line `<<<` in a
+/// text.
 pub fn write(requirements: &Requirements) -> Result<String, ExportError> {
     let mut out = String::from("[DOCUMENT]\n");
     let whole = |message: String| ExportError { format: "sdoc", id: "(all)".to_owned(), message };
@@ -82,7 +82,7 @@ fn head(out: &mut String, requirements: &Requirements) -> Result<(), String> {
             line(out, "  ", key, &value);
         }
     }
-    // What StrictDoc has no name for is metadata, which every document may have.
+    // Fields unknown to StrictDoc become metadata, which every document may have.
     let known = |key: &str| {
         HEAD.contains(&key) || key.strip_prefix("OPTIONS.").is_some_and(|o| OPTIONS.contains(&o))
     };
@@ -104,7 +104,7 @@ fn head(out: &mut String, requirements: &Requirements) -> Result<(), String> {
     Ok(())
 }
 
-/// Attributes and the fields that they become.
+/// Attributes with their fields.
 fn columns(requirements: &Requirements) -> Vec<(&str, String, Kind)> {
     let mut taken: Vec<String> = Vec::new();
     let mut columns = Vec::new();
@@ -115,7 +115,7 @@ fn columns(requirements: &Requirements) -> Vec<(&str, String, Kind)> {
         let wanted = wanted.unwrap_or_else(|| field_of(name));
         let mut field = wanted.clone();
         let mut number = 2;
-        // Ours may be an attribute too: of a requirement whose own key says nothing.
+        // A field of Octant can be an attribute: of a requirement whose own key is missing.
         let ours = |field: &str| ALL.contains(&field) && field != name;
         while reserved(&field) || ours(&field) || taken.contains(&field) {
             field = format!("{wanted}_{number}");
@@ -137,7 +137,7 @@ fn grammar(out: &mut String, requirements: &Requirements, columns: &[(&str, Stri
          - TITLE: TITLE\n    TYPE: String\n    REQUIRED: True\n",
     );
     let mut kinds: Vec<String> = Vec::new();
-    // Every role that parents have has to be declared.
+    // Every role of a parent has to be declared.
     let mut roles: HashMap<String, Vec<Option<&str>>> = HashMap::new();
     for requirement in &requirements.requirements {
         let kind = tag(requirement);
@@ -191,7 +191,7 @@ fn grammar(out: &mut String, requirements: &Requirements, columns: &[(&str, Stri
     }
 }
 
-/// What a requirement's kind is called where only capitals and `_` are legal.
+/// Type of a requirement with only capitals and `_`.
 fn tag(requirement: &Requirement) -> String {
     let Some(kind) = &requirement.kind else { return REQUIREMENT.to_owned() };
     if legal_kind(kind) {
@@ -226,7 +226,7 @@ fn node(
     own.push(("STATEMENT", requirement.text.clone()));
     own.extend(own_fields(requirement));
     let of = |field: &str| own.iter().find(|(name, _)| *name == field);
-    // In the order of the grammar: StrictDoc takes no other.
+    // Fields are written in the order of the grammar: StrictDoc accepts no other.
     let before = OF_FORMATS.into_iter().chain(ALL);
     for field in before.filter(|field| !columns.iter().any(|(_, column, _)| column == field)) {
         if let Some((_, value)) = of(field) {

@@ -1,6 +1,6 @@
-//! Keys of a campaign: scenarios, and what is varied in them.
+//! Keys of a campaign: its scenarios and their variations.
 
-use super::{Bounds, Default, Kind, SCHEMA, Section, Tag, Variants, key, section};
+use super::definition::{Bounds, Default, Key, Kind, SCHEMA, Section, Tag, Variants, key, section};
 use crate::quantity::Dimension;
 
 /// Keys of a campaign.
@@ -82,15 +82,15 @@ fn factor_forms() -> &'static [(&'static str, &'static Section)] {
     &FORMS
 }
 
-const NAME: super::Key =
+const NAME: Key =
     key("name", Kind::Text, Default::Required, "Name of the factor, unique in the campaign.");
-const SET: super::Key = key(
+const SET: Key = key(
     "key",
     Kind::Text,
     Default::Derived("the name"),
     "Key of the scenario that it sets, as in --set; faults.ID.KEY is one of a fault.",
 );
-const UNIT: super::Key = key(
+const UNIT: Key = key(
     "unit",
     Kind::Text,
     Default::Absent("a plain number"),

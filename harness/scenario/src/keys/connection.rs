@@ -1,10 +1,10 @@
 //! Keys of faults on connections of FMUs: a file of its own, or a part of a system structure.
 
+use super::definition::{Default, Key, Kind, SCHEMA, Section, Tag, Variants, key, section};
 use super::faults::{
     AFTER, AFTER_FAULT, AT, EVERY, MANUAL, POISSON, SAMPLE, lasting, leak, leak_all, named,
     parameter,
 };
-use super::{Default, Key, Kind, SCHEMA, Section, Tag, Variants, key, section};
 use octant_faults::connection::kinds::{self, KINDS};
 use std::sync::LazyLock;
 
@@ -24,7 +24,7 @@ static FAULT: Variants = Variants { tag: Tag::Value("kind"), forms: || &FORMS };
 static FORMS: LazyLock<Vec<(&'static str, &'static Section)>> =
     LazyLock::new(|| KINDS.iter().map(|kind| (kind.name, leak(fault(kind)))).collect());
 
-/// The keys of a kind.
+/// Keys of a kind.
 pub fn connection_section(kind: &str) -> Option<&'static Section> {
     FORMS.iter().find(|(name, _)| *name == kind).map(|(_, section)| *section)
 }

@@ -1,6 +1,6 @@
 //! Keys of a real table.
 
-use super::{Bounds, Default, Kind, Section, key, section};
+use super::definition::{Bounds, Default, Kind, Section, key, section};
 use crate::quantity::Dimension;
 
 const fn time(from: f64, words: &'static str) -> Kind {

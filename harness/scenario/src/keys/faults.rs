@@ -1,20 +1,19 @@
-//! Keys of faults: those that all have, and those of each kind, made from the catalogue.
+//! Keys of faults: common keys, and the keys of each kind, made from the catalogue.
 
-use super::{Bounds, Default, Key, Kind, Section, Tag, Variants, key, section};
+use super::definition::{Bounds, Default, Key, Kind, Section, Tag, Variants, key, section};
 use crate::quantity::Dimension;
 use octant_faults::catalogue::{self, Lasts, Parameter, Takes};
 use octant_faults::kinds;
 use std::sync::LazyLock;
 
-/// A fault: its kind decides which keys it has.
+/// Keys of a fault, which depend on its kind.
 pub(crate) static FAULT: Variants = Variants { tag: Tag::Value("kind"), forms: || &FORMS };
 
-/// The keys of every kind. The catalogue is fixed when the program is built: what is made from it
-/// is made once and kept.
+/// Keys of every kind. The catalogue is fixed at compile time, so they are made once and kept.
 static FORMS: LazyLock<Vec<(&'static str, &'static Section)>> =
     LazyLock::new(|| kinds::all().map(|kind| (kind.name, leak(fault(kind)))).collect());
 
-/// The keys of a kind.
+/// Keys of a kind.
 pub(crate) fn kind_section(kind: &str) -> Option<&'static Section> {
     FORMS.iter().find(|(name, _)| *name == kind).map(|(_, section)| *section)
 }
@@ -38,7 +37,7 @@ fn fault(kind: &'static catalogue::Kind) -> Section {
     Section { keys: leak_all(keys), one_of: false }
 }
 
-/// The key of the kind, in the form of one kind.
+/// The key `kind`, in the form of one kind.
 pub(super) fn named(name: &'static str, summary: &'static str) -> Key {
     key(
         "kind",
@@ -48,7 +47,7 @@ pub(super) fn named(name: &'static str, summary: &'static str) -> Key {
     )
 }
 
-/// How long a fault lasts, how it fades and comes back.
+/// Keys of a fault's duration, recovery and repetition.
 pub(super) fn lasting(lasts: Lasts) -> [Key; 3] {
     let duration = match lasts {
         Lasts::Instant => refused("duration", "this kind is over in an instant"),
@@ -82,7 +81,7 @@ const fn refused(name: &'static str, reason: &'static str) -> Key {
     key(name, Kind::Refused(reason), Default::Absent("none"), "Not for this kind.")
 }
 
-/// The key of a parameter of the catalogue.
+/// Key of a parameter of the catalogue.
 pub(super) fn parameter(parameter: &'static Parameter) -> Key {
     let dimensions = |all: &[catalogue::Dimension]| leak_all(all.iter().map(dimension).collect());
     let kind = match parameter.takes {
@@ -94,11 +93,11 @@ pub(super) fn parameter(parameter: &'static Parameter) -> Key {
         Takes::Channels => Kind::Channels,
         Takes::Number(limits) => Kind::Number(bounds(limits)),
         Takes::Value => Kind::Either(&VALUE),
-        // The limits are looked at when the unit of the connection is known.
+        // The bounds are checked when the unit of the connection is known.
         Takes::Difference(_) => Kind::Limit,
     };
     let default = parameter.default.map_or(Default::Required, |text| {
-        // A text stays one where it would read as something else: `nan`, `1`.
+        // A text stays a text even if it looks like another value: `nan`, `1`.
         let is_text = match parameter.takes {
             Takes::Quantity(..) | Takes::Choice(_) | Takes::Value => true,
             Takes::Channels => !text.starts_with('['),
@@ -113,7 +112,7 @@ pub(super) fn parameter(parameter: &'static Parameter) -> Key {
     key(parameter.name, kind, default, parameter.doc)
 }
 
-/// A value that an input can have.
+/// Kinds of a value that an input can have.
 static VALUE: [Kind; 3] = [Kind::Text, Kind::Number(Bounds::Any), Kind::Boolean];
 
 fn bounds(bounds: catalogue::Bounds) -> Bounds {
@@ -126,7 +125,7 @@ fn bounds(bounds: catalogue::Bounds) -> Bounds {
     }
 }
 
-/// The scenario's dimension of one of the catalogue.
+/// Scenario dimension of a dimension in the catalogue.
 pub(crate) fn dimension(dimension: &catalogue::Dimension) -> Dimension {
     use catalogue::Dimension as Of;
     match dimension {
@@ -158,7 +157,7 @@ pub(crate) fn dimension(dimension: &catalogue::Dimension) -> Dimension {
 }
 
 const SPAN: Kind = Kind::Quantity(&[Dimension::TIME, Dimension::SAMPLES], Bounds::Positive);
-/// A time, or a number of samples, from 0.
+/// Kind of a delay: a time, or a number of samples, from 0.
 const DELAY: Kind = Kind::Quantity(&[Dimension::TIME, Dimension::SAMPLES], Bounds::NotNegative);
 pub(super) const AFTER: Key = key("after", DELAY, Default::Value("0 s"), "How long after that.");
 const STOP: Kind = Kind::Integer(1, u16::MAX as i64);

@@ -1,6 +1,6 @@
-//! Keys of imported FMUs: how one is run, what is set in it, which of its variables is what.
+//! Keys of imported FMUs: execution, settings, and the mapping of variables.
 
-use super::{Bounds, Default, Key, Kind, Section, key, section};
+use super::definition::{Bounds, Default, Key, Kind, Section, key, section};
 use crate::channel::{Channel, answer, case, sample, truth};
 use crate::quantity::Dimension;
 
@@ -86,7 +86,7 @@ pub(crate) static ENDPOINT_FMU: Section = section(&[
 
 const BY_NAME: &str = "the variable of the channel's own name, where the FMU has it";
 
-/// A channel under the last part of its name.
+/// Key of a channel, with the last part of its name.
 const fn port(name: &'static str, channel: &'static Channel) -> Key {
     key(name, Kind::Port(channel), Default::Absent(BY_NAME), channel.doc)
 }

@@ -1,6 +1,6 @@
 //! Keys of the sensors and of the turntable.
 
-use super::{Bounds, Default, Key, Kind, Section, key, one_of, section};
+use super::definition::{Bounds, Default, Key, Kind, Section, key, one_of, section};
 use crate::quantity::Dimension;
 use octant_earth::units::DEG;
 

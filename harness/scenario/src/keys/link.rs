@@ -1,6 +1,6 @@
 //! Keys of a device at the other end of a wire.
 
-use super::{Bounds, Default, Kind, Section, key, section};
+use super::definition::{Bounds, Default, Kind, Section, key, section};
 use crate::quantity::Dimension;
 
 const WAIT: Kind =

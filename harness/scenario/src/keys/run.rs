@@ -1,13 +1,10 @@
-//! The root, the site, the motion, and what is done with the results.
+//! Keys of the root, the site, the motion, and the use of the results.
 
+use super::definition::{Bounds, Default, Key, Kind, SCHEMA, Section, key, section};
 use super::fmu::ENDPOINT_FMU;
 use super::link::ENDPOINT_LINK;
-use super::{
-    Bounds, Default, Key, Kind, SCHEMA, Section, calibration, faults, instrument, key, section,
-    source,
-};
+use super::{calibration, faults, instrument, screening, source};
 use crate::quantity::Dimension;
-use octant_calibration::positions::SEQUENCES;
 use octant_earth::units::DEG;
 
 pub(crate) static SCENARIO: Section = section(&[
@@ -36,7 +33,7 @@ pub(crate) static SCENARIO: Section = section(&[
     ),
     key(
         "screening",
-        Kind::Table(&calibration::SCREENING),
+        Kind::Table(&screening::SCREENING),
         Default::Section,
         "Screens and gates of the core.",
     ),
@@ -151,7 +148,7 @@ static MOTION: Section = section(&[
 ]);
 
 const fn angle(limit_deg: f64, words: &'static str) -> Kind {
-    // A static can't hold a borrowed temporary array through a function, so the slice is named.
+    // The slice is a named constant because a static can't borrow a temporary array through a function.
     const ANGLE: &[Dimension] = &[Dimension::ANGLE];
     Kind::Quantity(ANGLE, Bounds::Within(-limit_deg * DEG, limit_deg * DEG, words))
 }
@@ -266,19 +263,6 @@ const RMS_ANGLE: Kind =
     Kind::Quantity(&[Dimension::ANGLE], Bounds::Within(0.0, 20.0 * DEG, "from 0 to 20 deg"));
 const RMS_LENGTH: Kind =
     Kind::Quantity(&[Dimension::LENGTH], Bounds::Within(0.0, 50.0, "from 0 to 50 m"));
-
-const fn positions() -> [(&'static str, &'static str); SEQUENCES.len()] {
-    let mut all = [("", ""); SEQUENCES.len()];
-    let mut index = 0;
-    while index < all.len() {
-        all[index] = (SEQUENCES[index].0, SEQUENCES[index].2);
-        index += 1;
-    }
-    all
-}
-
-/// Names and meanings of the core's sequences.
-pub(crate) const POSITIONS: &[(&str, &str)] = &positions();
 
 static DECISION: Section = section(&[
     key(

@@ -1,7 +1,7 @@
 //! Keys of the source: the plant, a recording, text files of a real instrument.
 
+use super::definition::{Bounds, Default, Key, Kind, Section, key, section};
 use super::fmu::SOURCE_FMU;
-use super::{Bounds, Default, Key, Kind, Section, key, section};
 use crate::quantity::Dimension;
 
 pub(crate) static SOURCE: Section = section(&[

@@ -1,6 +1,6 @@
-//! Keys of a suite: scenarios, and how each of them has to end.
+//! Keys of a suite: scenarios and their expected results.
 
-use super::{Default, Kind, SCHEMA, Section, key, section};
+use super::definition::{Default, Kind, SCHEMA, Section, key, section};
 
 pub(crate) static SUITE: Section = section(&[
     key("schema", Kind::Integer(SCHEMA, SCHEMA), Default::Required, "Version of the format."),

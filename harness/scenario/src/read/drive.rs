@@ -1,64 +1,13 @@
-//! A real table, as read from `[turntable.drive]`.
+//! Reads a real table from `[turntable.drive]`.
 
-use super::Reader;
-use super::source::FileName;
-use crate::Scenario;
+use super::reader::Reader;
 use crate::error::Problem;
+use crate::model::{Drive, FileName, Scenario};
 use octant_plant::config::Turntable;
-use octant_turntable::{Axis, AxisLimits, Dialect, Error, Limits, Plan, Settings};
-use std::path::Path;
+use octant_turntable::{Axis, AxisLimits, Limits, Settings};
 use std::time::Duration;
 
-/// A real table that the core's set points move.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Drive {
-    /// Its port.
-    pub port: String,
-    /// Its language by its name, or the file of one: see [`Drive::plan`].
-    pub dialect: FileName,
-    /// Limits, patience and watchdog.
-    pub settings: Settings,
-    /// From one look to the next.
-    pub look: Duration,
-    /// How far a sample may be from the nearest look.
-    pub oldest: Duration,
-    /// Silence after which the guard stops it.
-    pub guard: Option<Duration>,
-    /// Both axes find their reference first.
-    pub home: bool,
-    /// How long homing and the way to zero may take.
-    pub start: Duration,
-    /// How far from zero a gimbal may rest at the start, rad.
-    pub tolerance_rad: f64,
-}
-
-impl Drive {
-    /// What is asked of the table, with the language read from its file.
-    ///
-    /// # Errors
-    /// If the file can't be read, or is no table of patterns.
-    pub fn plan(&self, folder: &Path) -> Result<Plan, Error> {
-        let file = match self.dialect.0.as_str() {
-            Dialect::BUILT_IN => Dialect::BUILT_IN.into(),
-            _ => self.dialect.path(folder).map_err(|what| Error::Dialect {
-                place: "turntable.drive.dialect".to_owned(),
-                what,
-            })?,
-        };
-        Ok(Plan {
-            port: self.port.clone(),
-            dialect: Dialect::load(&file)?,
-            settings: self.settings,
-            period: self.look,
-            guard: self.guard,
-            home: self.home,
-            start: self.start,
-            tolerance_rad: self.tolerance_rad,
-        })
-    }
-}
-
-/// Reads it.
+/// Reads `[turntable.drive]`.
 pub(super) fn drive(turntable: &Reader<'_>, moves: &Turntable) -> Result<Option<Drive>, Problem> {
     let Some(table) = turntable.optional_table("drive") else { return Ok(None) };
     let port = table.text("port")?;
@@ -100,7 +49,7 @@ pub(super) fn drive(turntable: &Reader<'_>, moves: &Turntable) -> Result<Option<
         start: time("start")?,
         tolerance_rad: table.si("tolerance")?,
     };
-    // They hear something once a look, and a look can take as long as a reply.
+    // Guard and watchdog hear from the harness once a look, and a look can take as long as a reply.
     let shortest = drive.look + settings.reply_within;
     for (key, silence) in [("guard", drive.guard), ("watchdog", settings.watchdog)] {
         if silence.is_some_and(|silence| silence < shortest) {
@@ -115,7 +64,7 @@ pub(super) fn drive(turntable: &Reader<'_>, moves: &Turntable) -> Result<Option<
     Ok(Some(drive))
 }
 
-/// The procedure stays within what the table can do.
+/// Checks that the procedure stays within the limits of the table.
 pub(super) fn check_reach(root: &Reader<'_>, scenario: &Scenario) -> Result<(), Problem> {
     let Some(drive) = &scenario.drive else { return Ok(()) };
     let table = root.table("turntable")?.table("drive")?;
@@ -127,7 +76,7 @@ pub(super) fn check_reach(root: &Reader<'_>, scenario: &Scenario) -> Result<(), 
             for (axis, angle_rad) in
                 [(Axis::Azimuth, stop.azimuth_rad), (Axis::Roll, stop.roll_rad)]
             {
-                // A set point is a whole count: half of one beyond the limit is on it.
+                // A set point is a whole count: up to half a count beyond the limit still keeps it.
                 let slack = if angle_rad < 0.0 { 1e-8 } else { -1e-8 };
                 if drive.settings.limits.angle(axis, angle_rad + slack).is_err() {
                     let message = format!(

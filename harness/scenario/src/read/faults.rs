@@ -1,80 +1,26 @@
-//! Faults: from checked keys to what the station is built with, and what can be known before the
-//! run about whether they can act at all.
+//! Reads faults: conversion of checked keys to specifications for the station, and checks before the run that
+//! they can act.
 
 pub mod connection;
 mod grid;
 mod schedule;
+mod value;
 
-use super::Reader;
-use super::source::Source;
-use crate::document::{Node, Value as Written};
-use crate::error::{Place, Problem};
-use crate::{Endpoint, Method, Scenario, keys, quantity};
+use super::reader::Reader;
+use crate::error::Problem;
+use crate::model::{Endpoint, Fault, Scenario, Source};
 use grid::{Waiting, check_chains};
-use octant_faults::catalogue::{Acts, Kind, Parameter, Takes};
+use octant_faults::catalogue::{Acts, Kind};
 use octant_faults::kinds::host::{FULL, STARVED};
 use octant_faults::kinds::wire::happens_on;
 use octant_faults::station::Spec;
 use octant_faults::wire::Medium;
-use octant_faults::{BuildError, Channels, Setup, Station, Value, Values, kinds};
+use octant_faults::{BuildError, Setup, Station, Values, kinds};
 use octant_link::Uri;
 use schedule::Timing;
+use value::value;
 
-/// A fault of a scenario.
-#[derive(Clone, Debug)]
-pub struct Fault {
-    /// What the station is built with.
-    pub spec: Spec,
-    /// Epochs at which it is fired by hand, in order. Empty where its trigger isn't manual, or
-    /// where nobody fires it.
-    pub fires: Vec<u64>,
-    /// Where it was written.
-    pub place: Place,
-}
-
-impl Scenario {
-    /// What faults have to know of a run of one of the methods.
-    #[must_use]
-    pub fn fault_setup(&self, seed: u64) -> Setup {
-        Setup {
-            seed,
-            sample_period_ns: self.sample_period_ns,
-            calibration_samples: self.calibration_samples(),
-            angle_random_walk: self.imu.angle_random_walk,
-            velocity_random_walk: self.imu.velocity_random_walk,
-            turntable_rate_radps: self.turntable.rate_radps,
-            id: String::new(),
-        }
-    }
-
-    /// The station of a run with a seed; `None` without faults.
-    ///
-    /// # Errors
-    /// If a fault can't be built; a scenario that was read has only faults that can.
-    pub fn station(&self, seed: u64) -> Result<Option<Station>, (String, BuildError)> {
-        if self.faults.is_empty() {
-            return Ok(None);
-        }
-        let specs: Vec<Spec> = self.faults.iter().map(|fault| fault.spec.clone()).collect();
-        Station::new(&specs, &self.fault_setup(seed)).map(Some)
-    }
-
-    /// What is worth telling before a run, though it is no error.
-    #[must_use]
-    pub fn warnings(&self) -> Vec<String> {
-        use octant_faults::trigger::Trigger;
-        let idle = |fault: &&Fault| {
-            fault.spec.schedule.trigger == Trigger::Manual && fault.fires.is_empty()
-        };
-        let text = |fault: &Fault| {
-            let id = &fault.spec.id;
-            format!("fault {id:?} is fired by hand, and no --fire {id}=TIME does: it won't fire")
-        };
-        self.faults.iter().filter(idle).map(text).collect()
-    }
-}
-
-/// Reads the faults of a scenario whose other fields are read already.
+/// Reads the faults of a scenario whose other fields were already read.
 pub(super) fn read(root: &Reader<'_>, scenario: &Scenario) -> Result<Vec<Fault>, Problem> {
     let tables = root.tables("faults");
     let timing = Timing::of(scenario);
@@ -101,7 +47,7 @@ pub(super) fn read(root: &Reader<'_>, scenario: &Scenario) -> Result<Vec<Fault>,
     for (index, table) in tables.iter().enumerate() {
         timing.check(table, &all, index)?;
     }
-    // One by one first: the problem then has its place.
+    // Each fault is built separately first, so that a problem has its place.
     for (table, fault) in tables.iter().zip(&all) {
         let setup = Setup { id: fault.spec.id.clone(), ..scenario.fault_setup(scenario.seed) };
         (fault.spec.kind.build)(&fault.spec.values, &setup).map_err(|e| build(table, &e))?;
@@ -119,7 +65,7 @@ pub(super) fn read(root: &Reader<'_>, scenario: &Scenario) -> Result<Vec<Fault>,
     }
 }
 
-/// A kind's own refusal, at the parameter that it names.
+/// Problem of a kind's refusal, at the parameter that it names.
 fn build(table: &Reader<'_>, error: &BuildError) -> Problem {
     match error {
         BuildError::Value { parameter, problem } => table.problem(parameter, problem.clone()),
@@ -166,7 +112,7 @@ fn fault(table: &Reader<'_>, scenario: &Scenario, timing: &Timing) -> Result<Fau
     })
 }
 
-/// Why a kind can't act on a source.
+/// Reason why a kind can't act on a source.
 fn impossible(kind: &Kind, source: &Source) -> Option<&'static str> {
     match (kind.acts, source) {
         (Acts::Plant, _) if source.has_plant() => None,
@@ -189,7 +135,7 @@ fn impossible(kind: &Kind, source: &Source) -> Option<&'static str> {
     }
 }
 
-/// Why a kind can't act on the way to an endpoint.
+/// Reason why a kind can't act on the way to an endpoint.
 fn without_wire(kind: &Kind, endpoint: &Endpoint) -> Option<String> {
     if kind.acts != Acts::Wire {
         return None;
@@ -209,7 +155,7 @@ fn without_wire(kind: &Kind, endpoint: &Endpoint) -> Option<String> {
         .then(|| format!("doesn't happen on {}, which endpoint.uri names", medium.name()))
 }
 
-/// Why nothing would come of a kind of the host, and the key that says so.
+/// Reason why a kind that acts on the host would have no effect, with its key.
 fn on_this_host(
     kind: &Kind,
     scenario: &Scenario,
@@ -226,54 +172,4 @@ fn on_this_host(
         return Some(("repeat", "ends the run: the disk stays full, expected no repetition"));
     }
     None
-}
-
-/// The value of a parameter. What the check has passed is there.
-fn value(table: &Reader<'_>, parameter: &'static Parameter) -> Result<Value, Problem> {
-    let key = parameter.name;
-    let missing = || table.problem(key, "missing");
-    Ok(match parameter.takes {
-        Takes::Quantity(dimensions, _) => {
-            let quantity = quantity::parse(table.text(key)?).map_err(|_| missing())?;
-            let fits = |of: &&_| quantity.is(keys::dimension(of));
-            let dimension = dimensions.iter().find(fits).ok_or_else(missing)?;
-            Value::Quantity(quantity.si, *dimension)
-        }
-        Takes::Vector(dimensions) => {
-            let texts = table.texts(key);
-            let all: Option<Vec<_>> = texts.iter().map(|text| quantity::parse(text).ok()).collect();
-            let all = all.filter(|all| all.len() == 3).ok_or_else(missing)?;
-            let fits = |of: &&_| all.iter().all(|quantity| quantity.is(keys::dimension(of)));
-            let dimension = dimensions.iter().find(fits).ok_or_else(missing)?;
-            Value::Vector(std::array::from_fn(|axis| all[axis].si), *dimension)
-        }
-        Takes::Integer(..) => Value::Integer(table.integer(key)?),
-        Takes::Flag => Value::Flag(table.boolean(key)?),
-        Takes::Choice(choices) => {
-            let text = table.text(key)?;
-            let found = choices.iter().find(|(name, _)| *name == text).ok_or_else(missing)?;
-            Value::Choice(found.0)
-        }
-        Takes::Channels => {
-            let names = match table.node(key) {
-                Some(Node { value: Written::Array(_), .. }) => table.texts(key),
-                _ => vec![table.text(key)?],
-            };
-            let sets: Option<Vec<_>> = names.into_iter().map(Channels::named).collect();
-            let set = sets.and_then(|sets| sets.into_iter().reduce(Channels::union));
-            Value::Channels(set.ok_or_else(missing)?)
-        }
-        Takes::Number(_) => Value::Number(table.number(key)?),
-        Takes::Value | Takes::Difference(_) => {
-            return Err(table.problem(key, "only connections of FMUs have such values"));
-        }
-    })
-}
-
-/// The stops of a method, in the words of messages.
-fn method_name(method: Method) -> &'static str {
-    match method {
-        Method::Primary => "the calibration",
-        Method::Baseline => "the calibration of the baseline",
-    }
 }

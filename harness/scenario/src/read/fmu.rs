@@ -1,100 +1,16 @@
-//! FMUs as source and as endpoint, as read from `[source.fmu]` and `[endpoint.fmu]`.
+//! Reads FMUs as source and as endpoint from `[source.fmu]` and `[endpoint.fmu]`.
 //!
-//! What is said about variables is checked when the FMU is opened: a scenario is read without its
+//! Settings and maps of variables are checked when the FMU is opened: a scenario is read without its
 //! files.
 
-use super::Reader;
-use super::live::{self, Live};
-use super::source::FileName;
-use crate::channel::Channel;
+use super::live;
+use super::reader::Reader;
 use crate::document::{Node, Value};
 use crate::error::Problem;
 use crate::keys::{ENDPOINT_MAP, Kind, SOURCE_MAP, Section};
-use crate::ports::{self, Code, Port, Setting, Written};
+use crate::model::{Code, Endpoint, FileName, Fmu, InterfaceChoice, Mapped, Process, Written};
+use crate::ports;
 use octant_sample::Mode;
-
-/// Where the core runs.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Endpoint {
-    /// In this process.
-    InProcess,
-    /// In an FMU.
-    Fmu(Box<Fmu>),
-    /// At the other end of a wire.
-    Live(Box<Live>),
-}
-
-/// An FMU of a scenario.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Fmu {
-    /// The file.
-    pub file: FileName,
-    /// Which of its interfaces is used.
-    pub interface: InterfaceChoice,
-    /// Where it runs.
-    pub process: Process,
-    /// Wall time that a call may take in a process of its own, s.
-    pub time_limit_s: f64,
-    /// Communication step, ns; of an endpoint the sample period.
-    pub step_ns: u64,
-    /// Relative tolerance of the solver.
-    pub tolerance: Option<f64>,
-    /// What is set before it starts.
-    pub settings: Vec<Setting>,
-    /// Channels and what they are made of.
-    pub map: Vec<Mapped>,
-    /// Values of the mode's variable by mode; empty: the codes of [`Mode`].
-    pub modes: Vec<(Mode, Vec<Code>)>,
-    /// Where the FMU is named.
-    pub at: Written,
-}
-
-/// Which interface of an FMU is used.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum InterfaceChoice {
-    /// Co-simulation where there is one, else model exchange.
-    #[default]
-    Auto,
-    /// Co-simulation.
-    CoSimulation,
-    /// Model exchange.
-    ModelExchange,
-}
-
-/// Where an FMU runs.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Process {
-    /// In a process of its own.
-    #[default]
-    Own,
-    /// In this one.
-    Shared,
-}
-
-/// A channel and what it is made of.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Mapped {
-    /// The channel.
-    pub channel: &'static Channel,
-    /// One port for all elements, or one for each.
-    pub ports: Vec<Port>,
-    /// Where it was written.
-    pub at: Written,
-}
-
-impl Fmu {
-    /// What a channel is made of, where the scenario says it.
-    #[must_use]
-    pub fn mapped(&self, channel: &Channel) -> Option<&Mapped> {
-        self.map.iter().find(|mapped| mapped.channel.name == channel.name)
-    }
-
-    /// It gives the motion of the case, and the plant stands on it.
-    #[must_use]
-    pub fn is_motion(&self) -> bool {
-        self.map.iter().any(|mapped| mapped.channel.name.starts_with("case."))
-    }
-}
 
 /// Reads `[source.fmu]`.
 pub(super) fn source(
@@ -183,7 +99,7 @@ fn fmu(
             "shared" => Process::Shared,
             _ => Process::Own,
         },
-        // In the shared process nothing can end a call.
+        // In the shared process a call can't be interrupted.
         time_limit_s: table.optional_si("time_limit").unwrap_or(f64::INFINITY),
         step_ns: sample_period_ns,
         tolerance: table.node("tolerance").map(|_| table.number("tolerance")).transpose()?,
@@ -194,7 +110,7 @@ fn fmu(
     })
 }
 
-/// The channels of a map's tables that are given.
+/// Reads the channels given in a map's tables.
 fn channels(
     table: &Reader<'_>,
     section: &'static Section,

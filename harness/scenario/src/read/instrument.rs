@@ -1,8 +1,8 @@
 //! The sensors, the gimbals and the motion of the case.
 
-use super::Reader;
+use super::reader::Reader;
 use crate::error::Problem;
-use crate::{Component, Distribution, Dockside, Motion, ShipSpectrum};
+use crate::model::{Component, Distribution, Dockside, MOTIONS, Motion, ShipSpectrum};
 use octant_earth::units::DEG;
 use octant_plant::config as plant;
 use octant_sample::parameters::Group;
@@ -107,9 +107,6 @@ pub(super) fn turntable(table: &Reader<'_>) -> Result<plant::Turntable, Problem>
         backlash_rad: table.si("backlash")?,
     })
 }
-
-/// The six motions of a ship, in the order of [`Dockside::components`].
-pub(crate) const MOTIONS: [&str; 6] = ["roll", "pitch", "yaw", "surge", "sway", "heave"];
 
 /// Amplitude (deg or m) and period (s) of the presets, in the order of [`MOTIONS`].
 const DEFAULT_SWAY: [(f64, f64); 6] =

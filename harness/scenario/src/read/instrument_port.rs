@@ -1,54 +1,12 @@
-//! A real instrument on a port, as read from `source.uri` and `[source.live]`.
+//! Reads a real instrument on a port from `source.uri` and `[source.live]`.
 
-use super::Reader;
-use super::source::FileName;
+use super::reader::Reader;
 use crate::error::Problem;
+use crate::model::{FileName, Instrument, Messages, Speaks};
 use octant_instruments::{Axes, Protocol};
 use octant_link::Uri;
 
-/// An instrument on a port.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Instrument {
-    /// The port.
-    pub uri: Uri,
-    /// What it speaks.
-    pub speaks: Speaks,
-    /// How it is mounted.
-    pub axes: Axes,
-    /// How long a reading is waited for, s.
-    pub silence_s: f64,
-}
-
-/// What an instrument speaks.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Speaks {
-    /// A protocol on a line of bytes.
-    Bytes(Protocol),
-    /// Messages on a CAN bus.
-    Can(Messages),
-}
-
-impl Speaks {
-    /// Its name in a scenario.
-    #[must_use]
-    pub fn name(&self) -> &'static str {
-        match self {
-            Self::Bytes(protocol) => protocol.name(),
-            Self::Can(_) => "dbc",
-        }
-    }
-}
-
-/// Messages on a CAN bus, by the files that say what is in them.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Messages {
-    /// The database.
-    pub database: FileName,
-    /// Which signals are which channels.
-    pub mapping: FileName,
-}
-
-/// Reads it.
+/// Reads a port and `[source.live]`.
 pub(super) fn instrument(source: &Reader<'_>, uri: &str) -> Result<Instrument, Problem> {
     let uri: Uri = uri
         .parse()

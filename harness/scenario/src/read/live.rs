@@ -1,25 +1,11 @@
-//! A core at the other end of a wire, as read from `endpoint.uri` and `[endpoint.link]`.
+//! Reads a core at the other end of a wire from `endpoint.uri` and `[endpoint.link]`.
 
-use super::Reader;
+use super::reader::Reader;
 use crate::error::Problem;
+use crate::model::Live;
 use octant_link::Uri;
 
-/// A device on a port.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Live {
-    /// The port.
-    pub uri: Uri,
-    /// How long the first hello is waited for, s.
-    pub hello_s: f64,
-    /// How long an answer is waited for, s.
-    pub answer_s: f64,
-    /// After how long it is asked for again, s.
-    pub repeat_s: f64,
-    /// How long a port that went away is waited for, s; 0: the run ends at once.
-    pub reconnect_s: f64,
-}
-
-/// Reads it.
+/// Reads a port and `[endpoint.link]`.
 pub(super) fn live(endpoint: &Reader<'_>, uri: &str) -> Result<Live, Problem> {
     let uri: Uri = uri
         .parse()

@@ -1,28 +1,28 @@
-//! What the core does: alignment, the methods of calibration, navigation, screening.
+//! The core's procedure: alignment, the methods of calibration, navigation, screening.
 
-use super::{Reader, samples_of};
+use super::reader::Reader;
 use crate::document::{Node, Table, Value};
 use crate::error::Problem;
-use crate::{Alignment, Calibration, Motion};
+use crate::model::{Alignment, Calibration, Motion, case_attitude};
+use crate::quantity::{self, Dimension};
 use octant_calibration::config as core;
 use octant_calibration::positions;
 use octant_calibration::sequence::{Sequence, Stop};
 use octant_calibration::table::CalibrationTable;
-use octant_earth::UnitQuaternion;
 use octant_earth::units::DEG;
 use octant_plant::config as plant;
 use octant_sample::Parameters;
 use octant_sample::parameters::Group;
 use std::path::Path;
 
-/// What the procedure has to fit.
+/// Properties of the run that the procedure must fit.
 pub(super) struct Setting<'a> {
     pub(super) sample_period_ns: u64,
     pub(super) motion: &'a Motion,
     pub(super) turntable: &'a plant::Turntable,
-    /// The source never ends: it is no recording.
+    /// True if the source never ends, unlike a recording.
     pub(super) endless: bool,
-    /// Where relative file names start.
+    /// Folder from which relative file names start.
     pub(super) folder: &'a Path,
 }
 
@@ -77,7 +77,8 @@ fn alignment(table: &Reader<'_>, calibration: Option<&Calibration>) -> Result<Al
         });
     }
     let duration_s = table.si("duration")?;
-    // A least-squares calibration of recorded data stands wherever its first interval says.
+    // With intervals detected in recorded data no first stop is commanded: the first interval tells where
+    // the instrument stands.
     let commanded = calibration.filter(|calibration| {
         !matches!(
             calibration.estimator,
@@ -126,7 +127,7 @@ fn initial_parameters(procedure: &Reader<'_>, folder: &Path) -> Result<Parameter
     Ok(Parameters::from_array(&all))
 }
 
-/// The second method: the first one's keys, with those of `[baseline]` in their place.
+/// Reads the second method: the keys of the first one, replaced by those of `[baseline]`.
 pub(super) fn baseline(
     root: &Reader<'_>,
     setting: &Setting<'_>,
@@ -150,7 +151,8 @@ pub(super) fn baseline(
         }
         merged.set(&entry.key, entry.node.clone());
     }
-    // What the two share was read with the first method: what is wrong here is the baseline's.
+    // The shared keys were already read with the first method, so a problem here belongs to the
+    // baseline.
     let second = calibration(&Reader::new(&merged, "baseline", &baseline.place), setting)?;
     Ok(Some(second))
 }
@@ -231,8 +233,14 @@ fn stops(table: &Reader<'_>, key: &str) -> Result<Vec<Stop>, Problem> {
     table.tables(key).into_iter().map(stop).collect()
 }
 
-/// Time that the moves of all passes take, s: both gimbals turn together, at a trapezoidal rate.
-/// Between two passes the gimbals go back to the first stop.
+/// Number of samples in a time, if it is a multiple of the sample period.
+fn samples_of(time_s: f64, sample_period_ns: u64) -> Option<u64> {
+    let ns = (time_s * 1e9).round() as u64;
+    (ns > 0 && ns.is_multiple_of(sample_period_ns)).then(|| ns / sample_period_ns)
+}
+
+/// Total duration of the moves of all passes, s: both gimbals turn together, with a trapezoidal rate
+/// profile. Between two passes the gimbals return to the first stop.
 fn moves_s(sequence: &Sequence, turntable: &plant::Turntable) -> f64 {
     let turn_s = |angle_rad: f64| {
         let (rate, acceleration) = (turntable.rate_radps, turntable.acceleration_radps2);
@@ -264,14 +272,11 @@ fn aiding(table: &Reader<'_>, setting: &Setting<'_>) -> Result<Aiding, Problem> 
         return Err(not_whole(table, "period", setting));
     }
     let reference = table.text("reference")?;
-    let dimension = if reference == "dock-position" {
-        crate::Dimension::LENGTH
-    } else {
-        crate::Dimension::VELOCITY
-    };
+    let dimension =
+        if reference == "dock-position" { Dimension::LENGTH } else { Dimension::VELOCITY };
     for key in ["sigma", "noise"] {
         let text = table.text(key)?;
-        if !crate::quantity::parse(text).is_ok_and(|quantity| quantity.is(dimension)) {
+        if !quantity::parse(text).is_ok_and(|quantity| quantity.is(dimension)) {
             return Err(table.problem(
                 key,
                 format!(
@@ -369,12 +374,6 @@ fn external_turntable(
     })
 }
 
-/// Attitude of the case `q_nc`.
-pub(crate) fn case_attitude(mean: &plant::CaseAttitude) -> UnitQuaternion<f64> {
-    use octant_earth::frames;
-    frames::quaternion_from_matrix(&frames::c_nc(mean.heading_rad, mean.pitch_rad, mean.roll_rad))
-}
-
 fn navigation(table: &Reader<'_>, setting: &Setting<'_>) -> Result<core::NavigationPlan, Problem> {
     let duration_s = table.optional_si("duration");
     match duration_s {
@@ -397,7 +396,8 @@ fn navigation(table: &Reader<'_>, setting: &Setting<'_>) -> Result<core::Navigat
     Ok(core::NavigationPlan { duration_s, rotation, dwell_s: table.si("dwell")? })
 }
 
-/// How base and instrument bound the screens comes with the draws: see [`super::super::resolve`].
+/// Reads the screening. Its bounds by base and instrument are added with the draws: see
+/// [`super::super::resolve`].
 pub(super) fn screening(table: &Reader<'_>) -> Result<core::Screening, Problem> {
     let gate = match table.optional_table("gate") {
         None => None,

@@ -1,9 +1,9 @@
 //! Limits on results.
 
-use super::Reader;
-use crate::Requirement;
+use super::reader::Reader;
 use crate::document::Value;
 use crate::error::Problem;
+use crate::model::Requirement;
 use crate::quantity::{self, Quantity};
 use octant_base::names::suggestion;
 use octant_requirements::Comparison;
@@ -13,7 +13,7 @@ use octant_requirements::verdict::LimitCheck;
 use octant_requirements::{measures, signed};
 use octant_sample::parameters::{Group, NAMES};
 
-/// Units that the names of measures end in, with the unit's own spelling.
+/// Unit suffixes of the names of measures, with the unit's own spelling.
 const SUFFIXES: [(&str, &str); 9] = [
     ("_arcmin", "arcmin"),
     ("_arcsec", "arcsec"),
@@ -39,7 +39,7 @@ pub(super) fn read(root: &Reader<'_>) -> Result<Vec<Requirement>, Problem> {
             );
         }
         let measure = table.text("measure")?;
-        let bare = path_of(measure).map_err(|message| table.problem("measure", message))?;
+        let bare = path_of(measure).map_err(|error| table.problem("measure", error.to_string()))?;
         let (limit, limit_text) = limit(&table, bare)?;
         all.push(Requirement {
             check: LimitCheck {
@@ -69,7 +69,7 @@ pub(super) fn read(root: &Reader<'_>) -> Result<Vec<Requirement>, Problem> {
     Ok(all)
 }
 
-/// The decision rule.
+/// Reads the decision rule.
 pub(super) fn decision(table: &Reader<'_>) -> Result<Decision, Problem> {
     let rule = table.optional_text("rule").map(|rule| match rule {
         "simple-acceptance" => Rule::SimpleAcceptance,
@@ -78,7 +78,8 @@ pub(super) fn decision(table: &Reader<'_>) -> Result<Decision, Problem> {
     let mut uncertainties: Vec<Uncertainty> = Vec::new();
     for stated in table.tables("uncertainties") {
         let measure = stated.text("measure")?;
-        let bare = path_of(measure).map_err(|message| stated.problem("measure", message))?;
+        let bare =
+            path_of(measure).map_err(|error| stated.problem("measure", error.to_string()))?;
         if uncertainties.iter().any(|other| other.measure == bare) {
             let message = format!("found {bare:?} a second time, expected one uncertainty of each");
             return Err(stated.problem("measure", message));
@@ -93,7 +94,7 @@ pub(super) fn decision(table: &Reader<'_>) -> Result<Decision, Problem> {
     Ok(Decision { rule, position_m: table.optional_si("position"), uncertainties })
 }
 
-/// Equipment of the bench.
+/// Reads the equipment of the bench.
 pub(super) fn equipment(root: &Reader<'_>) -> Result<Vec<Equipment>, Problem> {
     let mut all: Vec<Equipment> = Vec::new();
     for table in root.tables("equipment") {
@@ -105,7 +106,7 @@ pub(super) fn equipment(root: &Reader<'_>) -> Result<Vec<Equipment>, Problem> {
             Ok(text.to_owned())
         };
         let expires = Day::parse(table.text("expires")?)
-            .map_err(|message| table.problem("expires", message))?;
+            .map_err(|error| table.problem("expires", error.to_string()))?;
         let one = Equipment {
             name: filled("name")?,
             serial: table.optional_text("serial").map(str::to_owned),
@@ -130,57 +131,128 @@ fn limit_at(table: &Reader<'_>, key: &str, measure: &str) -> Result<(f64, String
         let number = table.number(key)?;
         return Ok((number, number.to_string()));
     };
-    let number = limit_of(measure, text).map_err(|message| table.problem(key, message))?;
+    let number = limit_of(measure, text).map_err(|error| table.problem(key, error.to_string()))?;
     Ok((number, text.to_owned()))
 }
 
-/// The path of a measure without the bars that mean its magnitude.
+/// Reason why a text is no measure of a run, or no limit of one.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum MeasureError {
+    /// The text isn't a path.
+    #[error(
+        "found {found:?}, expected a dotted path such as navigation.longitude_error_arcmin.max"
+    )]
+    Form {
+        /// The text.
+        found: String,
+    },
+    /// The path ends at a table.
+    #[error("found {found:?}: {place} is a table, expected a number in it: {}", .keys.join(", "))]
+    Table {
+        /// The text.
+        found: String,
+        /// Path of the table.
+        place: String,
+        /// Its keys.
+        keys: Vec<&'static str>,
+    },
+    /// The path goes on behind a number.
+    #[error("found {found:?}: {place} is a number and has no {part:?}")]
+    Number {
+        /// The text.
+        found: String,
+        /// Path of the number.
+        place: String,
+        /// Part behind it.
+        part: String,
+    },
+    /// A table has no such key.
+    #[error(
+        "found {found:?}: {place} has no {part:?}, {}",
+        suggestion(.part, .keys.iter().copied(), "it has")
+    )]
+    Key {
+        /// The text.
+        found: String,
+        /// Path of the table.
+        place: String,
+        /// Unknown key.
+        part: String,
+        /// Its keys.
+        keys: Vec<&'static str>,
+    },
+    /// The limit isn't a quantity.
+    #[error("found {found:?}, expected a quantity")]
+    Quantity {
+        /// The limit.
+        found: String,
+    },
+    /// The limit has a unit, and the measure has none.
+    #[error("found {found:?}, expected a plain number: {measure} has no unit")]
+    NoUnit {
+        /// The limit.
+        found: String,
+        /// The measure.
+        measure: String,
+    },
+    /// The limit has another dimension than the measure.
+    #[error(
+        "found {found:?}, expected a quantity that is comparable with {unit}, the unit of {measure}"
+    )]
+    Dimension {
+        /// The limit.
+        found: String,
+        /// Unit of the measure.
+        unit: String,
+        /// The measure.
+        measure: String,
+    },
+}
+
+/// Path of a measure, without the bars for its magnitude.
 ///
 /// # Errors
-/// In words, if it isn't a path, or no summary has it.
-pub fn path_of(measure: &str) -> Result<&str, String> {
+/// If it isn't a path, or no summary has it.
+pub fn path_of(measure: &str) -> Result<&str, MeasureError> {
     let plain = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
     let bare = measure.strip_prefix('|').and_then(|rest| rest.strip_suffix('|'));
     let bare = bare.unwrap_or(measure);
+    let found = measure.to_owned();
     if bare.split('.').any(|part| part.is_empty() || !part.chars().all(plain)) {
-        return Err(format!(
-            "found {measure:?}, expected a dotted path such as navigation.longitude_error_arcmin.max"
-        ));
+        return Err(MeasureError::Form { found });
     }
     let Err((place, part, keys)) = measures::check(bare) else { return Ok(bare) };
-    let found = match part {
-        None => format!("{place} is a table, expected a number in it: {}", keys.join(", ")),
-        Some(part) if keys.is_empty() => format!("{place} is a number and has no {part:?}"),
-        Some(part) => {
-            let known = suggestion(&part, keys.iter().copied(), "it has");
-            format!("{place} has no {part:?}, {known}")
-        }
-    };
-    Err(format!("found {measure:?}: {found}"))
+    Err(match part {
+        None => MeasureError::Table { found, place, keys },
+        Some(part) if keys.is_empty() => MeasureError::Number { found, place, part },
+        Some(part) => MeasureError::Key { found, place, part, keys },
+    })
 }
 
-/// A limit that is written as a quantity, in the unit of its measure.
+/// Converts a limit written as a quantity to the unit of its measure.
 ///
 /// # Errors
-/// In words, if it isn't a quantity, or none of the measure's kind.
-pub fn limit_of(measure: &str, text: &str) -> Result<f64, String> {
+/// If it isn't a quantity, or has another kind than the measure.
+pub fn limit_of(measure: &str, text: &str) -> Result<f64, MeasureError> {
     let limit =
-        quantity::parse(text).map_err(|_| format!("found {text:?}, expected a quantity"))?;
+        quantity::parse(text).map_err(|_| MeasureError::Quantity { found: text.to_owned() })?;
     let Some((unit, one)) = unit_of(measure) else {
-        return Err(format!("found {text:?}, expected a plain number: {measure} has no unit"));
+        return Err(MeasureError::NoUnit { found: text.to_owned(), measure: measure.to_owned() });
     };
     if !limit.same_dimension(one) {
-        return Err(format!(
-            "found {text:?}, expected a quantity that is comparable with {unit}, the unit of {measure}"
-        ));
+        return Err(MeasureError::Dimension {
+            found: text.to_owned(),
+            unit,
+            measure: measure.to_owned(),
+        });
     }
-    // Written in the measure's own unit, the number is the one written.
+    // In the measure's own unit, the written number is used unchanged.
     let own = text.trim().strip_suffix(&unit).and_then(|n| n.trim().parse().ok());
     Ok(own.unwrap_or(limit.si / one.si))
 }
 
-/// The unit of a measure, from its name: of a parameter, or the ending of a part of the path; with
-/// `slope_per_day` and `rate_per_h` the unit is per time.
+/// Unit of a measure, from its name: that of a parameter, or the suffix of a part of the path; with
+/// `slope_per_day` and `rate_per_h` it is divided by the time.
 fn unit_of(measure: &str) -> Option<(String, Quantity)> {
     let mut unit: Option<String> = None;
     for part in measure.split('.') {

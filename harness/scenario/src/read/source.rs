@@ -1,89 +1,14 @@
-//! Where samples come from, as read from `[source]`.
+//! Reads the source of the samples from `[source]`.
 
-use super::Reader;
-use super::fmu::Fmu;
-use super::instrument_port::{Instrument, instrument};
+use super::instrument_port::instrument;
+use super::reader::Reader;
 use crate::error::Problem;
+use crate::model::{FileName, Source};
 use crate::recorded::{
     Axis, Column, Delimiter, GimbalColumns, MappedField, MappedStamp, McapMapping, Quantity,
     TextFiles, TextMapping, TimeColumn, TimeUnit,
 };
-use std::ffi::OsString;
-use std::path::{Path, PathBuf};
-
-/// The variable that a file name may start with.
-const VARIABLE: &str = "OCTANT_RECORDINGS";
-
-/// Where samples come from.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Source {
-    /// Simulated.
-    Plant,
-    /// An MCAP file: of this program, or of another with the mapping of its channel.
-    Replay {
-        /// The file.
-        file: FileName,
-        /// The mapping of a foreign file.
-        mapping: Option<McapMapping>,
-    },
-    /// Text files of a real instrument. The names in it are as they were written: see [`FileName`].
-    Text(TextMapping),
-    /// An FMU: our plant, another's instrument, or the ship under our plant.
-    Fmu(Box<Fmu>),
-    /// A real instrument on a port.
-    Live(Instrument),
-}
-
-impl Source {
-    /// What the samples are made by, and that they answer to gimbal commands: not a recording.
-    #[must_use]
-    pub fn is_recorded(&self) -> bool {
-        matches!(self, Self::Replay { .. } | Self::Text(_))
-    }
-
-    /// The plant of this program makes the samples; an FMU may move its case.
-    #[must_use]
-    pub fn has_plant(&self) -> bool {
-        match self {
-            Self::Plant => true,
-            Self::Fmu(fmu) => fmu.is_motion(),
-            Self::Replay { .. } | Self::Text(_) | Self::Live(_) => false,
-        }
-    }
-}
-
-/// A file name as it was written.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct FileName(pub String);
-
-impl FileName {
-    /// The file's path: relative to the scenario's folder, with `${OCTANT_RECORDINGS}` expanded.
-    ///
-    /// # Errors
-    /// If the variable is used and not set, or another one is used; a fragment that fits after
-    /// "failed to …".
-    pub fn path(&self, folder: &Path) -> Result<PathBuf, String> {
-        self.path_with(folder, std::env::var_os(VARIABLE))
-    }
-
-    fn path_with(&self, folder: &Path, recordings: Option<OsString>) -> Result<PathBuf, String> {
-        let Some(rest) = self.0.strip_prefix("${") else { return Ok(folder.join(&self.0)) };
-        let Some(rest) = rest.strip_prefix(VARIABLE).and_then(|rest| rest.strip_prefix('}')) else {
-            return Err(format!(
-                "expand {:?}: ${{{VARIABLE}}} is the one variable that file names can have",
-                self.0
-            ));
-        };
-        match recordings {
-            Some(value) => Ok(Path::new(&value).join(rest.trim_start_matches('/'))),
-            None => Err(format!(
-                "expand {:?}: the environment variable {VARIABLE} is not set; set it to the \
-                 folder of the recordings",
-                self.0
-            )),
-        }
-    }
-}
+use std::path::PathBuf;
 
 pub(super) fn read(table: &Reader<'_>, sample_period_ns: u64) -> Result<Source, Problem> {
     let uri = table.text("uri")?;
@@ -231,8 +156,8 @@ fn same_quantity(table: &Reader<'_>, gyro: Quantity, other: Quantity) -> Result<
     ))
 }
 
-/// Nominal rate of rows, Hz, and the samples of each: together they are the rate of the scenario,
-/// for the core has one sample period.
+/// Nominal rate of rows, Hz, and the number of samples of each. Their product must be the rate of the
+/// scenario, because the core has one sample period.
 fn rate(table: &Reader<'_>, sample_period_ns: u64) -> Result<(f64, u32), Problem> {
     let found_ns = super::instrument::sample_period_ns(table)?;
     let split: u32 = table.integer("split")?;
@@ -258,7 +183,7 @@ fn time_unit(table: &Reader<'_>) -> Result<TimeUnit, Problem> {
     })
 }
 
-/// SI value of one of a unit.
+/// SI value of a unit.
 fn unit_si(table: &Reader<'_>, key: &str) -> Result<f64, Problem> {
     let unit = table.text(key)?;
     crate::quantity::parse(&format!("1 {unit}"))
@@ -266,10 +191,10 @@ fn unit_si(table: &Reader<'_>, key: &str) -> Result<f64, Problem> {
         .map_err(|_| table.problem(key, format!("found the unknown unit {unit:?}")))
 }
 
-/// What lies along a body axis: `si = (raw − offset) · scale`.
+/// Column along a body axis: `si = (raw − offset) · scale`.
 #[derive(Clone, Copy)]
 struct Mapped {
-    /// 0, 1, 2: the instrument's x, y, z.
+    /// Instrument axis: 0, 1, 2 for x, y, z.
     index: usize,
     offset: f64,
     scale: f64,
@@ -327,24 +252,5 @@ fn axes(table: &Reader<'_>) -> Result<[(usize, f64); 3], Problem> {
                 "found {texts:?}, expected x, y and z once each, such as [\"y\", \"x\", \"-z\"]"
             ),
         )),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn file_names_start_at_the_scenario_or_at_the_recordings() {
-        let path = |name: &str, recordings: Option<&str>| {
-            FileName(name.to_owned()).path_with(Path::new("/runs"), recordings.map(OsString::from))
-        };
-        assert_eq!(path("a.txt", None), Ok(PathBuf::from("/runs/a.txt")));
-        assert_eq!(path("/b/a.txt", None), Ok(PathBuf::from("/b/a.txt")));
-        let recorded = "${OCTANT_RECORDINGS}/x/a.txt";
-        assert_eq!(path(recorded, Some("/data")), Ok(PathBuf::from("/data/x/a.txt")));
-        assert!(path(recorded, None).unwrap_err().contains("OCTANT_RECORDINGS is not set"));
-        let other = path("${HOME}/a.txt", Some("/data")).unwrap_err();
-        assert!(other.contains("the one variable"), "{other}");
     }
 }

@@ -1,32 +1,33 @@
-//! Correlations of factors: those of their normal scores.
+//! Correlations of factors, defined by their normal scores.
 
 use super::{DrawError, Factor};
 use crate::normal;
 use crate::sample::ranks;
 use serde::{Deserialize, Serialize};
 
-/// The correlation of two factors: of the Gaussian copula that joins them. Of normal factors it is
+/// Correlation of two factors: that of the Gaussian copula that joins them. For normal factors it is
 /// their own correlation.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Correlation {
-    /// One factor.
+    /// First factor.
     pub first: String,
-    /// The other.
+    /// Second factor.
     pub second: String,
-    /// Above −1 and below 1.
+    /// Value above −1 and below 1.
     pub value: f64,
 }
 
-/// The correlated ones among the factors, and the lower triangle of their matrix's root.
+/// Correlated factors, with the lower triangular root of their matrix.
 #[derive(Clone, Debug)]
 pub struct Correlations {
-    /// Which factors, in ascending order.
+    /// Indices of the factors, in ascending order.
     columns: Vec<usize>,
-    /// L of L Lᵀ = C.
+    /// Root L with L Lᵀ = C.
     root: Vec<Vec<f64>>,
 }
 
-/// The lower triangle L of L Lᵀ = `matrix`; else the row at which it isn't positive definite.
+/// Lower triangular root L with L Lᵀ = `matrix`; the error is the row at which it isn't positive
+/// definite.
 fn cholesky(matrix: &[Vec<f64>]) -> Result<Vec<Vec<f64>>, usize> {
     let n = matrix.len();
     let mut root = vec![vec![0.0; n]; n];
@@ -35,7 +36,7 @@ fn cholesky(matrix: &[Vec<f64>]) -> Result<Vec<Vec<f64>>, usize> {
             let dot: f64 = (0..j).map(|k| root[i][k] * root[j][k]).sum();
             let rest = matrix[i][j] - dot;
             if i == j {
-                // What rounding leaves of an exact 0 isn't positive.
+                // A rounding residue of an exact 0 isn't positive.
                 if !(rest > 1e-12) {
                     return Err(i);
                 }
@@ -49,11 +50,11 @@ fn cholesky(matrix: &[Vec<f64>]) -> Result<Vec<Vec<f64>>, usize> {
 }
 
 impl Correlations {
-    /// The correlations of these factors.
+    /// Makes the correlations of these factors.
     ///
     /// # Errors
-    /// If one names no factor, one that is a choice, the same factor twice, a pair that was there
-    /// before, or a value that isn't between −1 and 1; or if all together aren't positive definite.
+    /// If a correlation names an unknown factor, a choice, the same factor twice or a pair a second
+    /// time, if a value isn't between −1 and 1, or if the matrix isn't positive definite.
     pub fn new(factors: &[Factor], correlations: &[Correlation]) -> Result<Self, DrawError> {
         let mut columns: Vec<usize> = Vec::new();
         let mut pairs: Vec<(usize, usize, f64)> = Vec::new();
@@ -110,7 +111,7 @@ impl Correlations {
         let scores: Vec<f64> = self.columns.iter().map(|at| normal::quantile(units[*at])).collect();
         for (row, at) in self.columns.iter().enumerate().skip(1) {
             let score: f64 = (0..=row).map(|k| self.root[row][k] * scores[k]).sum();
-            // Never quite 0 or 1, where a distribution has no value.
+            // Never exactly 0 or 1, at which a distribution has no value.
             units[*at] = normal::cdf(score).clamp(f64::MIN_POSITIVE, 1.0 - f64::EPSILON / 2.0);
         }
     }
@@ -126,7 +127,7 @@ impl Correlations {
         if runs < k + 2 {
             return Err(few);
         }
-        // Van der Waerden scores in the order that the columns have.
+        // Van der Waerden scores in the order of the columns.
         let scores: Vec<Vec<f64>> = self
             .columns
             .iter()
@@ -136,7 +137,7 @@ impl Correlations {
             })
             .collect();
         let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(x, y)| x * y).sum::<f64>();
-        // All columns have the same scores, whose mean is 0: so the products make the correlations.
+        // All columns have the same scores with mean 0, so the products give the correlations.
         let square = dot(&scores[0], &scores[0]);
         let found: Vec<Vec<f64>> = (0..k)
             .map(|i| (0..k).map(|j| dot(&scores[i], &scores[j]) / square).collect())
@@ -144,7 +145,7 @@ impl Correlations {
         let found = cholesky(&found).map_err(|_| few)?;
         let mut wanted = vec![vec![0.0; runs]; k];
         for run in 0..runs {
-            // First the correlation that is there by chance is taken away, then the wanted one made.
+            // The chance correlation is removed first, then the wanted one is applied.
             let mut free = vec![0.0; k];
             for i in 0..k {
                 let known: f64 = (0..i).map(|j| found[i][j] * free[j]).sum();

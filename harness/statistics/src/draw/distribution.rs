@@ -1,4 +1,4 @@
-//! Distributions of factors, truncated by their inverse.
+//! Distributions of factors, truncated through their inverse.
 
 use super::DrawError;
 use crate::normal;
@@ -8,11 +8,11 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Distribution {
-    /// Evenly between two values.
+    /// Uniform between two values.
     Uniform {
-        /// From here.
+        /// Lower limit.
         low: f64,
-        /// To here.
+        /// Upper limit.
         high: f64,
     },
     /// Gaussian.
@@ -22,16 +22,16 @@ pub enum Distribution {
         /// Standard deviation.
         sigma: f64,
     },
-    /// Its logarithm is Gaussian.
+    /// Log-normal: the logarithm is Gaussian.
     LogNormal {
         /// Median, above 0.
         median: f64,
         /// Standard deviation of the natural logarithm.
         sigma_ln: f64,
     },
-    /// One of several, with these weights.
+    /// One of several options, with these weights.
     Choice {
-        /// Weights, not negative; they need no sum of their own.
+        /// Weights, not negative; their sum is arbitrary.
         weights: Vec<f64>,
     },
 }
@@ -40,14 +40,14 @@ pub enum Distribution {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Value {
-    /// Of a continuous distribution.
+    /// Value of a continuous distribution.
     Number(f64),
-    /// Which of several, from 0.
+    /// Index of the option, from 0.
     Choice(usize),
 }
 
 impl Value {
-    /// As a number: of a choice, which it is.
+    /// Value as a number; for a choice, the index of the option.
     #[must_use]
     pub fn number(self) -> f64 {
         match self {
@@ -57,34 +57,34 @@ impl Value {
     }
 }
 
-/// A factor of the runs.
+/// A factor that is varied between runs.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Factor {
-    /// Its name, by which it is drawn.
+    /// Name, which determines its stream.
     pub name: String,
-    /// How it is distributed.
+    /// Distribution.
     pub distribution: Distribution,
-    /// Nothing below this is drawn.
+    /// Lower limit of truncation.
     pub low: Option<f64>,
-    /// Nothing above this is drawn.
+    /// Upper limit of truncation.
     pub high: Option<f64>,
 }
 
 impl Factor {
-    /// A factor that isn't truncated.
+    /// Makes a factor without truncation.
     #[must_use]
     pub fn new(name: &str, distribution: Distribution) -> Self {
         Self { name: name.to_owned(), distribution, low: None, high: None }
     }
 
-    /// The factor without what is below `low` and above `high`.
+    /// Truncates the factor to values from `low` to `high`.
     #[must_use]
     pub fn truncated(mut self, low: f64, high: f64) -> Self {
         (self.low, self.high) = (Some(low), Some(high));
         self
     }
 
-    /// It is one of several.
+    /// True if the factor is a choice.
     #[must_use]
     pub const fn is_choice(&self) -> bool {
         matches!(self.distribution, Distribution::Choice { .. })
@@ -135,7 +135,7 @@ impl Factor {
         }
         let mirrored = self.mirrored();
         let (from, to) = self.range(mirrored);
-        // Equal where both limits are in a tail that a double can't resolve.
+        // The two are equal if both limits are in a tail that a double can't resolve.
         if !(from < to) {
             let limit = |x: Option<f64>, none: &str| x.map_or(none.to_owned(), |x| x.to_string());
             let (low, high) = (limit(self.low, "-inf"), limit(self.high, "inf"));
@@ -146,7 +146,7 @@ impl Factor {
         Ok(())
     }
 
-    /// The standardised value: what is normal has mean 0 and σ 1, what is uniform lies in 0 to 1.
+    /// Standardised value: a normal one has mean 0 and σ 1, a uniform one lies in 0 to 1.
     fn standard(&self, x: f64) -> f64 {
         match self.distribution {
             Distribution::Uniform { low, high } => (x - low) / (high - low),
@@ -162,14 +162,14 @@ impl Factor {
         }
     }
 
-    /// Whether the upper tail is meant, where a probability near 1 would have lost its digits: then it
-    /// is counted from the other end.
+    /// True if the limits are in the upper tail, where probabilities near 1 would lose digits: then
+    /// they are counted from the other end.
     fn mirrored(&self) -> bool {
         let normal = !matches!(self.distribution, Distribution::Uniform { .. });
         normal && self.low.is_some_and(|low| self.standard(low) > 0.0)
     }
 
-    /// Probabilities at the limits, from the upper end if mirrored.
+    /// Probabilities at the limits, counted from the upper end if mirrored.
     fn range(&self, mirrored: bool) -> (f64, f64) {
         let at = |limit: Option<f64>, none: f64| match limit.map(|x| self.standard(x)) {
             None => none,
@@ -185,7 +185,7 @@ impl Factor {
         }
     }
 
-    /// The value at a probability of (0, 1) of the truncated distribution.
+    /// Value at a probability in (0, 1) of the truncated distribution.
     ///
     /// # Errors
     /// If the distribution has no value.
@@ -201,12 +201,13 @@ impl Factor {
                 left -= weight;
                 last = Some(index);
             }
-            // Only rounding leads here.
+            // Reached only by rounding.
             return last.map(Value::Choice).ok_or_else(|| self.wrong("it has no weight"));
         }
         let mirrored = self.mirrored();
         let (from, to) = self.range(mirrored);
-        // Mirrored, the largest probability belongs to the smallest value: u still grows with it.
+        // In the mirrored case the largest probability belongs to the smallest value; this keeps the
+        // value increasing with u.
         let u = if mirrored { 1.0 - u } else { u };
         let p = from + u * (to - from);
         let z = || if mirrored { -normal::quantile(p) } else { normal::quantile(p) };
@@ -216,7 +217,7 @@ impl Factor {
             Distribution::LogNormal { median, sigma_ln } => median * libm::exp(sigma_ln * z()),
             Distribution::Choice { .. } => p,
         };
-        // Rounding may step over a limit.
+        // Rounding may exceed a limit.
         let x = self.low.map_or(x, |low| x.max(low));
         Ok(Value::Number(self.high.map_or(x, |high| x.min(high))))
     }

@@ -1,9 +1,9 @@
-//! The factors of many runs: Monte Carlo draws and Latin hypercubes, with correlations.
+//! Draws of the factors of many runs: Monte Carlo and Latin hypercubes, with correlations.
 //!
 //! Draws come from the named, counter-based streams of `octant-random`. Draw i of a factor depends on
 //! the seed, the factor's name and i, in a Latin hypercube also on the number of runs, and on nothing
-//! else: adding a factor, or runs to a Monte Carlo, moves no other draw. Factors that are correlated
-//! depend on each other as well.
+//! else: adding a factor, or runs to a Monte Carlo, changes no other draw. Correlated factors also
+//! depend on each other.
 
 mod correlation;
 mod distribution;
@@ -15,53 +15,53 @@ use crate::sample::ranks;
 use octant_random::normal::{uniform, words};
 use octant_random::stream::{Phase, key};
 
-/// Why factors can't be drawn.
+/// Error of factors that can't be drawn.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum DrawError {
-    /// A distribution without a value.
+    /// A distribution has no value.
     #[error("draw {factor}: {message}")]
     Factor {
         /// The factor.
         factor: String,
-        /// What is wrong.
+        /// Description of the error.
         message: String,
     },
-    /// Two factors of one name would have the same draws.
+    /// Two factors have the same name, and would have the same draws.
     #[error("draw {0}: there are two factors of this name")]
     Duplicate(String),
-    /// A correlation that can't be.
+    /// A correlation is invalid.
     #[error("correlate {first} with {second}: {message}")]
     Correlation {
-        /// One factor.
+        /// First factor.
         first: String,
-        /// The other.
+        /// Second factor.
         second: String,
-        /// What is wrong.
+        /// Description of the error.
         message: String,
     },
-    /// Correlations that contradict each other.
+    /// The correlations contradict each other.
     #[error(
         "correlate {}: no quantities are correlated like this (the matrix is not positive definite; \
          it breaks at {})",
         .factors.join(", "), .breaks_at
     )]
     NotPositiveDefinite {
-        /// The factors of the matrix, in its order.
+        /// Factors of the matrix, in its order.
         factors: Vec<String>,
-        /// The factor at which the leading minor isn't positive.
+        /// First factor at which the leading minor isn't positive.
         breaks_at: String,
     },
-    /// Latin hypercube of nothing, or too few for the correlations.
+    /// A Latin hypercube has no runs, or too few for the correlations.
     #[error("draw a Latin hypercube: {found} runs, at least {expected} are needed")]
     Runs {
-        /// Found.
+        /// Number of runs found.
         found: usize,
-        /// Expected.
+        /// Smallest number of runs.
         expected: usize,
     },
 }
 
-/// The name of a factor's stream: no model draws from one that is called so.
+/// Name of a factor's stream, which no model uses.
 fn stream(name: &str) -> String {
     format!("factor {name}")
 }
@@ -74,7 +74,7 @@ pub(crate) fn unit(seed: u64, name: &str, i: u64, word: usize) -> f64 {
 /// Draw `i` of every factor, in the order of the factors.
 ///
 /// # Errors
-/// If a factor or a correlation isn't one.
+/// If a factor or a correlation is invalid.
 pub fn monte_carlo(
     factors: &[Factor],
     correlations: &[Correlation],
@@ -88,13 +88,13 @@ pub fn monte_carlo(
     factors.iter().zip(&units).map(|(factor, u)| factor.at(*u)).collect()
 }
 
-/// A Latin hypercube of `runs` (McKay, Beckman and Conover, Technometrics 21, 1979): every factor has
-/// one draw in each of `runs` parts of equal probability, at random in its part. Correlations are made
-/// by rearranging the draws (Iman and Conover, Communications in Statistics B 11, 1982), which leaves
-/// every factor its parts.
+/// Latin hypercube of `runs` runs (McKay, Beckman and Conover, Technometrics 21, 1979): every factor
+/// has one draw in each of `runs` parts of equal probability, at a random place in its part.
+/// Correlations are made by rearranging the draws (Iman and Conover, Communications in Statistics B 11,
+/// 1982), which keeps the parts of every factor.
 ///
 /// # Errors
-/// If a factor or a correlation isn't one, or there are too few runs to correlate them.
+/// If a factor or a correlation is invalid, or there are too few runs to correlate them.
 pub fn latin_hypercube(
     factors: &[Factor],
     correlations: &[Correlation],
@@ -113,8 +113,8 @@ pub fn latin_hypercube(
         .collect()
 }
 
-/// The probabilities of one factor in a Latin hypercube: the part that a run has is the rank of its
-/// number among all, and its place in the part another number.
+/// Probabilities of one factor in a Latin hypercube: the part of a run is the rank of its first random
+/// number among all, and its place in the part is a second random number.
 fn column(seed: u64, name: &str, runs: usize) -> Vec<f64> {
     let key = key(seed, &format!("hypercube of {runs}: {name}"), Phase::Draw);
     let words: Vec<[u64; 4]> = (0..runs as u64).map(|i| words(key, i)).collect();

@@ -1,9 +1,9 @@
-//! Command languages: what is sent, and what comes back.
+//! Command languages of controllers: their commands and replies.
 //!
-//! A language is a table of patterns in TOML (`dialects/aerotech-ensemble.toml` is one). A pattern is a line
-//! with fields in braces: `{axis}` the name of the axis in the language, `{angle}`, `{rate}`,
-//! `{acceleration}` numbers in its units, `{ms}` milliseconds, `{bits}` and `{fault}` integers, decimal or
-//! with `0x`, `{moving}`, `{homed}`, `{enabled}` 0 or 1, `{any}` whatever text.
+//! A language is a table of patterns in TOML (such as `dialects/aerotech-ensemble.toml`). A pattern is
+//! a line with fields in braces: `{axis}` the name of the axis in the language; `{angle}`, `{rate}`,
+//! `{acceleration}` numbers in its units; `{ms}` milliseconds; `{bits}` and `{fault}` integers, decimal
+//! or with `0x`; `{moving}`, `{homed}`, `{enabled}` 0 or 1; `{any}` any text.
 
 mod pattern;
 
@@ -24,14 +24,14 @@ pub(crate) enum Command {
     Feed,
 }
 
-/// A question for the status, and its reply.
+/// A status query with its reply.
 #[derive(Clone, Debug)]
 pub(crate) struct Question {
     pub(crate) send: Pattern,
     pub(crate) reply: Pattern,
 }
 
-/// Which bits of `{bits}` say what.
+/// Meanings of the bits in `{bits}`.
 #[derive(Clone, Copy, Debug, Default, serde::Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Bits {
@@ -46,7 +46,7 @@ pub struct Dialect {
     pub(crate) name: String,
     pub(crate) end: String,
     pub(crate) decimals: usize,
-    /// Radians of a unit of angle; rad/s of a unit of rate; rad/s² of one of acceleration.
+    /// Radians in a unit of angle, rad/s in a unit of rate, rad/s² in a unit of acceleration.
     pub(crate) units: [f64; 3],
     pub(crate) done: Option<Pattern>,
     pub(crate) refused: Vec<Pattern>,
@@ -112,22 +112,22 @@ struct RawQuestion {
 }
 
 impl Dialect {
-    /// Aerotech's Ensemble controllers.
+    /// Language of Aerotech's Ensemble controllers.
     ///
     /// # Errors
-    /// Never: it is tested. The table comes with the program.
+    /// Never: the built-in table of patterns is tested.
     pub fn aerotech_ensemble() -> Result<Self, Error> {
         let text = include_str!("../../dialects/aerotech-ensemble.toml");
         Self::parse("dialects/aerotech-ensemble.toml", text)
     }
 
-    /// Name of the language that comes with the program.
+    /// Name of the built-in language.
     pub const BUILT_IN: &'static str = "aerotech-ensemble";
 
-    /// The language of a name, or of a file with its table of patterns.
+    /// Loads the built-in language by its name, or another one from a file with its table of patterns.
     ///
     /// # Errors
-    /// If the file can't be read, or is no table of patterns.
+    /// If the file can't be read, or has no table of patterns.
     pub fn load(name: &std::path::Path) -> Result<Self, Error> {
         if name == std::path::Path::new(Self::BUILT_IN) {
             return Self::aerotech_ensemble();
@@ -136,17 +136,17 @@ impl Dialect {
         let text = std::fs::read_to_string(name).map_err(|error| Error::Dialect {
             place: file.clone(),
             what: format!(
-                "{error}, expected is {} or a file with a table of patterns",
+                "{error}, expected {} or a file with a table of patterns",
                 Self::BUILT_IN
             ),
         })?;
         Self::parse(&file, &text)
     }
 
-    /// Reads a table of patterns; `file` is its name, for messages.
+    /// Parses a table of patterns; `file` is its name in messages.
     ///
     /// # Errors
-    /// If it is none: with file, and line or key.
+    /// If the table is invalid: with file, and line or key.
     pub fn parse(file: &str, text: &str) -> Result<Self, Error> {
         let raw: Raw = toml::from_str(text).map_err(|error| {
             let line = error.span().map(|span| 1 + text[..span.start].matches('\n').count());
@@ -158,7 +158,10 @@ impl Dialect {
         let unit = |key: &str, found: &str, known: &[(&str, f64)]| {
             known.iter().find(|(name, _)| *name == found).map(|(_, unit)| *unit).ok_or_else(|| {
                 let names: Vec<&str> = known.iter().map(|(name, _)| *name).collect();
-                wrong(key, format!("`{found}` is no unit, expected is one of {}", names.join(", ")))
+                wrong(
+                    key,
+                    format!("found the unit `{found}`, expected one of {}", names.join(", ")),
+                )
             })
         };
         let degree = 1f64.to_radians();
@@ -178,19 +181,25 @@ impl Dialect {
         if raw.end.is_empty() {
             return Err(wrong(
                 "end",
-                "it is empty, expected are the characters that end a line".into(),
+                "found an empty text, expected the characters that end a line".into(),
             ));
         }
         if raw.decimals > 12 {
-            return Err(wrong("decimals", format!("{} is more than 12", raw.decimals)));
+            return Err(wrong("decimals", format!("found {}, expected at most 12", raw.decimals)));
         }
         if raw.axes.azimuth == raw.axes.roll || raw.axes.azimuth.is_empty() {
-            return Err(wrong("axes", "the two axes need names, and different ones".into()));
+            return Err(wrong(
+                "axes",
+                "found empty or equal names of axes, expected two different names".into(),
+            ));
         }
         let patterns = |key: &str, texts: &[String]| -> Result<Vec<Pattern>, Error> {
             let parse = |text: &String| {
                 if text.contains(&raw.end) {
-                    return Err(wrong(key, format!("`{text}` holds the end of a line")));
+                    return Err(wrong(
+                        key,
+                        format!("found the end of a line in `{text}`, expected none"),
+                    ));
                 }
                 Pattern::parse(text).map_err(|what| wrong(key, what))
             };
@@ -213,13 +222,19 @@ impl Dialect {
                 && !patterns.is_empty()
                 && !patterns.iter().any(|pattern| pattern.has(needed))
             {
-                return Err(wrong(key, format!("no line of it has a field {{{}}}", needed.name())));
+                return Err(wrong(
+                    key,
+                    format!("found no line with a field {{{}}}, expected one", needed.name()),
+                ));
             }
             all.push((command, patterns));
         }
         for (needed, key) in [(Command::Goto, "commands.goto"), (Command::Stop, "commands.stop")] {
             if all.iter().any(|(command, lines)| *command == needed && lines.is_empty()) {
-                return Err(wrong(key, "it is empty: every table can do this".into()));
+                return Err(wrong(
+                    key,
+                    "found no line, expected one: every table has this command".into(),
+                ));
             }
         }
         let mut status = Vec::new();
@@ -230,7 +245,10 @@ impl Dialect {
             status.push(Question { send, reply });
         }
         if !status.iter().any(|question| question.reply.has(Field::Angle)) {
-            return Err(wrong("status", "no reply has a field {angle}".into()));
+            return Err(wrong(
+                "status",
+                "found no reply with a field {angle}, expected one".into(),
+            ));
         }
         let done = raw.done.as_ref().map(|done| patterns("done", std::slice::from_ref(done)));
         Ok(Self {
@@ -247,25 +265,25 @@ impl Dialect {
         })
     }
 
-    /// Its name.
+    /// Name of the language.
     #[must_use]
     pub fn name(&self) -> &str {
         &self.name
     }
 
-    /// The lines of a command.
+    /// Lines of a command.
     pub(crate) fn lines(&self, command: Command) -> &[Pattern] {
         let found = self.commands.iter().find(|(one, _)| *one == command);
         found.map_or(&[], |(_, lines)| lines)
     }
 
-    /// Values as the language writes them.
+    /// Formats values in the language.
     pub(crate) fn write(&self, values: &Values) -> Fields {
         let mut fields: Fields = BTreeMap::new();
         let mut number = |field, value: Option<f64>, unit: f64| {
             if let Some(value) = value {
                 let text = format!("{:.*}", self.decimals, value / unit);
-                // Minus nothing is nothing.
+                // A negative zero is written without its sign.
                 let zero = text.trim_start_matches('-').bytes().all(|c| c == b'0' || c == b'.');
                 fields.insert(field, if zero { text.trim_start_matches('-').into() } else { text });
             }
@@ -290,7 +308,7 @@ impl Dialect {
         fields
     }
 
-    /// What the fields of a line say; `None`: a number that is none.
+    /// Parses the fields of a line; `None` if a number is invalid.
     pub(crate) fn read(&self, fields: &Fields) -> Option<Values> {
         let mut values = Values::default();
         let [angle, rate, acceleration] = self.units;
@@ -326,14 +344,14 @@ impl Dialect {
         Some(values)
     }
 
-    /// The bytes that stop the table whatever was being sent: an end of a line first, for a line that
+    /// Bytes that stop the table whatever was being sent: an end of line comes first, in case a line
     /// was cut in the middle.
     pub(crate) fn emergency(&self) -> Vec<u8> {
         let mut bytes = self.end.clone().into_bytes();
         for axis in Axis::ALL {
             let fields = self.write(&Values { axis: Some(axis), ..Values::default() });
             for line in self.lines(Command::Stop) {
-                // A stop has no other field than the axis.
+                // A stop has no field other than the axis.
                 bytes.extend(line.write(&fields).unwrap_or_default().into_bytes());
                 bytes.extend(self.end.as_bytes());
             }
@@ -342,7 +360,7 @@ impl Dialect {
     }
 }
 
-/// What stands in a line.
+/// Values in a line.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Values {
     pub(crate) axis: Option<Axis>,

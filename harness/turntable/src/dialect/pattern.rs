@@ -1,4 +1,4 @@
-//! Lines with fields in them.
+//! Patterns of lines with fields.
 
 use std::collections::BTreeMap;
 
@@ -67,7 +67,7 @@ pub(crate) struct Pattern {
 }
 
 impl Pattern {
-    /// From a text; else what is wrong with it.
+    /// Parses a pattern; the error describes the problem.
     pub(crate) fn parse(text: &str) -> Result<Self, String> {
         let mut pieces: Vec<Piece> = Vec::new();
         let mut rest = text;
@@ -84,7 +84,7 @@ impl Pattern {
             let Some(field) = field else {
                 let names: Vec<&str> = Field::ALL.iter().map(|field| field.name()).collect();
                 return Err(format!(
-                    "`{text}` has a field {{{name}}}, known are {}",
+                    "found a field {{{name}}} in `{text}`, expected one of {}",
                     names.join(", ")
                 ));
             };
@@ -97,17 +97,17 @@ impl Pattern {
         Ok(Self { pieces, text: text.into() })
     }
 
-    /// It has a field.
+    /// True if it has a field.
     pub(crate) fn has(&self, field: Field) -> bool {
         self.pieces.contains(&Piece::Field(field))
     }
 
-    /// As it was written.
+    /// Text of the pattern.
     pub(crate) fn text(&self) -> &str {
         &self.text
     }
 
-    /// The line with its fields filled in; `None` if one is missing.
+    /// Fills in the fields of the line; `None` if one is missing.
     pub(crate) fn write(&self, fields: &Fields) -> Option<String> {
         let mut line = String::new();
         for piece in &self.pieces {
@@ -119,7 +119,7 @@ impl Pattern {
         Some(line)
     }
 
-    /// The fields of a line that is like this; a field ends where the text after it begins.
+    /// Parses a line of this pattern into its fields; a field ends where the text after it begins.
     pub(crate) fn read(&self, line: &str) -> Option<Fields> {
         let mut fields = Fields::new();
         let mut rest = line;

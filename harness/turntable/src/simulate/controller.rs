@@ -1,23 +1,23 @@
-//! What a controller does with a line.
+//! Simulated controller: its reaction to a line.
 
 use crate::dialect::{Command, Fields, Pattern, Values};
 use crate::{Axis, Dialect};
 use octant_plant::config::Turntable;
 use octant_plant::table::{self, Table};
 
-/// How it behaves.
+/// Behaviour of a simulated controller.
 #[derive(Clone, Debug, PartialEq, Eq, Default)]
 pub enum Behaviour {
-    /// As it should.
+    /// Correct.
     #[default]
     Well,
-    /// It does what it is told and answers nothing.
+    /// Silent: it executes commands and answers nothing.
     Silent,
-    /// It answers this, whatever it was asked.
+    /// Nonsense: it gives this answer to everything.
     Nonsense(String),
-    /// It doesn't listen: a line is neither done nor answered.
+    /// Deaf: it neither executes nor answers lines.
     Deaf,
-    /// The line is cut.
+    /// Cut off: it closes the line.
     HangUp,
 }
 
@@ -26,14 +26,14 @@ pub enum Behaviour {
 pub struct Controller {
     dialect: Dialect,
     table: Table,
-    /// Largest angle of either axis, either way: its end switches.
+    /// Angle of the end switches of both axes, in either direction, rad.
     end_rad: f64,
-    /// How fast it looks for its reference.
+    /// Rate of homing, rad/s.
     home_radps: f64,
     enabled: [bool; 2],
     homed: [bool; 2],
     fault: [u32; 2],
-    /// What the lines of a command have said so far.
+    /// Values of the command's lines so far.
     context: Values,
     watchdog_ns: Option<u64>,
     fed_ns: u64,
@@ -54,7 +54,8 @@ fn plant(axis: Axis) -> table::Axis {
 }
 
 impl Controller {
-    /// A controller of a table at rest at zero, its drives off. `end_rad`: where the end switches are.
+    /// Makes a controller of a table at rest at zero, with its drives off. `end_rad`: angle of the end
+    /// switches.
     #[must_use]
     pub fn new(dialect: Dialect, config: &Turntable, end_rad: f64) -> Self {
         Self {
@@ -73,36 +74,36 @@ impl Controller {
         }
     }
 
-    /// The characters that end a line.
+    /// Characters that end a line.
     #[must_use]
     pub fn end(&self) -> &str {
         &self.dialect.end
     }
 
-    /// From now on it behaves like this.
+    /// Sets the behaviour from now on.
     pub fn behave(&mut self, behaviour: Behaviour) {
         self.behaviour = behaviour;
     }
 
-    /// How it behaves.
+    /// Present behaviour.
     #[must_use]
     pub fn behaviour(&self) -> &Behaviour {
         &self.behaviour
     }
 
-    /// The lines that it heard, as they came.
+    /// Lines received, unchanged.
     #[must_use]
     pub fn log(&self) -> &[String] {
         &self.log
     }
 
-    /// Where an axis really is.
+    /// True motion of an axis.
     #[must_use]
     pub fn motion(&self, axis: Axis, now_ns: u64) -> table::AxisMotion {
         self.table.motion(plant(axis), now_ns)
     }
 
-    /// Time goes on: end switches and watchdog act.
+    /// Advances the time: end switches and watchdog act.
     pub fn tick(&mut self, now_ns: u64) {
         for axis in Axis::ALL {
             let motion = self.motion(axis, now_ns);
@@ -128,7 +129,7 @@ impl Controller {
         self.table.run_on(plant(axis), 0.0, now_ns);
     }
 
-    /// Hears a line; what it answers.
+    /// Receives a line and returns its answer.
     pub fn line(&mut self, line: &str, now_ns: u64) -> Option<String> {
         self.tick(now_ns);
         if line.is_empty() || self.behaviour == Behaviour::Deaf {
@@ -175,7 +176,7 @@ impl Controller {
         refused.write(&empty)
     }
 
-    /// Does a command; whether it can.
+    /// Executes a command; false if it can't.
     fn done(&mut self, command: Command, now_ns: u64) -> bool {
         let context = std::mem::take(&mut self.context);
         let axis = context.axis;
@@ -203,7 +204,7 @@ impl Controller {
                 _ => false,
             },
             Command::Stop => {
-                // A language that stops both with one line names none.
+                // A language that stops both axes with one line names no axis.
                 for one in Axis::ALL {
                     if axis.is_none_or(|axis| axis == one) {
                         self.halt(one, now_ns);
@@ -225,7 +226,7 @@ impl Controller {
         }
     }
 
-    /// All that it knows of an axis.
+    /// State of an axis.
     fn state(&self, axis: Axis, now_ns: u64) -> Values {
         let motion = self.motion(axis, now_ns);
         let index = axis.index();
@@ -250,7 +251,7 @@ impl Controller {
         }
     }
 
-    /// Patterns of the language, for who wants to say them.
+    /// Patterns of the language, for tests that send them.
     #[must_use]
     pub fn language(&self) -> Vec<String> {
         let commands = self.dialect.commands.iter().flat_map(|(_, lines)| lines);

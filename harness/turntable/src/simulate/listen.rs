@@ -1,14 +1,15 @@
-//! A simulated controller by the name of its port.
+//! Simulated controllers at an address.
 
 use super::{Controller, Server};
 use crate::{Dialect, Error};
 use octant_plant::config::Turntable;
 
-/// End switches of the table, either way, degrees: two turns.
+/// Angle of the table's end switches, in either direction, degrees: two turns.
 const END_DEG: f64 = 720.0;
 
-/// Plays the controller of a table at `tcp:HOST:PORT`, or on a new pseudo-terminal to which a link is made,
-/// `pty:LINK`. The table is that of the default scenario. The server, and the name by which it is reached.
+/// Serves a simulated controller at `tcp:HOST:PORT`, or on a new pseudo-terminal with a link to it,
+/// `pty:LINK`. The table is that of the default scenario. Returns the server, and the name by which it
+/// is reached.
 ///
 /// # Errors
 /// If it can't listen there.
@@ -32,7 +33,7 @@ pub fn listen(at: &str, dialect: Dialect) -> Result<(Server, String), Error> {
             Ok((server, name))
         }
         Some(("pty", link)) if !link.is_empty() => on_pty(controller, link),
-        _ => Err(failed("this is no place for a table".to_owned())),
+        _ => Err(failed("the address has neither tcp: nor pty:".to_owned())),
     }
 }
 
@@ -41,7 +42,7 @@ fn on_pty(controller: Controller, link: &str) -> Result<(Server, String), Error>
     use serialport::SerialPort;
     let failed = |reason: String| Error::Listen { port: format!("pty:{link}"), reason };
     let (master, slave) = serialport::TTYPort::pair().map_err(|error| failed(error.to_string()))?;
-    let name = slave.name().ok_or_else(|| failed("it has no name".to_owned()))?;
+    let name = slave.name().ok_or_else(|| failed("the pseudo-terminal has no name".to_owned()))?;
     let is_link = |about: std::fs::Metadata| about.file_type().is_symlink();
     if std::fs::symlink_metadata(link).is_ok_and(is_link) {
         std::fs::remove_file(link).map_err(|error| failed(error.to_string()))?;

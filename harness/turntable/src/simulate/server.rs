@@ -9,15 +9,15 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-/// How soon it notices that time goes on.
+/// Interval at which the simulated time is advanced.
 const WAIT: Duration = Duration::from_millis(5);
-/// A line longer than that is thrown away.
+/// Longest line; a longer one is discarded.
 const MAX_LINE_BYTES: usize = 4096;
 
 struct Shared {
     controller: Mutex<Controller>,
     started: Instant,
-    /// How much faster than ours its time goes.
+    /// Speed of the simulated time relative to real time.
     speed: f64,
     ends: AtomicBool,
 }
@@ -32,7 +32,7 @@ impl Shared {
     }
 }
 
-/// A simulated controller that listens. It ends when it is dropped.
+/// A simulated controller that listens, until it is dropped.
 pub struct Server {
     shared: Arc<Shared>,
     thread: Option<JoinHandle<()>>,
@@ -40,8 +40,8 @@ pub struct Server {
 }
 
 impl Server {
-    /// Listens on a TCP address, for one peer after the other; port 0 is any free one. `speed`: how much faster
-    /// than ours its time goes.
+    /// Listens on a TCP address, for one peer after the other; port 0 is any free one. `speed`: speed
+    /// of the simulated time relative to real time.
     ///
     /// # Errors
     /// If the address can't be listened on.
@@ -67,14 +67,15 @@ impl Server {
         Self::start(controller, speed, Some(address), serve)
     }
 
-    /// Is at the other end of a line: a pseudo-terminal, a serial port.
+    /// Serves the other end of a line: a pseudo-terminal, a serial port.
     ///
     /// # Errors
-    /// If its thread can't be started.
+    /// If the thread can't be started.
     pub fn line(controller: Controller, port: impl Port + 'static, speed: f64) -> io::Result<Self> {
         let mut port = port;
         Self::start(controller, speed, None, move |shared: &Shared| {
-            // A pseudo-terminal that nobody has open is gone, and comes back. The table goes on meanwhile.
+            // A pseudo-terminal that nobody has open is gone until it is opened again. The table moves
+            // on meanwhile.
             while !shared.ends.load(Ordering::SeqCst) {
                 serve(shared, &mut port);
                 shared.controller().tick(shared.now_ns());
@@ -102,13 +103,14 @@ impl Server {
         Ok(Self { shared, thread: Some(thread), address })
     }
 
-    /// Where it listens, on TCP.
+    /// Address that it listens at, on TCP.
     #[must_use]
     pub fn address(&self) -> Option<SocketAddr> {
         self.address
     }
 
-    /// The controller and its time now: to look at what is true, or to make it misbehave.
+    /// Gives access to the controller and its present time, to look at the truth or to make it
+    /// misbehave.
     pub fn with<T>(&self, look: impl FnOnce(&mut Controller, u64) -> T) -> T {
         let now_ns = self.shared.now_ns();
         let mut controller = self.shared.controller();
@@ -116,7 +118,7 @@ impl Server {
         look(&mut controller, now_ns)
     }
 
-    /// Waits until it ends, which it does when it is killed.
+    /// Waits until the server ends, which it does only when it is killed.
     pub fn wait(mut self) {
         if let Some(thread) = self.thread.take() {
             let _ = thread.join();
@@ -133,7 +135,7 @@ impl Drop for Server {
     }
 }
 
-/// One peer, until it goes.
+/// Serves one peer, until it leaves.
 fn serve(shared: &Shared, port: &mut impl Port) {
     let end = shared.controller().end().to_owned();
     if port.set_wait(WAIT).is_err() {

@@ -1,12 +1,12 @@
-//! What the tests share.
+//! Shared parts of the tests.
 
 use octant_plant::config::Turntable as Config;
 use octant_turntable::simulate::{Controller, Server};
 use octant_turntable::{Axis, AxisLimits, Dialect, Driver, Limits, Port, Settings, open};
 use std::time::{Duration, Instant};
 
-/// A language that nobody speaks: another end of line, degrees a minute, one line of status without a
-/// rate, one stop for both axes.
+/// An invented language: another end of line, degrees a minute, one status line without a rate, one
+/// stop for both axes.
 pub(crate) const INVENTED: &str = r#"
 name = "invented"
 end = "\r\n"
@@ -68,18 +68,18 @@ pub(crate) fn settings() -> Settings {
     };
     Settings {
         limits: Limits { axes: [axis; 2] },
-        // Longer than a busy host takes; tests of a silent controller wait for so long.
+        // Longer than a busy host takes; tests of a silent controller wait this long.
         reply_within: Duration::from_secs(5),
         watchdog: None,
     }
 }
 
-/// A simulated controller on TCP whose time goes ten times as fast as ours.
+/// Starts a simulated controller on TCP whose time is ten times as fast as real time.
 pub(crate) fn tcp(dialect: Dialect) -> (Server, String) {
     tcp_at(dialect, 10.0)
 }
 
-/// A simulated controller on TCP whose time goes so many times as fast as ours.
+/// Starts a simulated controller on TCP whose time is `speed` times as fast as real time.
 pub(crate) fn tcp_at(dialect: Dialect, speed: f64) -> (Server, String) {
     let server = Server::tcp(controller(dialect), "127.0.0.1:0", speed).unwrap();
     let name = format!("tcp:{}", server.address().unwrap());
@@ -90,7 +90,7 @@ pub(crate) fn drive(name: &str, dialect: Dialect, settings: Settings) -> Driver<
     Driver::new(open(name).unwrap(), name, dialect, settings).unwrap()
 }
 
-/// Waits for what has to come, long enough for any machine.
+/// Waits for a condition, long enough for any machine.
 pub(crate) fn wait_for(what: &str, mut come: impl FnMut() -> bool) {
     let until = Instant::now() + Duration::from_secs(60);
     while !come() {
@@ -99,17 +99,17 @@ pub(crate) fn wait_for(what: &str, mut come: impl FnMut() -> bool) {
     }
 }
 
-/// The table really turns.
+/// True if the simulated axis really turns.
 pub(crate) fn turns(server: &Server, axis: Axis) -> bool {
     server.with(|controller, now_ns| controller.motion(axis, now_ns).rate_radps != 0.0)
 }
 
-/// The table really rests, both axes.
+/// True if both simulated axes really rest.
 pub(crate) fn rests(server: &Server) -> bool {
     Axis::ALL.iter().all(|axis| !turns(server, *axis))
 }
 
-/// Where the table really is, degrees.
+/// True angle of the simulated axis, degrees.
 pub(crate) fn angle(server: &Server, axis: Axis) -> f64 {
     server.with(|controller, now_ns| controller.motion(axis, now_ns).angle_rad.to_degrees())
 }

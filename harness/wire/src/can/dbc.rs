@@ -35,7 +35,7 @@ fn message_name(w: &mut impl Write, slot: Slot, segment: usize, format: Format) 
 /// A signal: a number at one place of one frame.
 struct Signal {
     name: &'static str,
-    /// Behind the name, where one field is several signals.
+    /// Suffix of the name, if one field is several signals.
     part: Option<usize>,
     prefix: &'static str,
     /// First bit in the image.
@@ -70,7 +70,7 @@ const CRC: Signal = Signal {
     about: "CRC-32 over the number of the slot and the payload",
 };
 
-/// Calls back with the signals of a field.
+/// Calls `each` with the signals of a field.
 fn signals(slot: Slot, field: &Field, each: &mut dyn FnMut(&Signal) -> Result) -> Result {
     let signal = Signal {
         name: field.name,
@@ -91,12 +91,12 @@ fn signals(slot: Slot, field: &Field, each: &mut dyn FnMut(&Signal) -> Result) -
             let Some(name) = flag else { return Ok(()) };
             each(&Signal { name, bit: signal.bit + 15, bits: 1, about: "", ..signal })
         }
-        // Eight bytes at a time, which are one frame's at most.
+        // Eight bytes at a time: the most that one frame holds.
         Type::Bytes(bytes) | Type::Text(bytes) => (0..bytes / 8).try_for_each(|part| {
             each(&Signal { part: Some(part), bit: signal.bit + 64 * part, bits: 64, ..signal })
         }),
         Type::F64 if slot.kind == Kind::Parameters => {
-            // By its own name: the estimates first, then their σ.
+            // Each parameter has its own name: the estimates come first, then their σ.
             let number = (field.at - 12) / 8;
             let index = SEGMENT_VALUES * usize::from(slot.parameters) + number % SEGMENT_VALUES;
             let prefix = if number < SEGMENT_VALUES { "" } else { "sigma_" };
@@ -107,7 +107,7 @@ fn signals(slot: Slot, field: &Field, each: &mut dyn FnMut(&Signal) -> Result) -
     }
 }
 
-/// Calls back with the signals of a frame, with their first bit in it.
+/// Calls `each` with the signals of a frame, and with their first bit in it.
 fn frame_signals(
     slot: Slot,
     segment: usize,
@@ -124,7 +124,7 @@ fn frame_signals(
     here(&CRC)
 }
 
-/// Calls back with every frame of both formats.
+/// Calls `each` with every frame of both formats.
 fn frames(each: &mut dyn FnMut(Slot, usize, Format) -> Result) -> Result {
     for format in [Format::Classic, Format::Fd] {
         for slot in Slot::ALL {
@@ -171,7 +171,7 @@ pub fn write(w: &mut impl Write) -> Result {
     value_tables(w)
 }
 
-/// A factor, without a point where it is one.
+/// A factor, written without a decimal point if it is an integer.
 struct Number(f64);
 
 impl core::fmt::Debug for Number {
@@ -207,7 +207,7 @@ fn comments(w: &mut impl Write) -> Result {
 
 fn attributes(w: &mut impl Write) -> Result {
     writeln!(w, "BA_DEF_ \"BusType\" STRING ;")?;
-    // The list is that of the tools; 0 and 14 are ours.
+    // The list is fixed by the tools; this database uses 0 and 14.
     write!(w, "BA_DEF_ BO_ \"VFrameFormat\" ENUM \"StandardCAN\",\"ExtendedCAN\"")?;
     for _ in 2..14 {
         write!(w, ",\"reserved\"")?;

@@ -1,6 +1,6 @@
 //! One CAN frame.
 
-/// Which CAN.
+/// Version of CAN.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Format {
     /// Classic CAN, up to 8 bytes.
@@ -10,7 +10,7 @@ pub enum Format {
 }
 
 impl Format {
-    /// Bytes that a frame holds at most.
+    /// Most bytes of data in a frame.
     #[must_use]
     pub const fn room(self) -> usize {
         match self {
@@ -19,8 +19,8 @@ impl Format {
         }
     }
 
-    /// The length that a frame has to have to hold so many bytes: FD knows only some beyond 8.
-    /// More than fit: all there is room for.
+    /// Length of the shortest frame that holds this many bytes: FD has only some lengths beyond 8. If
+    /// they don't fit, the longest length.
     #[must_use]
     pub const fn length_for(self, bytes: usize) -> usize {
         const STEPS: [usize; 7] = [12, 16, 20, 24, 32, 48, 64];
@@ -38,8 +38,8 @@ impl Format {
     }
 }
 
-/// A data frame with an identifier of 11 bits. Remote frames, error frames and those with 29 bits are
-/// none of ours: who takes frames from a bus leaves them out.
+/// A data frame with an identifier of 11 bits. Remote frames, error frames and frames with 29 bits are
+/// not part of the protocol: the caller who takes frames from a bus drops them.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub struct Frame {
     id: u16,
@@ -49,8 +49,8 @@ pub struct Frame {
 }
 
 impl Frame {
-    /// A frame as it came from a bus. `None` where no data frame with 11 bits of identifier is like
-    /// that: an identifier beyond 0x7FF, or a length that the format doesn't know.
+    /// Makes a frame from data of a bus. `None` if no data frame with an 11-bit identifier can be like
+    /// that: the identifier is beyond 0x7FF, or the format doesn't have the length.
     #[must_use]
     pub fn new(id: u16, format: Format, data: &[u8]) -> Option<Self> {
         let length = data.len();
@@ -82,11 +82,11 @@ impl Frame {
 }
 
 impl core::fmt::Debug for Frame {
-    /// As `cansend` writes it.
+    /// Writes the frame in the form of `cansend`.
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         let mark = match self.format {
             Format::Classic => "#",
-            // Bit rate switch.
+            // Flag of the bit rate switch.
             Format::Fd => "##1",
         };
         write!(f, "{:03X}{mark}", self.id)?;

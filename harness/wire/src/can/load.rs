@@ -1,24 +1,24 @@
-//! Whether a bus is fast enough: bits of frames in the worst case, and the share of the bus that traffic
-//! takes.
+//! Load of a bus: bits of frames in the worst case, and the share of the bus that traffic takes.
 //!
-//! A frame has stuff bits: after five equal bits comes one that differs. In the worst case that is one
-//! after the first five and then one after each four, since a stuff bit begins the next five.
+//! A frame has stuff bits: after five equal bits follows one that differs. In the worst case there is
+//! one after the first five bits and then one after each four, because a stuff bit is the first of the
+//! next five.
 
 use super::{Format, Slot};
 use crate::message::{Kind, PARAMETERS_SEGMENTS, Role};
 use crate::traffic::Traffic;
 
-/// Bits of a frame by the rate at which they are sent, with the three bits of pause after it.
+/// Bits of a frame by the rate at which they are sent, with the three bits of intermission after it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Bits {
-    /// At the nominal rate: all of a classic frame, the ends of an FD frame.
+    /// Bits at the nominal rate: all of a classic frame, both ends of an FD frame.
     pub nominal: u32,
-    /// At the data rate.
+    /// Bits at the data rate.
     pub data: u32,
 }
 
 impl Bits {
-    /// How long they take, s.
+    /// Duration, s.
     #[must_use]
     pub fn seconds(self, bus: Bus) -> f64 {
         let nominal = f64::from(self.nominal) / f64::from(bus.nominal_bps);
@@ -27,21 +27,20 @@ impl Bits {
     }
 }
 
-/// Bits of a classic data frame with an identifier of 11 bits and so many bytes of data, at most.
+/// Most bits of a classic data frame with an identifier of 11 bits and this many bytes of data.
 #[must_use]
 pub const fn classic_bits(data_bytes: usize) -> Bits {
     // Stuffed: start 1, identifier 11, RTR 1, IDE 1, r0 1, length 4, data, CRC 15.
     let stuffed = 34 + 8 * data_bytes as u32;
-    // Not stuffed: CRC delimiter 1, acknowledgement 2, end 7, pause 3.
+    // Not stuffed: CRC delimiter 1, acknowledgement 2, end 7, intermission 3.
     Bits { nominal: stuffed + (stuffed - 1) / 4 + 13, data: 0 }
 }
 
-/// Bits of an FD frame with bit rate switch, an identifier of 11 bits and so many bytes of data, at
-/// most.
+/// Most bits of an FD frame with bit rate switch, an identifier of 11 bits and this many bytes of data.
 #[must_use]
 pub const fn fd_bits(data_bytes: usize) -> Bits {
-    // Start 1, identifier 11, RRS 1, IDE 1, FDF 1, res 1, BRS 1: at the nominal rate, and the stuff bits
-    // among them, of which there are most when the first run begins with the frame.
+    // At the nominal rate: start 1, identifier 11, RRS 1, IDE 1, FDF 1, res 1, BRS 1, and the stuff
+    // bits among them, which are most if the first run begins with the frame.
     const ARBITRATION: u32 = 17;
     let arbitration_stuff = (ARBITRATION - 1) / 4;
     // ESI 1, length 4, data. Together with the arbitration they have (all − 1) / 4 stuff bits.
@@ -50,7 +49,7 @@ pub const fn fd_bits(data_bytes: usize) -> Bits {
     // Stuff count 4, CRC 17 or 21, a fixed stuff bit before the first of them and after each four.
     let crc = if data_bytes <= 16 { 4 + 17 } else { 4 + 21 };
     let fixed_stuff = 1 + crc / 4;
-    // CRC delimiter 1, acknowledgement 2, end 7, pause 3.
+    // CRC delimiter 1, acknowledgement 2, end 7, intermission 3.
     Bits {
         nominal: ARBITRATION + arbitration_stuff + 13,
         data: control_and_data + stuff + crc + fixed_stuff,
@@ -60,32 +59,32 @@ pub const fn fd_bits(data_bytes: usize) -> Bits {
 /// Bit rates of a bus.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Bus {
-    /// Bits a second; of CAN FD, of the arbitration.
+    /// Nominal bit rate, bit/s; with CAN FD, that of the arbitration.
     pub nominal_bps: u32,
-    /// CAN FD: bits a second of the data. `None`: classic CAN.
+    /// Data bit rate of CAN FD, bit/s. `None`: classic CAN.
     pub data_bps: Option<u32>,
 }
 
-/// Share of a bus that traffic takes in the worst case, 1: all of it.
+/// Share of a bus that traffic takes in the worst case; 1 is all of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Load {
-    /// What the harness sends.
+    /// Share of the harness's messages.
     pub from_harness: f64,
-    /// What the other ends send.
+    /// Share of the other ends' messages.
     pub to_harness: f64,
-    /// Frames a second, both ways.
+    /// Frames a second, in both directions.
     pub frames_per_s: f64,
 }
 
 impl Load {
-    /// Both ways: a bus has one wire.
+    /// Share in both directions: they have the bus in common.
     #[must_use]
     pub fn share(&self) -> f64 {
         self.from_harness + self.to_harness
     }
 }
 
-/// A bus that can't carry the traffic.
+/// Error of a bus that can't carry the traffic.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error(
     "{bus} can't carry {:.0} samples a second: in the worst case that is {:.1} % of the bus \
@@ -96,13 +95,13 @@ impl Load {
 pub struct Overload {
     /// The bus.
     pub bus: Bus,
-    /// What it would have to carry.
+    /// Traffic to carry.
     pub traffic: Traffic,
-    /// The load that this is.
+    /// Load that the traffic would make.
     pub load: Load,
-    /// The share that is allowed.
+    /// Highest permitted share.
     pub limit: f64,
-    /// Sample rate that it carries with the same other traffic.
+    /// Highest sample rate that the bus carries with the same other traffic, Hz.
     pub fits_hz: f64,
 }
 
@@ -131,25 +130,25 @@ impl core::fmt::Display for Bus {
 }
 
 impl Bus {
-    /// A bus of classic CAN.
+    /// Bus of classic CAN.
     #[must_use]
     pub const fn classic(bps: u32) -> Self {
         Self { nominal_bps: bps, data_bps: None }
     }
 
-    /// A bus of CAN FD.
+    /// Bus of CAN FD.
     #[must_use]
     pub const fn fd(nominal_bps: u32, data_bps: u32) -> Self {
         Self { nominal_bps, data_bps: Some(data_bps) }
     }
 
-    /// Format of its frames.
+    /// Format of the frames.
     #[must_use]
     pub const fn format(self) -> Format {
         if self.data_bps.is_some() { Format::Fd } else { Format::Classic }
     }
 
-    /// How long the frames of a message take in the worst case, s. Parameters: of one segment.
+    /// Duration of the frames of a message in the worst case, s; for parameters, of one segment.
     #[must_use]
     pub fn seconds(self, slot: Slot) -> f64 {
         let format = self.format();
@@ -165,7 +164,7 @@ impl Bus {
         seconds
     }
 
-    /// The load that traffic makes in the worst case.
+    /// Load of the traffic in the worst case.
     #[must_use]
     pub fn load(self, traffic: &Traffic) -> Load {
         let mut load = Load { from_harness: 0.0, to_harness: 0.0, frames_per_s: 0.0 };
@@ -184,16 +183,16 @@ impl Bus {
         load
     }
 
-    /// The load, if the bus carries the traffic with no more than a share `limit` of it in use.
+    /// Load of the traffic, if it is at most `limit`.
     ///
     /// # Errors
-    /// If it can't, with the sample rate that it carries.
+    /// If the load is higher, with the sample rate that the bus carries.
     pub fn carry(self, traffic: &Traffic, limit: f64) -> Result<Load, Overload> {
         let load = self.load(traffic);
         if load.share() <= limit {
             return Ok(load);
         }
-        // Outputs come as often as samples, in the same proportion at another rate.
+        // Outputs are as frequent as samples, and keep their proportion at another rate.
         let fixed = Traffic { samples_hz: 0.0, outputs_hz: 0.0, ..*traffic };
         let fixed = self.load(&fixed).share();
         let per_sample = (load.share() - fixed) / traffic.samples_hz;

@@ -2,8 +2,8 @@
 //!
 //! A message becomes an image: the first four bytes of its payload, CRC-32, the rest of the payload. The
 //! image is cut into segments of 8 bytes (classic) or 64 (FD), each sent under an identifier of its own:
-//! so every signal has one place in one frame, and `fixtures/can/octant.dbc` names it. A receiver
-//! takes segments in order, and what doesn't fit together it drops, counts and reports.
+//! so every signal has one place in one frame, and `fixtures/can/octant.dbc` names it. A receiver takes
+//! segments in order; it drops, counts and reports those that don't fit together.
 
 mod dbc;
 mod frame;

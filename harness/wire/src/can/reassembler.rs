@@ -1,27 +1,27 @@
-//! CAN frames to messages, whatever comes.
+//! Reassembly of messages from CAN frames, whatever arrives.
 //!
-//! Each slot is put together on its own, since a frame of higher priority may come between two segments.
-//! Segments of a slot have to come in order: one that doesn't follow ends the message begun. The CRC
-//! tells where segments of two messages met.
+//! Each slot is reassembled separately, because a frame of higher priority may come between two
+//! segments. Segments of a slot have to come in order: one that doesn't follow ends the message begun.
+//! The CRC detects segments of two different messages.
 
 use super::segments::checksum;
 use super::{Format, Frame, Slot};
 use crate::message::{Kind, MAX_PAYLOAD_BYTES, Message, Role};
 use crate::{Unreadable, VERSION};
 
-/// Why a message was dropped.
+/// Cause of a dropped message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Cause {
-    /// So many segments never came.
+    /// That many segments are missing.
     #[error("{0} segments are missing")]
     Missing(u8),
     /// A segment came after a later one.
     #[error("a segment came after a later one")]
     Disordered,
-    /// The next message began before the end of this one.
+    /// The next message began before this one ended.
     #[error("the next message began before the end of this one")]
     Incomplete,
-    /// Segments of different messages met, or one is damaged.
+    /// Segments of different messages were combined, or one is damaged.
     #[error("the segments are not of one message: CRC-32 {found:#010x}, computed {computed:#010x}")]
     Mixed {
         /// CRC in the first segment.
@@ -29,7 +29,7 @@ pub enum Cause {
         /// CRC of the payload.
         computed: u32,
     },
-    /// A frame of another length than its segment, or with something behind the end of the message.
+    /// A frame has another length than its segment, or something else than zeros after the message.
     #[error("the frame has {found} bytes, expected are {expected} with zeros behind the message")]
     Malformed {
         /// Bytes of the frame.
@@ -37,7 +37,7 @@ pub enum Cause {
         /// Bytes of the segment.
         expected: u8,
     },
-    /// Intact, but not understood.
+    /// The message is intact, but can't be decoded.
     #[error(transparent)]
     Unreadable(Unreadable),
 }
@@ -45,75 +45,75 @@ pub enum Cause {
 /// A message that was dropped.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Lost {
-    /// Whose message of which kind.
+    /// Sender and kind of the message.
     pub slot: Slot,
-    /// Why.
+    /// Cause.
     pub cause: Cause,
 }
 
-/// What became of a message.
+/// Fate of a message.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[expect(clippy::large_enum_variant, reason = "the large variant is the one that comes")]
 pub enum Event {
-    /// It is there.
+    /// The message is complete.
     Received {
-        /// Who sent it.
+        /// Sender.
         sender: Role,
         /// The message.
         message: Message,
     },
-    /// It was dropped.
+    /// The message was dropped.
     Lost(Lost),
 }
 
-/// What came so far.
+/// Counts of the traffic so far.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counters {
-    /// Frames, all of them.
+    /// All frames.
     pub frames: u64,
-    /// Frames that are nobody's business here: other identifiers, the other format, other senders.
+    /// Frames not addressed to this end: other identifiers, the other format, other senders.
     pub foreign: u64,
     /// Messages received.
     pub messages: u64,
-    /// Segments that came twice in a row: dropped once, no harm done.
+    /// Segments that came twice in a row: the second one is dropped, without loss.
     pub duplicated: u64,
-    /// Segments that never came, as far as a later one tells.
+    /// Segments that are missing, as far as a later one shows.
     pub missing: u64,
     /// Segments that came after a later one.
     pub disordered: u64,
-    /// Segments of a message that was dropped already.
+    /// Segments of a message that was already dropped.
     pub orphaned: u64,
     /// Messages dropped because the next one began.
     pub incomplete: u64,
-    /// Messages whose CRC is wrong.
+    /// Messages with a wrong CRC.
     pub mixed: u64,
-    /// Frames of a wrong length, or not zero behind their message.
+    /// Frames with a wrong length, or with something else than zeros after their message.
     pub malformed: u64,
-    /// Intact messages that are none of this version.
+    /// Intact messages that this version doesn't know.
     pub unreadable: u64,
 }
 
 impl Counters {
-    /// Nothing is lost, damaged or doubled. Foreign frames may come.
+    /// True if nothing was lost, damaged or repeated. Foreign frames are allowed.
     #[must_use]
     pub fn is_clean(&self) -> bool {
         let Self { frames, foreign, messages, .. } = *self;
         *self == Self { frames, foreign, messages, ..Self::default() }
     }
 
-    /// Messages that did not come together as they were sent.
+    /// Number of messages that were not reassembled as they were sent.
     #[must_use]
     pub fn damaged(&self) -> u64 {
         self.incomplete + self.mixed + self.malformed
     }
 }
 
-/// How far the message of a slot is.
+/// Progress of the message of a slot.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Progress {
-    /// Segments that are there, from the first on.
+    /// Number of segments held, from the first on.
     pub(super) held: usize,
-    /// The message is given up: wait for the next first segment.
+    /// True if the message is given up: the next first segment begins another.
     pub(super) dropped: bool,
 }
 
@@ -121,10 +121,10 @@ impl Progress {
     const DROPPED: Self = Self { held: 0, dropped: true };
 }
 
-/// Puts messages together from frames as they come.
+/// Reassembles messages from frames as they arrive.
 #[derive(Clone, Debug)]
 pub struct Reassembler {
-    /// Whose messages; a bit for each role.
+    /// Senders that are listened to; a bit for each role.
     senders: u8,
     pub(super) format: Format,
     pub(super) progress: [Progress; Slot::ALL.len()],
@@ -133,7 +133,7 @@ pub struct Reassembler {
 }
 
 impl Reassembler {
-    /// Takes frames of one format from these senders; all others are foreign.
+    /// Makes a reassembler for frames of one format from these senders; all others are foreign.
     #[must_use]
     pub fn new(senders: &[Role], format: Format) -> Self {
         Self {
@@ -145,14 +145,14 @@ impl Reassembler {
         }
     }
 
-    /// What came so far.
+    /// Counts of the traffic so far.
     #[must_use]
     pub fn counters(&self) -> &Counters {
         &self.counters
     }
 
-    /// Messages that are begun and not yet whole: on a bus that has gone still, messages that lost
-    /// their end, or frames with another identifier than they were sent with.
+    /// Number of messages begun and not complete. On a bus that is quiet again these are messages that
+    /// lost their end, or frames whose identifier was changed on the way.
     #[must_use]
     pub fn unfinished(&self) -> usize {
         let begun = |slot: &&Slot| {
@@ -162,7 +162,7 @@ impl Reassembler {
         Slot::ALL.iter().filter(begun).count()
     }
 
-    /// Takes a frame. Says what became of a message when that is decided.
+    /// Takes a frame. Returns the fate of a message once it is decided.
     pub fn receive(&mut self, frame: &Frame) -> Option<Event> {
         self.counters.frames += 1;
         let known = Slot::of_id(frame.id()).filter(|(slot, _, format)| {
@@ -209,7 +209,7 @@ impl Reassembler {
 
         if let (Kind::Hello, 0, Some(version)) = (slot.kind, segment, data.first_chunk::<2>()) {
             let found = u16::from_le_bytes(*version);
-            // Of a newer hello only this much is known.
+            // Only the version of a newer hello is known.
             if found > VERSION {
                 *progress = Progress::DROPPED;
                 return Err(Cause::Unreadable(Unreadable::NewerVersion { found }));
@@ -222,7 +222,8 @@ impl Reassembler {
             let [found, expected] = [data.len(), expected].map(|bytes| bytes as u8);
             return Err(Cause::Malformed { found, expected });
         }
-        // A message of one segment may well say the same again.
+        // Repetition counts for messages of several segments only: a message of one may well be the
+        // same again.
         let again = progress.held == segment + 1 && count > 1;
         if again && !(segment == 0 && progress.held == count) && image[at..end] == *here {
             self.counters.duplicated += 1;
@@ -240,7 +241,7 @@ impl Reassembler {
                 self.counters.orphaned += 1;
                 return Ok(None);
             }
-            // After the last segment none is held of the next message.
+            // After the last segment, none of the next message is held.
             let held = if progress.held == count { 0 } else { progress.held };
             if segment > held {
                 *progress = Progress::DROPPED;
@@ -260,7 +261,7 @@ impl Reassembler {
     }
 }
 
-/// The message of a whole image.
+/// Reads the message of a complete image.
 fn read(slot: Slot, image: &[u8]) -> Result<Message, Cause> {
     let mut payload = [0; MAX_PAYLOAD_BYTES];
     let payload = &mut payload[..slot.kind.payload_bytes()];
@@ -272,7 +273,7 @@ fn read(slot: Slot, image: &[u8]) -> Result<Message, Cause> {
         return Err(Cause::Mixed { found, computed });
     }
     let message = Message::read(slot.kind, payload).map_err(Cause::Unreadable)?;
-    // What an identifier says, and what the message says of itself.
+    // The identifier must agree with the content of the message.
     let contradiction = match message {
         Message::Hello(hello) if hello.role != slot.sender => {
             Some(("role", hello.role as u8, "that of its identifier"))

@@ -1,10 +1,10 @@
-//! Messages to CAN frames.
+//! Division of messages into CAN frames.
 
 use super::{Format, Frame, MAX_IMAGE_BYTES, Slot};
 use crate::checksum::crc32_after;
 use crate::message::{Kind, MAX_PAYLOAD_BYTES, Message, Role};
 
-/// A message that a sender has no identifier for.
+/// Error of a message that its sender has no identifier for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("a {} sends no message {} on CAN", sender.name(), kind.name())]
 pub struct NotSent {
@@ -14,13 +14,13 @@ pub struct NotSent {
     pub kind: Kind,
 }
 
-/// CRC of a message: over the number of its slot and its payload.
+/// CRC of a message: over its slot number and its payload.
 #[inline]
 pub(super) fn checksum(slot: Slot, payload: &[u8]) -> u32 {
     crc32_after(slot.number, payload)
 }
 
-/// The frames of a message, in the order in which they are sent.
+/// Frames of a message, in the order of sending.
 #[derive(Clone, Debug)]
 pub struct Segments {
     slot: Slot,
@@ -29,7 +29,7 @@ pub struct Segments {
     image: [u8; MAX_IMAGE_BYTES],
 }
 
-/// The frames of a message from a sender.
+/// Divides a message of a sender into frames.
 ///
 /// # Errors
 /// If the sender sends no such message.

@@ -1,8 +1,8 @@
-//! Identifiers: which message from whom.
+//! Identifiers, which give sender and kind of a message.
 //!
 //! An identifier is `format (1 bit, FD 1), slot (5 bits), segment (5 bits)`. A slot is a message of
-//! one sender; a lower one wins the bus. Slots 0 and 31 stay free: 0 for what has to win over all, and 31
-//! because identifiers that begin with seven ones are not allowed on every bus.
+//! one sender; a lower one wins the bus. Slots 0 and 31 stay free: 0 for frames that must win over all
+//! others, and 31 because identifiers that begin with seven ones are not allowed on every bus.
 
 use super::{Format, MAX_IMAGE_BYTES};
 use crate::message::{Kind, PARAMETERS_SEGMENTS, Role};
@@ -10,13 +10,13 @@ use crate::message::{Kind, PARAMETERS_SEGMENTS, Role};
 /// A message of one sender; of parameters, each segment is one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Slot {
-    /// Its number, 1 to 28.
+    /// Slot number, 1 to 28.
     pub number: u8,
-    /// Who sends.
+    /// Sender.
     pub sender: Role,
-    /// What.
+    /// Kind of the message.
     pub kind: Kind,
-    /// Which segment of the parameters; 0 for other kinds.
+    /// Segment of the parameters; 0 for other kinds.
     pub parameters: u8,
 }
 
@@ -33,7 +33,7 @@ const SLOTS: usize = 22 + PARAMETERS_SEGMENTS;
 use Role::{Device, Harness, Instrument};
 
 impl Slot {
-    /// All slots, by priority.
+    /// All slots, in order of priority.
     pub const ALL: [Self; SLOTS] = [
         slot(1, Harness, Kind::Bye),
         slot(2, Device, Kind::Bye),
@@ -75,7 +75,7 @@ impl Slot {
             .copied()
     }
 
-    /// Slot, segment and format that an identifier stands for.
+    /// Slot, segment and format of an identifier.
     #[must_use]
     pub fn of_id(id: u16) -> Option<(Self, usize, Format)> {
         let format = if id & 0x400 == 0 { Format::Classic } else { Format::Fd };
@@ -94,35 +94,35 @@ impl Slot {
         format | (self.number as u16) << 5 | (segment as u16 & 0x1F)
     }
 
-    /// Bytes of the image.
+    /// Number of bytes of the image.
     #[must_use]
     pub const fn image_bytes(self) -> usize {
         self.kind.payload_bytes() + 4
     }
 
-    /// Segments that the image is cut into.
+    /// Number of segments of the image.
     #[must_use]
     pub const fn segments(self, format: Format) -> usize {
         self.image_bytes().div_ceil(format.room())
     }
 
-    /// Length of the frame of a segment; behind the image it is filled up with zeros.
+    /// Length of a segment's frame; bytes after the image are zero.
     #[must_use]
     pub const fn frame_bytes(self, segment: usize, format: Format) -> usize {
         let left = self.image_bytes().saturating_sub(segment * format.room());
         format.length_for(left)
     }
 
-    /// Where the slot's image begins in a buffer that holds one of each slot.
+    /// Offset of the slot's image in a buffer that holds one image of each slot.
     pub(super) const fn offset(self) -> usize {
         OFFSETS[self.number as usize - 1]
     }
 
-    /// Bytes of a buffer that holds an image of each slot.
+    /// Size of a buffer that holds one image of each slot, bytes.
     pub(super) const ALL_IMAGES_BYTES: usize = OFFSETS[SLOTS];
 }
 
-/// Sums of the images before each slot, and of all.
+/// Offset of each slot's image, and the total.
 const OFFSETS: [usize; SLOTS + 1] = {
     let mut offsets = [0; SLOTS + 1];
     let mut i = 0;

@@ -1,9 +1,9 @@
-//! What a receiver has come to, as bytes: half messages and counts.
+//! State of a receiver as bytes: incomplete messages and counts.
 
 use super::{Counters, Reassembler, Slot};
 use octant_state::{Reader, State, StateError, Writer, check_below, check_count};
 
-/// The counts in the order in which they are written.
+/// Counts in the order of writing.
 fn counts(counters: &mut Counters) -> [(&'static str, &mut u64); 11] {
     let Counters {
         frames,

@@ -1,6 +1,6 @@
-//! The tables themselves.
+//! Tables of the fields of every payload.
 
-use super::{Field, Type};
+use super::field::{Field, Type};
 use crate::Kind;
 use crate::message::Reason;
 use octant_sample::counts::{DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS, GIMBAL_LSB_RAD};

@@ -1,23 +1,23 @@
-//! Who is there, and whether two fit together.
+//! Hello messages, and the check that two ends fit together.
 
 use super::{Bye, Kind, Reason, Role};
 use crate::bytes::{Reader, Writer};
 use crate::{Text, Unreadable, VERSION};
 use core::fmt;
 
-/// How the steps are paced.
+/// Pacing of the steps.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[repr(u8)]
 pub enum Pacing {
-    /// The harness waits for each answer, and repeats what is not answered: nothing is ever lost.
+    /// The harness waits for each answer, and repeats unanswered requests: no step is ever lost.
     #[default]
     LockStep = 0,
-    /// Samples come when they are due, each end by its own clock.
+    /// Samples are sent when they are due, each end by its own clock.
     RealTime = 1,
 }
 
 impl Pacing {
-    /// The name used in texts.
+    /// Name used in texts.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -28,18 +28,18 @@ impl Pacing {
 }
 
 bitflags::bitflags! {
-    /// What an end can do.
+    /// Capabilities of an end.
     #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
     pub struct Capabilities: u32 {
         /// Answers in lock-step.
         const LOCK_STEP = 1 << 0;
         /// Keeps up in real time.
         const REAL_TIME = 1 << 1;
-        /// Starts its core anew when asked to.
+        /// Restarts its core on request.
         const RESTART = 1 << 2;
         /// Sends parameters with their σ.
         const PARAMETERS = 1 << 3;
-        /// Concludes at the end of the stream and answers.
+        /// Concludes at the end of the stream, and answers it.
         const END = 1 << 4;
         /// Answers requests for the time.
         const TIME = 1 << 5;
@@ -52,40 +52,40 @@ bitflags::bitflags! {
     }
 }
 
-/// What an end asks of the other.
+/// Limits of an end, which the other has to keep.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Limits {
-    /// Samples that it takes before it has answered the first of them.
+    /// Number of unanswered samples that the end accepts.
     pub window: u16,
-    /// Silence after which it takes the other for gone, ms; 0: never.
+    /// Silence after which the end gives up the other, ms; 0: never.
     pub silence_ms: u16,
-    /// Shortest sample period that it keeps up with in real time, ns.
+    /// Shortest sample period that the end can process in real time, ns.
     pub shortest_period_ns: u32,
 }
 
-/// The first message of each end.
+/// First message of each end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Hello {
-    /// Version of the protocol that the sender speaks.
+    /// Protocol version of the sender.
     pub version: u16,
-    /// Who sends.
+    /// Role of the sender.
     pub role: Role,
-    /// How steps are paced: the harness chooses, the others repeat it.
+    /// Pacing of the steps: chosen by the harness, repeated by the others.
     pub pacing: Pacing,
-    /// Number of the session: the harness draws one that isn't 0, the others repeat it. 0 in a hello
-    /// that answers none, after power on.
+    /// Session number: drawn by the harness, not 0, and repeated by the others. 0 in a hello that isn't
+    /// an answer, after power on.
     pub session: u32,
-    /// What the sender can do.
+    /// Capabilities of the sender.
     pub capabilities: Capabilities,
-    /// Sample period that the sender is configured with, ns.
+    /// Sample period that the sender is configured for, ns.
     pub sample_period_ns: u64,
-    /// What the sender asks of the other.
+    /// Limits that the sender asks the other end to keep.
     pub limits: Limits,
-    /// Hash of the configuration of the core; zeros: not known.
+    /// Hash of the core's configuration; zeros: unknown.
     pub configuration: [u8; 32],
     /// Name of the sender.
     pub name: Text<24>,
-    /// Its firmware or program, with version.
+    /// Firmware or program of the sender, with version.
     pub firmware: Text<24>,
 }
 
@@ -128,7 +128,7 @@ impl Hello {
             Unreadable::Value { kind: Kind::Hello, field, found, expected }
         };
         let version = r.u16();
-        // Newer versions were refused before.
+        // Newer versions were already refused.
         if version == 0 {
             return Err(wrong("version", version, "1 or more"));
         }
@@ -157,66 +157,66 @@ impl Hello {
     }
 }
 
-/// What two ends agreed on.
+/// Result of an agreement between two ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Agreement {
-    /// Number of the session.
+    /// Session number.
     pub session: u32,
-    /// How steps are paced.
+    /// Pacing of the steps.
     pub pacing: Pacing,
-    /// Both know the hash of their configuration, and it is the same.
+    /// True if both ends know the hash of their configuration, and the two are equal.
     pub configuration_compared: bool,
 }
 
-/// Why two ends don't fit together.
+/// Reason why two ends don't fit together.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Refusal {
     /// Neither or both are the harness.
     #[error("{} talks to {}: one of the two has to be the harness", theirs.name(), ours.name())]
     Role {
-        /// Our role.
+        /// Role of this end.
         ours: Role,
-        /// The peer's.
+        /// Role of the peer.
         theirs: Role,
     },
-    /// Another session.
+    /// The answer belongs to another session.
     #[error("the answer is of session {theirs:#010x}, this is session {ours:#010x}")]
     Session {
-        /// Our session.
+        /// Session of this end.
         ours: u32,
-        /// The peer's.
+        /// Session of the peer.
         theirs: u32,
     },
-    /// A pacing that the device can't do, or another one than the harness chose.
+    /// The pacing is one that the other end doesn't support or didn't repeat.
     #[error("the harness asks for {} steps, which the {} doesn't do", asked.name(), by.name())]
     Pacing {
-        /// What the harness chose.
+        /// Pacing that the harness chose.
         asked: Pacing,
-        /// Who can't.
+        /// Role of the end that doesn't support it.
         by: Role,
     },
-    /// Different sample periods.
+    /// The sample periods differ.
     #[error(
         "the harness is configured for a sample period of {harness_ns} ns, the other end for \
          {other_ns} ns"
     )]
     Period {
-        /// Of the harness.
+        /// Sample period of the harness, ns.
         harness_ns: u64,
-        /// Of device or instrument.
+        /// Sample period of the device or instrument, ns.
         other_ns: u64,
     },
-    /// Too fast for it.
+    /// The sample period is too short for the other end.
     #[error(
         "samples come every {asked_ns} ns, the other end keeps up with one every {shortest_ns} ns"
     )]
     Rate {
-        /// Sample period.
+        /// Sample period, ns.
         asked_ns: u64,
-        /// Shortest period of device or instrument.
+        /// Shortest period of the device or instrument, ns.
         shortest_ns: u32,
     },
-    /// Differently configured cores.
+    /// The cores are configured differently.
     #[error(
         "the harness expects a core of configuration {}, the other end has {}: \
          give both the same scenario", Short(*harness), Short(*other)
@@ -224,7 +224,7 @@ pub enum Refusal {
     Configuration {
         /// First bytes of the harness's hash.
         harness: [u8; 8],
-        /// First bytes of the other one's.
+        /// First bytes of the other end's hash.
         other: [u8; 8],
     },
 }
@@ -240,7 +240,7 @@ impl fmt::Display for Short {
 }
 
 impl Refusal {
-    /// What is said to the peer.
+    /// Bye that tells the peer the reason.
     #[must_use]
     pub fn bye(&self) -> Bye {
         let (reason, text) = match self {
@@ -257,10 +257,10 @@ impl Refusal {
     }
 }
 
-/// Whether two ends that said hello fit together.
+/// Checks that two ends fit together, from their hellos.
 ///
 /// # Errors
-/// If they don't, with the first reason found.
+/// If they don't fit, with the first reason found.
 pub fn agree(ours: &Hello, theirs: &Hello) -> Result<Agreement, Refusal> {
     let (harness, other) = match (ours.role, theirs.role) {
         (Role::Harness, Role::Device | Role::Instrument) => (ours, theirs),

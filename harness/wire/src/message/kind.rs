@@ -1,14 +1,14 @@
-//! Kinds of messages and who sends them.
+//! Kinds of messages and their senders.
 
-/// Who sends.
+/// Role of an end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[repr(u8)]
 pub enum Role {
-    /// The program that tests: it sends samples and gets outputs.
+    /// The test program: it sends samples and receives outputs.
     Harness = 0,
-    /// What is tested: it gets samples and answers with outputs.
+    /// The unit under test: it receives samples and answers with outputs.
     Device = 1,
-    /// An inertial unit: it sends samples on its own.
+    /// An inertial unit: it sends samples unasked.
     Instrument = 2,
 }
 
@@ -16,7 +16,7 @@ impl Role {
     /// All roles, in the order of their codes.
     pub const ALL: [Self; 3] = [Self::Harness, Self::Device, Self::Instrument];
 
-    /// The name used in texts.
+    /// Name used in texts.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -77,19 +77,19 @@ impl Kind {
         Self::Bye,
     ];
 
-    /// The code on the wire.
+    /// Code on the wire.
     #[must_use]
     pub const fn code(self) -> u8 {
         self as u8
     }
 
-    /// The kind with a code.
+    /// Kind of a code.
     #[must_use]
     pub fn of(code: u8) -> Option<Self> {
         Self::ALL.get(usize::from(code).checked_sub(1)?).copied()
     }
 
-    /// The name used in texts and vectors.
+    /// Name used in texts and vectors.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -109,7 +109,7 @@ impl Kind {
         }
     }
 
-    /// Bytes of its payload.
+    /// Size of the payload, bytes.
     #[must_use]
     pub const fn payload_bytes(self) -> usize {
         match self {
@@ -126,7 +126,7 @@ impl Kind {
         }
     }
 
-    /// Who sends it.
+    /// Roles that send this kind.
     #[must_use]
     pub const fn senders(self) -> &'static [Role] {
         match self {

@@ -1,11 +1,11 @@
-//! What keeps a link: heartbeat, status, clocks, and the end of it.
+//! Messages about the link: heartbeat, status, clocks, and its end.
 
 use super::{Kind, Step};
 use crate::bytes::{Reader, Writer};
 use crate::{Text, Unreadable};
 
-/// Time of an end's own monotonic clock, ns since an arbitrary start. Two of them can be compared
-/// only where they are of the same end; the offset between two ends is what time messages find.
+/// Time of an end's own monotonic clock, ns since an arbitrary start. Times of different ends can't be
+/// compared; time messages find the offset between two ends.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct ClockTime {
     /// Nanoseconds.
@@ -13,14 +13,14 @@ pub struct ClockTime {
 }
 
 impl ClockTime {
-    /// A time from its nanoseconds.
+    /// Makes a time from nanoseconds.
     #[must_use]
     pub const fn from_ns(ns: u64) -> Self {
         Self { ns }
     }
 }
 
-/// What an end is about.
+/// Condition of an end.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[repr(u8)]
 pub enum Condition {
@@ -29,20 +29,20 @@ pub enum Condition {
     Waiting = 0,
     /// Both said hello; no step yet.
     Ready = 1,
-    /// Steps are done.
+    /// Steps are being done.
     Stepping = 2,
     /// The stream has ended.
     Ended = 3,
-    /// Something failed; the text of a bye says what.
+    /// A failure; the text of a bye names it.
     Failed = 4,
 }
 
 impl Condition {
-    /// All of them, in the order of their codes.
+    /// All conditions, in the order of their codes.
     pub const ALL: [Self; 5] =
         [Self::Waiting, Self::Ready, Self::Stepping, Self::Ended, Self::Failed];
 
-    /// The name used in texts.
+    /// Name used in texts.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -55,16 +55,16 @@ impl Condition {
     }
 }
 
-/// The sender is there.
+/// Sign of life.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Heartbeat {
     /// Last step sent (harness), answered (device) or made (instrument).
     pub step: Step,
-    /// What the sender is about.
+    /// Condition of the sender.
     pub condition: Condition,
-    /// Samples that wait for their step.
+    /// Number of samples that wait for their step.
     pub queued: u8,
-    /// The sender's clock.
+    /// Time of the sender's clock.
     pub clock: ClockTime,
 }
 
@@ -89,19 +89,19 @@ impl Heartbeat {
     }
 }
 
-/// What a device has done and what it lost, counted since the hello of its session; a count stays
-/// at its largest value.
+/// Work and losses of a device, counted since the hello of its session. A count stays at its largest
+/// value.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Status {
     /// Last step answered.
     pub step: Step,
     /// Steps done.
     pub steps: u32,
-    /// Requests that came again and were answered again, without a step.
+    /// Repeated requests that were answered again, without a step.
     pub repeated: u32,
-    /// Steps that never came: gaps in their numbers.
+    /// Steps that are missing: gaps in their numbers.
     pub skipped: u32,
-    /// Samples whose announced aiding wasn't there.
+    /// Samples whose announced aiding was missing.
     pub aiding_missing: u32,
     /// Samples dropped because the queue was full.
     pub queue_full: u32,
@@ -117,7 +117,7 @@ pub struct Status {
     pub missing: u32,
     /// Frames (CAN: segments) that arrived again, or after later ones.
     pub out_of_order: u32,
-    /// Undamaged frames (CAN: messages) that could not be understood.
+    /// Undamaged frames (CAN: messages) that could not be decoded.
     pub unreadable: u32,
 }
 
@@ -164,12 +164,12 @@ impl Status {
     }
 }
 
-/// The harness asks for the time.
+/// Request of the harness for the time.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct TimeRequest {
-    /// Tells requests apart.
+    /// Identifier that tells requests apart.
     pub id: u16,
-    /// The harness's clock when it sent this.
+    /// Harness's clock when it sent the request.
     pub harness_sent: ClockTime,
 }
 
@@ -187,31 +187,31 @@ impl TimeRequest {
     }
 }
 
-/// The answer: with the time of its arrival, an offset and the bounds of its error.
+/// Answer to a time request. With its time of arrival it gives an offset and the bound of its error.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct TimeReply {
-    /// Of the request.
+    /// Identifier of the request.
     pub id: u16,
-    /// Of the request.
+    /// Harness's clock when it sent the request.
     pub harness_sent: ClockTime,
     /// The replier's clock when the request arrived.
     pub received: ClockTime,
-    /// The replier's clock when it sent this.
+    /// The replier's clock when it sent the reply.
     pub sent: ClockTime,
 }
 
-/// What two clocks show at the same time.
+/// Offset between two clocks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Offset {
-    /// How far the other clock is ahead of the harness's, ns.
+    /// Offset by which the other clock is ahead of the harness's, ns.
     pub ahead_ns: i128,
-    /// By how much this may be wrong, ns: half of the time that was spent on the way. Negative where
-    /// the stamps contradict each other.
+    /// Bound of the error, ns: half of the round-trip delay. Negative if the timestamps contradict each
+    /// other.
     pub error_ns: i128,
 }
 
 impl TimeReply {
-    /// The offset of the replier's clock, when the reply came at this time of the harness's clock.
+    /// Offset of the replier's clock, for a reply that arrived at this time of the harness's clock.
     #[must_use]
     pub fn offset(&self, harness_received: ClockTime) -> Offset {
         let between =
@@ -237,35 +237,35 @@ impl TimeReply {
     }
 }
 
-/// Why an end goes. A code that has no name here is passed on as it is.
+/// Reason of a bye. An unknown code is passed on unchanged.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Reason(pub u8);
 
 impl Reason {
-    /// All was done.
+    /// The work is done.
     pub const DONE: Self = Self(0);
     /// The peer speaks a newer version.
     pub const VERSION: Self = Self(1);
     /// The peer has the wrong role.
     pub const ROLE: Self = Self(2);
-    /// Another session runs.
+    /// Another session is running.
     pub const SESSION: Self = Self(3);
-    /// Pacing that one end doesn't do.
+    /// One end doesn't support the pacing.
     pub const PACING: Self = Self(4);
-    /// Different sample periods, or one too short.
+    /// The sample periods differ, or one is too short.
     pub const PERIOD: Self = Self(5);
-    /// Different configurations.
+    /// The configurations differ.
     pub const CONFIGURATION: Self = Self(6);
     /// The sender failed.
     pub const FAILED: Self = Self(7);
-    /// Somebody stopped it.
+    /// The sender was stopped.
     pub const STOPPED: Self = Self(8);
     /// The peer was silent for too long.
     pub const SILENCE: Self = Self(9);
-    /// The peer asked for what the sender doesn't do.
+    /// The peer requested something that the sender doesn't support.
     pub const UNSUPPORTED: Self = Self(10);
 
-    /// The names of the codes, from 0.
+    /// Names of the codes, from 0.
     pub const NAMES: [&str; 11] = [
         "done",
         "version",
@@ -280,19 +280,19 @@ impl Reason {
         "unsupported",
     ];
 
-    /// The name used in texts.
+    /// Name used in texts.
     #[must_use]
     pub fn name(self) -> &'static str {
         Self::NAMES.get(usize::from(self.0)).copied().unwrap_or("another reason")
     }
 }
 
-/// The sender goes.
+/// Notice that the sender leaves.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Bye {
-    /// Why.
+    /// Reason.
     pub reason: Reason,
-    /// Why, in words.
+    /// Reason in words.
     pub text: Text<40>,
 }
 

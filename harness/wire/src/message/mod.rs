@@ -1,9 +1,9 @@
-//! The messages: who says what to whom.
+//! Messages between the harness and the other ends.
 //!
-//! Every message is a payload of a length that its kind fixes: four bytes of head, then fields, little
-//! endian, without gaps ([`crate::layout`] lists them). Increments and angles are the counts of
-//! [`octant_sample::counts`], outputs and aiding the 64 bits of their f64: a message arrives bit for bit
-//! as it was sent, NaN and minus zero too.
+//! Every message is a payload of a fixed length for its kind: four bytes of head, then fields,
+//! little-endian, without gaps ([`crate::layout`] lists them). Increments and angles are the counts of
+//! [`octant_sample::counts`]; outputs and aiding are the 64 bits of their f64. So a message arrives bit
+//! for bit as it was sent, also NaN and minus zero.
 
 mod hello;
 mod kind;
@@ -27,34 +27,34 @@ use crate::bytes::{Reader, Writer};
 /// Bytes of the longest payload, a restart.
 pub const MAX_PAYLOAD_BYTES: usize = 244;
 
-/// What is said across a wire.
+/// A message.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Message {
-    /// Who the sender is, and what it can do.
+    /// Identity and capabilities of the sender.
     Hello(Hello),
     /// A sample, on which the device steps.
     Sample(SampleMessage),
-    /// The reference that goes with the sample after it.
+    /// Reference for the sample that follows.
     Aiding(AidingMessage),
-    /// What the core answers to a sample, or to the end.
+    /// Answer of the core to a sample, or to the end.
     Output(OutputMessage),
     /// A sixth of the parameters with their σ.
     Parameters(ParametersSegment),
-    /// The core is to start anew.
+    /// Request to restart the core.
     Restart(Restart),
     /// The stream of samples has ended.
     End(End),
-    /// The core has started anew.
+    /// The core has restarted.
     Ready(Ready),
-    /// The sender is there.
+    /// Sign of life of the sender.
     Heartbeat(Heartbeat),
-    /// What a device has done, received and lost.
+    /// Work and losses of a device.
     Status(Status),
-    /// What time is it there?
+    /// Request for the time.
     TimeRequest(TimeRequest),
-    /// So late.
+    /// Answer to a request for the time.
     TimeReply(TimeReply),
-    /// The sender goes, and why.
+    /// The sender leaves, with its reason.
     Bye(Bye),
 }
 
@@ -72,7 +72,7 @@ impl Payload {
         self.kind
     }
 
-    /// Its bytes, as many as its kind has.
+    /// Bytes of the payload, as many as its kind has.
     #[must_use]
     pub fn bytes(&self) -> &[u8] {
         &self.bytes[..self.kind.payload_bytes()]
@@ -80,7 +80,7 @@ impl Payload {
 }
 
 impl Message {
-    /// Which kind of message.
+    /// Kind of the message.
     #[must_use]
     pub fn kind(&self) -> Kind {
         match self {
@@ -100,7 +100,7 @@ impl Message {
         }
     }
 
-    /// The payload of the message.
+    /// Payload of the message.
     #[must_use]
     pub fn payload(&self) -> Payload {
         let mut payload = Payload { kind: self.kind(), bytes: [0; MAX_PAYLOAD_BYTES] };
@@ -131,15 +131,15 @@ impl Message {
         }
     }
 
-    /// The message of a kind from its payload.
+    /// Reads the message of a kind from its payload.
     ///
     /// # Errors
-    /// If the payload is none of this version. Bytes that nothing is said of are not looked at.
+    /// If this version has no such payload. Bytes without a meaning are ignored.
     #[inline]
     pub fn read(kind: Kind, payload: &[u8]) -> Result<Self, Unreadable> {
         if let (Kind::Hello, Some(version)) = (kind, payload.first_chunk::<2>()) {
             let found = u16::from_le_bytes(*version);
-            // Whatever else a newer hello says, and however long it is.
+            // Applies to a newer hello of any content and length.
             if found > crate::VERSION {
                 return Err(Unreadable::NewerVersion { found });
             }
@@ -165,7 +165,7 @@ impl Message {
         })
     }
 
-    /// Bit for bit the same: NaN is equal to itself and zero differs from minus zero.
+    /// True if both have the same bits: NaN equals itself, and zero differs from minus zero.
     #[must_use]
     pub fn same_bits(&self, other: &Self) -> bool {
         self.payload() == other.payload()

@@ -1,4 +1,4 @@
-//! Parameters and their σ, a sixth at a time: so that they never hold up an output for long.
+//! Parameters and their σ, in six segments, so that they never delay an output for long.
 
 use super::{Kind, Step};
 use crate::Unreadable;
@@ -6,9 +6,9 @@ use crate::bytes::{Reader, Writer};
 use octant_sample::Parameters;
 use octant_sample::parameters::PARAMETER_COUNT;
 
-/// Parameters in a segment.
+/// Number of parameters in a segment.
 pub const SEGMENT_VALUES: usize = 5;
-/// Segments that make up all parameters.
+/// Number of segments of all parameters.
 pub const PARAMETERS_SEGMENTS: usize = PARAMETER_COUNT / SEGMENT_VALUES;
 
 /// Five parameters with their σ, in the order of [`octant_sample::parameters::NAMES`].
@@ -16,7 +16,7 @@ pub const PARAMETERS_SEGMENTS: usize = PARAMETER_COUNT / SEGMENT_VALUES;
 pub struct ParametersSegment {
     /// Number of the step whose output announced them.
     pub step: Step,
-    /// Which sixth, from 0.
+    /// Index of the segment, from 0.
     pub segment: u8,
     /// Revision of the parameters.
     pub revision: u32,
@@ -27,7 +27,7 @@ pub struct ParametersSegment {
 }
 
 impl ParametersSegment {
-    /// All segments of the parameters.
+    /// Divides all parameters into segments.
     #[must_use]
     pub fn all(
         step: Step,
@@ -82,7 +82,7 @@ impl ParametersSegment {
 pub struct Gathered {
     /// Number of the step whose output announced them.
     pub step: Step,
-    /// Their revision.
+    /// Revision of the parameters.
     pub revision: u32,
     /// Estimates, SI.
     pub parameters: Parameters,
@@ -90,27 +90,27 @@ pub struct Gathered {
     pub sigma: [f64; PARAMETER_COUNT],
 }
 
-/// Gathers segments, in any order, until all of one step and revision are there.
+/// Collects segments, in any order, until all of one step and revision are there.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Gathering {
     step: Step,
     revision: u32,
     values: [f64; PARAMETER_COUNT],
     sigma: [f64; PARAMETER_COUNT],
-    /// A bit for each segment that is there.
+    /// Received segments, a bit for each.
     there: u8,
     abandoned: u64,
 }
 
 impl Gathering {
-    /// Nothing gathered yet.
+    /// Makes an empty collection.
     #[must_use]
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// Adds a segment; all parameters when it was the last one missing. A segment of another step
-    /// or revision begins anew: what was there of the former is abandoned.
+    /// Adds a segment; returns all parameters if it was the last one missing. A segment of another step
+    /// or revision begins a new set and abandons the segments of the former.
     pub fn add(&mut self, segment: &ParametersSegment) -> Option<Gathered> {
         let index = usize::from(segment.segment);
         if index >= PARAMETERS_SEGMENTS {
@@ -138,7 +138,7 @@ impl Gathering {
         })
     }
 
-    /// How often segments of newer parameters came before all of the former were there.
+    /// Number of incomplete sets that were abandoned for another step or revision.
     #[must_use]
     pub fn abandoned(&self) -> u64 {
         self.abandoned

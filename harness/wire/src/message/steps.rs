@@ -1,4 +1,4 @@
-//! What a step is made of: sample and aiding there, output back; the end, and a new start.
+//! Messages of a step: sample and aiding, output, end and restart.
 
 use super::{Kind, Step};
 use crate::Unreadable;
@@ -14,7 +14,7 @@ use octant_sample::{
 pub struct SampleMessage {
     /// Number of the step.
     pub step: Step,
-    /// An aiding message of the same step was sent just before.
+    /// True if an aiding message of the same step was sent just before.
     pub aided: bool,
     /// The sample.
     pub sample: Sample,
@@ -51,12 +51,12 @@ impl SampleMessage {
     }
 }
 
-/// The reference of a step: sent before its sample.
+/// Reference of a step, sent before its sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AidingMessage {
-    /// Number of the step whose sample it goes with.
+    /// Number of the step.
     pub step: Step,
-    /// The reference with its stamp.
+    /// Reference with its timestamp.
     pub aiding: Aiding,
 }
 
@@ -100,16 +100,16 @@ impl AidingMessage {
     }
 }
 
-/// What the core answered.
+/// Answer of the core.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct OutputMessage {
-    /// Number of the step that this answers.
+    /// Number of the step answered.
     pub step: Step,
-    /// The parameters changed; all segments of them follow.
+    /// True if the parameters changed; all of their segments follow.
     pub parameters_follow: bool,
     /// The output.
     pub output: Output,
-    /// How long the core computed, ns; 0: not measured. Not part of the result.
+    /// Computing time of the core, ns; 0: not measured. It is no part of the result.
     pub computing_ns: u32,
 }
 
@@ -184,12 +184,12 @@ impl OutputMessage {
     }
 }
 
-/// The core is to start anew, as at power on.
+/// Request to restart the core as at power on.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Restart {
     /// Number of the step.
     pub step: Step,
-    /// By how much the stored parameters are away from those configured, SI; `None`: not at all.
+    /// Difference of the stored parameters from the configured ones, SI; `None`: none.
     pub offset: Option<Parameters>,
 }
 
@@ -210,16 +210,16 @@ impl Restart {
     }
 }
 
-/// No sample comes any more; the core concludes, and answers with its last output.
+/// Notice that no sample follows: the core concludes and answers with its last output.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct End {
     /// Number of the step.
     pub step: Step,
 }
 
-/// The answer to a [`Restart`].
+/// Answer to a [`Restart`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Ready {
-    /// Number of the step that this answers.
+    /// Number of the step answered.
     pub step: Step,
 }

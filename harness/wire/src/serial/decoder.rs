@@ -1,46 +1,46 @@
-//! Bytes to messages, whatever comes.
+//! Decoding of messages from bytes, whatever arrives.
 
 use super::{CRC_BYTES, HEADER_BYTES, MAX_STUFFED_BYTES};
 use crate::checksum::crc32;
 use crate::message::ClockTime;
 use crate::{Kind, Message, Unreadable};
 
-/// Where a frame stands among those before it.
+/// Position of a frame in the sequence of frames.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Order {
-    /// The first one, or a hello, with which a sender begins to count.
+    /// First frame, or a hello, at which the numbering begins again.
     First,
-    /// The one after the last.
+    /// Frame after the last one.
     Next,
-    /// So many are missing before it.
+    /// That many frames are missing before it.
     Missing(u16),
-    /// So many frames behind the last one: it came again, or too late.
+    /// That many frames behind the next expected one: repeated or too late.
     Behind(u16),
 }
 
-/// A message as it came.
+/// A message received.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Received {
     /// Sequence number of its frame.
     pub sequence: u16,
-    /// Where that stands.
+    /// Position in the sequence.
     pub order: Order,
-    /// The sender's clock when it made the frame.
+    /// Sender's clock when it made the frame.
     pub clock: ClockTime,
     /// The message.
     pub message: Message,
 }
 
-/// Why bytes are no message.
+/// Reason why bytes are no message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Cause {
-    /// More bytes without a zero than any frame has.
+    /// Longer than any frame, without a zero.
     #[error("there is no frame so long")]
     Long,
-    /// Stuffing that contradicts itself, or fewer bytes than any frame has.
+    /// Stuffing contradicts itself, or there are fewer bytes than any frame has.
     #[error("this is no frame, or a piece of one")]
     Malformed,
-    /// The CRC is another one.
+    /// The CRC is wrong.
     #[error("the frame is damaged: CRC-32 {found:#010x}, computed {computed:#010x}")]
     Checksum {
         /// CRC in the frame.
@@ -48,75 +48,75 @@ pub enum Cause {
         /// CRC of the frame.
         computed: u32,
     },
-    /// Intact, but not understood.
+    /// The frame is intact, but can't be decoded.
     #[error(transparent)]
     Unreadable(Unreadable),
 }
 
-/// Bytes that were no message.
+/// Bytes that are no message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Lost {
-    /// Why.
+    /// Reason.
     pub cause: Cause,
-    /// How many, without the zeros around them.
+    /// Number of bytes, without the zeros around them.
     pub bytes: u64,
 }
 
-/// What a stretch between two zeros was.
+/// Result for the bytes between two zeros.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[expect(clippy::large_enum_variant, reason = "the large variant is the one that comes")]
 pub enum Event {
     /// A message.
     Received(Received),
-    /// Something else.
+    /// No message.
     Lost(Lost),
 }
 
-/// What came so far.
+/// Counts of the traffic so far.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counters {
-    /// Bytes, all of them.
+    /// All bytes.
     pub bytes: u64,
     /// Intact frames.
     pub frames: u64,
-    /// Bytes that were part of no intact frame, without the zeros.
+    /// Bytes that belong to no intact frame, without the zeros.
     pub bytes_lost: u64,
     /// Stretches longer than any frame.
     pub long: u64,
-    /// Stretches that are no frame, or a piece of one.
+    /// Stretches that are no frame or only a part of one.
     pub malformed: u64,
-    /// Frames whose CRC is wrong.
+    /// Frames with a wrong CRC.
     pub checksum: u64,
     /// Intact frames that are no message of this version.
     pub unreadable: u64,
-    /// Frames that never came, by gaps in the sequence numbers.
+    /// Missing frames, from gaps in the sequence numbers.
     pub missing: u64,
-    /// Frames that came again or too late.
+    /// Frames repeated or too late.
     pub behind: u64,
 }
 
 impl Counters {
-    /// Stretches that were no intact frame.
+    /// Number of stretches that were no intact frame.
     #[must_use]
     pub fn damaged(&self) -> u64 {
         self.long + self.malformed + self.checksum
     }
 
-    /// Nothing is lost, damaged, missing, doubled or not understood.
+    /// True if nothing was lost, damaged, missing, repeated or unreadable.
     #[must_use]
     pub fn is_clean(&self) -> bool {
         *self == Self { bytes: self.bytes, frames: self.frames, ..Self::default() }
     }
 }
 
-/// Finds messages in bytes as they come, in pieces of any length.
+/// Finds messages in bytes as they arrive, in pieces of any length.
 #[derive(Clone, Debug)]
 pub struct Decoder {
-    /// What came since the last zero, as far as a frame can be.
+    /// Bytes since the last zero, up to the length of the longest frame.
     held: [u8; MAX_STUFFED_BYTES],
-    /// Bytes since the last zero.
+    /// Number of bytes since the last zero.
     length: u64,
-    /// Sequence number that the next frame should have.
+    /// Expected sequence number of the next frame.
     expected: Option<u16>,
     counters: Counters,
 }
@@ -128,7 +128,7 @@ impl Default for Decoder {
 }
 
 impl Decoder {
-    /// Nothing received yet.
+    /// Makes a decoder that has received nothing.
     #[must_use]
     pub fn new() -> Self {
         Self {
@@ -139,8 +139,8 @@ impl Decoder {
         }
     }
 
-    /// Takes bytes up to the end of the next stretch that says something, and says what it was.
-    /// `None` when all bytes are taken: call it until then.
+    /// Takes bytes up to the end of the next nonempty stretch, and returns its result. Returns `None`
+    /// when all bytes are taken: call it until then.
     #[inline]
     pub fn next(&mut self, bytes: &mut &[u8]) -> Option<Event> {
         while let Some(zero) = bytes.iter().position(|byte| *byte == 0) {
@@ -157,13 +157,13 @@ impl Decoder {
         None
     }
 
-    /// The bytes end here: at the end of a datagram, or where a line was cut. What came since the
-    /// last zero is concluded as if there were one.
+    /// Ends the input, at the end of a datagram or at a cut of the line: the bytes since the last zero
+    /// are concluded as if a zero followed.
     pub fn end(&mut self) -> Option<Event> {
         (self.length > 0).then(|| self.conclude())
     }
 
-    /// What came so far.
+    /// Counts of the traffic so far.
     #[must_use]
     pub fn counters(&self) -> &Counters {
         &self.counters
@@ -179,7 +179,8 @@ impl Decoder {
             let at = before as usize;
             self.held[at..at + bytes.len()].copy_from_slice(bytes);
         } else {
-            // Counted as they come: a line that babbles without a zero is not a line that is still.
+            // The bytes are counted as they arrive, so that a line that babbles without a zero doesn't
+            // look silent.
             self.counters.bytes_lost += if before <= room { self.length } else { all };
         }
     }
@@ -191,7 +192,7 @@ impl Decoder {
             Err(cause) => {
                 let counters = &mut self.counters;
                 match cause {
-                    // Its bytes are counted already.
+                    // Bytes of a stretch that is too long are already counted.
                     Cause::Long => counters.long += 1,
                     Cause::Malformed => counters.malformed += 1,
                     Cause::Checksum { .. } => counters.checksum += 1,
@@ -243,7 +244,7 @@ impl Decoder {
             if gap == 0 { Order::Next } else { Order::Missing(gap) }
         } else {
             self.counters.behind += 1;
-            // The last one itself is one behind.
+            // A repetition of the last frame is one behind.
             Order::Behind(gap.wrapping_neg())
         }
     }

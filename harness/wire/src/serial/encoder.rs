@@ -1,11 +1,11 @@
-//! Messages to frames.
+//! Encoding of messages as frames.
 
 use super::{HEADER_BYTES, MAX_BARE_BYTES, MAX_FRAME_BYTES};
 use crate::Message;
 use crate::checksum::crc32;
 use crate::message::{ClockTime, MAX_PAYLOAD_BYTES};
 
-/// Makes frames, and numbers them.
+/// Encodes and numbers frames.
 #[derive(Clone, Debug)]
 pub struct Encoder {
     sequence: u16,
@@ -19,13 +19,13 @@ impl Default for Encoder {
 }
 
 impl Encoder {
-    /// The first frame has sequence number 0.
+    /// Makes an encoder whose first frame has sequence number 0.
     #[must_use]
     pub fn new() -> Self {
         Self::starting_at(0)
     }
 
-    /// The first frame has this sequence number.
+    /// Makes an encoder whose first frame has this sequence number.
     #[must_use]
     pub fn starting_at(sequence: u16) -> Self {
         Self { sequence, frame: [0; MAX_FRAME_BYTES] }
@@ -37,7 +37,7 @@ impl Encoder {
         self.sequence
     }
 
-    /// The frame of a message, with the zeros around it; `clock` is the sender's clock now.
+    /// Encodes a message as a frame with the zeros around it; `clock` is the sender's present time.
     pub fn encode(&mut self, message: &Message, clock: ClockTime) -> &[u8] {
         let kind = message.kind();
         let mut bare = [0; MAX_BARE_BYTES];
@@ -53,7 +53,7 @@ impl Encoder {
         let crc = crc32(&bare[..end]);
         bare[end..end + 4].copy_from_slice(&crc.to_le_bytes());
         self.sequence = self.sequence.wrapping_add(1);
-        // The room is that of the longest frame.
+        // The buffer has room for the longest frame.
         let stuffed = cobs::encode(&bare[..end + 4], &mut self.frame[1..]);
         self.frame[0] = 0;
         self.frame[stuffed + 1] = 0;

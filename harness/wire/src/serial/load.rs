@@ -1,36 +1,36 @@
-//! Whether a serial line is fast enough.
+//! Load of a serial line.
 
 use super::{CRC_BYTES, HEADER_BYTES};
 use crate::Kind;
 use crate::message::{PARAMETERS_SEGMENTS, Role};
 use crate::traffic::Traffic;
 
-/// Speed of a serial line.
+/// Bit rate and framing of a serial line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Baud {
-    /// Bits a second.
+    /// Bit rate, bit/s.
     pub rate: u32,
-    /// Bits of a byte, with start, parity and stop: 10 for 8N1.
+    /// Bits for each byte, with start, parity and stop bits: 10 for 8N1.
     pub bits_per_byte: u32,
 }
 
-/// Share of a line that traffic takes, each way, 1: all of it.
+/// Share of a line that traffic takes in each direction; 1 is all of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LineLoad {
-    /// What the harness sends.
+    /// Share of the harness's messages.
     pub from_harness: f64,
-    /// What the other end sends.
+    /// Share of the other end's messages.
     pub to_harness: f64,
 }
 
 impl Baud {
-    /// A rate with one start bit, eight data bits, one stop bit.
+    /// Line of a bit rate with one start bit, eight data bits and one stop bit.
     #[must_use]
     pub const fn new(rate: u32) -> Self {
         Self { rate, bits_per_byte: 10 }
     }
 
-    /// The load that traffic makes, each frame as long as its kind can be.
+    /// Load of the traffic, with the longest frame of each kind.
     #[must_use]
     pub fn load(self, traffic: &Traffic) -> LineLoad {
         let way = |harness: bool| {
@@ -48,7 +48,7 @@ impl Baud {
     }
 }
 
-/// Bytes of a frame on the line, at most.
+/// Most bytes of a frame on the line.
 const fn frame_bytes(kind: Kind) -> usize {
     2 + cobs::max_encoding_length(HEADER_BYTES + kind.payload_bytes() + CRC_BYTES)
 }

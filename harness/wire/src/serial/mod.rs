@@ -2,7 +2,7 @@
 //!
 //! A frame is `kind u8, sequence u16, clock u64, payload, CRC-32`, stuffed (COBS) so that no byte of
 //! it is zero, with a zero before and after. A receiver finds the next frame at the next zero, whatever
-//! came before: what is damaged costs itself and nothing else.
+//! came before: damage costs only the frames that it touches.
 
 mod decoder;
 mod encoder;
@@ -14,13 +14,13 @@ pub use load::{Baud, LineLoad};
 
 use crate::message::MAX_PAYLOAD_BYTES;
 
-/// Bytes before the payload: kind, sequence, clock.
+/// Number of bytes before the payload: kind, sequence, clock.
 pub const HEADER_BYTES: usize = 1 + 2 + 8;
-/// Bytes after the payload.
+/// Number of bytes after the payload.
 pub const CRC_BYTES: usize = 4;
-/// Bytes of a frame before stuffing, at most.
+/// Most bytes of a frame before stuffing.
 pub const MAX_BARE_BYTES: usize = HEADER_BYTES + MAX_PAYLOAD_BYTES + CRC_BYTES;
-/// Bytes of a stuffed frame without the zeros around it, at most.
+/// Most bytes of a stuffed frame, without the zeros around it.
 pub const MAX_STUFFED_BYTES: usize = cobs::max_encoding_length(MAX_BARE_BYTES);
-/// Bytes of a frame as it is sent, at most.
+/// Most bytes of a frame on the line.
 pub const MAX_FRAME_BYTES: usize = MAX_STUFFED_BYTES + 2;

@@ -10,7 +10,7 @@ use proptest::prelude::*;
 use proptest::sample::select;
 use proptest::strategy::ValueTree;
 
-/// A number with any 64 bits, and often one that is special.
+/// A number with any 64 bits, often a special one.
 pub(crate) fn number() -> impl Strategy<Value = f64> {
     const SPECIAL: [u64; 9] = [
         0,
@@ -203,7 +203,7 @@ pub(crate) fn message() -> impl Strategy<Value = Message> {
     ]
 }
 
-/// One message of each kind, always the same.
+/// One message of each kind, the same in each run.
 pub(crate) fn one_of_each() -> Vec<Message> {
     let mut runner = proptest::test_runner::TestRunner::deterministic();
     let mut found: Vec<Message> = Vec::new();

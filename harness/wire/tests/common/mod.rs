@@ -1,4 +1,4 @@
-//! Messages of every kind with every value, and what becomes of them on a line or bus.
+//! Messages of every kind and value, and their way over a line or bus.
 
 pub(crate) mod arbitrary;
 pub(crate) mod peer;
@@ -8,7 +8,7 @@ use octant_wire::can::{self, Format, Frame, Reassembler};
 use octant_wire::message::{ClockTime, Message, Role};
 use octant_wire::serial::{Decoder, Encoder, Event, Received};
 
-/// Everything that a decoder says of bytes that come in pieces.
+/// Decodes bytes that arrive in pieces into events.
 pub(crate) fn decode(decoder: &mut Decoder, pieces: &[&[u8]]) -> Vec<Event> {
     let mut events = Vec::new();
     for piece in pieces {
@@ -21,7 +21,7 @@ pub(crate) fn decode(decoder: &mut Decoder, pieces: &[&[u8]]) -> Vec<Event> {
     events
 }
 
-/// The messages among events.
+/// Extracts the messages from events.
 pub(crate) fn received(events: &[Event]) -> Vec<Received> {
     let received = |event: &Event| match event {
         Event::Received(received) => Some(*received),
@@ -30,7 +30,7 @@ pub(crate) fn received(events: &[Event]) -> Vec<Received> {
     events.iter().filter_map(received).collect()
 }
 
-/// Messages as one stretch of bytes.
+/// Encodes messages as one stretch of bytes.
 pub(crate) fn encode(messages: &[Message]) -> Vec<u8> {
     let mut encoder = Encoder::new();
     let frames =
@@ -38,7 +38,7 @@ pub(crate) fn encode(messages: &[Message]) -> Vec<u8> {
     frames.collect::<Vec<_>>().concat()
 }
 
-/// The role that sends a message.
+/// Role that sends a message.
 pub(crate) fn sender(message: &Message) -> Role {
     match message {
         Message::Hello(hello) => hello.role,
@@ -46,17 +46,17 @@ pub(crate) fn sender(message: &Message) -> Role {
     }
 }
 
-/// The frames of a message from the first of those who send such.
+/// Frames of a message from the first role that sends its kind.
 pub(crate) fn frames(message: &Message, format: Format) -> Vec<Frame> {
     can::segments(message, sender(message), format).expect("it has a slot").collect()
 }
 
-/// What comes together from frames.
+/// Reassembles frames into events.
 pub(crate) fn reassemble(reassembler: &mut Reassembler, frames: &[Frame]) -> Vec<can::Event> {
     frames.iter().filter_map(|frame| reassembler.receive(frame)).collect()
 }
 
-/// The messages among events.
+/// Extracts the messages from events.
 pub(crate) fn messages(events: &[can::Event]) -> Vec<Message> {
     let message = |event: &can::Event| match event {
         can::Event::Received { message, .. } => Some(*message),
@@ -65,7 +65,7 @@ pub(crate) fn messages(events: &[can::Event]) -> Vec<Message> {
     events.iter().filter_map(message).collect()
 }
 
-/// Bit for bit the same messages.
+/// True if the messages are equal bit for bit.
 pub(crate) fn same(a: &[Message], b: &[Message]) -> bool {
     a.len() == b.len() && a.iter().zip(b).all(|(a, b)| a.same_bits(b))
 }

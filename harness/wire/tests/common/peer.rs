@@ -13,7 +13,7 @@ use std::process::{Child, ChildStdin, Command, Stdio};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
 use std::time::{Duration, Instant};
 
-/// A client as a child process, its standard input and output as the line.
+/// A client as a child process, with its standard input and output as the line.
 pub(crate) struct Peer {
     pub(crate) child: Child,
     input: Option<ChildStdin>,
@@ -55,7 +55,7 @@ impl Peer {
 
     pub(crate) fn write(&mut self, bytes: &[u8]) {
         if let Some(input) = &mut self.input {
-            // A child that is gone is found out by what it doesn't answer.
+            // A child that is gone shows by its missing answers.
             let _ = input.write_all(bytes).and_then(|()| input.flush());
         }
     }
@@ -66,7 +66,7 @@ impl Peer {
         self.write(&frame);
     }
 
-    /// The next message within a time; `None`: none came, or the child is gone.
+    /// Receives the next message within a time; `None`: none arrived, or the child is gone.
     pub(crate) fn receive(&mut self, within: Duration) -> Option<Message> {
         let until = Instant::now() + within;
         loop {
@@ -88,13 +88,13 @@ impl Peer {
         }
     }
 
-    /// Sends until a message comes that is the answer.
+    /// Sends messages repeatedly until the answer arrives.
     pub(crate) fn ask<T>(
         &mut self,
         messages: &[Message],
         mut answer: impl FnMut(&Message) -> Option<T>,
     ) -> T {
-        // A minute, which is long for a busy host too.
+        // One minute, which is also long for a busy host.
         for _ in 0..150 {
             for message in messages {
                 self.send(message);
@@ -110,7 +110,7 @@ impl Peer {
         panic!("no answer; received {:?}", self.decoder.counters());
     }
 
-    /// Closes the line; how the child ended, and what it said.
+    /// Closes the line; returns the exit status and the stderr of the child.
     pub(crate) fn finish(mut self) -> (i32, String) {
         self.input = None;
         let output = self.child.wait_with_output().expect("the child ends");
@@ -119,7 +119,7 @@ impl Peer {
     }
 }
 
-/// What stands for a core in the clients, see "Testing an implementation".
+/// Echo that replaces a core in the clients, see "Testing an implementation".
 pub(crate) struct Echo {
     revision: u32,
     announced: Option<u32>,
@@ -191,7 +191,7 @@ impl Echo {
         if changed {
             let value = |i: usize| f64::from(self.revision) + i as f64 + self.offset[i];
             let parameters = Parameters::from_array(&std::array::from_fn(value));
-            // Minus zero where it is −0, the integer, is zero.
+            // The integer −0 is zero, not minus zero.
             let sigma = std::array::from_fn(|i| if i == 0 { 0.0 } else { -(i as f64) });
             let all = ParametersSegment::all(self.last.step, self.revision, &parameters, &sigma);
             messages.extend(all.map(Message::Parameters));
@@ -200,7 +200,7 @@ impl Echo {
     }
 }
 
-/// A hello that fits any other of these tests.
+/// Hello that fits any other of these tests.
 pub(crate) fn hello(role: Role, session: u32) -> Hello {
     Hello {
         role,
@@ -211,8 +211,8 @@ pub(crate) fn hello(role: Role, session: u32) -> Hello {
     }
 }
 
-/// Answers a harness in lock-step until it says bye. With `lost`, each so many-th answer is lost on
-/// its way, and each so many-th request isn't heard.
+/// Answers a harness in lock-step until it says bye. With `lost`, one message of the harness in `lost`
+/// is ignored, and one answer in `lost` is damaged.
 pub(crate) fn serve(peer: &mut Peer, lost: Option<usize>) {
     let (mut session, mut echo, mut heard) = (0, Echo::new(None), 0);
     let mut requests = Requests::new(Pacing::LockStep);
@@ -259,7 +259,7 @@ pub(crate) fn serve(peer: &mut Peer, lost: Option<usize>) {
         }
         for (i, message) in answer.iter().enumerate() {
             if lost.is_some_and(|n| (heard + i) % n == 0) {
-                // Sent with its bytes damaged.
+                // A damaged frame replaces the answer.
                 peer.write(&[0, 3, 1, 0, 7]);
             } else {
                 peer.send(message);

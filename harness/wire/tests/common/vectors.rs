@@ -7,7 +7,7 @@ use octant_sample::{
 use octant_wire::message::*;
 use octant_wire::{Text, VERSION};
 
-/// A message of the vectors.
+/// Message of the vectors.
 pub(crate) struct Vector {
     pub(crate) name: &'static str,
     pub(crate) sender: Role,
@@ -55,8 +55,8 @@ fn output() -> Output {
     }
 }
 
-/// Numbers that are easily spoilt: NaN with payload, quiet and signalling, infinities, minus zero, the
-/// smallest, the largest.
+/// Special numbers that are easily changed on the way: NaN with payload, quiet and signalling,
+/// infinities, minus zero, the smallest, the largest.
 const SPECIAL: [u64; 10] = [
     0x7FF8_0000_DEAD_BEEF,
     0x7FF0_0000_0000_0001,
@@ -190,7 +190,7 @@ fn parameters() -> Vec<(&'static str, Role, Message)> {
         .zip(segments)
         .map(|(name, segment)| (name, Role::Device, Message::Parameters(segment)))
         .collect();
-    // No byte of it is zero: stuffed, it is as long as a frame can be.
+    // A payload without zero bytes makes the longest stuffed frame.
     let full = Parameters::from_array(&[f64::from_bits(0x0101_0101_0101_0101); 30]);
     for (name, number, offset) in [
         ("restart", 9, None),
@@ -254,7 +254,7 @@ fn link() -> Vec<(&'static str, Role, Message)> {
     ]
 }
 
-/// All of them: a message for every slot, and values at their ends.
+/// All vectors: a message for every slot, and values at their limits.
 pub(crate) fn all() -> Vec<Vector> {
     let named = [hellos(), steps(), parameters(), link()].concat();
     let clocks = [0, 1_000_000_000, 0x0101_0101_0101_0101, u64::MAX];
@@ -271,7 +271,7 @@ pub(crate) fn all() -> Vec<Vector> {
         .collect()
 }
 
-/// The message of this name.
+/// Vector of a name.
 pub(crate) fn named(name: &str) -> Vector {
     all().into_iter().find(|vector| vector.name == name).unwrap_or_else(|| panic!("no {name}"))
 }

@@ -1,11 +1,12 @@
-//! A step filter that polynomials don't pass.
+//! Step filter that suppresses polynomials.
 
-use super::POINTS;
+/// Blocks of the filter.
+pub(crate) const POINTS: usize = 20;
 
-/// Degree up to which the filter is blind to polynomials: a ship's sway of 6 s leaves 1e-6 of its rate.
+/// Degree up to which polynomials are suppressed: a ship's sway of 6 s leaves 1e-6 of its rate.
 pub(super) const DEGREE: usize = 7;
 
-/// A step with everything taken out that polynomials up to the degree have, of norm one.
+/// Weights of a step from which the polynomials up to the degree are removed, of norm one.
 pub(super) fn weights() -> [f64; POINTS] {
     let at = |i: usize| (2.0 * i as f64 + 1.0) / POINTS as f64 - 1.0;
     let dot =
@@ -13,7 +14,8 @@ pub(super) fn weights() -> [f64; POINTS] {
     let mut bases = [[0.0; POINTS]; DEGREE + 1];
     let mut step: [f64; POINTS] = core::array::from_fn(|i| if 2 * i < POINTS { -1.0 } else { 1.0 });
     for power in 0..=DEGREE {
-        // From the last one, not from the power: twice is enough (Giraud and others, 2005).
+        // Made from the last basis vector, not from the power, and orthogonalised twice, which is
+        // enough (Giraud and others, 2005).
         let mut basis: [f64; POINTS] = match power {
             0 => [1.0; POINTS],
             _ => core::array::from_fn(|i| bases[power - 1][i] * at(i)),

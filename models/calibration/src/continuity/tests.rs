@@ -7,7 +7,7 @@ use crate::config::{AidingMode, BaseMotion, ErrorModel, Prior};
 use core::f64::consts::PI;
 
 const SAMPLE_S: f64 = 0.005;
-/// Table 1, rad/√s: 0.0132″ in a block.
+/// Angle random walk of Table 1, rad/√s: 0.0132″ in a block.
 const WALK: f64 = 2.036e-7;
 const ARCSEC: f64 = PI / 648_000.0;
 
@@ -46,7 +46,7 @@ fn block(turn: Vector3<f64>, beyond: Option<Vector3<f64>>) -> Block {
     Block { turn, velocity: Vector3::new(0.0, 0.0, -0.98), gimbal, beyond }
 }
 
-/// The block in which a rotation about x, rad, is found that is added over `blocks` blocks.
+/// Block in which a rotation about x, rad, is found that is added over `blocks` blocks.
 fn found_after(
     base: Base,
     rotation: f64,
@@ -84,7 +84,7 @@ fn the_filter_is_blind_to_polynomials_and_of_norm_one() {
     assert!((norm - 1.0).abs() < 1e-14);
 }
 
-/// Without noise: what is found is what gives 6.5 σ by the table above, within a fifth.
+/// The smallest rotations found without noise agree with the table above (6.5 σ) within a fifth.
 #[test]
 fn edges_are_found_from_the_size_that_the_table_says() {
     for (blocks, arcsec) in [(1, 0.14), (5, 0.9), (20, 3.0), (99, 15.0)] {
@@ -116,7 +116,8 @@ fn a_stream_that_breaks_off_again_and_again_is_like_this() {
     assert!((6..40).contains(&alarms), "{alarms}");
 }
 
-/// A drive at 10 °/s and 10 °/s² from `start` on by `angle`, both in rad and s: angle at a time.
+/// Angle at time `t` of a drive at 10 °/s and 10 °/s² that moves from `start` on by `angle`; rad
+/// and s.
 fn drive(start: f64, angle: f64, t: f64) -> f64 {
     let (rate, acceleration) = (10.0 * PI / 180.0, 10.0 * PI / 180.0);
     if angle == 0.0 {
@@ -135,15 +136,15 @@ fn drive(start: f64, angle: f64, t: f64) -> f64 {
     }
 }
 
-/// What the gyros of a case seem to break off by beyond what turning gimbals are allowed, as a share of what
-/// noise is. The body's turn is integrated in a hundred steps a block.
+/// Apparent edge of the gyros in the case beyond the allowance for turning gimbals, as a share of
+/// the noise limit. The body's turn is integrated in a hundred steps a block.
 fn gimbals(base: Base, starts: [f64; 2], angles: [f64; 2], sample_ms: usize) -> f64 {
     let mut continuity = continuity(base, 1e-3 * sample_ms as f64);
     let at = |k: usize| {
         let t = 1e-3 * k as f64;
         [0, 1].map(|i| drive(starts[i], angles[i].abs(), t) * angles[i].signum())
     };
-    // As fast as the ship may, about all axes, in 7, 8 and 9 s.
+    // At the largest rate of the ship about all axes, in 7, 8 and 9 s.
     let rate = if let Base::Moving(motion) = base { motion.rate_radps } else { 0.0 };
     let sway = |k: usize| {
         let phase = 2.0 * PI * 1e-3 * (k as f64 + 0.5);

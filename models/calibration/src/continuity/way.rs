@@ -1,29 +1,29 @@
-//! The encoders' way through a block of samples.
+//! Path of the encoders through a block of samples.
 //!
-//! Where the body is in the mean of a block, and, if both gimbals turn, what they turn it by, depends on how
-//! they went and not only on where they came to.
+//! The mean attitude of the body in a block and, if both gimbals turn, the turn that they cause
+//! depend on the path of the gimbals and not only on their final angles.
 
 use nalgebra::{Matrix3, Vector3};
 use octant_sample::GimbalAngles;
 use octant_sample::counts::GIMBAL_LSB_RAD;
 
-/// Turns of both gimbals from which the way matters, counts of an encoder: 1″.
+/// Turns of both gimbals from which the path matters, counts of an encoder: 1″.
 const FOLLOWED_COUNTS: u32 = (5e-6 / GIMBAL_LSB_RAD) as u32;
 
-/// From the start of a block to the last sample that was taken.
+/// Path from the start of a block to the last sample.
 #[derive(Clone, Copy, Debug, Default)]
 #[cfg_attr(feature = "state", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Way {
     start: GimbalAngles,
-    /// Turn of the body so far, in b, rad, and up to where that is.
+    /// Turn of the body so far, in b, rad, and the angles up to which it is summed.
     swept: Vector3<f64>,
     swept_to: GimbalAngles,
-    /// Sums of azimuth and roll beyond the start, counts, and of how many samples.
+    /// Sums of azimuth and roll beyond the start, counts, and the number of samples.
     beyond: [i64; 2],
     samples: u32,
 }
 
-/// A whole one.
+/// Result of a complete path.
 pub(super) struct Swept {
     /// Turn of the body in b, rad.
     pub(super) turn: Vector3<f64>,
@@ -61,8 +61,8 @@ impl Way {
         self.swept_to = gimbal;
     }
 
-    /// The way that ends here, with the mean angles by the trapezoids between its samples. Out and back is
-    /// what encoders do that aren't to be believed: it is no way.
+    /// Completes the path at `end`, with the mean angles by the trapezoids between its samples. A
+    /// path out and back comes from wrong encoders and counts as none.
     pub(super) fn until(mut self, end: GimbalAngles) -> Swept {
         if end == self.start {
             let c_cb = c_cb(end.azimuth_rad(), end.roll_rad());
@@ -88,8 +88,8 @@ pub(crate) fn gimbal_turn(from: GimbalAngles, to: GimbalAngles) -> Vector3<f64> 
     turned_at(0.5 * (from.azimuth_rad() + to.azimuth_rad()), azimuth, roll)
 }
 
-/// The part of [`gimbal_turn`] between two shares of a way with both gimbals at constant rates. Exact for one gimbal; where
-/// both turn, to the third order of the part's angle.
+/// Part of [`gimbal_turn`] between two shares of a path with both gimbals at constant rates. Exact
+/// for one gimbal; if both turn, to the third order of the part's angle.
 pub(crate) fn share_of_turn(
     from: GimbalAngles,
     to: GimbalAngles,

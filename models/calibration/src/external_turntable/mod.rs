@@ -3,19 +3,20 @@
 //! The attitude of the body is known from the survey of the table's base, `q_nc`, and the encoder
 //! angles: `c_nb = c_nc Rx(roll) Rz(azimuth)`. So specific force and Earth rate in b are known in
 //! every dwell, on all three axes, and so is the rotation of every move. Then all thirty parameters
-//! are determined, the isotropic part of G too: where azimuth is known, a vertical drift is no
-//! different from a horizontal one. That is what this reference has over a self-calibration.
+//! are determined, including the isotropic part of G: with azimuth known, a vertical drift is
+//! observable like a horizontal one. That is the advantage of this reference over a
+//! self-calibration.
 //!
 //! The adjustment is that of [`crate::least_squares`], with the attitude of each interval known to
-//! the precision of the encoders, and with all parameters estimated. It is linear but for terms
+//! the precision of the encoders, and with all parameters estimated. It is linear except for terms
 //! like M_g² times the angle of a move (0.01″ for Table 1 errors), runs in one pass and keeps no
-//! intervals: there may be any number of them.
+//! intervals: their number is unlimited.
 //!
-//! Assumptions that σ rests on: white sensor noise as given; encoder errors independent from
-//! interval to interval, of the same σ in both angles; the survey of the base is without error, and
-//! the body axes are those of the inner gimbal at zero. Residuals above their noise widen σ.
-//! In a move the drift by G is compensated with its initial value; 10 s of a G that is wrong by
-//! 5e-3 °/h/g are 0.05″.
+//! σ rests on these assumptions: white sensor noise as given; encoder errors independent from
+//! interval to interval, of the same σ in both angles; a survey of the base without error; and body
+//! axes that are those of the inner gimbal at zero. Residuals above their noise widen σ. In a move
+//! the drift by G is compensated with its initial value; 10 s of a G that is wrong by 5e-3 °/h/g
+//! are 0.05″.
 
 use crate::config::{self, Noise, Site};
 use crate::least_squares::accelerometer::norm_row;
@@ -32,11 +33,11 @@ use octant_sample::{Parameters, Sample};
 /// Shortest dwell to use, s.
 const SHORTEST_S: f64 = 1.0;
 
-/// The survey of the base is taken as exact: its share of the attitude's σ, against the encoders'.
-/// Not zero, because the equations need a weight.
+/// Share of the survey of the base in the attitude's σ, against the encoders': the survey is
+/// assumed exact, but the equations need a weight above zero.
 const SURVEY_SHARE: f64 = 1e-3;
 
-/// The streaming estimator: fixed size, one step a sample.
+/// Streaming estimator: fixed size, one step a sample.
 #[derive(Clone, Debug)]
 pub struct ExternalTurntableEstimator {
     q_nc: UnitQuaternion<f64>,
@@ -71,7 +72,7 @@ impl ExternalTurntableEstimator {
 }
 
 /// Second moments of the residual of the norm of gravity and of its gradient with respect to the
-/// nine accelerometer parameters: enough to tell the residual after the adjustment without keeping
+/// nine accelerometer parameters: sufficient for the residual after the adjustment without keeping
 /// the intervals.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "state", derive(serde::Serialize, serde::Deserialize))]
@@ -93,11 +94,12 @@ impl NormMoments {
 }
 
 impl ExternalTurntableEstimator {
-    /// An estimator at a site. `initial` is what the equations are linearised about: zero, or the
+    /// Makes an estimator at a site. The equations are linearised about `initial`: zero, or the
     /// result of an earlier calibration or pass. The sample period comes with every step.
     ///
     /// # Errors
-    /// If a noise is not a positive number, or the initial parameters can't be compensated with.
+    /// If a noise is not a positive number, or the initial parameters are unusable for
+    /// compensation.
     pub fn new(
         settings: &config::ExternalTurntable,
         site: &Site,
@@ -129,7 +131,8 @@ impl ExternalTurntableEstimator {
         })
     }
 
-    /// Takes one sample over `dt_s`, as measured (not compensated), and whether the table stood through it.
+    /// Takes one sample over `dt_s`, as measured (not compensated); `standing`: whether the table
+    /// rested during it.
     pub fn step(&mut self, sample: &Sample, dt_s: f64, standing: bool) {
         if !(dt_s > 0.0 && dt_s.is_finite()) {
             return;
@@ -159,7 +162,7 @@ impl ExternalTurntableEstimator {
         self.intervals += 1;
     }
 
-    /// Ends the stream and adjusts.
+    /// Ends the stream and computes the adjustment.
     ///
     /// # Errors
     /// If the dwells and moves don't determine the parameters, or a dwell has no encoder angles.

@@ -1,17 +1,17 @@
 //! Accelerometers from the norm of gravity: `|(I + M_a)⁻¹ (f̃ − b_a)| = g` in every static interval.
 //!
-//! Nine unknowns, Gauss-Newton, every interval with the same weight: with such instruments the
-//! residuals come from model errors and not from white noise, which a longer mean would lower.
+//! Nine unknowns, Gauss-Newton, every interval with the same weight: the residuals of such
+//! instruments come from model errors and not from white noise, which a longer mean would reduce.
 
-use super::Refusal;
 use super::interval::Interval;
 use super::moves::{ACCEL_TERMS, Compensation, corrected};
 use super::normal::solve;
+use super::refusal::Refusal;
 use nalgebra::{SMatrix, SVector};
 use octant_sample::Parameters;
 
-/// The parameters with those of the accelerometers replaced, their σ, and the root mean square of
-/// `|f| − g`, m/s².
+/// Estimates the accelerometers' parameters. Returns all parameters with these replaced, their σ,
+/// and the root mean square of `|f| − g`, m/s².
 pub(crate) fn estimate(
     intervals: &[Interval],
     initial: &Parameters,
@@ -46,7 +46,7 @@ pub(crate) fn estimate(
     Err(Refusal::Diverged)
 }
 
-/// From biases wrong by 0.1 g Gauss-Newton needs six.
+/// Largest number of Gauss-Newton steps; biases wrong by 0.1 g need six.
 const ITERATIONS_MAX: usize = 30;
 
 /// `g − |f|` of an interval, and the gradient of `|f|` with respect to the nine parameters:

@@ -1,4 +1,4 @@
-//! Static intervals in unknown (or known) attitudes, tied by the moves: one joint adjustment.
+//! Joint adjustment of static intervals in unknown (or known) attitudes, tied by the moves.
 //!
 //! Unknowns: the thirty parameters, and the attitude error θ of each interval, in b:
 //! `c_nb = c_nb⁰ exp([θ×])`, so `c_bn v = v⁰ + [v⁰×] θ`. Each interval measures
@@ -7,13 +7,14 @@
 //! ω̃ = (I + M_g) ω + b_g + G f    ω = c_bn ω_ie
 //! ```
 //! and each move, with its rotation R over a time t, `R = c_bn(0) exp(ω_ie t) c_nb(1)`.
-//! Attitudes are eliminated as soon as the next one is tied to them, so the store is one matrix of
-//! 36 × 36 whatever the number of intervals.
+//! Attitudes are eliminated as soon as the next one is tied to them, so that one matrix of 36 × 36
+//! suffices for any number of intervals.
 
 use super::interval::Interval;
+use super::limits::RESIDUAL_RMS_MAX;
 use super::moves::{ACCEL_TERMS, Compensation, GYRO_TERMS, Move, matrix};
 use super::normal::solve;
-use super::{RESIDUAL_RMS_MAX, Refusal};
+use super::refusal::Refusal;
 use nalgebra::{Matrix3, SMatrix, SVector, UnitQuaternion, Vector3};
 use octant_earth::rotation::{exp, log, skew};
 use octant_sample::Parameters;
@@ -21,9 +22,9 @@ use octant_sample::Parameters;
 /// White noise of the sensors, variance per axis times duration.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Noise {
-    /// (m/s²)²·s.
+    /// Specific force, (m/s²)²·s.
     pub(crate) force: Vector3<f64>,
-    /// rad²/s.
+    /// Angular rate, rad²/s.
     pub(crate) rate: Vector3<f64>,
 }
 
@@ -37,7 +38,8 @@ pub(crate) struct Turn {
 }
 
 impl Turn {
-    /// A move that was integrated with `compensation`, of the parameters `integrated_with`.
+    /// Makes the turn of a move that was integrated with `compensation`, of the parameters
+    /// `integrated_with`.
     pub(crate) fn new(
         of: &Move,
         compensation: &Compensation,
@@ -56,7 +58,7 @@ impl Turn {
     }
 }
 
-/// What is known beforehand of an attitude: a standard deviation of θ about three axes in b.
+/// Prior knowledge of an attitude: a standard deviation of θ about three axes in b.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct AttitudePrior {
     /// Orthonormal axes in b, as columns.
@@ -65,7 +67,7 @@ pub(crate) struct AttitudePrior {
     pub(crate) sigma_rad: Vector3<f64>,
 }
 
-/// The parameters, the attitude before, the attitude now.
+/// Number of unknowns: the parameters, the previous attitude, the present attitude.
 const SIZE: usize = 36;
 type Row = SVector<f64, SIZE>;
 
@@ -75,7 +77,7 @@ pub(crate) struct Chain {
     information: SMatrix<f64, SIZE, SIZE>,
     right: Row,
     squares: f64,
-    /// Measurements minus eliminated unknowns.
+    /// Number of measurements minus eliminated unknowns.
     freedom: usize,
     previous: Option<UnitQuaternion<f64>>,
     parameters: Parameters,
@@ -106,7 +108,7 @@ pub(crate) struct Solution {
 }
 
 impl Solution {
-    /// The last correction is small against the noise.
+    /// Returns whether the last correction is small against the noise.
     pub(crate) fn settled(&self) -> bool {
         (0..30).all(|i| {
             !self.estimated[i]
@@ -114,7 +116,7 @@ impl Solution {
         })
     }
 
-    /// Residuals far above their noise refuse the solution.
+    /// Refuses the solution if the residuals are far above their noise.
     pub(crate) fn consistent(&self) -> Result<(), Refusal> {
         if self.residual_rms <= RESIDUAL_RMS_MAX {
             Ok(())
@@ -123,7 +125,7 @@ impl Solution {
         }
     }
 
-    /// σ of the estimated parameters, NaN for the others. Residuals larger than the noise widen it.
+    /// σ of the estimated parameters, NaN for the others. Residuals above the noise widen it.
     pub(crate) fn sigma(&self) -> [f64; 30] {
         let factor = self.residual_rms.max(1.0);
         core::array::from_fn(|i| {
@@ -154,7 +156,7 @@ impl Chain {
         }
     }
 
-    /// Adds an interval, linearised at the attitude `q_nb`, and the move that led to it.
+    /// Adds an interval, linearised at the attitude `q_nb`, and the move before it.
     pub(crate) fn interval(
         &mut self,
         interval: &Interval,
@@ -220,7 +222,7 @@ impl Chain {
         let predicted = before.inverse() * exp(&(self.earth_rate * turn.duration_s)) * after;
         let residual = log(&(turn.rotation * predicted.inverse()));
         let q = predicted.to_rotation_matrix().into_inner();
-        // The axes turn through the move: their mean noise stands for each.
+        // The axes turn through the move: their mean noise is used for each.
         let variance = self.noise.rate.mean() * turn.duration_s;
         for axis in 0..3 {
             let mut row = Row::zeros();
@@ -244,11 +246,11 @@ impl Chain {
         self.freedom += 1;
     }
 
-    /// Takes the attitude before out of the equations (Schur complement), the one now becomes it.
+    /// Eliminates the previous attitude (Schur complement); the present one takes its place.
     fn eliminate_previous(&mut self) {
         let block = self.information.fixed_view::<3, 3>(30, 30).into_owned();
-        // Gravity and Earth rate, or a prior, determine every attitude; were one not to be, its
-        // information is zero and there is nothing to carry on.
+        // Gravity and Earth rate, or a prior, determine every attitude; the information of an
+        // undetermined one is zero, and there is nothing to pass on.
         let inverse = block.try_inverse().unwrap_or_default();
         let to = self.information.fixed_view::<36, 3>(0, 30).into_owned();
         let part = self.right.fixed_rows::<3>(30).into_owned();

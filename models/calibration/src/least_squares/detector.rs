@@ -1,24 +1,23 @@
-//! Standstill from the data: windowed standard deviation of specific force against that of a first
-//! interval that is known to be static.
+//! Detection of standstill from the data: windowed standard deviation of specific force against
+//! that of a first interval that is known to be static.
 
-use super::Refusal;
+use super::limits::WINDOW_SAMPLES_MAX;
+use super::refusal::Refusal;
 use nalgebra::Vector3;
 use octant_sample::Sample;
 use octant_sample::counts::DELTA_VELOCITY_LSB_MPS;
 
-/// Longest window, samples.
-pub const WINDOW_SAMPLES_MAX: usize = 512;
-
-/// Delays the stream by half a window, and says of each sample whether the instrument stood.
+/// Delays the stream by half a window, and decides for each sample whether the instrument was at
+/// rest.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Detector {
     initial_s: f64,
     threshold: f64,
     window: usize,
     ring: [(Sample, f64); WINDOW_SAMPLES_MAX],
-    /// Samples seen.
+    /// Number of samples taken.
     count: usize,
-    /// Samples given back.
+    /// Number of samples returned.
     delivered: usize,
     time_s: f64,
     delivered_time_s: f64,
@@ -107,7 +106,8 @@ impl Detector {
         })
     }
 
-    /// Takes a sample; gives back the one half a window ago, its period, and whether it stood.
+    /// Takes a sample; returns the sample half a window ago, its period, and whether the instrument
+    /// was at rest.
     pub(crate) fn step(&mut self, sample: &Sample, dt_s: f64) -> Option<(Sample, f64, bool)> {
         self.ring[self.count % self.window] = (*sample, dt_s);
         self.count += 1;
@@ -131,7 +131,8 @@ impl Detector {
         self.deliver()
     }
 
-    /// The samples still held back, one a call, when the stream has ended: they stand as the last.
+    /// Returns the samples still held at the end of the stream, one a call, each at rest if the
+    /// last one was.
     pub(crate) fn drain(&mut self) -> Option<(Sample, f64, bool)> {
         (self.delivered < self.count).then(|| self.deliver()).flatten()
     }
@@ -144,7 +145,7 @@ impl Detector {
     }
 
     /// Sum over the axes of the variance of specific force in the window, (m/s²)². Computed anew
-    /// for every sample: running sums would collect rounding, and the window is bounded.
+    /// for every sample: running sums would accumulate rounding, and the window is bounded.
     fn variance(&self) -> f64 {
         let held = &self.ring[..self.window];
         let n = self.window as f64;

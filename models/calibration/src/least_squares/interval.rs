@@ -5,7 +5,7 @@ use nalgebra::Vector3;
 use octant_sample::counts::{DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS, GIMBAL_LSB_RAD};
 use octant_sample::{Sample, Status};
 
-/// What is kept of a static interval.
+/// Means of a static interval.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "state", derive(serde::Serialize, serde::Deserialize))]
 pub struct Interval {
@@ -31,7 +31,7 @@ pub struct Interval {
 struct Sums {
     delta_theta: [i64; 3],
     delta_velocity: [i64; 3],
-    /// Squared differences of successive increments: twice the white variance, whatever the slow
+    /// Squared differences of successive increments: twice the white variance, independent of slow
     /// drift (the Allan variance at one sample).
     theta_differences: [f64; 3],
     velocity_differences: [f64; 3],
@@ -70,7 +70,7 @@ impl Sums {
 
     fn interval(&self) -> Interval {
         let per_s = 1.0 / self.duration_s;
-        // Variance of an increment over the sample period; not less than that of rounding.
+        // Variance of an increment over the sample period; at least that of rounding.
         let pairs = 2.0 * f64::from(self.differences.max(1));
         let dt_s = self.duration_s / f64::from(self.samples);
         let noise = |sum: f64, lsb: f64| lsb * lsb * (sum / pairs).max(1.0 / 6.0) / dt_s;
@@ -102,9 +102,9 @@ pub(crate) struct Segmenter {
     shortest_s: f64,
     standing: bool,
     sums: Sums,
-    /// The move up to the start of the standstill.
+    /// Move up to the start of the standstill.
     arrival: Move,
-    /// The move up to now.
+    /// Move up to now.
     running: Move,
     last_sequence: Option<u64>,
 }
@@ -121,8 +121,8 @@ octant_state::state! {
 
 #[cfg(feature = "state")]
 impl Segmenter {
-    /// A sum is no larger than so many samples can make it, nor are there more of them than leave
-    /// room for as many again.
+    /// Checks loaded sums: each is no larger than its number of samples allows, and the number
+    /// leaves room for as many again.
     fn check_sums(&self) -> Result<(), octant_state::StateError> {
         use octant_state::check_below;
         let Sums { delta_theta, delta_velocity, gimbal, samples, .. } = &self.sums;
@@ -149,7 +149,7 @@ impl Segmenter {
         }
     }
 
-    /// Takes one sample; returns an interval that just ended and the move that led to it.
+    /// Takes one sample; returns an interval that just ended and the move before it.
     pub(crate) fn step(
         &mut self,
         sample: &Sample,
@@ -180,7 +180,7 @@ impl Segmenter {
         ended
     }
 
-    /// Ends a standstill; returns it if it was long enough.
+    /// Ends a standstill; returns its interval if it was long enough.
     pub(crate) fn flush(&mut self) -> Option<(Move, Interval)> {
         if !self.standing {
             return None;
@@ -193,7 +193,7 @@ impl Segmenter {
         Some((self.arrival, self.sums.interval()))
     }
 
-    /// Starts the move again with the sample that began it, under another compensation.
+    /// Restarts the move with its first sample, under another compensation.
     pub(crate) fn restart(&mut self, sample: &Sample, dt_s: f64, compensation: &Compensation) {
         let complete = self.running.complete;
         self.running = Move::default();
@@ -217,7 +217,7 @@ mod tests {
     use octant_earth::rotation::log;
     use octant_sample::Parameters;
 
-    /// A body that turns about z by 0.001 rad a sample while `turning`.
+    /// Sample of a body that turns about z by 0.001 rad a sample while `turning`.
     fn sample(sequence: u64, turning: bool) -> Sample {
         let z = if turning { (0.001 / DELTA_THETA_LSB_RAD) as i32 } else { 0 };
         Sample { sequence, delta_theta: [0, 0, z], ..Sample::default() }
@@ -227,7 +227,7 @@ mod tests {
     fn a_pause_too_short_belongs_to_the_move_around_it() {
         let compensation = Compensation::new(&Parameters::default()).unwrap();
         let mut segmenter = Segmenter::new(1.0);
-        // Stand 2 s, turn, pause 0.5 s (while still turning a little), turn, stand 2 s.
+        // Rest 2 s, turn, pause 0.5 s (while still turning a little), turn, rest 2 s.
         let plan = [(200, true), (100, false), (50, true), (100, false), (200, true)];
         let (mut sequence, mut found) = (0, std::vec::Vec::new());
         for (part, (samples, standing)) in plan.into_iter().enumerate() {

@@ -1,37 +1,40 @@
 //! Multi-position least squares: the estimator beside the Kalman filter.
 //!
-//! The instrument stands in a number of attitudes. What is kept of each is the mean specific force
-//! and the mean rate; of each move between them, the rotation by the gyros and its sensitivity to
-//! their parameters. Two references, by [`GyroReference`]:
+//! The instrument rests in a number of attitudes. The estimator keeps the mean specific force and
+//! the mean rate of each, and of each move between them the rotation by the gyros and its
+//! sensitivity to their parameters. Two references, by [`GyroReference`]:
 //!
-//! - **Earth rate**, for gyros that see it: gravity and Earth rate are known vectors in n, the
-//!   attitude of each interval is not (`chain`). In every interval the norm of gravity, the norm
-//!   of Earth rate and their product `f·ω = gΩ sin L` are measured, and each move ties two
-//!   attitudes. Determines b_g, S_g, M_g, b_a, S_a and M_a; six positions are enough, because
-//!   the moves tie the accelerometers' axes to each other, which the norm of gravity alone cannot.
+//! - **Earth rate**, for gyros that resolve it: gravity and Earth rate are known vectors in n, the
+//!   attitude of each interval is not (`chain`). In every interval the norm of gravity, the norm of
+//!   Earth rate and their product `f·ω = gΩ sin L` are measured, and each move ties two attitudes.
+//!   Determines b_g, S_g, M_g, b_a, S_a and M_a; six positions are enough, because the moves tie
+//!   the accelerometers' axes to each other, which the norm of gravity alone cannot.
 //! - **Rotated gravity**, for MEMS: accelerometers from the norm of gravity, gyro bias from the
 //!   first interval, S_g and M_g from gravity turned between attitudes.
 //!
-//! G is not estimated by either: it keeps its initial value, with which the gyros are compensated,
-//! and its σ is NaN. Where G is not what was given, biases absorb a part of it, and σ doesn't know.
+//! Neither reference estimates G: it keeps its initial value, with which the gyros are compensated,
+//! and its σ is NaN. If that value is wrong, biases absorb a part of the error, which σ doesn't
+//! include.
 //!
-//! Against Earth rate σ is smaller than the Kalman filter's: that the instrument stands is taken as
-//! a fact, where the filter lets attitude wander with the gyros' random walk within a dwell. On a
-//! ship it isn't one, and the residuals refuse the result. Against rotated gravity a turn about the
-//! vertical leaves no trace in the accelerometers, and detection takes it for a standstill; no
-//! harm, gravity in b stays where it was.
+//! Against Earth rate σ is smaller than the Kalman filter's: the instrument is assumed to be at
+//! rest, whereas the filter lets attitude wander with the gyros' random walk within a dwell. On a
+//! ship the assumption is wrong, and the residuals refuse the result. Against rotated gravity a
+//! turn about the vertical leaves no trace in the accelerometers, and detection takes it for a
+//! standstill; this does no harm, because gravity in b doesn't change.
 //!
-//! The linearisation of the moves is about the initial parameters, in a single pass over the
-//! samples: the neglected second order is M_g² times the angle of a move. Parts in 10⁴ leave
-//! 0.01″; where M_g is large, pass over the data again from the first result.
+//! The moves are linearised about the initial parameters, in a single pass over the samples: the
+//! neglected second order is M_g² times the angle of a move. Parts in 10⁴ leave 0.01″; if M_g is
+//! large, a second pass over the data should start from the first result.
 
 pub(crate) mod accelerometer;
 pub(crate) mod chain;
 mod detector;
 pub(crate) mod interval;
+mod limits;
 pub(crate) mod moves;
 mod normal;
 pub mod raw;
+mod refusal;
 mod rotated_gravity;
 
 use crate::alignment::attitude_of;
@@ -44,116 +47,17 @@ use nalgebra::{SVector, Vector3};
 use octant_earth::ellipsoid::{EARTH_RATE_RADPS, Ellipsoid};
 use octant_sample::{Parameters, Sample};
 
-pub use detector::WINDOW_SAMPLES_MAX;
 pub use interval::Interval;
+pub use limits::{INTERVALS_MAX, RESIDUAL_RMS_MAX, WINDOW_SAMPLES_MAX};
+pub use refusal::Refusal;
+pub(crate) use refusal::positive;
 
-/// Largest number of static intervals: six passes of nineteen stops fit.
-pub const INTERVALS_MAX: usize = 128;
-
-/// Residuals in units of their noise above which the adjustment against Earth rate, or an external
-/// turntable, is refused. An unknown G of 5e-3 °/h/g reaches 2.7 in 4 h
-/// and 5.6 in 24 h.
-pub const RESIDUAL_RMS_MAX: f64 = 10.0;
-
-/// Shortest standstill to use when the procedure commands it, s.
+/// Shortest standstill to use if the procedure commands it, s.
 const SHORTEST_COMMANDED_S: f64 = 1.0;
 
-/// Steps of Gauss-Newton on the chain of attitudes. It starts within the initial errors of a
+/// Gauss-Newton steps on the chain of attitudes. It starts within the initial errors of a
 /// navigation-grade instrument and gains several digits a step.
 const ITERATIONS: usize = 8;
-
-/// Name of a setting. (By this name serde's derive doesn't take it for text that can be borrowed.)
-type Setting = &'static str;
-
-/// Why there is no estimate.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-#[cfg_attr(feature = "state", derive(serde::Serialize, serde::Deserialize))]
-pub enum Refusal {
-    /// Not enough static intervals.
-    #[error("{found} static intervals were found, at least {needed} are needed")]
-    TooFewIntervals {
-        /// Intervals found.
-        found: usize,
-        /// Intervals needed.
-        needed: usize,
-    },
-    /// More static intervals than the fixed store holds.
-    #[error("more than {INTERVALS_MAX} static intervals were found")]
-    TooManyIntervals,
-    /// Not enough moves without lost or invalid samples.
-    #[error("{found} complete moves between static intervals were found, at least {needed} needed")]
-    TooFewMoves {
-        /// Moves found.
-        found: usize,
-        /// Moves needed.
-        needed: usize,
-    },
-    /// The attitudes don't determine a parameter.
-    #[error(
-        "the positions do not determine {}",
-        octant_sample::parameters::NAMES.get(*parameter).unwrap_or(&"the attitudes")
-    )]
-    Undetermined {
-        /// Index of the least determined parameter.
-        parameter: usize,
-    },
-    /// The gyros don't show Earth rate (half to twice of it, with a horizontal part): they are too
-    /// coarse for this reference, the site is at a pole, or the instrument did not stand.
-    #[error("interval {interval}: the gyros do not show Earth rate")]
-    NoEarthRate {
-        /// Index of the interval, from 0.
-        interval: usize,
-    },
-    /// The residuals contradict the noise: the instrument swayed, or has errors far outside of the
-    /// model.
-    #[error(
-        "the residuals are {residual_rms:.1} times their noise, at most {RESIDUAL_RMS_MAX} are \
-         accepted: the instrument did not stand, or its errors are not those of the model"
-    )]
-    Inconsistent {
-        /// Root mean square of the residuals in units of their noise.
-        residual_rms: f64,
-    },
-    /// The adjustment did not converge.
-    #[error("the adjustment did not converge")]
-    Diverged,
-    /// Detection window outside of what the ring holds.
-    #[error("the detection window has {samples:.1} samples, expected 4 to {WINDOW_SAMPLES_MAX}")]
-    Window {
-        /// Samples in the window.
-        samples: f64,
-    },
-    /// The known static start is shorter than the window.
-    #[error("the initial static interval of {initial_s} s is shorter than the detection window")]
-    InitialInterval {
-        /// Length given, s.
-        initial_s: f64,
-    },
-    /// A threshold that the initial interval itself would not pass.
-    #[error("the detection threshold is {threshold}, expected a number above 1")]
-    Threshold {
-        /// Threshold given.
-        threshold: f64,
-    },
-    /// A shortest interval, gravity or other setting that is not a positive number.
-    #[error("{field} is {found}, expected a positive number")]
-    NotPositive {
-        /// Name of the setting.
-        #[cfg_attr(feature = "state", serde(with = "setting"))]
-        field: Setting,
-        /// Value found.
-        found: f64,
-    },
-    /// Initial parameters that can't be compensated with.
-    #[error("the initial parameters are not finite or have no inverse")]
-    InitialParameters,
-    /// An interval of the external turntable without encoder angles.
-    #[error("interval {interval}: no valid gimbal angles")]
-    NoEncoder {
-        /// Index of the interval, from 0.
-        interval: usize,
-    },
-}
 
 /// Result of an adjustment.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -165,8 +69,8 @@ pub struct Estimate {
     /// Root mean square of `|f| − g` over the intervals, m/s².
     pub gravity_residual_rms_mps2: f64,
     /// Root mean square over the moves, of the unit vector of gravity (rotated gravity), or of all
-    /// residuals in units of their noise: 1 if the model and the noise are right (Earth rate and
-    /// external turntable). Above 1 it has been put into σ.
+    /// residuals in units of their noise: expected 1 with the right model and noise (Earth rate and
+    /// external turntable). A value above 1 has widened σ.
     pub residual_rms: f64,
     /// Static intervals used.
     pub intervals: usize,
@@ -174,8 +78,8 @@ pub struct Estimate {
     pub moves: usize,
 }
 
-/// The streaming estimator: fixed size (some 100 kB, most of it the store of intervals and moves),
-/// one step a sample.
+/// Streaming estimator: fixed size (some 100 kB, most of it the store of intervals and moves), one
+/// step a sample.
 #[derive(Clone, Debug)]
 pub struct LeastSquaresEstimator {
     gyro: GyroReference,
@@ -193,7 +97,7 @@ pub struct LeastSquaresEstimator {
 
 #[cfg(feature = "state")]
 impl octant_state::State for LeastSquaresEstimator {
-    /// Of the store, only what is filled.
+    /// Saves only the filled part of the store.
     fn save(&self, to: &mut octant_state::Writer) {
         let Self {
             gyro: _,
@@ -238,8 +142,8 @@ impl octant_state::State for LeastSquaresEstimator {
 }
 
 impl LeastSquaresEstimator {
-    /// An estimator for samples of a nominal period at a site. `initial` is what the moves are
-    /// linearised about: zero, or the result of an earlier calibration or pass.
+    /// Makes an estimator for samples of a nominal period at a site. The moves are linearised about
+    /// `initial`: zero, or the result of an earlier calibration or pass.
     ///
     /// # Errors
     /// If a setting is out of range.
@@ -275,10 +179,9 @@ impl LeastSquaresEstimator {
         })
     }
 
-    /// Takes one sample over `dt_s`, as measured: what comes out are whole parameters, not
-    /// corrections to compensated samples. `standing` says whether the gimbals stood through it; it is
-    /// used where intervals are commanded (`None`: they did not), and ignored where they are
-    /// detected.
+    /// Takes one sample over `dt_s`, as measured: the result are whole parameters, not corrections
+    /// to compensated samples. `standing` tells whether the gimbals rested during it; it is used if
+    /// intervals are commanded (`None`: they did not rest), and ignored if they are detected.
     pub fn step(&mut self, sample: &Sample, dt_s: f64, standing: Option<bool>) {
         if !(dt_s > 0.0 && dt_s.is_finite()) {
             return;
@@ -297,7 +200,7 @@ impl LeastSquaresEstimator {
         if let Some(ended) = self.segmenter.step(sample, dt_s, standing, &self.compensation) {
             self.keep(ended);
             if self.len == 1 && self.gyro == GyroReference::RotatedGravity {
-                // The sample that ended the interval has been integrated with the bias as given.
+                // The sample that ended the interval was integrated with the initial bias.
                 self.segmenter.restart(sample, dt_s, &self.compensation);
             }
         }
@@ -309,7 +212,7 @@ impl LeastSquaresEstimator {
             return;
         }
         if self.len == 0 && self.gyro == GyroReference::RotatedGravity {
-            // The bias is known from here on, and every move is integrated with it.
+            // The bias is known from here on, and every later move is integrated with it.
             let force = self.compensation.force(&interval.force_mps2);
             self.compensation.gyro_bias = interval.rate_radps - self.compensation.g * force;
         }
@@ -318,10 +221,11 @@ impl LeastSquaresEstimator {
         self.len += 1;
     }
 
-    /// Ends the stream and adjusts.
+    /// Ends the stream and computes the adjustment.
     ///
     /// # Errors
-    /// If the intervals don't determine the parameters, or are too many, or nothing converged.
+    /// If the intervals don't determine the parameters, or are too many, or the adjustment didn't
+    /// converge.
     pub fn finish(&mut self) -> Result<Estimate, Refusal> {
         while let Some((sample, dt_s, standing)) = self.detector.as_mut().and_then(Detector::drain)
         {
@@ -345,8 +249,8 @@ impl LeastSquaresEstimator {
         &self.intervals[..self.len]
     }
 
-    /// Moves between neighbouring intervals: `k` leads from interval k to k + 1. What came before
-    /// the first interval is not a move.
+    /// Moves between neighbouring intervals: `k` leads from interval k to k + 1. The samples before
+    /// the first interval are not a move.
     fn between(&self) -> &[Move] {
         &self.moves[1.min(self.len)..self.len]
     }
@@ -444,46 +348,5 @@ impl LeastSquaresEstimator {
             intervals: self.len,
             moves: self.between().iter().filter(|turn| turn.complete).count(),
         })
-    }
-}
-
-/// A setting that has to be a positive number.
-pub(crate) fn positive(field: &'static str, found: f64) -> Result<(), Refusal> {
-    if found > 0.0 && found.is_finite() {
-        Ok(())
-    } else {
-        Err(Refusal::NotPositive { field, found })
-    }
-}
-
-/// The names of settings that have to be positive, as values: their places in a list.
-#[cfg(feature = "state")]
-mod setting {
-    use serde::{Deserialize, Deserializer, Serialize, Serializer};
-
-    const NAMES: [&str; 5] = [
-        "gravity_mps2",
-        "shortest_s",
-        "encoder_sigma_rad",
-        "angle_random_walk",
-        "velocity_random_walk",
-    ];
-
-    #[allow(clippy::trivially_copy_pass_by_ref, reason = "the signature is serde's")]
-    pub(super) fn serialize<S: Serializer>(
-        name: &&'static str,
-        serializer: S,
-    ) -> Result<S::Ok, S::Error> {
-        match NAMES.iter().position(|known| known == name) {
-            Some(place) => (place as u8).serialize(serializer),
-            None => Err(serde::ser::Error::custom("a setting without a place in the list")),
-        }
-    }
-
-    pub(super) fn deserialize<'de, D: Deserializer<'de>>(
-        deserializer: D,
-    ) -> Result<&'static str, D::Error> {
-        let place = usize::from(u8::deserialize(deserializer)?);
-        NAMES.get(place).copied().ok_or_else(|| serde::de::Error::custom("no such setting"))
     }
 }

@@ -1,4 +1,5 @@
-//! A move between two static intervals: the gyros' rotation, and how it hangs on their parameters.
+//! A move between two static intervals: rotation by the gyros, and its sensitivity to their
+//! parameters.
 
 use nalgebra::{Matrix3, Quaternion, SMatrix, SVector, UnitQuaternion, Vector3};
 use octant_earth::rotation::{quaternion_of, renormalize};
@@ -26,7 +27,8 @@ pub(crate) fn matrix(rows: [[f64; 3]; 3]) -> Matrix3<f64> {
 }
 
 impl Compensation {
-    /// `None` if I + M_g or I + M_a has no inverse or a parameter is not finite.
+    /// Makes the compensation; `None` if I + M_g or I + M_a has no inverse or a parameter is not
+    /// finite.
     pub(crate) fn new(parameters: &Parameters) -> Option<Self> {
         if !parameters.to_array().iter().all(|value| value.is_finite()) {
             return None;
@@ -40,12 +42,12 @@ impl Compensation {
         })
     }
 
-    /// Specific force in b, m/s², of a measured one.
+    /// Compensates a measured specific force; in b, m/s².
     pub(crate) fn force(&self, measured_mps2: &Vector3<f64>) -> Vector3<f64> {
         self.accel * (measured_mps2 - self.accel_bias)
     }
 
-    /// Angular rate in b, rad/s, of a measured one, at a (true) specific force.
+    /// Compensates a measured angular rate at a (true) specific force; in b, rad/s.
     pub(crate) fn rate(&self, measured_radps: &Vector3<f64>, force: &Vector3<f64>) -> Vector3<f64> {
         self.gyro * (measured_radps - self.gyro_bias - self.g * force)
     }
@@ -65,7 +67,7 @@ pub(crate) struct Move {
     integrals: [Matrix3<f64>; 4],
     /// Duration, s.
     pub(crate) duration_s: f64,
-    /// No sample of the move was lost or invalid.
+    /// True if no sample of the move was lost or invalid.
     pub(crate) complete: bool,
 }
 
@@ -140,7 +142,7 @@ pub(crate) const GYRO_TERMS: [(usize, usize); 12] = [
 pub(crate) const ACCEL_TERMS: [(usize, usize); 9] =
     [(0, 0), (1, 0), (2, 0), (0, 1), (1, 2), (2, 3), (1, 1), (2, 1), (2, 2)];
 
-/// Adds a correction to 12 gyro parameters, in the order of the parameters' vector.
+/// Adds a correction to the parameters, in the order of the parameters' vector.
 pub(crate) fn corrected(parameters: &Parameters, correction: &SVector<f64, 30>) -> Parameters {
     let mut all = parameters.to_array();
     for (value, delta) in all.iter_mut().zip(correction.iter()) {

@@ -1,14 +1,14 @@
-//! Normal equations of a fixed size: solution, covariance, and what they don't determine.
+//! Normal equations of a fixed size: solution, covariance, and undetermined entries.
 
 use nalgebra::{Cholesky, SMatrix, SVector};
 
-/// Largest variance inflation: how many times the variance of a parameter may grow because the
-/// others are unknown too. Sequences made for the purpose stay below 10. A direction that nothing
-/// determines shows 1e7 and more: 1e13 is the rounding of the sums, less is what noise and errors
-/// at the point of linearisation feign.
+/// Largest variance inflation: the factor by which the variance of a parameter may grow because the
+/// others are unknown too. Sequences made for the purpose stay below 10. An undetermined direction
+/// shows 1e7 and more: 1e13 from the rounding of the sums, less where noise and errors at the point
+/// of linearisation simulate information.
 const INFLATION_MAX: f64 = 1e6;
 
-/// Solution of the normal equations and its covariance, for the `estimated` entries; the others are
+/// Solves the normal equations for the `estimated` entries, with the covariance; the others are
 /// zero.
 ///
 /// # Errors
@@ -31,7 +31,7 @@ pub(crate) fn solve<const N: usize>(
     }
     let scaled = SMatrix::<f64, N, N>::from_fn(|i, j| {
         if i == j {
-            // The ridge keeps the factorisation going where the inflation is to be reported.
+            // The ridge lets the factorisation continue, so that the inflation can be reported.
             1.0 + 1e-14
         } else {
             information[(i, j)] * scale[i] * scale[j]
@@ -52,7 +52,8 @@ pub(crate) fn solve<const N: usize>(
     Ok((covariance * right, covariance))
 }
 
-/// The entry that is nearest to a combination of the others, where the factorisation broke down.
+/// Index of the entry that is nearest to a combination of the others, where the factorisation
+/// failed.
 fn worst<const N: usize>(scaled: &SMatrix<f64, N, N>) -> usize {
     let mut found = (0, 0.0);
     for i in 0..N {

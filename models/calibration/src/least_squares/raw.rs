@@ -1,7 +1,7 @@
-//! The same calibration in terms of raw counts, the way data sheets of MEMS units print it.
+//! The same calibration in terms of raw counts, as in data sheets of MEMS units.
 //!
 //! A sensor's counts become SI with nominal values, `f̃ = k (raw − c)`, axis by axis, before the
-//! estimator sees them. Ours says `f̃ = (I + M) f + b`, so
+//! estimator gets them. The error model is `f̃ = (I + M) f + b`, so
 //! ```text
 //! f = (I + M)⁻¹ (k (raw − c) − b) = A k (raw − (c + b/k)),   A = (I + M)⁻¹
 //! ```
@@ -12,7 +12,7 @@ use super::moves::matrix;
 use nalgebra::Matrix3;
 use octant_sample::Parameters;
 
-/// The nominal values that the counts were turned into SI with.
+/// Nominal values with which the counts were converted to SI.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Nominal {
     /// c, counts.
@@ -32,13 +32,13 @@ pub struct RawModel {
     pub cross: [[f64; 3]; 3],
 }
 
-/// The accelerometers' parameters in raw counts; `None` if I + M_a has no inverse.
+/// Converts the accelerometers' parameters to raw counts; `None` if I + M_a has no inverse.
 #[must_use]
 pub fn accelerometer(parameters: &Parameters, nominal: &Nominal) -> Option<RawModel> {
     model(matrix(parameters.accel_matrix()), parameters.accel_bias, nominal)
 }
 
-/// The gyros' parameters in raw counts; `None` if I + M_g has no inverse. G is left out.
+/// Converts the gyros' parameters to raw counts; `None` if I + M_g has no inverse. G is left out.
 #[must_use]
 pub fn gyroscope(parameters: &Parameters, nominal: &Nominal) -> Option<RawModel> {
     model(matrix(parameters.gyro_matrix()), parameters.gyro_bias, nominal)

@@ -1,23 +1,23 @@
-//! Gyros that don't see Earth rate, from gravity turned between static attitudes.
+//! Gyros that don't resolve Earth rate, from gravity turned between static attitudes.
 //!
 //! The bias is the mean rate of the first static interval. The nine terms of M_g make the rotation
 //! in each move turn the gravity measured before it into the gravity measured after it
 //! (D. Tedaldi, A. Pretto, E. Menegatti, *A robust and easy to implement method for IMU calibration
-//! without external equipments*, ICRA 2014). Earth rate stays in the bias: that is the limit of the
-//! method, and far below the noise of the gyros that it is for.
+//! without external equipments*, ICRA 2014). Earth rate remains in the bias: that is the limit of
+//! the method, and far below the noise of the gyros for which it is made.
 
-use super::Refusal;
 use super::interval::Interval;
 use super::moves::{Compensation, Move};
 use super::normal::solve;
+use super::refusal::Refusal;
 use nalgebra::{SMatrix, SVector};
 use octant_earth::rotation::{exp, skew};
 
-/// Correction to S_g and M_g (nine, in the order of the parameters), their σ, and the root mean
-/// square residual of the unit gravity vector.
+/// Estimates the correction to S_g and M_g (nine, in the order of the parameters), their σ, and the
+/// root mean square residual of the unit gravity vector.
 ///
-/// `moves[k]` leads from interval k to interval k + 1; `compensation` is what they were integrated
-/// with; forces are compensated with `accel`.
+/// `moves[k]` leads from interval k to interval k + 1; the moves were integrated with
+/// `compensation`; forces are compensated with `accel`.
 pub(crate) fn estimate(
     intervals: &[Interval],
     moves: &[Move],
@@ -58,6 +58,6 @@ pub(crate) fn estimate(
     Err(Refusal::Diverged)
 }
 
-/// Scale factors wrong by a quarter need sixteen: the residuals stay large while the moves are
-/// linearised about such values.
+/// Largest number of steps; scale factors wrong by a quarter need sixteen: the residuals stay large
+/// while the moves are linearised about such values.
 const ITERATIONS_MAX: usize = 50;

@@ -1,68 +1,31 @@
-//! What stands in for samples that are missing, invalid, stuck or not believed, and how uncertain
-//! that is.
+//! Bridging of samples that are missing, invalid, stuck or rejected.
 //!
-//! While a calibration runs on a base that stands, its motion is known: the Earth's rotation, what
-//! the encoders say of the gimbals, and gravity. An attitude that is bridged so is as good as two
-//! readings of an encoder; a hold of the last increments would lose what the gimbals do. On a ship
-//! the last increments are held, and the attitude becomes less sure with the square of the time.
+//! During a calibration on a base at rest the motion is known: the Earth's rotation, the gimbal
+//! angles from the encoders, and gravity. An attitude bridged with it is as good as two readings of
+//! an encoder; a hold of the last increments would lose the motion of the gimbals. On a ship the
+//! last increments are held, and the uncertainty of the attitude grows with the square of the time.
 //!
-//! What a jump would have turned the attitude by, had it been real, is not known to be wrong: the
-//! attitude is opened along it (one direction, not three), and the measurements decide.
+//! A jump may have been real: the attitude is opened along the turn that the jump would have caused
+//! (one direction, not three), and the measurements decide.
 
-use super::estimation::Estimation;
-use super::{Core, increments, kalman_of};
-use crate::config::{Base, BaseMotion};
+use super::uncertainty::on;
+use super::{Core, increments};
+use crate::config::Base;
 use crate::continuity::{Edge, c_cb, gimbal_turn, share_of_turn};
 use crate::screen::{ACCELEROMETERS, Counts, Examined, GYROS};
 use nalgebra::{Matrix3, Vector3};
 use octant_sample::counts::{DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS, GIMBAL_LSB_RAD};
-use octant_sample::parameters::Group;
 use octant_sample::{GimbalAngles, Health, Mode, Parameters, Sample, Status};
 
-/// Beyond this an attitude jump that wasn't believed isn't followed, rad: 3°, as far as the linear
-/// error model bears.
-pub(super) const OPEN_MAX_RAD: f64 = 0.052;
-/// The same for velocity, m/s.
-pub(super) const OPEN_MAX_MPS: f64 = 1.0;
-/// Uncertainty of the attitude from which on the parameters are held, rad: 600″.
-const HOLD_RAD: f64 = 2.9e-3;
-/// Turn of a gimbal that is none, rad: 20″. Encoders of a standing gimbal flicker.
-const TURNED_RAD: f64 = 1e-4;
-/// Turn in one interval that is a motion and not the flicker of a reading, rad: 1″. Less than that is
-/// what the first sample of a move turns: where it isn't believed, the encoders' turn stands in.
+/// Smallest turn in one interval that is a motion and not the flicker of a reading, rad: 1″. The
+/// first sample of a move may turn by less: if it is rejected, the encoders' turn replaces it.
 const TURNS_RAD: f64 = 5e-6;
 
-/// Turn of the gimbals in one step of a gap, rad, and steps of a gap at most.
+/// Turn of the gimbals in one step of a gap, rad, and largest number of steps of a gap.
 const STEP_RAD: f64 = 5e-4;
 const STEPS_MAX: u64 = 12_000;
 
-/// What is remembered of the stretch that is being bridged.
-#[derive(Clone, Debug, Default)]
-#[cfg_attr(feature = "state", derive(serde::Serialize, serde::Deserialize))]
-pub(super) struct Bridge {
-    /// Encoder angles of the last sample.
-    pub(super) gimbal: GimbalAngles,
-    /// Encoder angles before the first of the identical counts of each gyro.
-    run_start: [GimbalAngles; 3],
-    /// Repeated counts of each channel that were used, before it was found stuck.
-    used_repeats: [u32; 6],
-    /// Channels that have been bridged since the uncertainty was last accounted for.
-    open: u8,
-    /// What jumps would have added, had they been believed: rad and m/s, in b.
-    disbelieved: (Vector3<f64>, Vector3<f64>),
-    /// Channels that were bridged because they jumped, up to the last sample.
-    jumps: u8,
-    /// Encoder angles before the stretch, and whether their uncertainty is accounted for.
-    start: GimbalAngles,
-    encoders_counted: [bool; 2],
-    /// Length of the stretch so far, and up to the last account, s.
-    elapsed_s: f64,
-    accounted_s: f64,
-    /// Samples bridged so far.
-    pub(super) samples: u64,
-}
-
-/// Raw increments of one interval, rad and m/s: measured ones, or what the known motion makes.
+/// Raw increments of one interval, rad and m/s: measured ones, or those of the known motion.
 #[derive(Clone, Copy, Debug)]
 struct Increments {
     delta_theta: Vector3<f64>,
@@ -87,7 +50,7 @@ fn counts_of(sample: &Sample) -> Counts {
     [x, y, z, u, v, w]
 }
 
-/// What the sensors make of true increments: their error model, forwards.
+/// Applies the sensors' error model to true increments.
 fn measured(
     parameters: &Parameters,
     theta: &Vector3<f64>,
@@ -106,36 +69,25 @@ fn measured(
     }
 }
 
-/// The part of a vector on these channels.
-fn on(channels: u8, v: &Vector3<f64>) -> Vector3<f64> {
-    Vector3::from_fn(|i, _| if channels & (1 << i) == 0 { 0.0 } else { v[i] })
-}
-
-/// Direction kept, length limited.
-fn at_most(v: Vector3<f64>, length: f64) -> Vector3<f64> {
-    let norm = v.norm();
-    if norm > length { v * (length / norm) } else { v }
-}
-
 impl Core {
-    /// The motion is known: a calibration on a base that stands.
+    /// Returns whether the motion is known: in a calibration on a base at rest.
     fn knows_its_motion(&self) -> bool {
         self.mode == Mode::Calibrating && self.config.screening.base == Base::Still
     }
 
-    /// True increments over an interval at whose start the attitude is that of the strapdown, when
-    /// the gimbals turn the body by `turn` in it.
+    /// True increments over an interval that starts in the strapdown's attitude and in which the
+    /// gimbals turn the body by `turn`.
     fn known_motion(&self, turn: &Vector3<f64>, interval_s: f64) -> (Vector3<f64>, Vector3<f64>) {
         let c_bn = self.strapdown.c_nb().transpose();
         let earth = self.strapdown.earth();
         let theta = c_bn * earth.earth_rate() * interval_s + turn;
         let up = c_bn * Vector3::new(0.0, 0.0, -earth.gravity_mps2 * interval_s);
-        // In the middle of the interval the body has turned by half.
+        // At the middle of the interval the body has turned by half.
         (theta, up - theta.cross(&up) * 0.5)
     }
 
-    /// The encoders show a turn in this sample's interval, planned or not: a drive that stalled and
-    /// goes on, a set point that came late. What turns is no jump.
+    /// Returns whether the encoders show a turn in this sample's interval, planned or not: a drive
+    /// that stalled and goes on, a late set point. Increments of a turn are no jump.
     fn gimbals_turn(&self, sample: &Sample) -> bool {
         let turned = |now: i32, before: i32| {
             f64::from(now.wrapping_sub(before)).abs() * GIMBAL_LSB_RAD > TURNS_RAD
@@ -146,8 +98,8 @@ impl Core {
                 || turned(sample.gimbal.roll, before.roll))
     }
 
-    /// Turn of the gimbals in this sample's interval; none where the encoders can't be used. Those of
-    /// standing gimbals flicker, which adds up to nothing, or begin to turn.
+    /// Turn of the gimbals in this sample's interval; zero if the encoders are invalid. Encoders of
+    /// gimbals at rest flicker, which sums to zero, or show the beginning of a turn.
     fn gimbals_turned(&self, sample: &Sample) -> Vector3<f64> {
         if sample.status.contains(Status::GIMBAL_INVALID) {
             return Vector3::zeros();
@@ -155,7 +107,7 @@ impl Core {
         gimbal_turn(self.bridge.gimbal, sample.gimbal)
     }
 
-    /// A sample that isn't plainly good.
+    /// Handles a sample that didn't pass the screen.
     #[cold]
     #[inline(never)]
     pub(super) fn doubt(&mut self, sample: &Sample, interval_s: f64, health: &mut Health) {
@@ -199,7 +151,7 @@ impl Core {
             taken.delta_velocity -= on(channels >> 3, &off.1);
             if found.found_stuck & channels != 0 && still {
                 self.make_up(&mut taken, found.found_stuck, sample, standing, interval_s);
-                // A dead channel says nothing of any motion.
+                // A stuck channel carries no information on the motion.
                 self.bridge.disbelieved.0 -= on(found.found_stuck, &self.bridge.disbelieved.0);
                 self.bridge.disbelieved.1 -= on(found.found_stuck >> 3, &self.bridge.disbelieved.1);
             }
@@ -216,8 +168,8 @@ impl Core {
         if channels == 0 {
             self.end_stretch();
         }
-        // On a base that moves nothing says whether what is believed again is right: a spike that lasts
-        // is believed too, and the last increments stood in for it badly.
+        // On a base that moves a return to acceptance may be wrong: a lasting spike is accepted
+        // too, and the last increments were a poor replacement for it.
         if found.jumped != 0 {
             self.bridge.jumps |= found.jumped;
         } else if self.bridge.jumps != 0 {
@@ -229,7 +181,7 @@ impl Core {
         }
     }
 
-    /// Out of line: the integration itself belongs to where good samples are.
+    /// Not inlined: the inlined integration is for good samples.
     #[inline(never)]
     fn integrate_bridged(&mut self, taken: &Increments, interval_s: f64) {
         self.navigate(&taken.delta_theta, &taken.delta_velocity, interval_s);
@@ -247,14 +199,14 @@ impl Core {
                 channels |= ACCELEROMETERS;
             }
         }
-        // Half of the specific force measured and half of it known has no error model.
+        // A specific force that is partly measured and partly known has no error model.
         if channels & ACCELEROMETERS != 0 {
             channels |= ACCELEROMETERS;
         }
         channels
     }
 
-    /// Remembers where the gimbals were before a run of identical counts.
+    /// Records the gimbal angles before a run of identical counts.
     fn note_runs(&mut self) {
         for axis in 0..3 {
             if self.screen.run(axis) == 1 {
@@ -263,7 +215,7 @@ impl Core {
         }
     }
 
-    /// Counts the repeats that are used as they are.
+    /// Counts the repeats that are used unchanged.
     fn count_repeats(&mut self, bridged: u8) {
         for channel in 0..6 {
             let used = &mut self.bridge.used_repeats[channel];
@@ -275,21 +227,13 @@ impl Core {
         }
     }
 
-    fn begin_stretch(&mut self) {
-        if self.bridge.open == 0 {
-            self.bridge.start = self.bridge.gimbal;
-            self.bridge.encoders_counted = [false; 2];
-            (self.bridge.elapsed_s, self.bridge.accounted_s) = (0.0, 0.0);
-        }
-    }
-
-    /// The last increments that were believed.
+    /// Last increments that were accepted.
     fn held_increments(&self) -> Increments {
         Increments::of(self.screen.last())
     }
 
-    /// A channel is found stuck some samples late: what it missed in these is made up for in this
-    /// one. What it gave is known, the same each time.
+    /// Adds the increments that a channel missed before it was found stuck to this sample. Its
+    /// counts in that time are known: they were identical.
     fn make_up(
         &self,
         taken: &mut Increments,
@@ -318,7 +262,8 @@ impl Core {
                 gimbal_turn(self.bridge.run_start[axis], self.bridge.gimbal) * share
             };
             let (theta, v) = self.known_motion(&turn, late * interval_s);
-            // The attitude is that at the end of them, known_motion goes on from its start.
+            // The attitude is that at the end of these samples, whereas `known_motion` starts from
+            // it.
             let v = v + theta.cross(&v);
             let known = measured(&self.parameters, &theta, &v, late * interval_s);
             if channel < 3 {
@@ -330,105 +275,8 @@ impl Core {
         }
     }
 
-    /// The stretch is over: a good sample has come.
-    pub(super) fn end_stretch(&mut self) {
-        if self.bridge.open != 0 {
-            self.account();
-            self.bridge.open = 0;
-        }
-    }
-
-    /// Adds the uncertainty of what has been bridged since the last account to the filter.
-    pub(super) fn account(&mut self) {
-        if self.bridge.open == 0 {
-            return;
-        }
-        let bridge = &mut self.bridge;
-        let (turned, moved) = (at_most(bridge.disbelieved.0, OPEN_MAX_RAD), bridge.disbelieved.1);
-        bridge.disbelieved = Default::default();
-        let moved = at_most(moved, OPEN_MAX_MPS);
-        let mut attitude = turned * turned.transpose();
-        let mut velocity = moved * moved.transpose();
-        match self.config.screening.base {
-            Base::Still => attitude += self.encoder_uncertainty(),
-            Base::Moving(motion) => {
-                let (rotation, speed) = self.hold_uncertainty(&motion);
-                for axis in 0..3 {
-                    if self.bridge.open & (1 << axis) != 0 {
-                        attitude[(axis, axis)] += rotation;
-                    }
-                }
-                if self.bridge.open & ACCELEROMETERS != 0 {
-                    velocity += Matrix3::identity() * speed;
-                }
-            }
-        }
-        let c = self.strapdown.c_nb();
-        let holds =
-            attitude.trace() > HOLD_RAD * HOLD_RAD && self.config.screening.base != Base::Still;
-        let Estimation::Kalman(filter) = &mut self.estimation else { return };
-        filter.disturb(
-            &self.strapdown,
-            &(c * attitude * c.transpose()),
-            &(c * velocity * c.transpose()),
-        );
-        if holds {
-            filter.hold();
-        }
-    }
-
-    /// Variance of the attitude (rad², in b) from the encoders over the stretch so far: two readings
-    /// of each gimbal that has turned, once, and its axis, which is known to the body axes no better
-    /// than the gyros' are before they are calibrated.
-    fn encoder_uncertainty(&mut self) -> Matrix3<f64> {
-        let axes_rad =
-            kalman_of(&self.config).map_or(0.0, |kalman| kalman.prior.of(Group::GyroMisalignment));
-        let sigma = self.config.screening.encoder_sigma_rad;
-        let Bridge { start, gimbal, open, .. } = self.bridge;
-        let turns = [
-            gimbal_turn(start, GimbalAngles { azimuth: gimbal.azimuth, ..start }),
-            gimbal_turn(start, GimbalAngles { roll: gimbal.roll, ..start }),
-        ];
-        let mut variance = Matrix3::zeros();
-        for (turn, counted) in turns.iter().zip(&mut self.bridge.encoders_counted) {
-            let angle = turn.norm();
-            if angle < TURNED_RAD || *counted {
-                continue;
-            }
-            *counted = true;
-            let along = on(open & GYROS, &(turn / angle));
-            variance += along * along.transpose() * (2.0 * sigma * sigma);
-            // Across it, on the axes that were bridged: seen from a full quarter turn.
-            let across = axes_rad * axes_rad;
-            for axis in 0..3 {
-                if open & (1 << axis) != 0 {
-                    variance[(axis, axis)] +=
-                        across * (1.0 - turn[axis] * turn[axis] / (angle * angle));
-                }
-            }
-        }
-        variance
-    }
-
-    /// Variances of attitude (rad²) and velocity ((m/s)²), each axis, by which a hold became less
-    /// sure since the last account: the square of the largest departure at its end, less that at the
-    /// last account.
-    fn hold_uncertainty(&mut self, motion: &BaseMotion) -> (f64, f64) {
-        let table =
-            if self.gimbals_may_move() { self.config.turntable.acceleration_radps2 } else { 0.0 };
-        let at = |t: f64| {
-            let departed = 0.5 * motion.acceleration_radps2 * t * t;
-            let bounded = departed.min(2.0 * motion.rate_radps * t).min(2.0 * motion.angle_rad);
-            let rotation = bounded + 0.5 * table * t * t;
-            let force = (0.5 * motion.jerk_mps3 * t * t).min(2.0 * motion.force_mps2 * t);
-            (rotation * rotation, force * force)
-        };
-        let (before, now) = (at(self.bridge.accounted_s), at(self.bridge.elapsed_s));
-        self.bridge.accounted_s = self.bridge.elapsed_s;
-        ((now.0 - before.0).max(0.0), (now.1 - before.1).max(0.0))
-    }
-
-    /// Bridges `missing` samples before this one by what is known; `false` if too little is.
+    /// Bridges `missing` samples before this one by the known motion; `false` if that isn't known
+    /// well enough.
     #[cold]
     pub(super) fn bridge_known(&mut self, missing: u64, sample: &Sample) -> bool {
         if !self.config.screening.bridging
@@ -438,11 +286,12 @@ impl Core {
         {
             return false;
         }
-        // Where the gimbals were when this sample's interval began: its own turn taken back.
+        // Gimbal angles at the start of this sample's interval: its own turn is taken back.
         let (from, to) = (self.bridge.gimbal, self.before(sample));
         self.begin_stretch();
         let channels = GYROS | ACCELEROMETERS;
-        // The turns of both gimbals and of the Earth don't commute. A gap may be long, but its turns are few.
+        // The turns of both gimbals and of the Earth don't commute. A gap may be long, but it
+        // contains few turns.
         let turned_rad =
             (to.azimuth_rad() - from.azimuth_rad()).abs() + (to.roll_rad() - from.roll_rad()).abs();
         let steps = missing.max((turned_rad / STEP_RAD) as u64).min(STEPS_MAX);
@@ -466,23 +315,11 @@ impl Core {
         true
     }
 
-    /// On a base that moves a gap leaves the attitude less sure by what the base can have done.
-    #[cold]
-    pub(super) fn doubt_gap(&mut self, missing: u64) {
-        if !self.config.screening.bridging || self.filter().is_none() || missing == 0 {
-            return;
-        }
-        self.begin_stretch();
-        self.bridge.open |= GYROS | ACCELEROMETERS;
-        self.bridge.elapsed_s += missing as f64 * self.sample_s;
-        self.bridge.samples = self.bridge.samples.saturating_add(missing);
-        self.end_stretch();
-    }
-
-    /// Encoder angles at the start of this sample's interval, by the turn that the gyros felt in it.
+    /// Encoder angles at the start of this sample's interval, from the gyros' turn in it.
     fn before(&self, sample: &Sample) -> GimbalAngles {
         let raw = Increments::of(&counts_of(sample));
-        // The body is where the gimbals have turned it to, not where the strapdown stands.
+        // The body's attitude follows from the gimbal angles, not from the strapdown, which is
+        // behind.
         let c_cb = |at: GimbalAngles| c_cb(at.azimuth_rad(), at.roll_rad());
         let turned = c_cb(self.bridge.gimbal).transpose() * c_cb(sample.gimbal);
         let c_bn = turned.transpose() * self.strapdown.c_nb().transpose();

@@ -1,13 +1,13 @@
-//! What a configuration has to keep before a core is made from it.
+//! Checks of a configuration before a core is made from it.
 
 use crate::config::{AidingMode, Alignment, Base, BaseMotion, Config, Estimator};
 use crate::schedule::DoesNotFit;
 
-/// Longest calibration or navigation, s: thirty years. Its ticks can be multiplied by anything that
-/// they are multiplied by.
+/// Longest calibration or navigation, s: thirty years. Its number of ticks is small enough for all
+/// later multiplications.
 const DURATION_MAX_S: f64 = 1e9;
 
-/// Why a configuration can't be run.
+/// Reason why a configuration can't be run.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum ConfigError {
     /// The sequence doesn't fit into the calibration time.
@@ -20,7 +20,7 @@ pub enum ConfigError {
         field: &'static str,
         /// Value found, ns.
         found_ns: u64,
-        /// What is expected.
+        /// Values expected.
         expected: &'static str,
     },
     /// A number that must be positive and finite isn't.
@@ -47,7 +47,7 @@ pub enum ConfigError {
         /// Value found, s.
         found_s: f64,
     },
-    /// A test for identical counts that every sample fails.
+    /// A test for identical counts that every sample would fail.
     #[error("the number of identical samples is {found}, at least 2 are expected")]
     StuckSamples {
         /// Value found.
@@ -62,7 +62,7 @@ pub enum ConfigError {
     /// The estimator can't be set up.
     #[error("set up the estimator: {0}")]
     Estimator(#[from] crate::least_squares::Refusal),
-    /// Coarse alignment takes longer than the instrument stands.
+    /// Coarse alignment takes longer than the instrument rests.
     #[error(
         "coarse alignment takes {alignment_s} s, and the first stop is held for {dwell_s} s only"
     )]

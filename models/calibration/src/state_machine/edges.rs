@@ -1,7 +1,8 @@
-//! Rates that break off, and what is done about them.
+//! Handling of discontinuities of rates.
 
-use super::bridge::{OPEN_MAX_MPS, OPEN_MAX_RAD};
+use super::disturbance::Disturbance;
 use super::estimation::Estimation;
+use super::uncertainty::{OPEN_MAX_MPS, OPEN_MAX_RAD};
 use super::{Core, kalman_of};
 use crate::config::Base;
 use crate::continuity::{Block, Continuity, Edge, TURNS_RAD, gimbal_turn};
@@ -10,58 +11,30 @@ use nalgebra::{Matrix3, Vector3};
 use octant_sample::parameters::Group;
 use octant_sample::{GimbalAngles, Health, Mode, Sample, Status};
 
-/// A block is as long as it should be within this share; after a gap it isn't.
+/// Tolerance of the length of a block, as a share; after a gap a block is outside of it.
 const LENGTH_SHARE: f64 = 0.02;
 
-/// Correction of the attitude after which velocity in n breaks off by itself, rad: 50″ of gravity are
-/// half of what noise is allowed.
+/// Correction of the attitude after which velocity in n has an edge from the correction, rad: 50″
+/// of gravity are half of the allowance for noise.
 pub(super) const CORRECTION_RAD: f64 = 2.4e-4;
 
-/// Time within which something that was noticed explains a recovery, s: a recovery goes back by one to two
-/// minutes.
+/// Time for which a disturbance explains a recovery, s: a recovery goes back by one to two minutes.
 const EXPLAINS_S: f64 = 60.0;
 
-/// A disturbance of a base that stands is over after so long without a sign of it, s: longer than the
-/// filter of steps is blind after one.
+/// Time without a sign of a disturbance after which it is over, s, on a base at rest: longer than
+/// the step filter is blind after one.
 const QUIET_S: f64 = 2.5;
 /// Standard gravity, for a bound.
 const GRAVITY_MPS2: f64 = 9.81;
 
-/// The gimbals have turned by more than encoders flicker.
+/// Returns whether the gimbals have turned by more than the flicker of the encoders.
 fn turned(from: GimbalAngles, to: GimbalAngles) -> bool {
     (to.azimuth_rad() - from.azimuth_rad()).abs().max((to.roll_rad() - from.roll_rad()).abs())
         > TURNS_RAD
 }
 
-/// Something that disturbed the sensors on a base that stands, and what the filter was opened by for it.
-#[derive(Clone, Copy, Debug, Default)]
-#[cfg_attr(feature = "state", derive(serde::Serialize, serde::Deserialize))]
-pub(super) struct Disturbance {
-    /// What was felt beyond the known motion, in n, rad and m/s.
-    turned: Vector3<f64>,
-    moved: Vector3<f64>,
-    /// Variances that have been added for the turn, the velocity, and the velocity by the turn.
-    opened: [Matrix3<f64>; 3],
-    /// Variance that has been added for encoders and axes, rad².
-    axes: f64,
-}
-
-impl Disturbance {
-    /// What is missing of the variance along a vector.
-    fn open(&mut self, which: usize, along: Vector3<f64>) -> Matrix3<f64> {
-        let square = along.norm_squared();
-        if square == 0.0 {
-            return Matrix3::zeros();
-        }
-        let there = along.dot(&(self.opened[which] * along)) / square;
-        let missing = along * along.transpose() * ((square - there).max(0.0) / square);
-        self.opened[which] += missing;
-        missing
-    }
-}
-
 impl Core {
-    /// From the first sample of a calibration by a filter on.
+    /// Starts the detection with the first sample of a calibration by a filter.
     pub(super) fn start_edges(&mut self) {
         let screening = &self.config.screening;
         let Some(kalman) = kalman_of(&self.config) else { return };
@@ -79,12 +52,12 @@ impl Core {
         }
     }
 
-    /// Samples for which something that was noticed explains a recovery of the filter.
+    /// Number of samples for which a disturbance explains a recovery of the filter.
     pub(super) fn explains_ticks(&self) -> u64 {
         super::ticks(EXPLAINS_S, self.sample_s)
     }
 
-    /// The gimbals move, or did so within these samples.
+    /// Returns whether the gimbals move, or did so within these samples.
     pub(super) fn has_moved_within(&self, ticks: u64) -> bool {
         self.cursor.as_ref().is_some_and(|cursor| {
             self.phase_tick() < cursor.arrival_tick().saturating_add(ticks)
@@ -92,13 +65,13 @@ impl Core {
         })
     }
 
-    /// Hands a block of increments over, and does something about a rate that broke off.
+    /// Passes a block of increments to the detector, and handles a rate with an edge.
     #[inline(never)]
     pub(super) fn look_for_edges(&mut self, sample: &Sample, health: &mut Health) {
         self.block_tick = (self.tick / self.block_ticks + 1) * self.block_ticks;
         let Some(continuity) = &self.continuity else { return };
         let before = continuity.gimbal();
-        // Encoders that slipped say nothing of moves any more.
+        // Encoders that slipped are no evidence of moves.
         let invalid = sample.status.contains(Status::GIMBAL_INVALID);
         let blind = invalid || self.slips.count != 0 || continuity.distrusts_encoders();
         let moves = self.gimbals_may_move() || (!invalid && turned(before, sample.gimbal));
@@ -109,7 +82,7 @@ impl Core {
         let felt = filter.take_turned();
         let settled = !filter.is_recovering();
         let whole_s = self.block_ticks as f64 * self.sample_s;
-        // Where gimbals that stand are doesn't matter.
+        // The angles of gimbals at rest don't matter.
         let gimbal = if blind { before } else { sample.gimbal };
         let beyond = if still { self.beyond(&felt, before, gimbal) } else { Default::default() };
         let Some(continuity) = &mut self.continuity else { return };
@@ -121,7 +94,8 @@ impl Core {
             return;
         }
         let block = Block {
-            // The estimate changes with every measurement, what the sensors show doesn't.
+            // The measured turn, not the compensated one: the estimate changes with every
+            // measurement.
             turn: felt.delta_theta + errors * felt.delta_theta,
             velocity: felt.delta_velocity_n,
             gimbal,
@@ -138,7 +112,7 @@ impl Core {
         }
     }
 
-    /// What was felt beyond what is known of the motion of a base that stands, in n: rad and m/s.
+    /// Turn and velocity beyond the known motion of a base at rest, in n: rad and m/s.
     fn beyond(
         &self,
         felt: &Turned,
@@ -151,9 +125,10 @@ impl Core {
         (turn - earth.earth_rate() * felt.elapsed_s, felt.delta_velocity_n + weight)
     }
 
-    /// A base that stands: what the sensors felt beyond the known motion since two seconds before a rate
-    /// broke off is what the attitude and the velocity may be off by. They are opened along it, and the
-    /// measurements decide. It goes on until the gimbals stand and two and a half seconds have been quiet.
+    /// Follows a disturbance on a base at rest: attitude and velocity may be wrong by the turn and
+    /// velocity beyond the known motion since two seconds before the edge. They are opened along
+    /// these, and the measurements decide. The disturbance ends when the gimbals rest and two and a
+    /// half seconds were quiet.
     fn follow_disturbance(
         &mut self,
         broke_off: bool,
@@ -192,7 +167,7 @@ impl Core {
         let more = (axes - disturbance.axes).max(0.0);
         disturbance.axes += more;
         attitude += Matrix3::identity() * more;
-        // Velocity by a tilt that has grown over half a second.
+        // Velocity by a tilt that has existed for half a second.
         let tilt = disturbance.turned * (0.5 * GRAVITY_MPS2);
         let velocity = disturbance.open(1, disturbance.moved) + disturbance.open(2, tilt);
         self.disturbance = Some(disturbance);
@@ -200,7 +175,7 @@ impl Core {
         filter.disturb(&self.strapdown, &attitude, &velocity);
     }
 
-    /// Variance of what gyros and encoders may show differently over a move, rad².
+    /// Variance of the possible difference between gyros and encoders over a move, rad².
     fn encoders_and_axes(&self) -> f64 {
         let sigma = self.config.screening.encoder_sigma_rad;
         let parameters = |group: Group| {
@@ -210,8 +185,9 @@ impl Core {
         2.0 * sigma * sigma + axes * axes
     }
 
-    /// What the filter learned in the last minute is undone, after something that the edge shows, or that
-    /// may be of the gyros too; where it can't be, the calibration will be refused.
+    /// Undoes the filter's estimation since its checkpoint, after a disturbance of which the edge
+    /// is a sign, or that may be in the gyros too; if that is impossible, the calibration will be
+    /// refused.
     #[cold]
     #[inline(never)]
     pub(super) fn mend(&mut self, edge: Edge) {

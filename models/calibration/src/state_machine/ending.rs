@@ -1,4 +1,4 @@
-//! The end of a calibration: judged, parameters and attitude in place, and the table of it.
+//! End of a calibration: judgement, parameters and attitude, and the table.
 
 use super::estimation::Estimation;
 use super::judgement::judge;
@@ -12,8 +12,8 @@ use nalgebra::Vector3;
 use octant_sample::{DeviceTime, Health, Mode, Output};
 
 impl Core {
-    /// The source has ended. A calibration that still runs is concluded with what there is, as at
-    /// the end of its duration; otherwise nothing changes. Answers with the last output, mode and
+    /// Ends the stream. A calibration that still runs is concluded with the data so far, as at the
+    /// end of its duration; otherwise nothing changes. Returns the last output with mode and
     /// revision brought up to date.
     pub fn end_of_stream(&mut self) -> Output {
         if self.mode == Mode::Calibrating {
@@ -22,8 +22,8 @@ impl Core {
         self.output(Health::empty(), f64::NAN)
     }
 
-    /// Out of the way: the copies that an adjustment makes would give every step a frame of a
-    /// hundred kilobytes, each page of which is touched on entry.
+    /// Not inlined: the copies that an adjustment makes would give every step a frame of a hundred
+    /// kilobytes, each page of which is touched on entry.
     #[cold]
     #[inline(never)]
     pub(super) fn finish_calibration(&mut self, at: DeviceTime) {
@@ -36,14 +36,14 @@ impl Core {
         }
     }
 
-    /// Brings the estimation to its end: judged, parameters and attitude in place.
+    /// Concludes the estimation: judges it, and sets parameters and attitude.
     fn conclude(&mut self) -> Result<Quality, Refusal> {
         if let (Estimation::Kalman(filter), Some(kalman)) =
             (&mut self.estimation, kalman_of(&self.config))
         {
             filter.finish_drift(&self.parameters);
             let period = kalman.aiding_period_ns;
-            // A stream that ended early could bring no more.
+            // A stream that ended early could not bring more measurements.
             let ticks = self.calibration_ticks.min(self.tick);
             let expected = ticks * self.config.sample_period_ns / period;
             let (bridged, gimbal_slips) = (self.bridge.samples, self.slips.count);
@@ -79,7 +79,7 @@ impl Core {
                 Estimation::Kalman(filter) => {
                     filter.covariance().at(PARAMETERS + i, PARAMETERS + j)
                 }
-                // Least squares hands over standard deviations alone.
+                // Least squares provides standard deviations only.
                 _ if i == j => self.sigma[i] * self.sigma[i],
                 _ => 0.0,
             })

@@ -1,4 +1,4 @@
-//! Which estimator runs, and what it needs beside the samples.
+//! The estimator that runs, and its input beside the samples.
 
 use crate::config::{Calibration, Config, Estimator};
 use crate::external_turntable::ExternalTurntableEstimator;
@@ -7,11 +7,11 @@ use crate::least_squares::{Estimate, LeastSquaresEstimator, Refusal};
 use nalgebra::Vector3;
 use octant_sample::Sample;
 
-/// The estimator of a calibration. All of it is in place: the core doesn't allocate.
+/// Estimator of a calibration. All of it is stored in place: the core doesn't allocate.
 #[derive(Clone, Debug)]
 #[allow(clippy::large_enum_variant, reason = "no_std without alloc: there is no box to put it in")]
 pub(super) enum Estimation {
-    /// None runs.
+    /// No estimator runs.
     Idle,
     Kalman(CalibrationFilter),
     LeastSquares(LeastSquaresEstimator),
@@ -46,7 +46,7 @@ impl Estimation {
         })
     }
 
-    /// Hands a raw sample to an estimator that works on those.
+    /// Passes a raw sample to an estimator that uses raw samples.
     pub(super) fn raw_sample(&mut self, sample: &Sample, interval_s: f64, standing: bool) {
         match self {
             Self::LeastSquares(estimator) => estimator.step(sample, interval_s, Some(standing)),
@@ -55,7 +55,7 @@ impl Estimation {
         }
     }
 
-    /// Adjusts, if this is an estimator that does so at the end.
+    /// Computes the adjustment, if the estimator has one.
     pub(super) fn adjust(&self) -> Option<Result<Estimate, Refusal>> {
         match self {
             Self::LeastSquares(estimator) => Some(estimator.clone().finish()),
@@ -65,8 +65,8 @@ impl Estimation {
     }
 }
 
-/// Sums of raw increments over the present standstill: from these, and parameters that are known
-/// only at its end, the attitude can still be found.
+/// Sums of raw increments over the present standstill: with these the attitude can be found at its
+/// end, when the parameters become known.
 #[derive(Clone, Copy, Debug, Default)]
 #[cfg_attr(feature = "state", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Standstill {

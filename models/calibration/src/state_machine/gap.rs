@@ -5,21 +5,20 @@ use super::estimation::Estimation;
 use crate::config::Base;
 use octant_sample::{Mode, Sample};
 
-/// Missing samples over which the last increments are held; what is longer is lost.
+/// Missing samples over which the last increments are held; the rest of a longer gap is lost.
 const HOLD_MAX_SAMPLES: u64 = 400;
-/// The same where bridging is on and the base moves, s: see [`crate::screen`].
+/// Longest hold with bridging on a base that moves, s: see [`crate::screen`].
 const HOLD_MOVING_S: f64 = 0.1;
 
 impl Core {
-    /// Bridges the missing samples before this one: by what is known of the motion, else by holding
-    /// the last increments, up to a bound: a hold without one makes a fault at the start of a move
-    /// worse.
+    /// Bridges the missing samples before this one: by the known motion, else by holding the last
+    /// increments, up to a bound: an unbounded hold makes a fault at the start of a move worse.
     #[cold]
     pub(super) fn bridge(&mut self, missing: u64, sample: &Sample) {
         if !self.bridge_known(missing, sample) {
             self.hold_last(missing);
         }
-        // The clock of the procedure goes on: the turntable does too.
+        // The clock of the procedure goes on, as does the turntable.
         self.tick = self.tick.saturating_add(missing);
         self.disturbed_tick = self.tick;
     }

@@ -1,45 +1,16 @@
-//! Do the gimbals stand where they were sent, and do gyros and encoders show the same turns?
+//! Checks of the gimbals: encoders against the set point, and gyros against encoders.
 
 use super::{Core, kalman_of};
-use crate::config::{Base, Screening};
+use crate::config::Base;
 use crate::covariance::PHI;
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use octant_earth::rotation::log;
-use octant_sample::counts::GIMBAL_LSB_RAD;
 use octant_sample::parameters::Group;
 use octant_sample::{GimbalAngles, GimbalCommand, Health, Mode, Sample, Status};
 
-const DEG: f64 = core::f64::consts::PI / 180.0;
-
-/// Difference of encoder and set point in a dwell that is called a disagreement, rad: coarsely, and
-/// where the gimbals are checked: a servo comes to its set point, so a tenth of a degree, or what an
-/// encoder of this σ shows once in 1e15 readings.
-const COARSE_TOLERANCE_RAD: f64 = 0.5 * DEG;
-const TOLERANCE_RAD: f64 = 0.1 * DEG;
-const TOLERANCE_SIGMAS: f64 = 8.0;
-
-/// Standard deviations of the difference of a turn by gyros and by encoders that is called a slip.
-/// Every second is compared: 2e-9 × 1e5 in 28 h for each axis.
+/// Standard deviations of the difference between a turn by gyros and by encoders above which it is
+/// a slip. Every second is compared: 2e-9 × 1e5 in 28 h for each axis.
 const SLIP_SIGMAS: f64 = 6.0;
-
-/// Attitude of the case by the last comparison, with the encoders' angles of it.
-#[derive(Clone, Copy, Debug, Default)]
-#[cfg_attr(feature = "state", derive(serde::Serialize, serde::Deserialize))]
-pub(super) struct Slips {
-    last: Option<(UnitQuaternion<f64>, GimbalAngles)>,
-    /// Slips so far.
-    pub(super) count: u64,
-}
-
-/// Tolerance of encoder against set point, counts.
-pub(super) fn tolerance_counts(screening: &Screening) -> u64 {
-    let tolerance = if screening.gimbals {
-        TOLERANCE_RAD.max(TOLERANCE_SIGMAS * screening.encoder_sigma_rad)
-    } else {
-        COARSE_TOLERANCE_RAD
-    };
-    (tolerance / GIMBAL_LSB_RAD) as u64
-}
 
 /// `q_cb` of gimbal angles: `Rx(roll) · Rz(azimuth)`.
 fn q_cb(gimbal: GimbalAngles) -> UnitQuaternion<f64> {
@@ -57,7 +28,7 @@ impl Core {
         {
             return;
         }
-        // Between command and first motion lie two samples in which the set point is already new.
+        // Between command and first motion there are two samples with the new set point.
         let GimbalCommand { target } = self.gimbals.command;
         let tolerance = self.gimbal_tolerance;
         let off = |reading: i32, target: i32| {
@@ -69,13 +40,13 @@ impl Core {
         }
     }
 
-    /// The case of a base that stands doesn't turn: attitude, with the encoders' angles taken back,
-    /// is the same at every standstill. What the gyros missed, or an encoder, shows as a difference
-    /// between two of them, a second or a move apart.
+    /// Compares gyros with encoders. The case of a base at rest doesn't turn: the attitude without
+    /// the encoder angles is the same at every standstill. An error of the gyros or of an encoder
+    /// shows as a difference between two standstills, a second or a move apart.
     ///
-    /// Allowed are both readings' errors, the body axes' error against the gimbals (no better known
-    /// than the gyros' misalignments before the calibration) over the turn, and what the filter may
-    /// have corrected in between: its σ.
+    /// The limit allows for both readings' errors, the body axes' error against the gimbals (no
+    /// better known than the gyros' misalignments before the calibration) over the turn, and the
+    /// filter's possible corrections in between: its σ.
     #[cold]
     pub(super) fn compare_turns(&mut self, sample: &Sample, health: &mut Health) {
         let screening = &self.config.screening;

@@ -1,4 +1,4 @@
-//! Can a calibration be vouched for? If not, why.
+//! Judgement of a calibration: accepted, or refused with a reason.
 
 use crate::config::Kalman;
 use crate::drift::Largest;
@@ -6,26 +6,26 @@ use crate::filter::CalibrationFilter;
 use crate::table::Quality;
 use octant_sample::parameters::{NAMES, PARAMETER_COUNT};
 
-/// Share of measurements that the gate may reject before a calibration is refused.
+/// Largest share of measurements that the gate may reject in an accepted calibration.
 const REJECTED_SHARE_MAX: f64 = 0.02;
-/// Recoveries that a calibration may need before it is refused.
+/// Largest number of recoveries in an accepted calibration.
 const RECOVERIES_MAX: u32 = 10;
-/// Share of the expected measurements that a calibration needs.
+/// Smallest share of the expected measurements in an accepted calibration.
 const MEASURED_SHARE_MIN: f64 = 0.5;
 
-/// Share of the expected measurements that must have gone into the parameters: recoveries hold
-/// these, and one that never ends would hold them for ever.
+/// Smallest share of the expected measurements that must have updated the parameters: recoveries
+/// hold these, and an endless recovery would hold them for ever.
 const ESTIMATING_SHARE_MIN: f64 = 0.5;
 
-/// Share of the samples that may be bridged by what is known of the motion: what is bridged
-/// calibrates nothing, and the motion is known no better than that the base stands.
+/// Largest share of the samples that may be bridged by known motion: bridged samples calibrate
+/// nothing, and the motion is known only as far as the base is at rest.
 const BRIDGED_SHARE_MAX: f64 = 0.02;
 
-/// Why a calibration was refused.
+/// Reason why a calibration was refused.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[cfg_attr(feature = "state", derive(serde::Serialize, serde::Deserialize))]
 pub enum Refusal {
-    /// The innovations are not of the size that the tuning says.
+    /// The innovations contradict the tuning.
     #[error("the mean NIS of {mean:.1} is above {limit}: the innovations contradict the tuning")]
     Inconsistent {
         /// Mean NIS.
@@ -33,7 +33,7 @@ pub enum Refusal {
         /// Limit.
         limit: f64,
     },
-    /// The gate rejected too much.
+    /// The gate rejected too many measurements.
     #[error(
         "{rejected} of {total} measurements were rejected: the innovations contradict the tuning"
     )]
@@ -57,7 +57,7 @@ pub enum Refusal {
         /// Measurements expected.
         expected: u64,
     },
-    /// The reference did not come.
+    /// The reference was missing.
     #[error("only {used} of {expected} measurements of the reference came")]
     AidingLost {
         /// Measurements used.
@@ -65,7 +65,7 @@ pub enum Refusal {
         /// Measurements expected.
         expected: u64,
     },
-    /// Too many samples were not used, or missing.
+    /// Too many samples were missing or not used.
     #[error("{bridged} of {total} samples were missing, stuck or not to be believed")]
     Bridged {
         /// Samples bridged.
@@ -73,7 +73,7 @@ pub enum Refusal {
         /// Samples of the calibration.
         total: u64,
     },
-    /// Something was wrong and could not be undone.
+    /// A disturbance could not be undone.
     #[error(
         "{disturbances} {} noticed and could not be undone: what was learned from {} can't be told",
         if *disturbances == 1 { "disturbance was" } else { "disturbances were" },
@@ -83,7 +83,7 @@ pub enum Refusal {
         /// Disturbances.
         disturbances: u64,
     },
-    /// A parameter did not stand still while it was estimated.
+    /// A parameter drifted while it was estimated.
     #[error(
         "{} drifted: between {:.0} s and {:.0} s it was corrected by {sigmas:.1} times what its \
          uncertainty allows",
@@ -94,16 +94,16 @@ pub enum Refusal {
         parameter: usize,
         /// Correction in the standard deviations that it should have.
         sigmas: f64,
-        /// From and until, s since the calibration began to measure.
+        /// Start and end, s since the calibration began to measure.
         between_s: (f64, f64),
     },
     /// The least-squares adjustment gave no result.
     #[error("{0}")]
     Adjustment(#[from] crate::least_squares::Refusal),
-    /// Attitude could not be found from gravity and Earth rate.
+    /// The attitude could not be found from gravity and Earth rate.
     #[error("no attitude could be found from gravity and Earth rate: did the instrument stand?")]
     Alignment,
-    /// The filter's numbers are not finite.
+    /// A number of the filter is not finite.
     #[error("the covariance is not finite")]
     Numeric,
 }
@@ -122,7 +122,7 @@ pub(super) fn quality_of(filter: &CalibrationFilter) -> Quality {
 }
 
 /// Judges a filter at the end of its calibration, in which `expected` measurements were due, and
-/// `bridged` of `total` samples had to be bridged.
+/// `bridged` of `total` samples were bridged.
 pub(super) fn judge(
     filter: &CalibrationFilter,
     kalman: &Kalman,

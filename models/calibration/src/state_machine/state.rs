@@ -1,7 +1,8 @@
 //! The core as bytes, and back.
 //!
-//! The bytes hold the configuration and what has changed since the start. A core is made from the
-//! configuration, as by [`Core::new`], and gets the rest: see [`octant_state`] for what is refused.
+//! The bytes hold the configuration and the changes since the start. A core is made from the
+//! configuration, as by [`Core::new`], and then loads the rest; [`octant_state`] lists the bytes
+//! that are refused.
 
 use super::Core;
 use super::estimation::Estimation;
@@ -14,13 +15,13 @@ use octant_state::{Format, Reader, State, StateError, Writer, check_below, check
 
 extern crate alloc;
 
-/// What the state of a core looks like. The version has to be raised when the layout changes; a test
-/// compares it with the stored one.
+/// Format of the state of a core. Raise the version when the layout changes; a test compares the
+/// layout with the stored one.
 pub const FORMAT: Format =
     Format { magic: "OCTANTCC", version: 2, what: "the state of a calibration core" };
 
 impl Core {
-    /// Appends everything that the core needs to go on, bit for bit, as after this step: the same
+    /// Appends everything that the core needs to continue bit for bit after this step: the same
     /// core gives the same bytes.
     pub fn save(&self, bytes: &mut Vec<u8>) {
         FORMAT.write(bytes, |to| {
@@ -29,11 +30,11 @@ impl Core {
         });
     }
 
-    /// A core that goes on where another was when [`Self::save`] wrote these bytes.
+    /// Makes a core that continues where another was when [`Self::save`] wrote these bytes.
     ///
     /// # Errors
-    /// If they are not those of a core of this version, whole and unaltered. Whatever they are, this
-    /// doesn't panic, nor does the core that comes of them.
+    /// If the bytes are not those of a core of this version, whole and unaltered. Neither this
+    /// function nor the resulting core panics, whatever the bytes.
     pub fn load(bytes: &[u8]) -> Result<Self, StateError> {
         let mut from = FORMAT.read(bytes)?;
         let config: Config = from.value("config")?;
@@ -44,7 +45,7 @@ impl Core {
         Ok(core)
     }
 
-    /// The cursor of the calibration or, `endless`, of the navigation, somewhere on its way.
+    /// Cursor of the calibration or, `endless`, of the navigation, at an arbitrary place.
     fn cursor_of(&self, endless: bool) -> Option<Cursor> {
         let home = GimbalAngles::default();
         let (rates, sample_s) = (self.config.turntable, self.sample_s);
@@ -60,7 +61,7 @@ impl Core {
     }
 }
 
-/// Something that is there for a part of the run only.
+/// Error for a part that exists only in other configurations.
 fn unexpected(field: &'static str) -> StateError {
     StateError::value(field, "it is there, and by the configuration it can't be")
 }

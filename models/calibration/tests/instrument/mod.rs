@@ -12,15 +12,15 @@ use octant_sample::{DeviceTime, GimbalAngles, Parameters, Sample};
 
 pub const PERIOD_NS: u64 = 20_000_000;
 const DT_S: f64 = PERIOD_NS as f64 * 1e-9;
-/// 0.0007 °/√h.
+/// Gyro angle random walk: 0.0007 °/√h.
 pub const ARW: f64 = 0.0007 * octant_earth::units::DEG_PER_SQRT_HOUR;
-/// 50 µg/√Hz.
+/// Accelerometer noise density: 50 µg/√Hz.
 pub const VRW: f64 = 50.0 * MICRO_G;
 pub const SITE: Site =
     Site { latitude_rad: 30.5 * DEG, longitude_rad: 114.0 * DEG, height_m: 30.0 };
 pub const HEADING_RAD: f64 = 0.3;
 
-/// (azimuth, roll) in degrees.
+/// Six positions: (azimuth, roll) in degrees.
 pub const SIX: &[(f64, f64)] = &[
     (0.0, 0.0),
     (0.0, 90.0),
@@ -61,7 +61,7 @@ pub const EIGHT: &[(f64, f64)] = &[
     (90.0, 0.0),
     (0.0, 0.0),
 ];
-/// The faces, the edges and some corners of a cube.
+/// Attitudes in general position: the faces, the edges and some corners of a cube.
 pub const GENERAL: &[(f64, f64)] = &[
     (0.0, 0.0),
     (0.0, 90.0),
@@ -99,7 +99,7 @@ pub fn truth() -> Parameters {
     }
 }
 
-/// SplitMix64 and the sum of twelve uniforms: plain noise without a dependency.
+/// Generates noise by SplitMix64 and sums of twelve uniforms, without a dependency.
 #[derive(Clone)]
 pub struct Noise(u64);
 
@@ -151,7 +151,7 @@ impl Instrument {
         }
     }
 
-    /// Walks through the stops: a dwell at each, moves at 10 °/s, one gimbal after the other.
+    /// Visits the stops: a dwell at each, moves at 10 °/s, one gimbal after the other.
     pub fn run(
         mut self,
         stops: &[(f64, f64)],

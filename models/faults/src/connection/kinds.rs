@@ -14,14 +14,14 @@ use octant_random::stream::Phase;
 pub struct Kind {
     /// Name in lists of faults.
     pub name: &'static str,
-    /// What it is, in one sentence.
+    /// Summary in one sentence.
     pub summary: &'static str,
-    /// What it does to values, exactly. Paragraphs are separated by empty lines, equations stand on
-    /// indented lines.
+    /// Exact effect on values. Paragraphs are separated by empty lines, equations stand on indented
+    /// lines.
     pub model: &'static str,
-    /// What it takes, beside what every fault takes.
+    /// Parameters, beside those that every fault has.
     pub parameters: &'static [Parameter],
-    /// How long it lasts.
+    /// Duration of faults of this kind.
     pub lasts: Lasts,
     /// Types of inputs that it can act on.
     pub on: On,
@@ -39,24 +39,24 @@ pub enum On {
     All,
 }
 
-/// What an input takes.
+/// Type of an input.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Target {
     /// 64-bit floating point.
     Float64,
     /// 32-bit floating point.
     Float32,
-    /// Whole numbers from, to.
+    /// Whole numbers, from and to.
     Integer(f64, f64),
     /// 0 or 1.
     Boolean,
-    /// Values of named items; which, the receiver knows.
+    /// Values of named items, which only the receiver knows.
     Enumeration,
 }
 
 impl Target {
-    /// A value as the input can have it: whole numbers are rounded to the nearest, ties to even, and
-    /// end at the limits of the type.
+    /// Converts a value to one that the input can have: whole numbers are rounded to the nearest,
+    /// ties to even, and limited to the range of the type.
     fn fitted(self, value: f64) -> f64 {
         match self {
             Self::Float64 => value,
@@ -66,7 +66,7 @@ impl Target {
         }
     }
 
-    /// The kind can act on it.
+    /// Returns whether a kind for these types can act on this one.
     #[must_use]
     pub const fn takes(self, on: On) -> bool {
         match on {
@@ -77,7 +77,7 @@ impl Target {
     }
 }
 
-/// The kind of a name.
+/// Finds a kind by its name.
 #[must_use]
 pub fn named(name: &str) -> Option<&'static Kind> {
     KINDS.iter().copied().find(|kind| kind.name == name)
@@ -207,7 +207,7 @@ static DELAY: Kind = Kind {
     },
 };
 
-/// Steps of a delay at most.
+/// Longest delay, steps.
 pub const DELAY_MAX: usize = 1_000_000;
 
 static DROP: Kind = Kind {
@@ -273,7 +273,7 @@ static NAN: Kind = Kind {
     },
 };
 
-/// What one fault does, with what it remembers of each element.
+/// Rule of one fault, with its memory of each element.
 #[derive(Debug)]
 pub(super) enum Rule {
     Stuck {
@@ -286,7 +286,7 @@ pub(super) enum Rule {
         sigma: f64,
         streams: Vec<Stream>,
     },
-    /// A ring: what was transferred at the epochs before, and where the present one is.
+    /// A ring of the values transferred at the epochs before, and the index of the present one.
     Delay {
         steps: usize,
         kept: Vec<f64>,
@@ -302,16 +302,16 @@ pub(super) enum Rule {
     Constant(f64),
 }
 
-/// What a rule knows of the moment.
+/// State of a fault at an epoch.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Now {
     /// Epoch, from 1.
     pub(super) epoch: u64,
-    /// It acts.
+    /// True if the fault acts.
     pub(super) acting: bool,
-    /// It sets in at this epoch.
+    /// True if the fault sets in at this epoch.
     pub(super) onset: bool,
-    /// 1, or less while it fades.
+    /// 1, or less while the fault fades.
     pub(super) strength: f64,
 }
 
@@ -325,12 +325,12 @@ impl Rule {
         (kind.build)(values, setup, targets)
     }
 
-    /// It has to see what is transferred also while it doesn't act.
+    /// Returns whether the rule has to see transfers also while the fault doesn't act.
     pub(super) const fn remembers(&self) -> bool {
         matches!(self, Self::Stuck { value: None, .. } | Self::Delay { .. } | Self::Drop { .. })
     }
 
-    /// Once an epoch, before the transfers.
+    /// Begins an epoch, before its transfers.
     pub(super) fn begin(&mut self, now: &Now) {
         match self {
             Self::Delay { steps, first, .. } => *first = (*first + 1) % (*steps + 1),
@@ -343,8 +343,8 @@ impl Rule {
         }
     }
 
-    /// A value on its way to an element; `again`: the epoch's transfer of this element was made
-    /// before, as when a step is made in parts.
+    /// Alters a value on its way to an element; `again`: the epoch's transfer of this element was
+    /// made before, as when a step is made in parts.
     pub(super) fn transfer(
         &mut self,
         element: usize,
@@ -357,7 +357,7 @@ impl Rule {
             Self::Stuck { value: Some(at), .. } => *at,
             Self::Stuck { value: None, held } => {
                 let held = &mut held[element];
-                // At an onset with the first step there is nothing from before.
+                // At an onset at the first step there is no earlier value.
                 if !again && (!now.acting || (now.onset && now.epoch == 1)) {
                     *held = value;
                 }
@@ -390,7 +390,8 @@ impl Rule {
                     return 0.0;
                 }
                 if now.epoch == 1 && !again {
-                    // Nothing came before: the input keeps its start value, which is this one.
+                    // There is no earlier value: the input keeps its start value, which is this
+                    // one.
                     *delivered = value;
                 }
                 *delivered

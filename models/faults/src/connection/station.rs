@@ -1,4 +1,4 @@
-//! Which faults act on which connections at an epoch, and what they altered.
+//! Active faults on connections at an epoch, and their receipts.
 
 use super::kinds::{Kind, Now, Rule, Target};
 use crate::catalogue::Lasts;
@@ -14,16 +14,16 @@ use octant_random::stream::Phase;
 /// One fault on a connection.
 #[derive(Clone, Debug)]
 pub struct Spec {
-    /// Its id, one of its own.
+    /// Id, unique in the run.
     pub id: String,
-    /// Its kind.
+    /// Kind of the fault.
     pub kind: &'static Kind,
     /// Values of every parameter of the kind, in the unit of the input.
     pub values: Values,
-    /// When. What depends on a core is not for connections: positions, moves, modes and conditions
-    /// on its signals. [`Trigger::Outside`] is.
+    /// Time of the fault. Triggers that depend on a core are not for connections: positions, moves,
+    /// modes and conditions on its signals. [`Trigger::Outside`] is.
     pub schedule: Schedule,
-    /// The elements that it acts on, by numbers that the caller gives, and what they take.
+    /// Elements on which the fault acts, by the caller's numbers, and their types.
     pub elements: Vec<(usize, Target)>,
 }
 
@@ -42,21 +42,22 @@ struct Stage {
 #[derive(Debug)]
 pub struct Station {
     stages: Vec<Stage>,
-    /// For each element of the caller: the stages on it, and its number there.
+    /// For each element of the caller: the stages that act on it, and its index in each.
     on: Vec<Vec<(usize, usize)>>,
     epoch: u64,
     occurrences: Vec<Occurrence>,
 }
 
-/// Occurrences kept between two looks of the caller.
+/// Largest number of occurrences kept until the caller reads them.
 const OCCURRENCES_MAX: usize = 256;
 
 impl Station {
-    /// A station with the faults in the order in which they act. `period_s`: the length of a step.
+    /// Makes a station with the faults in the order in which they act. `period_s`: the length of a
+    /// step.
     ///
     /// # Errors
-    /// If a fault's values contradict each other, it can't act on what its elements take, an id is
-    /// given twice, or a fault waits for one that isn't there.
+    /// If a fault's values contradict each other, it can't act on the types of its elements, an id
+    /// is given twice, or a fault waits for one that isn't there.
     pub fn new(specs: &[Spec], seed: u64, period_s: f64) -> Result<Self, (String, BuildError)> {
         let mut stages: Vec<Stage> = Vec::with_capacity(specs.len());
         for spec in specs {
@@ -75,8 +76,8 @@ impl Station {
     }
 
     /// Begins an epoch, before its transfers. `holds` tells whether the condition of a fault with
-    /// [`Trigger::Outside`], by its number, held at the end of the epoch before; `None`: it can't be
-    /// told.
+    /// [`Trigger::Outside`], given by its number, held at the end of the epoch before; `None`:
+    /// unknown.
     pub fn begin(&mut self, mut holds: impl FnMut(usize) -> Option<bool>) {
         self.epoch += 1;
         for (index, stage) in self.stages.iter_mut().enumerate() {
@@ -112,7 +113,7 @@ impl Station {
         }
     }
 
-    /// Those that wait for a fault hear that it has ended.
+    /// Tells the faults that wait for this one that it has ended.
     fn tell_others(&mut self, ended: usize) {
         for other in 0..self.stages.len() {
             let waits = matches!(
@@ -125,15 +126,15 @@ impl Station {
         }
     }
 
-    /// Whether there are faults on an element.
+    /// Returns whether there are faults on an element.
     #[must_use]
     pub fn is_on(&self, element: usize) -> bool {
         self.on.get(element).is_some_and(|stages| !stages.is_empty())
     }
 
-    /// What an element gets instead of a value. `again`: the element's transfer of this epoch was
-    /// made before, as when a step is repeated or made in parts; such a transfer is altered in the
-    /// same way, and isn't counted.
+    /// Returns the value that an element gets instead of `value`. `again`: the element's transfer
+    /// of this epoch was made before, as when a step is repeated or made in parts; such a transfer
+    /// is altered in the same way, and isn't counted.
     #[inline]
     pub fn transfer(&mut self, element: usize, value: f64, again: bool) -> f64 {
         let mut value = value;
@@ -152,7 +153,7 @@ impl Station {
         value
     }
 
-    /// Whether a fault that acts at this epoch has an element.
+    /// Returns whether a fault on an element acts at this epoch.
     #[must_use]
     pub fn acts_on(&self, element: usize) -> bool {
         self.on.get(element).into_iter().flatten().any(|(stage, _)| self.stages[*stage].now.acting)
@@ -164,13 +165,13 @@ impl Station {
         &self.occurrences
     }
 
-    /// Occurrences have been dealt with.
+    /// Clears the occurrences once they are handled.
     pub fn told(&mut self) {
         self.occurrences.clear();
     }
 
-    /// Lets a fault with a manual trigger set in at the next epoch. False if there is none of that
-    /// id that waits.
+    /// Lets a fault with a manual trigger set in at the next epoch. Returns false if no fault of
+    /// that id waits.
     pub fn fire(&mut self, id: &str) -> bool {
         let next = self.epoch + 1;
         self.stages
@@ -235,7 +236,7 @@ fn stage(
     let targets: Vec<Target> = spec.elements.iter().map(|(_, target)| *target).collect();
     let setup = Setup {
         seed,
-        // Rounded: only delays given as times are counted by it.
+        // Rounded: the period is used only for delays that are given as times.
         sample_period_ns: libm::round(period_s * 1e9) as u64,
         calibration_samples: u64::MAX,
         angle_random_walk: 0.0,

@@ -1,4 +1,4 @@
-//! A constant that is added to channels, in counts with the remainder carried.
+//! A constant added to channels, in counts with the remainder carried.
 
 use crate::catalogue::Dimension;
 use crate::kinds::channel::{read, saturated, write_saturating};
@@ -7,11 +7,10 @@ use crate::values::{Channels, Values};
 use octant_sample::Sample;
 use octant_sample::counts::{DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS};
 
-/// Adds real numbers of counts to integer channels: a fault that changes a value carries its
-/// remainder too.
+/// Adds real numbers of counts to integer channels and carries the remainder.
 #[derive(Clone, Debug, Default, serde::Serialize, serde::Deserialize)]
 pub(crate) struct Adder {
-    /// What was not yet added, counts.
+    /// Remainders not added yet, counts.
     remainders: [f64; 6],
 }
 
@@ -21,9 +20,9 @@ impl Adder {
         *self = Self::default();
     }
 
-    /// Adds to a channel (0 to 2 gyros, counts of rad; 3 to 5 accelerometers, counts of m/s).
-    /// A sum outside the format's range saturates, loses the excess and sets the flag that says so.
-    /// NaN adds nothing and is flagged too.
+    /// Adds to a channel (0 to 2 gyros, counts of rad; 3 to 5 accelerometers, counts of m/s). A sum
+    /// outside the format's range saturates, loses the excess and sets the saturation flag. NaN
+    /// adds nothing and is flagged too.
     pub(crate) fn add(&mut self, sample: &mut Sample, channel: usize, counts: f64) {
         let total = self.remainders[channel] + counts;
         let whole = libm::rint(total);
@@ -32,7 +31,7 @@ impl Adder {
         if remainder.is_finite() {
             self.remainders[channel] = remainder;
         }
-        // The cast saturates, which leaves the sum outside of the format.
+        // The cast saturates, so that the sum stays outside of the format.
         let sum = i64::from(read(sample, channel)).saturating_add(whole as i64);
         write_saturating(sample, channel, sum);
         if total.is_nan() {
@@ -58,7 +57,8 @@ pub(crate) struct Added {
 octant_state::state! { Added { values: adder; parts: ; kept: channels, counts } }
 
 impl Added {
-    /// From a parameter of channels and one of a rate or an acceleration, which have to fit.
+    /// Makes it from a parameter of channels and one of a rate or an acceleration, which have to
+    /// fit.
     pub(crate) fn of(
         values: &Values,
         channels: &'static str,
@@ -79,7 +79,7 @@ impl Added {
         self.adder.clear();
     }
 
-    /// Adds one sample's worth, times a factor.
+    /// Adds the counts of one sample, times a factor.
     pub(crate) fn add(&mut self, sample: &mut Sample, factor: f64) {
         for channel in self.channels.iter() {
             self.adder.add(sample, channel, self.counts[channel] * factor);
@@ -87,7 +87,8 @@ impl Added {
     }
 }
 
-/// A quantity whose dimension fits the channels: that of gyros or of accelerometers, not of both.
+/// Returns a quantity whose dimension fits the channels: that of gyros or of accelerometers, not of
+/// both.
 pub(crate) fn fitting(
     values: &Values,
     channels: Channels,

@@ -12,7 +12,7 @@ pub(crate) const LOSS: Parameter = Parameter {
     doc: "Probability that one is lost, above 0; 100 %: all are.",
 };
 
-/// The value of [`LOSS`].
+/// Reads and checks [`LOSS`].
 pub(crate) fn loss(values: &Values) -> Result<f64, BuildError> {
     let loss = values.quantity("loss")?;
     if loss > 0.0 && loss <= 1.0 {

@@ -5,7 +5,7 @@ use crate::values::{Channels, Values};
 use octant_sample::Sample;
 use octant_sample::imu::Status;
 
-/// The count of a channel.
+/// Reads the count of a channel.
 pub(crate) fn read(sample: &Sample, channel: usize) -> i32 {
     if channel < 3 { sample.delta_theta[channel] } else { sample.delta_velocity[channel - 3] }
 }
@@ -19,7 +19,7 @@ pub(crate) fn write(sample: &mut Sample, channel: usize, count: i32) {
     }
 }
 
-/// Replaces the count of a channel; beyond the format it saturates and is flagged.
+/// Replaces the count of a channel; a count beyond the format saturates and is flagged.
 pub(crate) fn write_saturating(sample: &mut Sample, channel: usize, count: i64) {
     let clamped = count.clamp(i64::from(i32::MIN), i64::from(i32::MAX));
     write(sample, channel, clamped as i32);
@@ -33,12 +33,12 @@ pub(crate) fn counts(sample: &Sample) -> [i32; 6] {
     core::array::from_fn(|channel| read(sample, channel))
 }
 
-/// The flag that says that a channel has saturated.
+/// Flag of saturation of a channel.
 pub(crate) fn saturated(channel: usize) -> Status {
     if channel < 3 { Status::GYRO_SATURATED } else { Status::ACCELEROMETER_SATURATED }
 }
 
-/// Gyros and nothing else.
+/// Reads channels that have to be gyros.
 pub(crate) fn gyros(values: &Values, name: &'static str) -> Result<Channels, BuildError> {
     let channels = values.channels(name)?;
     if channels.gyros_only() {
@@ -48,7 +48,7 @@ pub(crate) fn gyros(values: &Values, name: &'static str) -> Result<Channels, Bui
     }
 }
 
-/// One channel.
+/// Reads a parameter that has to be one channel.
 pub(crate) fn single(values: &Values, name: &'static str) -> Result<usize, BuildError> {
     let channels = values.channels(name)?;
     let mut all = channels.iter();
@@ -61,7 +61,7 @@ pub(crate) fn single(values: &Values, name: &'static str) -> Result<usize, Build
     }
 }
 
-/// Two channels of the same triad, not the same one.
+/// Reads two different channels of the same triad.
 pub(crate) fn pair(
     values: &Values,
     first: &'static str,

@@ -8,7 +8,7 @@ use crate::values::Values;
 
 pub(super) static KINDS: &[&Kind] = &[&STARVED, &FULL, &STALLED];
 
-/// Needs a run by the clock: no other has a thread that can be late.
+/// Needs a run by the clock: in other runs no thread can be late.
 pub static STARVED: Kind = host(
     "host-cpu-starved",
     "Other work takes all processors from the harness.",
@@ -50,7 +50,7 @@ pub static FULL: Kind = host(
     |_, _| Ok(Rule::Host(HostAction::FillDisk)),
 );
 
-/// Needs a thread that records.
+/// Needs a recorder thread.
 pub static STALLED: Kind = host(
     "host-recorder-stalled",
     "The recorder stands still for a time.",
@@ -81,7 +81,7 @@ const fn time(name: &'static str, default: &'static str, doc: &'static str) -> P
     Parameter { name, takes, default: Some(default), doc }
 }
 
-/// A time; of none nothing would happen.
+/// Reads a time, which has to be above zero to have an effect.
 fn above_zero(values: &Values, name: &'static str) -> Result<f64, BuildError> {
     let time_s = values.quantity(name)?;
     if time_s > 0.0 {

@@ -1,4 +1,4 @@
-//! A change that is a function of the count itself.
+//! A change as a function of the count itself.
 
 use crate::kinds::added::Adder;
 use crate::kinds::channel::read;

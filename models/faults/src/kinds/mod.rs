@@ -35,12 +35,12 @@ pub static KINDS: &[&[&Kind]] = &[
     host::KINDS,
 ];
 
-/// All kinds one by one.
+/// Iterates over all kinds.
 pub fn all() -> impl Iterator<Item = &'static Kind> {
     KINDS.iter().flat_map(|family| family.iter().copied())
 }
 
-/// The kind of a name.
+/// Finds a kind by its name.
 #[must_use]
 pub fn named(name: &str) -> Option<&'static Kind> {
     all().find(|kind| kind.name == name)

@@ -1,12 +1,12 @@
-//! What kinds that act inside the plant have in common.
+//! Common parts of the kinds that act inside the plant.
 
 use crate::catalogue::{Bounds, Dimension, Parameter, Takes};
-use crate::disturbance::{Disturbance, Motor};
 use crate::rule::{Context, PlantRule, Rule};
 use crate::setup::{BuildError, Setup};
 use crate::values::Values;
 use alloc::boxed::Box;
 use alloc::format;
+use octant_sample::disturbance::{Disturbance, Motor};
 
 /// A disturbance that is the same at every onset.
 #[derive(Clone, Debug)]
@@ -35,7 +35,7 @@ pub(crate) const EDGE: Parameter = Parameter {
     doc: "Time over which it swells after the onset and fades after the end.",
 };
 
-/// A vector with at least one entry that isn't zero, each of a size up to `limit`.
+/// Reads a vector with at least one entry that isn't zero, each of a size up to `limit`.
 pub(crate) fn something(
     values: &Values,
     name: &'static str,
@@ -51,7 +51,7 @@ pub(crate) fn something(
     Ok(vector)
 }
 
-/// Sizes up to a limit.
+/// Checks that sizes are within a limit.
 pub(crate) fn within(
     name: &'static str,
     values: &[f64],
@@ -67,7 +67,7 @@ pub(crate) fn within(
     }
 }
 
-/// One of two vectors has an entry that isn't zero.
+/// Checks that one of two vectors has an entry that isn't zero.
 pub(crate) fn not_nothing(
     name: &'static str,
     other: &str,
@@ -80,7 +80,7 @@ pub(crate) fn not_nothing(
     Ok(())
 }
 
-/// A frequency that the plant integrates: at most 100 periods in a sample.
+/// Reads a frequency that the plant can integrate: at most 100 periods in a sample.
 pub(crate) fn frequency(
     values: &Values,
     name: &'static str,

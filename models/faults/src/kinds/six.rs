@@ -4,7 +4,7 @@ use crate::rule::Context;
 use crate::setup::{Setup, Stream};
 use crate::values::Channels;
 
-/// One random number a channel and sample; what no channel needs isn't drawn.
+/// One random number per channel and sample; numbers that no channel needs aren't drawn.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Six {
     gyro: Option<Stream>,
@@ -21,14 +21,14 @@ impl Six {
         }
     }
 
-    /// Independent standard normals of this sample; 0 for a triad that no channel is of.
+    /// Independent standard normals of this sample; 0 for a triad without a channel in the set.
     pub(crate) fn normals(&self, now: &Context<'_>) -> [f64; 6] {
         let three = |stream: &Option<Stream>| stream.map_or([0.0; 3], |it| now.normals(&it));
         let ([a, b, c], [d, e, f]) = (three(&self.gyro), three(&self.accelerometer));
         [a, b, c, d, e, f]
     }
 
-    /// Independent numbers in (0, 1) of this sample; 0 for a triad that no channel is of.
+    /// Independent numbers in (0, 1) of this sample; 0 for a triad without a channel in the set.
     pub(crate) fn uniforms(&self, now: &Context<'_>) -> [f64; 6] {
         let four = |stream: &Option<Stream>| stream.map_or([0.0; 4], |it| now.uniforms(&it));
         let ([a, b, c, _], [d, e, f, _]) = (four(&self.gyro), four(&self.accelerometer));

@@ -1,11 +1,11 @@
-//! A time as a number of samples.
+//! Conversion of a time to a number of samples.
 
 use crate::catalogue::Dimension;
 use crate::setup::{BuildError, Setup};
 use crate::values::Values;
 use core::ops::RangeInclusive;
 
-/// A parameter that is a time or a number of samples, to the nearest whole sample.
+/// Reads a parameter that is a time or a number of samples, to the nearest whole sample.
 pub(crate) fn samples(
     values: &Values,
     name: &'static str,

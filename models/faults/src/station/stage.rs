@@ -15,7 +15,7 @@ pub(super) struct Stage {
     pub(super) rule: Rule,
     pub(super) clock: Clock,
     pub(super) ledger: Ledger,
-    /// It has set in, and its rule hasn't seen an epoch since.
+    /// True if the fault has set in and its rule hasn't seen an epoch since.
     pub(super) fresh: bool,
 }
 
@@ -24,18 +24,20 @@ impl Stage {
         matches!(self.clock.state, State::Active { .. } | State::Fading { .. })
     }
 
-    /// It acts, or something is left from when it did, and every epoch has to be looked at for that.
+    /// Returns whether every epoch has to pass the stage: the fault acts, or an effect of it is
+    /// left.
     pub(super) fn engaged(&self) -> bool {
         match &self.rule {
             Rule::Delivery(rule) => self.acting() || rule.holds() > 0,
             Rule::Samples(rule) => self.acting() || rule.lingers() || self.is_owed(),
             Rule::Command(_) | Rule::Unit(_) | Rule::Wire(_) => self.acting(),
-            // Between onset and end the plant or the host does it all.
+            // Between onset and end the plant or the host realises the fault alone.
             Rule::Plant(_) | Rule::Host(_) => false,
         }
     }
 
-    /// Its ledger with the epochs up to this one in which it acted and nobody looked.
+    /// Returns the ledger with the epochs up to this one in which the fault acted in the plant,
+    /// uncounted so far.
     pub(super) fn ledger_at(&self, epoch: u64) -> Ledger {
         let mut ledger = self.ledger.clone();
         if self.acts_unseen() {
@@ -44,12 +46,14 @@ impl Stage {
         ledger
     }
 
-    /// It acts in the plant, which needs no look between its onset and its end.
+    /// Returns whether the fault acts in the plant, which needs no call between its onset and its
+    /// end.
     pub(super) fn acts_unseen(&self) -> bool {
         matches!(self.rule, Rule::Plant(_)) && self.acting()
     }
 
-    /// Its instant passed while faults before it held every epoch back: the next one gets it.
+    /// Returns whether the fault's instant passed while faults before it held every epoch back: the
+    /// next epoch gets it.
     pub(super) fn is_owed(&self) -> bool {
         self.fresh && self.kind.lasts == Lasts::Instant
     }
@@ -58,7 +62,7 @@ impl Stage {
         self.acting() && matches!(&self.rule, Rule::Unit(rule) if rule.cuts_power())
     }
 
-    /// The first epoch that has to be remembered as the one before an onset.
+    /// First epoch to be remembered as the one before an onset.
     pub(super) fn looks_back_from(&self) -> u64 {
         match (&self.rule, self.clock.state) {
             (Rule::Samples(rule), state) if rule.looks_back() => match state {
@@ -91,7 +95,7 @@ impl Stage {
     }
 }
 
-/// What every context of an epoch has in common.
+/// Common part of the contexts of an epoch.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Shared {
     pub(super) epoch: u64,

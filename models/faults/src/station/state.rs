@@ -1,7 +1,7 @@
 //! The station as bytes, and back.
 //!
-//! The bytes hold what has changed since the start: of each fault its clock, its receipt and what its
-//! rule remembers. A station is built from the same faults, and gets the rest.
+//! The bytes hold the changes since the start: of each fault its clock, its receipt and the state
+//! of its rule. A station to be loaded is built from the same faults.
 
 use super::{OCCURRENCES_MAX, Occurrence, Spec, Stage, Station};
 use crate::rule::UnitEvent;
@@ -11,25 +11,25 @@ use alloc::string::{String, ToString};
 use alloc::vec::Vec;
 use octant_state::{Format, Reader, State, StateError, Writer, check_below, check_count};
 
-/// What the state of a station looks like. The version has to be raised when the layout changes; a
-/// test compares it with the stored one.
+/// Format of the state of a station. Raise the version when the layout changes; a test compares the
+/// layout with the stored one.
 pub const FORMAT: Format =
     Format { magic: "OCTANTST", version: 1, what: "the state of a station of faults" };
 
 impl Station {
-    /// Appends everything that the station needs to go on, bit for bit, as after this epoch: the same
+    /// Appends everything that the station needs to continue bit for bit after this epoch: the same
     /// station gives the same bytes.
     pub fn save(&self, bytes: &mut Vec<u8>) {
         FORMAT.write(bytes, |to| to.part("station", self));
     }
 
-    /// A station that goes on where another was when [`Self::save`] wrote these bytes; `specs` and
-    /// `setup` are those that it was built with.
+    /// Makes a station that continues where another was when [`Self::save`] wrote these bytes;
+    /// `specs` and `setup` are those with which that one was built.
     ///
     /// # Errors
-    /// If the bytes are not those of a station of these faults and this version, whole and unaltered,
-    /// or if it can't be built. Whatever they are, this doesn't panic, nor does the station that comes
-    /// of them.
+    /// If the bytes are not those of a station of these faults and this version, whole and
+    /// unaltered, or if the station can't be built. Neither this function nor the resulting station
+    /// panics, whatever the bytes.
     pub fn load(specs: &[Spec], setup: &Setup, bytes: &[u8]) -> Result<Self, StateError> {
         let mut from = FORMAT.read(bytes)?;
         let mut station = Self::new(specs, setup)
@@ -41,7 +41,7 @@ impl Station {
 }
 
 impl Stage {
-    /// What it is known by.
+    /// Id and kind, which identify the stage.
     fn name(&self) -> (&str, &'static str) {
         (&self.id, self.kind.name)
     }
@@ -54,7 +54,7 @@ impl State for Station {
             dt_s: _,
             calibration_samples: _,
             epoch,
-            // What has to be looked at next follows from the others.
+            // Follows from the other fields.
             wake: _,
             busy: _,
             remember: _,

@@ -1,6 +1,6 @@
 //! Draws faults from the catalogue: any kind, any values within the bounds, any trigger.
 
-// Of whoever draws: the harness does too.
+// `super` is the module that includes this file: the harness's tests include it too.
 use super::EPOCHS;
 use octant_faults::catalogue::{Acts, Bounds, Dimension, Kind, Lasts, Takes};
 use octant_faults::trigger::{Comparison, Repeat, Schedule, Signal, Trigger};
@@ -9,7 +9,7 @@ use octant_sample::{Health, Mode};
 use proptest::prelude::*;
 use proptest::sample::select;
 
-/// What is usual for a dimension, SI: values from a thousandth to a thousand times of it are drawn.
+/// Usual size for a dimension, SI: values from a thousandth to a thousand times of it are drawn.
 pub(crate) fn usual(dimension: Dimension) -> f64 {
     match dimension {
         Dimension::Time => 0.1,
@@ -160,7 +160,8 @@ fn spec_of(kind: &'static Kind) -> impl Strategy<Value = Spec> {
 
 /// A fault of any kind.
 pub(crate) fn spec() -> impl Strategy<Value = Spec> {
-    // Faults of the wire alter frames, of which there are none here; those of the host no sample.
+    // Faults of the wire alter frames, of which there are none here; those of the host alter no
+    // sample.
     let here = kinds::all().filter(|kind| !matches!(kind.acts, Acts::Wire | Acts::Host));
     select(here.collect::<Vec<_>>()).prop_flat_map(spec_of)
 }

@@ -1,6 +1,6 @@
-//! What holds for every kind of the catalogue, whatever its values and its trigger: nothing panics,
-//! nothing differs before the first onset, and the receipt is what a comparison of the clean and
-//! the delivered stream finds. Kinds are covered from the day on which they are in the catalogue.
+//! Properties of every kind of the catalogue, for any values and any trigger: no panic, no
+//! difference before the first onset, and a receipt that agrees with a comparison of the clean and
+//! the delivered stream. A kind is covered as soon as it is in the catalogue.
 
 mod draw;
 mod plain;
@@ -62,10 +62,10 @@ fn answer(k: u64) -> Output {
     }
 }
 
-/// Everything that a run told.
+/// Record of a run.
 #[derive(Debug, PartialEq)]
 struct Told {
-    /// What was delivered for each epoch.
+    /// Epochs delivered for each epoch of the source.
     delivered: Vec<Vec<Epoch>>,
     commands: Vec<GimbalCommand>,
     occurrences: Vec<Occurrence>,
@@ -129,7 +129,7 @@ fn same(delivered: &[Epoch], k: u64) -> bool {
     matches!(delivered, [one] if one.same_bits(&source(k)))
 }
 
-/// A refusal names what is wrong with the fault: a parameter of the kind, or what it waits for.
+/// Checks that a refusal names the cause: a parameter of the kind, or the fault that it waits for.
 fn refusal_is_fair(specs: &[Spec], (id, error): &(String, BuildError)) {
     let spec = specs.iter().find(|spec| spec.id == *id).unwrap();
     match error {
@@ -146,7 +146,7 @@ fn refusal_is_fair(specs: &[Spec], (id, error): &(String, BuildError)) {
     }
 }
 
-/// What holds of any receipt beside the streams.
+/// Checks the properties of a receipt that don't depend on the streams.
 fn receipt_is_sound(told: &Told, index: usize) {
     let receipt = &told.receipts[index];
     let onsets = told.occurrences.iter().filter(|it| it.fault == index && it.begins);
@@ -210,14 +210,14 @@ fn one_fault_adds_up(spec: &Spec, told: &Told) {
             assert!(told.ended == told.begun || told.ended + 1 == told.begun);
             active(told)
         }
-        // What the unit does is told in events, not epoch by epoch.
+        // Effects on the unit are reported as events, not epoch by epoch.
         _ => return,
     };
     assert_eq!(receipt.samples_altered, expected.len() as u64);
     assert_eq!(receipt.first_sample, expected.first().copied());
     assert_eq!(receipt.last_sample, expected.last().copied());
     if matches!(spec.kind.family, Family::Analogue | Family::RingLaser | Family::Digital) {
-        // Nothing of these stays after their end, and no sample is lost or made.
+        // No effect of these stays after their end, and no sample is lost or made.
         let active = active(told);
         assert!(expected.iter().all(|k| active.binary_search(k).is_ok()));
         assert!(told.delivered.iter().all(|out| out.len() == 1));
@@ -242,7 +242,7 @@ proptest! {
         for (index, spec) in specs.iter_mut().enumerate() {
             spec.id = format!("f{index}");
         }
-        // A few are refused; the others still make a run.
+        // A few faults are refused; the others still make a run.
         let told = loop {
             match run(&specs) {
                 Ok(told) => break told,
@@ -268,7 +268,7 @@ proptest! {
         for (k, command) in (1..).zip(&told.commands) {
             prop_assert!(k >= onset || *command == answer(k - 1).gimbal_command, "{}", k);
         }
-        // The same again, bit for bit (NaN as its bits).
+        // A second run has the same result, bit for bit (NaN as its bits).
         let again = run(&specs).unwrap();
         prop_assert_eq!(&again.receipts, &told.receipts);
         let all = |told: &Told| told.delivered.iter().map(|out| bytes(out)).collect::<Vec<_>>();
@@ -279,7 +279,7 @@ proptest! {
 #[test]
 fn every_kind_can_be_built_and_leaves_a_trace() {
     let mut runner = TestRunner::deterministic();
-    // Those of the wire leave theirs on a wire, those of the host on a host.
+    // Faults of the wire and of the host don't act on samples.
     for kind in kinds::all().filter(|kind| !matches!(kind.acts, Acts::Wire | Acts::Host)) {
         let strategy = values(kind);
         let traced = (0..500).any(|_| {
@@ -320,7 +320,7 @@ fn the_catalogue_is_in_order() {
             assert!(parameter.doc.ends_with('.'), "{}: {}", kind.name, parameter.name);
             keys.push(parameter.name);
             if let Takes::Choice(names) = parameter.takes {
-                // As a default they are written bare: none may read as another value of TOML.
+                // Defaults are written bare: no name may read as another value of TOML.
                 let word = |name: &str| {
                     name.starts_with(|c: char| c.is_ascii_lowercase())
                         && !["nan", "inf", "true", "false"].contains(&name)

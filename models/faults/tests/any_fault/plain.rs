@@ -1,11 +1,11 @@
-//! Plain values of every kind: the same ones on every run.
+//! Plain values of every kind, the same on every run.
 
 use super::draw::usual;
 use octant_faults::catalogue::{Bounds, Kind, Takes};
 use octant_faults::{Channels, Value, Values};
 
-/// The first values of a small grid with which a fault of the kind can be built: the same ones on
-/// every run.
+/// The first values of a small grid with which a fault of the kind can be built, the same on every
+/// run.
 pub(crate) fn plain(kind: &'static Kind) -> Values {
     for scale in [1.0, 0.1, 10.0, 0.01, 100.0, 1e-3] {
         for turn in 0..12 {
@@ -23,7 +23,7 @@ pub(crate) fn plain(kind: &'static Kind) -> Values {
 }
 
 fn plain_value(takes: Takes, scale: f64, turn: usize, index: usize) -> Value {
-    // A later one is larger, an upper corner of a band for one; and of another axis.
+    // A later value is larger (the upper corner of a band, for example) and on another axis.
     let size = |dimension| usual(dimension) * scale * (1.0 + index as f64);
     let axis = turn / 2 + index;
     match takes {
@@ -42,7 +42,7 @@ fn plain_value(takes: Takes, scale: f64, turn: usize, index: usize) -> Value {
         Takes::Integer(from, to) => Value::Integer((from + 2).min(to)),
         Takes::Flag => Value::Flag(axis.is_multiple_of(2)),
         Takes::Choice(names) => Value::Choice(names[axis % names.len()].0),
-        // Gyros come first among the dimensions too.
+        // The dimensions too have gyros first.
         Takes::Channels if turn.is_multiple_of(2) => Value::Channels(Channels::gyro(axis)),
         Takes::Channels => Value::Channels(Channels::accelerometer(axis)),
         Takes::Number(_) | Takes::Value | Takes::Difference(_) => {

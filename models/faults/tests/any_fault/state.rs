@@ -1,22 +1,22 @@
-//! A station that was saved and loaded goes on bit for bit, with every kind of the catalogue under
-//! way; other bytes are refused.
+//! A station that was saved and loaded continues bit for bit, with every kind of the catalogue
+//! active; other bytes are refused.
 
 use super::draw::spec;
 use super::plain::plain;
 use super::{EPOCHS, answer, source};
 use crate::common::{Log, bytes, setup};
-use octant_faults::disturbance::Disturbance;
 use octant_faults::rule::UnitEvent;
 use octant_faults::station::{Delivered, Occurrence, STATE_FORMAT};
 use octant_faults::trigger::{Repeat, Schedule, Trigger};
 use octant_faults::{Kind, Receipt, Spec, Station, kinds};
+use octant_sample::disturbance::Disturbance;
 use octant_sample::{GimbalCommand, Truth};
 use octant_state::{StateError, Writer, assert_layout};
 use proptest::prelude::*;
 use std::sync::LazyLock;
 use std::time::Instant;
 
-/// What came of one epoch.
+/// Result of one epoch.
 #[derive(Debug, PartialEq)]
 struct Step {
     delivered: Vec<u8>,
@@ -59,7 +59,7 @@ fn load(specs: &[Spec], bytes: &[u8]) -> Result<Station, StateError> {
     Station::load(specs, &setup(), bytes)
 }
 
-/// Runs, with what was saved and loaded at some epochs, and a clone made there, beside it.
+/// Runs a station, and beside it copies made at some epochs by saving and loading, and by cloning.
 fn goes_on(specs: &[Spec], points: &[u64]) {
     let mut station = Station::new(specs, &setup()).unwrap();
     let mut copies = Vec::new();
@@ -83,7 +83,7 @@ fn goes_on(specs: &[Spec], points: &[u64]) {
     assert!(copies.iter().all(|copy| saved(copy) == bytes), "{}", specs[0].kind.name);
 }
 
-/// Lasts from epoch 15 to 300, then fades if it can; twice.
+/// A fault that lasts from epoch 15 to 300, then fades if it can; twice.
 fn long(kind: &'static Kind, id: &str) -> Spec {
     let fades = kind.lasts == octant_faults::catalogue::Lasts::Fading;
     let schedule = Schedule {
@@ -104,7 +104,8 @@ fn all_at_once() -> Vec<Spec> {
 fn a_loaded_station_goes_on_bit_for_bit_with_every_kind_under_way() {
     for kind in kinds::all() {
         let spec = long(kind, "f0");
-        // Before, at the onset, in the middle, while it fades, afterwards, in the second firing.
+        // Before, at the onset, in the middle, while the fault fades, afterwards, in the second
+        // firing.
         goes_on(&[spec], &[3, 14, 15, 16, 77, 164, 166, 180, 197, 214, 215, 260, 365, 390]);
     }
 }
@@ -145,7 +146,7 @@ fn the_layout_is_the_stored_one() {
     let outlines = [("every kind", Writer::outline(&station))];
     assert_layout(&format!("{folder}/station.txt"), STATE_FORMAT.version, &outlines);
 
-    // And bytes of that version are still read.
+    // Bytes of that version have to remain readable.
     let path = format!("{folder}/station-{}.bin", STATE_FORMAT.version);
     if std::env::var_os("OCTANT_WRITE_FIXTURES").is_some() {
         std::fs::write(&path, saved(&station)).unwrap();
@@ -154,7 +155,7 @@ fn the_layout_is_the_stored_one() {
     assert_eq!(saved(&load(&specs, &stored).unwrap()), stored);
 }
 
-/// The frame with a payload replaced and its checksum made right.
+/// Makes a frame with another payload and the right checksum.
 fn reframed(payload: &[u8]) -> Vec<u8> {
     let mut bytes = Vec::new();
     STATE_FORMAT.write(&mut bytes, |to| payload.iter().for_each(|byte| to.value("byte", byte)));
@@ -192,7 +193,7 @@ proptest! {
         for (index, spec) in specs.iter_mut().enumerate() {
             spec.id = format!("f{index}");
         }
-        // A few are refused; the others still make a run.
+        // A few faults are refused; the others still make a run.
         while let Err(error) = Station::new(&specs, &setup()) {
             specs.retain(|spec| spec.id != error.0);
         }
@@ -217,7 +218,7 @@ proptest! {
         prop_assert!(!matches!(error, StateError::Value { .. }), "{error}");
     }
 
-    /// Whatever a right checksum stands for: it is refused, or what comes of it doesn't panic.
+    /// Any bytes with a right checksum are refused, or the station made from them doesn't panic.
     #[test]
     fn nonsense_with_a_right_checksum_does_not_panic(
         which in any::<prop::sample::Index>(),
@@ -243,7 +244,7 @@ proptest! {
     }
 }
 
-/// For reading: how long it takes, and how large it is.
+/// Prints the duration and the size, for information.
 #[test]
 fn figures() {
     let specs = all_at_once();

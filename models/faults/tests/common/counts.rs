@@ -1,4 +1,4 @@
-//! What faults did to counts, channel by channel.
+//! Alterations of counts by faults, channel by channel.
 
 use super::{Outcome, PERIOD_NS, clean, fault, run};
 use octant_faults::catalogue::Dimension;
@@ -22,8 +22,8 @@ pub fn clean_count(k: u64, channel: usize) -> f64 {
     all_counts(&clean(k))[channel] as f64
 }
 
-/// One sample delivered a step, nothing but counts and status altered: what was added to each
-/// channel in each epoch (index 0 is epoch 1), and the status.
+/// Additions to each channel in each epoch (index 0 is epoch 1), and the status; one sample
+/// delivered per step, with only counts and status altered.
 pub fn added(outcome: &Outcome) -> Vec<([i64; 6], Status)> {
     let mut steps = Vec::new();
     for (index, (k, epoch)) in outcome.delivered.iter().enumerate() {
@@ -40,8 +40,8 @@ pub fn added(outcome: &Outcome) -> Vec<([i64; 6], Status)> {
     steps
 }
 
-/// The strength that the documentation promises: 1 from `first` on for `epochs`, then down a
-/// straight line over `recovery`.
+/// Strength according to the documentation: 1 from `first` on for `epochs`, then falling linearly
+/// over `recovery`.
 pub fn strength(k: u64, first: u64, epochs: u64, recovery: u64) -> f64 {
     if k < first || k >= first + epochs + recovery {
         0.0
@@ -53,8 +53,9 @@ pub fn strength(k: u64, first: u64, epochs: u64, recovery: u64) -> f64 {
     }
 }
 
-/// The sum of what was added to the channels follows the sum of `real(k, channel)` to within half a
-/// count from epoch to epoch; the other channels and the status are as they were.
+/// Checks that the sum of the additions to the channels follows the sum of `real(k, channel)` to
+/// within half a count from epoch to epoch, and that the other channels and the status are
+/// unaltered.
 pub fn follows(outcome: &Outcome, channels: &[usize], real: impl Fn(u64, usize) -> f64) {
     let (mut whole, mut exact) = ([0i64; 6], [0.0f64; 6]);
     for (index, (step, status)) in added(outcome).iter().enumerate() {
@@ -93,17 +94,17 @@ pub fn flag(name: &'static str, value: bool) -> (&'static str, Value) {
     (name, Value::Flag(value))
 }
 
-/// A rate of so many counts a sample.
+/// A rate of `counts` counts a sample.
 pub fn rate(counts: f64) -> f64 {
     counts * RAD / DT
 }
 
-/// An acceleration of so many counts a sample.
+/// An acceleration of `counts` counts a sample.
 pub fn acceleration(counts: f64) -> f64 {
     counts * MPS / DT
 }
 
-/// The parameter that a fault is refused for.
+/// Returns the parameter for which a fault is refused.
 pub fn refused(kind: &str, values: &[(&'static str, Value)]) -> &'static str {
     match Station::new(&[fault(kind, values, 1, 1)], &super::setup()) {
         Err((id, BuildError::Value { parameter, problem })) => {
@@ -115,13 +116,13 @@ pub fn refused(kind: &str, values: &[(&'static str, Value)]) -> &'static str {
     }
 }
 
-/// With a recovery.
+/// Adds a recovery.
 pub fn fading(mut spec: Spec, recovery: u64) -> Spec {
     spec.schedule.recovery = recovery;
     spec
 }
 
-/// What a fault added to a channel from `first` on, over so many epochs.
+/// Additions by a fault to a channel from `first` on, over a number of epochs.
 pub fn series(spec: Spec, channel: usize, first: u64, epochs: u64) -> Vec<f64> {
     let outcome = run(&[spec], first + epochs - 1);
     let steps = added(&outcome);

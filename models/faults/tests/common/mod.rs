@@ -4,17 +4,17 @@
 pub mod counts;
 
 use octant_faults::catalogue::Dimension;
-use octant_faults::disturbance::{Disturbance, Disturbed, Motor};
 use octant_faults::rule::UnitEvent;
 use octant_faults::station::{Delivered, Occurrence, Spec, World};
 use octant_faults::trigger::{Repeat, Schedule, Trigger};
 use octant_faults::{Receipt, Setup, Station, Value, Values};
 use octant_sample::canonical::{AIDING_BYTES, SAMPLE_BYTES, aiding, sample};
+use octant_sample::disturbance::{Disturbance, Disturbed, Motor};
 use octant_sample::{
     Aiding, DeviceTime, Epoch, GimbalAngles, GimbalCommand, Output, Reference, Sample, Truth,
 };
 
-/// 200 Hz.
+/// Sample period at 200 Hz, ns.
 pub const PERIOD_NS: u64 = 5_000_000;
 
 pub fn setup() -> Setup {
@@ -48,7 +48,7 @@ pub fn clean(epoch: u64) -> Epoch {
     }
 }
 
-/// A fault of a kind at an epoch for so many.
+/// Makes a fault of a kind from an epoch on, for a number of epochs.
 pub fn fault(kind: &str, values: &[(&'static str, Value)], first: u64, epochs: u64) -> Spec {
     let mut all = Values::default();
     for (name, value) in values {
@@ -71,7 +71,7 @@ pub fn fault(kind: &str, values: &[(&'static str, Value)], first: u64, epochs: u
     }
 }
 
-/// What a plant was told.
+/// Calls that a plant received.
 #[derive(Debug, Default)]
 pub struct Log {
     pub begun: Vec<(u32, Disturbance)>,
@@ -101,10 +101,10 @@ impl World for Log {
     }
 }
 
-/// What came of a run of the bench.
+/// Result of a run of the bench.
 #[derive(Debug, Default)]
 pub struct Outcome {
-    /// What was delivered, with the epoch of the source in which it was.
+    /// Epochs delivered, each with the epoch of the source in whose step it was delivered.
     pub delivered: Vec<(u64, Epoch)>,
     /// Set points that the turntable got.
     pub commands: Vec<GimbalCommand>,
@@ -121,8 +121,8 @@ impl Outcome {
     }
 }
 
-/// Runs clean epochs 1 to `epochs` through a station. `answer` is the core's output to epoch k
-/// (0: before the first) and its set point is what goes to the turntable.
+/// Runs clean epochs 1 to `epochs` through a station. `answer` is the core's output to epoch k (0:
+/// before the first); its set point goes to the turntable.
 pub fn run_with(specs: &[Spec], epochs: u64, answer: impl Fn(u64) -> Output) -> Outcome {
     let mut station = Station::new(specs, &setup()).unwrap();
     let mut outcome = Outcome::default();
@@ -146,12 +146,12 @@ pub fn run_with(specs: &[Spec], epochs: u64, answer: impl Fn(u64) -> Output) -> 
     outcome
 }
 
-/// With a core that answers nothing.
+/// Runs with a core that gives only default outputs.
 pub fn run(specs: &[Spec], epochs: u64) -> Outcome {
     run_with(specs, epochs, |_| Output::default())
 }
 
-/// What is said of a fault that no station is made with.
+/// Returns the message with which a fault is refused.
 pub fn refused(spec: &Spec) -> String {
     Station::new(std::slice::from_ref(spec), &setup()).unwrap_err().1.to_string()
 }
@@ -161,7 +161,7 @@ pub fn seconds(time_s: f64) -> Value {
     Value::Quantity(time_s, Dimension::Time)
 }
 
-/// The bytes of epochs, of which receipts have the checksum.
+/// Canonical bytes of epochs, over which receipts have their checksums.
 pub fn bytes(epochs: &[Epoch]) -> Vec<u8> {
     let mut all = Vec::new();
     for epoch in epochs {

@@ -4,21 +4,23 @@ use super::motion::felt;
 use super::pulse::{Excursion, Shock};
 use super::registry::Lasting;
 use super::shake::Shake;
+use super::span::Span;
 use super::turning::{Ring, Slip};
-use super::{Active, Motion, Span};
-use crate::case::Whereabouts;
+use super::{Active, Motion};
 use crate::gimbal::AxisState;
 use crate::increments::{Body, GAUSS, Increments, PIECE_MIN_S};
+use crate::kinematics::Whereabouts;
 use crate::trig::{rx_t, ry_t, rz_t};
 use nalgebra::{UnitQuaternion, Vector3};
-use octant_faults::disturbance::{Disturbance, GimbalAction, Motor};
+use octant_sample::disturbance::{Disturbance, GimbalAction, Motor};
 
 /// Time in which a gear's play closes, s.
 const CLOSING_S: f64 = 0.1;
-/// Shortest time that a motion may take, s.
+/// Shortest duration of a motion, s.
 const SHORTEST_S: f64 = 1e-6;
 
-/// A value to compute with: kinds of faults refuse what is not finite or beyond reason.
+/// Replaces a value that isn't finite by 0, and limits it to ±1e6: kinds of faults refuse such
+/// values.
 fn finite(value: f64) -> f64 {
     if value.is_finite() { value.clamp(-1e6, 1e6) } else { 0.0 }
 }
@@ -41,7 +43,7 @@ impl Body {
         Motor { angle_rad: [azimuth.angle, roll.angle], rate_radps: [azimuth.rate, roll.rate] }
     }
 
-    /// A disturbance sets in; that of temperature is the sensors'.
+    /// Begins a disturbance; temperature is handled by the sensors.
     pub(crate) fn disturb(&mut self, handle: u32, disturbance: &Disturbance, now_ns: u64) {
         self.look_again();
         let span = Span::from(handle, now_ns);
@@ -75,7 +77,7 @@ impl Body {
             Disturbance::Gimbal { gimbal, action } => {
                 self.disturb_gimbal(handle, gimbal.index(), *action, now_ns);
             }
-            // That of the sensors; others are not known here.
+            // Temperature is handled by the sensors; other kinds are not known here.
             _ => {}
         }
         self.plan();
@@ -99,7 +101,7 @@ impl Body {
         self.active.get_or_insert_default()
     }
 
-    /// What has been added is integrated finely enough.
+    /// Plans the integration anew, so that every motion under way is integrated finely enough.
     pub(crate) fn plan(&mut self) {
         let (finest_s, period_s) = (self.piece_s, self.period_s);
         if let Some(active) = &mut self.active {
@@ -114,7 +116,8 @@ impl Body {
         }
     }
 
-    /// What is over has been felt: the plant goes on as it would without it.
+    /// Removes the motions that are over, and plans the integration without them. A slip that is
+    /// over stays as an offset of its gimbal.
     pub(crate) fn settle(&mut self, now_ns: u64) {
         let Some(mut active) = self.active.take() else { return };
         let before = active.len();
@@ -149,7 +152,7 @@ impl Body {
         self.lever_arm = any.then_some(arms);
     }
 
-    /// Angular rate of the sensor block at the start of the interval that comes next.
+    /// Angular rate of the sensor block at the start of the next interval.
     fn rate_at(&self, now_ns: u64) -> Vector3<f64> {
         let mut copy = self.clone();
         let active = copy.active.take().unwrap_or_default();
@@ -211,8 +214,8 @@ impl Body {
         plays.sum()
     }
 
-    /// What the drive does whatever is commanded: the latest of what holds it; if nothing does any
-    /// more, it goes to its set point.
+    /// Lets the latest fault that holds the drive rule it, whatever is commanded; without such a
+    /// fault the drive goes to its set point.
     fn hold(&mut self, gimbal: usize, now_ns: u64) {
         let holding = self.registry.of(gimbal).filter_map(|action| match action {
             GimbalAction::Stall => Some(0.0),
@@ -232,7 +235,7 @@ impl Body {
         }
     }
 
-    /// What changes readings and moves to come.
+    /// Sets the encoder error and the overshoot that faults cause in readings and later moves.
     fn set_harm(&mut self, gimbal: usize) {
         let (mut encoder, mut overshoot) = (0.0, 0.0f64);
         for action in self.registry.of(gimbal) {
@@ -246,7 +249,7 @@ impl Body {
         (harm.encoder, harm.overshoot) = (encoder, overshoot);
     }
 
-    /// Gimbals have got new set points.
+    /// Plans the rings of gimbals that got new set points, and drops their pending rings.
     #[cold]
     pub(crate) fn set_out(&mut self, new: [bool; 2], now_ns: u64) {
         for gimbal in 0..2 {
@@ -258,14 +261,14 @@ impl Body {
         self.plan();
     }
 
-    /// Rings of moves that have not ended will not come.
+    /// Drops the rings of moves that have not ended.
     fn forget_rings(&mut self, gimbal: usize, now_ns: u64) {
         if let Some(active) = &mut self.active {
             active.rings.retain(|ring| ring.gimbal != gimbal || !ring.is_pending(now_ns));
         }
     }
 
-    /// The move that has just begun will end with a ring.
+    /// Plans the ring at the end of the move that has just begun.
     fn let_ring(&mut self, gimbal: usize, now_ns: u64) {
         let delay_s = self.gimbal_mut(gimbal).move_left_s(now_ns);
         if delay_s <= 0.0 {
@@ -291,7 +294,8 @@ impl Body {
         }
     }
 
-    /// Integrals from `from_s` to `to_s` after the start of the interval, while something moves.
+    /// Integrals from `from_s` to `to_s` after the start of the interval, while a fault moves
+    /// something.
     pub(crate) fn integrate_disturbed(
         &mut self,
         start_ns: u64,
@@ -364,8 +368,8 @@ impl Body {
         }
     }
 
-    /// The gimballed body at a time after the start of the present interval; `inside_s` lies on
-    /// its stretch.
+    /// The gimballed body at a time after the start of the present interval; `inside_s` lies on the
+    /// stretch of that time.
     fn gimballed(
         &mut self,
         active: &Active,
@@ -424,7 +428,7 @@ impl Body {
         felt(&motion, &gimballed.rate, &gimballed.acceleration, &gimballed.force)
     }
 
-    /// Where the case is at the stamp of the last sample.
+    /// Position, velocity and attitude of the case at the stamp of the last sample.
     pub(crate) fn whereabouts(&self, now_ns: u64) -> Whereabouts {
         let time_s = now_ns as f64 * 1e-9;
         match self.active.as_ref().and_then(|active| active.case(now_ns, 0.0, None)) {
@@ -433,8 +437,8 @@ impl Body {
         }
     }
 
-    /// How faults have displaced the sensor block against the gimballed body, and the angular rate
-    /// of the latter in its own axes, while they do.
+    /// Displacement of the sensor block against the gimballed body by faults, and the angular rate
+    /// of the body in its own axes; `None` if no fault moves the block.
     pub(crate) fn block(&self, now_ns: u64) -> Option<(Motion, Vector3<f64>)> {
         let active = self.active.as_ref().filter(|active| active.moves_block())?;
         let motion = active.block(now_ns, 0.0, None);
@@ -450,7 +454,7 @@ impl Body {
 }
 
 impl Motion {
-    /// The turn of the block.
+    /// Rotation of the block.
     pub(crate) fn rotation(&self) -> UnitQuaternion<f64> {
         octant_earth::rotation::exp(&self.turn[0])
     }

@@ -1,10 +1,9 @@
-//! What faults do to the physical world, realised before the sensors integrate.
+//! Disturbances of the physical world by faults, realised before the sensors integrate.
 //!
 //! Every disturbance is a motion with its first and second derivatives: of the case against its
 //! mooring, of a gimbal against its drive, of the sensor block against the gimballed body. The
-//! three are composed as rigid motions, so that gyros, accelerometers, encoders and truth tell one
-//! story. The plant goes this way only while something moves; a plant without disturbances takes
-//! none of it.
+//! three are composed as rigid motions, so that gyros, accelerometers, encoders and truth agree.
+//! The plant takes this path only while something moves; a plant without disturbances never does.
 
 mod body;
 mod motion;
@@ -12,6 +11,7 @@ mod pulse;
 mod registry;
 mod shake;
 mod smooth;
+mod span;
 mod turning;
 
 pub(crate) use motion::Motion;
@@ -22,48 +22,7 @@ use pulse::{Excursion, Shock};
 use shake::Shake;
 use turning::{Ring, Slip};
 
-/// From when to when a disturbance lasts.
-#[derive(Clone, Copy, Debug, serde::Serialize, serde::Deserialize)]
-struct Span {
-    handle: u32,
-    from_ns: u64,
-    ended_ns: Option<u64>,
-}
-
-impl Span {
-    fn from(handle: u32, from_ns: u64) -> Self {
-        Self { handle, from_ns, ended_ns: None }
-    }
-
-    /// Seconds since the onset of a time after `start_ns`.
-    fn since_s(&self, start_ns: u64, at_s: f64) -> f64 {
-        seconds_between(self.from_ns, start_ns) + at_s
-    }
-
-    /// Seconds since the end, where it has ended.
-    fn since_end_s(&self, start_ns: u64, at_s: f64) -> Option<f64> {
-        self.ended_ns.map(|ended_ns| seconds_between(ended_ns, start_ns) + at_s)
-    }
-
-    /// Ends it, if it is the one of a handle and has not ended.
-    fn end(&mut self, handle: u32, now_ns: u64) {
-        if self.handle == handle && self.ended_ns.is_none() {
-            self.ended_ns = Some(now_ns);
-        }
-    }
-}
-
-/// Seconds from one time to another.
-fn seconds_between(from_ns: u64, to_ns: u64) -> f64 {
-    if to_ns >= from_ns {
-        (to_ns - from_ns) as f64 * 1e-9
-    } else {
-        -((from_ns - to_ns) as f64 * 1e-9)
-    }
-}
-
-/// All motions that are under way. There is none of it while nothing but the configured motion
-/// takes place.
+/// All motions of faults that are under way; absent while only the configured motion takes place.
 #[derive(Clone, Debug, Default, serde::Serialize, serde::Deserialize)]
 pub(crate) struct Active {
     vibrations: Vec<Shake>,
@@ -72,16 +31,16 @@ pub(crate) struct Active {
     excursions: Vec<Excursion>,
     slips: Vec<Slip>,
     rings: Vec<Ring>,
-    /// Where the integration is cut; kept for its memory.
+    /// Times at which the integration is cut; kept to reuse the memory.
     #[serde(skip)]
     cuts: Vec<f64>,
-    /// Longest piece of the integration, s: follows from the others.
+    /// Longest piece of the integration, s; follows from the other fields.
     #[serde(skip)]
     piece_s: f64,
 }
 
 impl Active {
-    /// How many are under way.
+    /// Number of motions under way.
     fn len(&self) -> usize {
         self.vibrations.len()
             + self.shocks.len()
@@ -99,7 +58,7 @@ impl Active {
         !self.vibrations.is_empty() || !self.shocks.is_empty()
     }
 
-    /// Whether something turns a gimbal beside its drive.
+    /// Returns whether a fault turns a gimbal against its drive.
     pub(crate) fn turns(&self, gimbal: usize) -> bool {
         self.slips.iter().any(|slip| slip.gimbal == gimbal)
             || self.rings.iter().any(|ring| ring.gimbal == gimbal)
@@ -110,7 +69,7 @@ impl Active {
         shakes.for_each(|shake| shake.span.end(handle, now_ns));
     }
 
-    /// Forgets what is over.
+    /// Removes the motions that are over.
     fn settle(&mut self, now_ns: u64) {
         self.vibrations.retain(|vibration| !vibration.is_over(now_ns));
         self.shocks.retain(|shock| !shock.is_over(now_ns));
@@ -119,7 +78,7 @@ impl Active {
         self.rings.retain(|ring| !ring.is_over(now_ns));
     }
 
-    /// Plans the integration anew: something has been added.
+    /// Plans the integration anew after a change of the motions.
     fn plan(&mut self, period_s: f64) {
         let shakes = self.vibrations.iter().chain(&self.sways).map(|shake| shake.piece_s);
         let shocks = self.shocks.iter().map(Shock::piece_s);
@@ -127,9 +86,10 @@ impl Active {
         let slips = self.slips.iter().map(Slip::piece_s);
         let rings = self.rings.iter().map(Ring::piece_s);
         let all = shakes.chain(shocks).chain(excursions).chain(slips).chain(rings);
-        // However high a frequency, the work of an interval stays bounded.
+        // The limit bounds the work of an interval at any frequency.
         self.piece_s = all.fold(f64::INFINITY, f64::min).max(period_s / 4096.0);
-        // At most four knots of each; both gimbals' and the end of the interval beside them.
+        // At most four knots of each motion; the rest is for both gimbals and the end of the
+        // interval.
         self.cuts.reserve(4 * self.len() + 64);
     }
 
@@ -164,7 +124,7 @@ impl Active {
         motion
     }
 
-    /// Motion of the case, where there is one.
+    /// Motion of the case, if a fault moves it.
     fn case(&self, start_ns: u64, at_s: f64, node: Option<i8>) -> Option<Motion> {
         if !self.moves_case() {
             return None;
@@ -194,7 +154,7 @@ impl Active {
         )
     }
 
-    /// What the encoder of a gimbal sees of that.
+    /// Angle by which slips under way show in the encoder of a gimbal, rad.
     pub(crate) fn seen(&self, gimbal: usize, now_ns: u64) -> f64 {
         let seen = self.slips.iter().filter(|slip| slip.gimbal == gimbal && slip.seen);
         seen.map(|slip| slip.state(now_ns, 0.0).angle).sum()

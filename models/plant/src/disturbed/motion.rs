@@ -1,11 +1,11 @@
 //! Motion of one rigid body against another: displacement and rotation vector with their
-//! derivatives, and what sensors feel on it.
+//! derivatives, and the rate and specific force that sensors feel under it.
 
 use nalgebra::Vector3;
 
-/// Displacement r and rotation vector θ of a moving frame in the axes of the one that it moves
-/// against, with first and second derivatives. Of the case: r along the mean heading, to starboard
-/// and down; θ roll, pitch and heading.
+/// Displacement r and rotation vector θ of a moving frame against a base frame, in the axes of the
+/// base frame, with first and second derivatives. For the case: r along the mean heading, to
+/// starboard and down; θ roll, pitch and heading.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Motion {
     pub(crate) displacement: [Vector3<f64>; 3],
@@ -21,8 +21,8 @@ impl Motion {
     }
 }
 
-/// Rate and specific force in the axes of the frame that moves, from those of the frame that it
-/// moves against (Titterton and Weston, 2004; Shuster, 1993, for the rotation vector's derivative):
+/// Rate and specific force in the axes of the moving frame, from those of the base frame (Titterton
+/// and Weston, 2004; Shuster, 1993, for the rotation vector's derivative):
 ///
 /// `ω' = Exp(−θ) ω + J θ̇`, `J = I − (1 − cos θ)/θ² [θ×] + (θ − sin θ)/θ³ [θ×]²`, and
 /// `f' = Exp(−θ) (f + r̈ + 2 ω × ṙ + ω̇ × r + ω × (ω × r))`.
@@ -66,7 +66,7 @@ mod tests {
     use super::*;
     use octant_earth::rotation::exp;
 
-    /// The rate of a rotation vector against the difference of its rotations.
+    /// Compares the rate of a rotation vector with the difference of its rotations.
     #[test]
     fn turned_rate_is_the_rate_of_the_rotation() {
         let h = 1e-6;

@@ -1,14 +1,15 @@
-//! Motions that come once and are over: shock of the block, excursion of the case.
+//! Motions that happen once: shock of the block, excursion of the case.
 
-use super::Span;
 use super::motion::Motion;
 use super::smooth::{bump, over};
+use super::span::Span;
 use nalgebra::Vector3;
 
 /// A half-sine pulse of acceleration `A sin(π t / T)`, after which mounts bring the block back.
 ///
-/// At its end the block moves with `2 A T / π` at a distance of `A T² / π`; the polynomial of fifth
-/// degree that leads from there to rest at the origin has no acceleration at either end.
+/// At the end of the pulse the block moves with `2 A T / π` at a distance of `A T² / π`; a
+/// polynomial of fifth degree brings it from there to rest at the origin, without acceleration at
+/// either end.
 #[derive(Clone, Copy, Debug, serde::Serialize, serde::Deserialize)]
 pub(super) struct Shock {
     pub(super) span: Span,
@@ -62,7 +63,7 @@ impl Shock {
     }
 }
 
-/// One excursion of the case and back.
+/// One excursion of the case, out and back.
 #[derive(Clone, Copy, Debug, serde::Serialize, serde::Deserialize)]
 pub(super) struct Excursion {
     pub(super) span: Span,
@@ -99,8 +100,8 @@ impl Excursion {
 mod tests {
     use super::*;
 
-    /// Velocity and acceleration are the derivatives of the displacement, also over the joint, and
-    /// pulse and recoil undo each other.
+    /// Checks that velocity and acceleration are the derivatives of the displacement, also over the
+    /// joint, and that pulse and recoil cancel.
     #[test]
     fn a_shock_is_one_motion() {
         let shock = Shock {

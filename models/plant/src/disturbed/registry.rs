@@ -1,15 +1,15 @@
-//! Disturbances that last: what the plant remembers from their onset to their end.
+//! Lasting disturbances: data that the plant keeps from their onset to their end.
 
-use octant_faults::disturbance::{Gimbal, GimbalAction};
+use octant_sample::disturbance::{Gimbal, GimbalAction};
 
-/// One that has not ended.
+/// A lasting disturbance that has not ended.
 #[derive(Clone, Copy, Debug, serde::Serialize, serde::Deserialize)]
 pub(super) enum Lasting {
     Gimbal(usize, GimbalAction),
     LeverArm([[f64; 3]; 3]),
 }
 
-/// Those that have not ended, in the order of their onsets.
+/// Lasting disturbances that have not ended, in the order of their onsets.
 #[derive(Clone, Debug, Default, serde::Serialize, serde::Deserialize)]
 pub(crate) struct Registry {
     all: Vec<(u32, Lasting)>,
@@ -24,7 +24,7 @@ impl Registry {
         self.all.push((handle, lasting));
     }
 
-    /// Takes out one of a handle.
+    /// Removes the disturbance of a handle.
     pub(super) fn leave(&mut self, handle: u32) -> Option<Lasting> {
         let found = self.all.iter().position(|(known, _)| *known == handle)?;
         Some(self.all.remove(found).1)
@@ -37,7 +37,7 @@ impl Registry {
         })
     }
 
-    /// What happens to a gimbal.
+    /// Actions of faults on a gimbal.
     pub(super) fn of(&self, gimbal: usize) -> impl Iterator<Item = GimbalAction> + '_ {
         self.all.iter().filter_map(move |(_, lasting)| match lasting {
             Lasting::Gimbal(known, action) if *known == gimbal => Some(*action),
@@ -45,7 +45,7 @@ impl Registry {
         })
     }
 
-    /// An encoder says that its angle is not to be used.
+    /// Returns whether an encoder flags its angle as invalid.
     pub(crate) fn flags_gimbal(&self) -> bool {
         [Gimbal::Azimuth, Gimbal::Roll].into_iter().any(|gimbal| {
             self.of(gimbal.index())

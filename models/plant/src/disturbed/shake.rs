@@ -1,12 +1,13 @@
-//! Sums of lines with a window: vibration of the sensor block, sway of the case.
+//! Sums of spectral lines under a window: vibration of the sensor block, sway of the case.
 
-use super::Span;
 use super::motion::Motion;
 use super::smooth::{Jet, over, product, rise};
+use super::span::Span;
 use nalgebra::Vector3;
-use octant_faults::disturbance::Line;
+use octant_sample::disturbance::Line;
 
-/// Pieces in a period of the highest line, three nodes each: the rule is good to 2e-10 of an increment.
+/// Pieces in a period of the highest line, three nodes each: the relative error of an increment is
+/// 2e-10.
 const PIECES_IN_PERIOD: f64 = 24.0;
 
 /// One line, advanced from piece to piece by a rotation instead of a sine and cosine.
@@ -16,12 +17,12 @@ struct Tone {
     omega: f64,
     phase_rad: f64,
     displacement: Vector3<f64>,
-    /// Parts of the turn that go with the sine and the cosine of the linear motion's phase.
+    /// Components of the turn in phase with the sine and with the cosine of the linear motion.
     turn_sin: Vector3<f64>,
     turn_cos: Vector3<f64>,
     /// Sine and cosine of the phase at the middle of the present piece.
     now: (f64, f64),
-    /// Of the phase gained in a piece, and from its middle to its last node.
+    /// Sine and cosine of the phase gained in a piece, and from its middle to its last node.
     piece: (f64, f64),
     node: (f64, f64),
 }
@@ -53,7 +54,7 @@ impl Tone {
         libm::sincos(turn + self.phase_rad)
     }
 
-    /// At a node of the present piece: −1, 0, 1.
+    /// Sine and cosine of the phase at a node of the present piece: −1, 0, 1.
     fn at_node(&self, node: i8) -> (f64, f64) {
         let (s, c) = self.node;
         match node {
@@ -100,7 +101,7 @@ impl Shake {
         }
     }
 
-    /// It has faded.
+    /// Returns whether the motion has faded.
     pub(super) fn is_over(&self, now_ns: u64) -> bool {
         self.span.since_end_s(now_ns, 0.0).is_some_and(|t| t >= self.edge_s)
     }
@@ -121,7 +122,7 @@ impl Shake {
         product(swell, [1.0 - fade[0], -fade[1], -fade[2]])
     }
 
-    /// Goes to the first of equal pieces.
+    /// Goes to the first of a row of equal pieces.
     pub(super) fn lay(&mut self, start_ns: u64, middle_s: f64, width_s: f64, node_s: f64) {
         let time_s = self.span.since_s(start_ns, middle_s);
         for tone in &mut self.tones {
@@ -138,7 +139,8 @@ impl Shake {
         }
     }
 
-    /// At a time after `start_ns`; `node`: which one of the present piece it is, if it is one.
+    /// Motion at a time `at_s` after `start_ns`; `node`: the node of the present piece at that
+    /// time, if it is one.
     pub(super) fn motion(&self, start_ns: u64, at_s: f64, node: Option<i8>) -> Motion {
         let time_s = self.span.since_s(start_ns, at_s);
         let mut raw = Motion::default();

@@ -19,7 +19,7 @@ pub(super) fn rise(u: f64) -> Jet {
     }
 }
 
-/// `64 u³ (1 − u)³`: from 0 to 1 in the middle and back; derivatives by u.
+/// `64 u³ (1 − u)³`: from 0 to 1 at the middle and back to 0; derivatives by u.
 pub(super) fn bump(u: f64) -> Jet {
     if u > 0.0 && u < 1.0 {
         let p = u * (1.0 - u);

@@ -1,14 +1,14 @@
 //! Motions of a gimbal's body against its drive: slip and ringing.
 
-use super::seconds_between;
 use super::smooth::{over, product, rise};
+use super::span::seconds_between;
 use crate::gimbal::AxisState;
 
 fn axis([angle, rate, acceleration]: [f64; 3]) -> AxisState {
     AxisState { angle, rate, acceleration }
 }
 
-/// The body turns against its drive and stays.
+/// Slip: the body turns against its drive and stays there.
 #[derive(Clone, Copy, Debug, serde::Serialize, serde::Deserialize)]
 pub(super) struct Slip {
     pub(super) gimbal: usize,
@@ -38,14 +38,14 @@ impl Slip {
     }
 }
 
-/// Decay times after which a ring is forgotten: less than 1e-13 of it is left.
+/// Decay times after which a ring is dropped: less than 1e-13 of it is left.
 const DECAYS: f64 = 30.0;
 
-/// The body rings about the target after a move.
+/// Ringing of the body about the target after a move.
 #[derive(Clone, Copy, Debug, serde::Serialize, serde::Deserialize)]
 pub(super) struct Ring {
     pub(super) gimbal: usize,
-    /// When the move was begun, and how long after that it ends.
+    /// Start of the move, and its duration.
     pub(super) from_ns: u64,
     pub(super) delay_s: f64,
     pub(super) amplitude_rad: f64,
@@ -58,7 +58,7 @@ impl Ring {
         seconds_between(self.from_ns, start_ns) + at_s - self.delay_s
     }
 
-    /// Its move has not ended yet.
+    /// Returns whether the move has not ended yet.
     pub(super) fn is_pending(&self, now_ns: u64) -> bool {
         self.since_s(now_ns, 0.0) < 0.0
     }

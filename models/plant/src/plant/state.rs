@@ -1,19 +1,19 @@
 //! The plant as bytes, and back.
 //!
-//! The bytes hold the configuration and what has changed since the start: time, gimbals, sensors and
-//! the disturbances that faults have begun. Random numbers are made from the number of a sample and
+//! The bytes hold the configuration and the changes since the start: time, gimbals, sensors and the
+//! disturbances that faults have begun. Random numbers are made from the number of a sample and
 //! need no state.
 
 use super::Plant;
 use crate::config::Config;
 use octant_state::{Format, Reader, State, StateError, Writer, check_below, check_count};
 
-/// What the state of a plant looks like. The version has to be raised when the layout changes; a test
-/// compares it with the stored one.
+/// Format of the state of a plant. Raise the version when the layout changes; a test compares the
+/// layout with the stored one.
 pub const FORMAT: Format = Format { magic: "OCTANTPL", version: 1, what: "the state of a plant" };
 
 impl Plant {
-    /// Appends everything that the plant needs to go on, bit for bit, as after this step: the same
+    /// Appends everything that the plant needs to continue bit for bit after this step: the same
     /// plant gives the same bytes.
     pub fn save(&self, bytes: &mut Vec<u8>) {
         FORMAT.write(bytes, |to| {
@@ -22,11 +22,11 @@ impl Plant {
         });
     }
 
-    /// A plant that goes on where another was when [`Self::save`] wrote these bytes.
+    /// Makes a plant that continues where another was when [`Self::save`] wrote these bytes.
     ///
     /// # Errors
-    /// If they are not those of a plant of this version, whole and unaltered. Whatever they are, this
-    /// doesn't panic, nor does the plant that comes of them.
+    /// If the bytes are not those of a plant of this version, whole and unaltered. Neither this
+    /// function nor the resulting plant panics, whatever the bytes.
     pub fn load(bytes: &[u8]) -> Result<Self, StateError> {
         let mut from = FORMAT.read(bytes)?;
         let config: Config = from.value("config")?;
@@ -43,7 +43,7 @@ impl State for Plant {
         let Self {
             config: _,
             sequence,
-            // Both follow from the number of the sample.
+            // Time and number in the phase follow from the number of the sample.
             time_ns: _,
             in_phase: _,
             calibration_samples: _,

@@ -1,13 +1,13 @@
-//! A plant behind a station of faults, and its twin without.
+//! A plant with a station of faults, and its twin without.
 
 use octant_faults::catalogue::Dimension;
-use octant_faults::disturbance::Disturbed;
 use octant_faults::station::{Delivered, World};
 use octant_faults::trigger::{Repeat, Schedule, Trigger};
 use octant_faults::{Setup, Spec, Station, Value, Values, kinds};
 use octant_plant::config::Config;
 use octant_plant::{Plant, Step, Truth};
 use octant_sample::counts::{DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS};
+use octant_sample::disturbance::Disturbed;
 use octant_sample::{GimbalCommand, Output};
 
 pub(crate) fn setup(config: &Config) -> Setup {
@@ -22,7 +22,7 @@ pub(crate) fn setup(config: &Config) -> Setup {
     }
 }
 
-/// A fault that alters first the sample of a number, and lasts so many.
+/// Makes a fault that first alters the sample of this number, and lasts for a number of samples.
 pub(crate) fn fault(
     kind: &str,
     values: &[(&'static str, Value)],
@@ -56,13 +56,13 @@ pub(crate) struct Pair {
 }
 
 impl Pair {
-    /// Counts that a gyro reads more than that of the twin.
+    /// Difference of a gyro's count from that of the twin.
     pub(crate) fn theta(&self, axis: usize) -> i64 {
         i64::from(self.step.sample.delta_theta[axis])
             - i64::from(self.twin.sample.delta_theta[axis])
     }
 
-    /// Counts that an accelerometer reads more than that of the twin.
+    /// Difference of an accelerometer's count from that of the twin.
     pub(crate) fn velocity(&self, axis: usize) -> i64 {
         i64::from(self.step.sample.delta_velocity[axis])
             - i64::from(self.twin.sample.delta_velocity[axis])
@@ -84,7 +84,7 @@ impl World for Behind<'_> {
     }
 }
 
-/// Samples 1 to `samples`; `target` is the set point that goes with the call for sample k.
+/// Runs samples 1 to `samples`; `target` is the set point passed with the call for sample k.
 pub(crate) fn run_pair(
     config: &Config,
     specs: &[Spec],
@@ -109,7 +109,7 @@ pub(crate) fn run_pair(
     pairs
 }
 
-/// Before its first sample a fault has altered nothing, not a bit.
+/// Checks that a fault alters not a bit before its first sample.
 pub(crate) fn nothing_before(pairs: &[Pair], first: u64) {
     for pair in &pairs[..first as usize - 1] {
         assert!(pair.is_twin(), "{}", pair.step.sample.sequence);
@@ -118,8 +118,8 @@ pub(crate) fn nothing_before(pairs: &[Pair], first: u64) {
     assert!(altered, "nothing happened at all");
 }
 
-/// From a sample on all is as without the fault: truth and angles bit for bit, the integrals of the
-/// counts within the one count that a carried remainder can make.
+/// Checks that from a sample on all is as without the fault: truth and angles bit for bit, the
+/// integrals of the counts within the one count that a carried remainder can make.
 pub(crate) fn nothing_after(pairs: &[Pair], from: u64) {
     let mut sums = [0i64; 6];
     assert!(pairs.len() > from as usize + 100);
@@ -136,8 +136,8 @@ pub(crate) fn nothing_after(pairs: &[Pair], from: u64) {
     }
 }
 
-/// What the gyros (0 to 2) or accelerometers (3 to 5) have read more than the twin's, from the
-/// first sample to each, rad or m/s.
+/// Integral of the difference of the gyros (0 to 2) or accelerometers (3 to 5) from the twin's,
+/// from the first sample to each, rad or m/s.
 pub(crate) fn gathered(pairs: &[Pair], channel: usize) -> Vec<f64> {
     let mut sum = 0;
     let all = pairs.iter().map(|pair| {

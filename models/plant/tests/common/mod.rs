@@ -1,4 +1,4 @@
-//! Configurations that the tests start from.
+//! Configurations with which the tests start.
 
 pub(crate) mod bench;
 pub(crate) mod strapdown;
@@ -10,9 +10,9 @@ use octant_sample::{GimbalAngles, GimbalCommand, Parameters};
 
 pub(crate) const PERIOD_NS: u64 = 5_000_000;
 pub(crate) const DT: f64 = 0.005;
-/// rad/s.
+/// Earth rate, rad/s.
 pub(crate) const EARTH_RATE: f64 = 7.292115e-5;
-/// Of the site of [`perfect`], rad.
+/// Latitude of the site of [`perfect`], rad.
 pub(crate) const LATITUDE: f64 = 30.5 * DEG;
 
 /// Static at 30.5° N, 200 Hz, 10 °/s and 10 °/s², perfect sensors.

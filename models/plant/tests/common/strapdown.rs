@@ -1,4 +1,4 @@
-//! A perfect strapdown, written here and nowhere else.
+//! A perfect strapdown, independent of the one of the core.
 
 use super::EARTH_RATE;
 use nalgebra::{Matrix3, Rotation3, UnitQuaternion, Vector3};
@@ -14,7 +14,7 @@ const E2: f64 = 6.69437999014e-3;
 pub(crate) struct Strapdown {
     c_nb: Matrix3<f64>,
     start: (f64, f64),
-    /// Change of latitude and longitude: added to the start, steps of nanometres would be lost.
+    /// Change of latitude and longitude; added to the start, steps of nanometres would be lost.
     moved: (f64, f64),
     height: f64,
     velocity: Vector3<f64>,
@@ -72,7 +72,7 @@ impl Strapdown {
             + (before_theta.cross(&velocity) + before_velocity.cross(&theta)) / 12.0;
         (self.last_theta, self.last_velocity) = (theta, velocity);
 
-        // Everything of n at the middle of the interval.
+        // All quantities in n are at the middle of the interval.
         let middle = self.velocity + self.last_acceleration * (0.5 * dt);
         let (rm, _, _) = Self::earth(self.latitude(), self.height);
         let latitude = self.latitude() + 0.5 * dt * middle.x / rm;

@@ -29,7 +29,7 @@ pub static MODEL_DESCRIPTION: Node = node(
         may("numberOfEventIndicators", Type::UNSIGNED_INT),
     ],
     &[
-        // One of both, in any order.
+        // At least one of both, in any order.
         one(0, &MODEL_EXCHANGE),
         one(0, &CO_SIMULATION),
         optional(1, &UNIT_DEFINITIONS),
@@ -134,7 +134,7 @@ static INTEGER_TYPE: Node = node(
     &[may("quantity", Type::Line), may("min", Type::INT), may("max", Type::INT)],
     &[],
 );
-// The schema gives these two no type at all.
+// The schema gives no type at all to these two.
 static BOOLEAN_TYPE: Node =
     Node { name: "Boolean", attributes: &[], children: &[], open: Open::Everything };
 static STRING_TYPE: Node =

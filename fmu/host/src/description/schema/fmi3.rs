@@ -54,7 +54,7 @@ static ANNOTATION: Node = Node {
 };
 const ANNOTATED: &[Child] = &[optional(0, &ANNOTATIONS)];
 
-/// What all interfaces have.
+/// Common part of all interfaces.
 macro_rules! interface {
     ($name:literal, [$($more:expr),*]) => {
         Node {
@@ -130,8 +130,8 @@ static DEFAULT_EXPERIMENT: Node = node(
     ANNOTATED,
 );
 
-/// A type of variables and the type definition that belongs to it: the attributes that both have,
-/// those of the definition alone, and those of the variable alone.
+/// A type of variables and its type definition: the attributes that both have, those of the
+/// definition alone, and those of the variable alone.
 macro_rules! typed {
     ($variable:ident $name:literal, $definition:ident $type_name:literal,
      both [$($both:expr),*], definition [$($own:expr),*], items $items:expr,

@@ -1,6 +1,6 @@
-//! Which elements and attributes the standards know, and of which types.
+//! Elements and attributes in the standards, with their types.
 //!
-//! The tables say what the XML Schemas of the standards say; what a schema can't say is checked
+//! The tables correspond to the XML Schemas of the standards; rules beyond a schema are checked
 //! elsewhere.
 
 mod fmi2;
@@ -15,58 +15,58 @@ pub use values::Type;
 
 use super::xml::Element;
 
-/// How deep elements of a file may be nested and still be looked at; only terminals nest at all.
+/// Largest depth of nested elements that is checked; only terminals are nested at all.
 const DEPTH_MAX: usize = 64;
 
-/// An element that the standard knows.
+/// An element in the standard.
 #[derive(Debug)]
 pub struct Node {
-    /// Its name.
+    /// Name of the element.
     pub name: &'static str,
-    /// Its attributes.
+    /// Attributes.
     pub attributes: &'static [Attribute],
-    /// Its elements, in their order.
+    /// Child elements, in their order.
     pub children: &'static [Child],
-    /// What else may be in it.
+    /// Other content that is allowed.
     pub open: Open,
 }
 
-/// What an element may have beside what the standard knows.
+/// Content allowed in an element beside that of the standard.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Open {
-    /// Nothing.
+    /// No other content.
     No,
     /// Any attributes.
     Attributes,
-    /// Anything: annotations.
+    /// Any content: annotations.
     Everything,
 }
 
-/// An attribute that the standard knows.
+/// An attribute in the standard.
 #[derive(Debug)]
 pub struct Attribute {
-    /// Its name.
+    /// Name of the attribute.
     pub name: &'static str,
-    /// The type of its value.
+    /// Type of the value.
     pub of: Type,
-    /// It has to be there.
+    /// True if the attribute is required.
     pub required: bool,
 }
 
-/// An element in an element.
+/// A child element.
 #[derive(Debug)]
 pub struct Child {
-    /// What it is.
+    /// Definition of the child.
     pub node: &'static Node,
-    /// Its place in the order. Elements of one place may stand in any order.
+    /// Position in the order. Elements of one position may be in any order.
     pub place: u8,
-    /// The elements of a place have to be there together at least so many times.
+    /// Smallest total number of elements of this position.
     pub min: u32,
-    /// It may be there at most so many times.
+    /// Largest number of this element.
     pub max: u32,
 }
 
-/// Any number of times.
+/// No upper limit.
 const MANY: u32 = u32::MAX;
 
 const fn node(
@@ -85,51 +85,51 @@ const fn must(name: &'static str, of: Type) -> Attribute {
     Attribute { name, of, required: true }
 }
 
-/// An element that may be missing.
+/// Makes an optional element.
 const fn optional(place: u8, node: &'static Node) -> Child {
     Child { node, place, min: 0, max: 1 }
 }
 
-/// An element that has to be there once.
+/// Makes an element that occurs exactly once.
 const fn one(place: u8, node: &'static Node) -> Child {
     Child { node, place, min: 1, max: 1 }
 }
 
-/// An element that may be there any number of times.
+/// Makes an element that may occur any number of times.
 const fn any(place: u8, node: &'static Node) -> Child {
     Child { node, place, min: 0, max: MANY }
 }
 
-/// An element that has to be there, any number of times.
+/// Makes an element that has to occur at least once.
 const fn some(place: u8, node: &'static Node) -> Child {
     Child { node, place, min: 1, max: MANY }
 }
 
-/// What doesn't follow the schema.
+/// Violation of a schema.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Violation {
-    /// Which kind of rule is broken.
+    /// Kind of rule.
     pub breaks: Breaks,
-    /// The line.
+    /// Line.
     pub line: u32,
-    /// Element, and attribute.
+    /// Element and attribute.
     pub place: String,
-    /// What is there.
+    /// Text found.
     pub found: String,
-    /// What should be there.
+    /// Text expected.
     pub expected: String,
 }
 
-/// The kinds of rules of a schema.
+/// Kinds of rules of a schema.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Breaks {
-    /// An element that isn't known at its place.
+    /// An element that is unknown at its place.
     UnknownElement,
-    /// An attribute that isn't known.
+    /// An attribute that is unknown.
     UnknownAttribute,
-    /// An element that has to be there.
+    /// A required element is missing.
     MissingElement,
-    /// An attribute that has to be there.
+    /// A required attribute is missing.
     MissingAttribute,
     /// The order of elements.
     Order,
@@ -139,7 +139,7 @@ pub enum Breaks {
     Value,
 }
 
-/// Tells `report` everything that doesn't follow the schema.
+/// Reports every violation of the schema to `report`.
 pub fn walk(root: Element<'_, '_>, node: &Node, report: &mut impl FnMut(Violation)) {
     if root.name() == node.name {
         walk_element(root, node, 0, report);
@@ -187,7 +187,7 @@ fn walk_element(
         };
         let known = &node.children[index];
         counts[index] += 1;
-        // Once is enough of a list that is too long.
+        // A list that is too long is reported once.
         if counts[index] == known.max.saturating_add(1) {
             let expected = format!("{} only once in {}", child.name(), element.name());
             report(violation(Breaks::Repeated, child, "the element is repeated".into(), expected));

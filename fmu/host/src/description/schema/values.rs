@@ -21,7 +21,7 @@ pub enum Type {
     Hex,
     /// A list of values, separated by blanks.
     List(&'static Self),
-    /// One of some words.
+    /// One of a list of words.
     Word(&'static [&'static str]),
     /// `3.0`, `3.1.2-beta`.
     Version3,
@@ -44,16 +44,16 @@ impl Type {
     pub const LONG: Self = Self::Whole(i64::MIN as i128, i64::MAX as i128);
     /// `xs:unsignedLong`.
     pub const UNSIGNED_LONG: Self = Self::Whole(0, u64::MAX as i128);
-    /// Its upper end is far beyond any size.
+    /// `xs:nonNegativeInteger`: the upper limit is far beyond any size.
     pub const NON_NEGATIVE: Self = Self::Whole(0, i128::MAX);
 
-    /// The text is of the type.
+    /// Returns whether the text is of the type.
     pub fn allows(self, text: &str) -> bool {
         match self {
             Self::Text => true,
             Self::Line => !text.contains(['\n', '\r', '\t']),
             Self::Double => is_double(text.trim()),
-            // What is too large for it becomes infinite, which the schema allows.
+            // A value that is too large becomes infinite, which the schema allows.
             Self::Float => is_double(text.trim()),
             Self::Boolean => matches!(text.trim(), "true" | "false" | "1" | "0"),
             Self::Whole(min, max) => {
@@ -92,14 +92,14 @@ impl std::fmt::Display for Type {
     }
 }
 
-/// `xs:double` is narrower than what Rust reads: no `inf`, `infinity`, `nan`.
+/// Checks `xs:double`, which is narrower than Rust's format: no `inf`, `infinity`, `nan`.
 fn is_double(text: &str) -> bool {
     matches!(text, "INF" | "-INF" | "+INF" | "NaN")
         || (text.parse::<f64>().is_ok()
             && text.bytes().all(|b| !b.is_ascii_alphabetic() || b | 32 == b'e'))
 }
 
-/// `YYYY-MM-DDThh:mm:ss`, with a fraction and a zone.
+/// Checks `YYYY-MM-DDThh:mm:ss`, with a fraction and a zone.
 fn is_date_time(text: &str) -> bool {
     let number = |text: &str, digits: usize, min: u32, max: u32| {
         text.len() == digits

@@ -1,7 +1,7 @@
 use super::*;
 use crate::description::read;
 
-/// A description with these unit definitions, and variables `v` of unit `unit`.
+/// Makes a description with these unit definitions, and a variable `v` of unit `unit`.
 fn description(definitions: &str, attributes: &str) -> Description {
     let text = format!(
         r#"<fmiModelDescription fmiVersion="2.0" modelName="m" guid="g">
@@ -38,7 +38,7 @@ fn the_same_unit_changes_no_bit() {
 
 #[test]
 fn factors_are_those_of_the_textbook() {
-    // Each from its definition, computed by hand.
+    // Each from its definition, calculated by hand.
     for (from, to, expected) in [
         ("deg", "rad", 0.017_453_292_519_943_295),
         ("rad", "deg", 57.295_779_513_082_32),
@@ -103,7 +103,7 @@ fn temperatures_have_offsets_and_differences_have_none() {
 
 #[test]
 fn definitions_count_before_names() {
-    // As Modelica tools write a degree: with 15 digits. It is meant as one.
+    // Modelica tools write a degree with 15 digits; the exact degree is meant.
     let tool = description(
         r#"<Unit name="deg"><BaseUnit rad="1" factor="0.0174532925199433"/></Unit>
            <Unit name="Grad"><BaseUnit rad="1" factor="0.0157079632679490"/></Unit>
@@ -119,11 +119,11 @@ fn definitions_count_before_names() {
     assert_eq!(factor("deg/h", "rad/s"), 0.5);
     assert_eq!(factor("rad", "rad"), 1.0);
     assert!((factor("Strich", "deg") - 360.0 / 6400.0).abs() < 1e-15);
-    // A mile of surveyors is 3 mm longer, and stays so.
+    // A survey mile is 3 mm longer, and is left so.
     let survey = description(r#"<Unit name="mi"><BaseUnit m="1" factor="1609.3472"/></Unit>"#, "");
     let mile = Conversion::between(&survey, "mi", "m").expect("converts");
     assert_eq!(mile.factor, 1609.3472);
-    // A number of turns isn't an angle, even where a tool leaves the radian out of "rad".
+    // A number of turns isn't an angle, even if a tool leaves the radian out of "rad".
     assert!(Conversion::between(&tool, "Umin", "rad/s").is_err());
 }
 

@@ -1,11 +1,13 @@
-//! Faults on connections of FMUs: from a text to what can be looked up in a system.
+//! Faults on connections of FMUs: reading of everything that needs no system.
 
 use super::grid::{Grid, Waiting, check_chains};
-use super::{Reader, value};
-use crate::complete::{self, number};
-use crate::document::{self, Node, Value as Written};
+use super::value::value;
+use crate::arguments::fire;
+use crate::complete::complete;
+use crate::document::{self, Node, Value as Written, join, number};
 use crate::error::{Place, Problem, ScenarioError};
-use crate::{fire, keys};
+use crate::keys;
+use crate::read::reader::Reader;
 use octant_faults::Values;
 use octant_faults::catalogue::{Parameter, Takes};
 use octant_faults::connection::kinds::{self, Kind};
@@ -15,23 +17,23 @@ use std::path::Path;
 /// A fault on a connection, as far as it is known without the system.
 #[derive(Clone, Debug)]
 pub struct ConnectionFault {
-    /// Its id.
+    /// Id.
     pub id: String,
-    /// The input that it acts on.
+    /// Input that it acts on.
     pub connection: String,
-    /// Its kind.
+    /// Kind.
     pub kind: &'static Kind,
-    /// Values that mean the same on every connection.
+    /// Values with the same meaning on every connection.
     pub values: Values,
-    /// Values that are in the unit of the connection.
+    /// Values in the unit of the connection.
     pub given: Vec<(&'static Parameter, Given)>,
-    /// When; of a condition, what comes after it.
+    /// Schedule; with a condition, the part that follows it.
     pub schedule: Schedule,
-    /// The condition that it waits for.
+    /// Condition that it waits for.
     pub when: Option<String>,
     /// Steps at which it is fired by hand, in order.
     pub fires: Vec<u64>,
-    /// Where it and its keys were written.
+    /// Places of the fault and its keys.
     places: Vec<(String, Place)>,
     path: String,
 }
@@ -43,27 +45,27 @@ pub enum Given {
     Number(f64),
     /// A quantity, or the name of an item.
     Text(String),
-    /// Yes or no.
+    /// True or false.
     Flag(bool),
 }
 
 impl ConnectionFault {
-    /// A problem with one of its keys.
+    /// Makes a problem of one of its keys.
     #[must_use]
     pub fn problem(&self, key: &str, message: impl Into<String>) -> Problem {
         let at = |key: &str| self.places.iter().find(|(known, _)| known == key);
         let place = at(key).or_else(|| at("")).map_or(Place::Default, |(_, place)| place.clone());
-        Problem { place, path: complete::join(&self.path, key), message: message.into() }
+        Problem { place, path: join(&self.path, key), message: message.into() }
     }
 
-    /// It is fired by hand, and nobody does.
+    /// True if its trigger is manual and nobody fires it.
     #[must_use]
     pub fn is_idle(&self) -> bool {
         self.schedule.trigger == Trigger::Manual && self.fires.is_empty()
     }
 }
 
-/// Reads a list of faults on connections for a run of so many steps of a length, with `--fire`
+/// Reads a list of faults on connections for a run of a number of steps of equal length, with `--fire`
 /// arguments `ID=TIME` applied. `file` names it in errors.
 ///
 /// # Errors
@@ -84,7 +86,7 @@ pub fn connection_faults(
         }
     }
     let start = Place::File { line: 1, column: 1 };
-    complete::complete(&mut table, &keys::CONNECTIONS, "", &start, &mut problems);
+    complete(&mut table, &keys::CONNECTIONS, "", &start, &mut problems);
     if !problems.is_empty() {
         return Err(with_file(problems));
     }
@@ -186,8 +188,8 @@ fn given(table: &Reader<'_>, key: &str) -> Result<Given, Problem> {
     }
 }
 
-/// The first step at which a fault can set in, where that is known. `depth` ends the walk along
-/// faults that wait for each other.
+/// First step at which a fault can begin, if that is known. `depth` bounds the walk along faults that
+/// wait for each other.
 fn earliest(all: &[ConnectionFault], index: usize, depth: usize) -> Option<u64> {
     let fault = all.get(index)?;
     match &fault.schedule.trigger {
@@ -204,10 +206,10 @@ fn earliest(all: &[ConnectionFault], index: usize, depth: usize) -> Option<u64> 
     }
 }
 
-/// Faults of a file.
+/// Reads the text of a file of faults.
 ///
 /// # Errors
-/// If it can't be read.
+/// If the file can't be read.
 pub fn text_of(path: &Path) -> Result<String, ScenarioError> {
     std::fs::read_to_string(path).map_err(|error| ScenarioError {
         file: path.display().to_string(),

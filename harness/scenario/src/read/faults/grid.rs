@@ -1,19 +1,18 @@
-//! Epochs at equal distances, and what schedules are on them: the part of a schedule that needs no
-//! core.
+//! Epochs at equal intervals, and schedules on them: the part of a schedule that needs no core.
 
-use super::super::Reader;
 use crate::document::{Node, Value};
 use crate::error::Problem;
 use crate::quantity::{self, Dimension};
+use crate::read::reader::Reader;
 use octant_base::names::suggestion;
 use octant_faults::catalogue::Lasts;
 use octant_faults::trigger::{Repeat, Schedule, Trigger};
 
-/// Epochs at equal distances.
+/// Epochs at equal intervals.
 pub(super) struct Grid {
-    /// Their distance, ns.
+    /// Interval, ns.
     pub(super) period_ns: f64,
-    /// What one is called in messages.
+    /// Name of an interval in messages.
     pub(super) step: &'static str,
 }
 
@@ -22,7 +21,7 @@ impl Grid {
         self.period_ns * 1e-9
     }
 
-    /// A time, or a number of samples, as epochs.
+    /// Converts a time, or a number of samples, to epochs.
     pub(super) fn epochs(&self, table: &Reader<'_>, key: &str) -> Result<Option<u64>, Problem> {
         let Some(text) = table.optional_text(key) else { return Ok(None) };
         let quantity = quantity::parse(text).map_err(|_| table.problem(key, "missing"))?;
@@ -34,11 +33,11 @@ impl Grid {
     }
 
     pub(super) fn of_time(&self, time_s: f64) -> u64 {
-        // The cast saturates: past any run.
+        // The cast saturates at a value beyond any run.
         (time_s * 1e9 / self.period_ns).round() as u64
     }
 
-    /// As [`Self::epochs`], one at least.
+    /// Converts as [`Self::epochs`] does, and requires at least one epoch.
     pub(super) fn span(&self, table: &Reader<'_>, key: &str) -> Result<Option<u64>, Problem> {
         match self.epochs(table, key)? {
             Some(0) => {
@@ -58,12 +57,12 @@ impl Grid {
         self.epochs(table, key).map(Option::unwrap_or_default)
     }
 
-    /// How long after what it waits for a fault sets in.
+    /// Delay of a fault after the event that it waits for.
     pub(super) fn delay(&self, table: &Reader<'_>) -> Result<u64, Problem> {
         self.or_zero(table, "after")
     }
 
-    /// A schedule around a trigger.
+    /// Reads a schedule with a given trigger.
     pub(super) fn schedule(
         &self,
         table: &Reader<'_>,
@@ -81,7 +80,8 @@ impl Grid {
         Ok(schedule)
     }
 
-    /// A trigger that waits for time, for another fault, or for a hand; and when the hand comes.
+    /// Reads a trigger by time, after another fault or by hand, and the epochs at which it is fired by
+    /// hand.
     pub(super) fn trigger(&self, table: &Reader<'_>) -> Result<(Trigger, Vec<u64>), Problem> {
         let first = || Ok(self.or_zero(table, "from")?.saturating_add(1));
         let last = || Ok(self.span(table, "until")?.map(|until| until.saturating_add(1)));
@@ -133,7 +133,7 @@ impl Grid {
         }
     }
 
-    /// What comes back has to end before, and a repetition has to have an effect.
+    /// Checks that a repeated fault ends before it returns, and that the repetition has an effect.
     fn check_repetition(
         &self,
         table: &Reader<'_>,
@@ -193,14 +193,14 @@ impl Grid {
     }
 }
 
-/// What is known of a fault that may wait for another, or be waited for.
+/// A fault that may wait for another one, or be waited for.
 pub(super) struct Waiting<'a> {
     pub(super) id: &'a str,
     pub(super) schedule: &'a Schedule,
     pub(super) lasts: Lasts,
 }
 
-/// Faults that wait for others: those are there, they end, and something starts the chain.
+/// Checks faults that wait for others: those exist and end, and something starts the chain.
 pub(super) fn check_chains(tables: &[Reader<'_>], all: &[Waiting<'_>]) -> Result<(), Problem> {
     let of = |id: &str| all.iter().position(|fault| fault.id == id);
     let waits_for = |fault: &Waiting<'_>| match &fault.schedule.trigger {

@@ -1,10 +1,10 @@
-//! When faults set in: triggers in epochs, and those that can't come true.
+//! Schedules of faults: triggers in epochs, and the refusal of those that can't fire.
 
 use super::grid::Grid;
-use super::{Fault, Reader, method_name};
 use crate::condition;
 use crate::error::Problem;
-use crate::{Alignment, Calibration, Method, Scenario, Source};
+use crate::model::{Alignment, Calibration, Fault, Method, Scenario, Source};
+use crate::read::reader::Reader;
 use octant_calibration::config::TurntableRates;
 use octant_calibration::schedule::move_between_s;
 use octant_calibration::sequence::{Sequence, Stop};
@@ -12,21 +12,21 @@ use octant_faults::catalogue::Kind;
 use octant_faults::trigger::{Schedule, Trigger};
 use octant_sample::Mode;
 
-/// What is known of the run's time before it starts.
+/// Timing of the run, as far as it is known before the start.
 pub(super) struct Timing<'a> {
     scenario: &'a Scenario,
     grid: Grid,
-    /// Epochs of the whole run, where they are known.
+    /// Number of epochs of the whole run, if known.
     total: Option<u64>,
     calibration_samples: u64,
 }
 
-/// One walk through positions.
+/// A walk through positions.
 struct Walk<'a> {
     sequence: &'a Sequence,
     from: Stop,
     dwell_s: f64,
-    /// Positions that come, over all passes; `None`: as long as it lasts.
+    /// Number of positions, over all passes; `None`: until the end of the phase.
     positions: Option<u64>,
     name: &'static str,
 }
@@ -41,7 +41,7 @@ impl<'a> Timing<'a> {
         }
     }
 
-    /// The schedule of a fault, and the epochs at which it is fired by hand.
+    /// Schedule of a fault, and the epochs at which it is fired by hand.
     pub(super) fn schedule(
         &self,
         table: &Reader<'_>,
@@ -127,7 +127,7 @@ impl<'a> Timing<'a> {
         Ok(())
     }
 
-    /// A trigger waits for a phase that the run has, and for positions that it goes to.
+    /// Checks that the run has the phase that a trigger waits for, and visits its position.
     fn check_phase(&self, table: &Reader<'_>, trigger: &Trigger) -> Result<(), Problem> {
         let (mode, key) = match trigger {
             Trigger::Position { mode, .. } => (*mode, "position"),
@@ -185,7 +185,7 @@ impl<'a> Timing<'a> {
         }
     }
 
-    /// The walks through positions of both methods.
+    /// Walks through positions of both methods.
     fn walks(&self, mode: Mode) -> Vec<Walk<'_>> {
         let methods = [
             (Method::Primary, self.scenario.calibration.as_ref()),
@@ -217,8 +217,8 @@ impl<'a> Timing<'a> {
         walks
     }
 
-    /// The first epoch at which a fault can set in, where that is known. `depth` ends the walk
-    /// along faults that wait for each other.
+    /// First epoch at which a fault can begin, if that is known. `depth` bounds the walk along faults
+    /// that wait for each other.
     fn earliest(&self, all: &[Fault], index: usize, depth: usize) -> Option<u64> {
         let fault = all.get(index)?;
         let after = |start: u64, delay: &u64| Some(start.saturating_add(*delay));
@@ -226,7 +226,7 @@ impl<'a> Timing<'a> {
             Trigger::Position { stop, mode, delay } | Trigger::Move { stop, mode, delay } => {
                 let moving = matches!(fault.spec.schedule.trigger, Trigger::Move { .. });
                 let walks = self.walks(*mode);
-                // The later one: the fault is to fire in both methods.
+                // The later one counts, because the fault must fire in both methods.
                 let reached = walks
                     .iter()
                     .map(|walk| self.grid.of_time(walk.reached_s(*stop, moving, &self.rates())));
@@ -246,7 +246,7 @@ impl<'a> Timing<'a> {
         }
     }
 
-    /// The first epoch of a mode.
+    /// First epoch of a mode.
     fn start(&self, mode: Mode) -> u64 {
         match (mode, self.scenario.alignment) {
             (Mode::Navigating, _) => self.calibration_samples,
@@ -270,7 +270,7 @@ impl Walk<'_> {
         move_between_s(&self.before(stop), &self.at(stop), rates)
     }
 
-    /// When a position is reached, or set out for, since the start of the walk, s.
+    /// Time since the start of the walk at which a position is reached, or its move begins, s.
     fn reached_s(&self, stop: u16, moving: bool, rates: &TurntableRates) -> f64 {
         let before: f64 = (0..stop)
             .map(|stop| self.move_to_s(stop, rates) + self.at(stop).weight * self.dwell_s)
@@ -283,7 +283,8 @@ fn positions(calibration: &Calibration) -> u64 {
     calibration.sequence.stops().len() as u64 * u64::from(calibration.sequence.passes())
 }
 
-/// What a source without truth is, in words. An FMU without a map may be our plant, which has it.
+/// Description of a source without truth; `None` if it has truth. An FMU without a map may be Octant's
+/// plant, which has it.
 fn without_truth(source: &Source) -> Option<&'static str> {
     match source {
         Source::Plant => None,
@@ -292,5 +293,13 @@ fn without_truth(source: &Source) -> Option<&'static str> {
         Source::Fmu(_) => Some("source.fmu.map has no truth"),
         Source::Replay { .. } | Source::Text(_) => Some("the source is a recording"),
         Source::Live(_) => Some("the source is a real instrument"),
+    }
+}
+
+/// Name of a method, for messages.
+fn method_name(method: Method) -> &'static str {
+    match method {
+        Method::Primary => "the calibration",
+        Method::Baseline => "the calibration of the baseline",
     }
 }

@@ -1,4 +1,4 @@
-//! References that come late.
+//! References that arrive late.
 
 use crate::catalogue::{Acts, Bounds, Dimension, Family, Kind, Lasts, Parameter, Takes};
 use crate::kinds::span::samples;
@@ -60,17 +60,18 @@ fn build(values: &Values, setup: &Setup) -> Result<Rule, BuildError> {
 struct AidingLate {
     delay: u64,
     restamps: bool,
-    /// Samples seen.
+    /// Number of samples so far.
     count: u64,
-    /// Sample that each goes with. While the fault lasts, at most one comes in with a sample and one
-    /// that is due goes out: never more than `delay` are held.
+    /// Due sample of each message, and the message. While the fault lasts, at most one message
+    /// comes in with a sample and one that is due goes out: never more than `delay` are held.
     queue: VecDeque<(u64, Aiding)>,
 }
 
 octant_state::state! { AidingLate { values: count, queue; parts: ; kept: delay, restamps; check: Self::check_queue } }
 
 impl AidingLate {
-    /// As many as there is room for, and a count that goes on.
+    /// Checks that the count and the length of the queue are within limits, and reserves the
+    /// queue's room.
     fn check_queue(&mut self) -> Result<(), octant_state::StateError> {
         octant_state::check_count("count", self.count)?;
         octant_state::check_below("queue", self.queue.len() as u64, FLIGHT_MAX as u64)?;
@@ -78,7 +79,7 @@ impl AidingLate {
         Ok(())
     }
 
-    /// Gives what is due to a sample that has no aiding.
+    /// Adds the oldest message, if due, to a sample without aiding.
     fn give(&mut self, epoch: &mut Epoch) {
         let due = self.queue.front().is_some_and(|(due, _)| *due <= self.count);
         if !due || epoch.aiding.is_some() {

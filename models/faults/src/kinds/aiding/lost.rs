@@ -1,4 +1,4 @@
-//! References that don't come.
+//! References that are lost.
 
 use crate::catalogue::{Acts, Family, Kind, Lasts};
 use crate::kinds::chance::{self, LOSS};

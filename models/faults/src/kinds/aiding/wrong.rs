@@ -160,7 +160,7 @@ impl SampleRule for AidingNoise {
 /// An error of a reference in n: north, east, down.
 #[derive(Clone, Copy, Debug)]
 struct Offset {
-    /// m/s or m.
+    /// Error, m/s or m.
     error: [f64; 3],
     dimension: Dimension,
 }
@@ -177,7 +177,7 @@ impl Offset {
         Ok(Self { error, dimension })
     }
 
-    /// Adds it, times a factor for each axis, to aiding of its own sort.
+    /// Adds the error, times a factor for each axis, to aiding of the same dimension.
     fn add(&self, epoch: &mut Epoch, factors: [f64; 3]) {
         let Some(aiding) = &mut epoch.aiding else { return };
         let error: [f64; 3] = core::array::from_fn(|axis| factors[axis] * self.error[axis]);

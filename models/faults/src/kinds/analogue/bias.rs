@@ -94,7 +94,7 @@ fn build_ramp(values: &Values, setup: &Setup) -> Result<Rule, BuildError> {
 #[derive(Clone, Debug)]
 struct Bias {
     added: Added,
-    /// 0: at once.
+    /// Rise time, s; 0: at once.
     rise_s: f64,
     onset: Onset,
 }

@@ -1,4 +1,4 @@
-//! One axis felt by another.
+//! Cross-coupling of axes.
 
 use crate::catalogue::{Acts, Bounds, Dimension, Family, Kind, Lasts, Parameter, Takes};
 use crate::kinds::added::{Adder, counts_per_si};
@@ -126,7 +126,7 @@ impl SampleRule for Cross {
         if self.onset.is_new(now) {
             self.adder.clear();
         }
-        // No channel that is altered has a part in the row.
+        // No altered channel has a part in the row.
         let felt: f64 =
             (0..6).map(|channel| self.row[channel] * f64::from(read(&epoch.sample, channel))).sum();
         for channel in self.channels.iter() {

@@ -1,4 +1,4 @@
-//! More noise.
+//! Additional noise.
 
 use crate::catalogue::{Acts, Bounds, Dimension, Family, Kind, Lasts, Parameter, Takes};
 use crate::kinds::added::{Adder, counts_per_si};

@@ -92,7 +92,8 @@ impl SampleRule for Quantization {
             let total = self.remainder[channel] + i64::from(read(&epoch.sample, channel));
             let half = if total < 0 { -self.step } else { self.step };
             let coarse = (2 * total + half) / (2 * self.step) * self.step;
-            // Of what the format cuts off nothing is carried.
+            // The remainder is against the coarse count before saturation: the excess over the
+            // format is lost.
             self.remainder[channel] = total - coarse;
             write_saturating(&mut epoch.sample, channel, coarse);
         }

@@ -1,4 +1,4 @@
-//! The ends and the middle of the range.
+//! Saturation and dead zone: the ends and the middle of the range.
 
 use crate::catalogue::{Acts, Bounds, Dimension, Family, Kind, Lasts, Parameter, Takes};
 use crate::kinds::added::{counts_per_si, fitting};
@@ -112,7 +112,7 @@ fn build_saturation(values: &Values, setup: &Setup) -> Result<Rule, BuildError> 
 #[derive(Clone, Debug)]
 struct Saturation {
     channels: Channels,
-    /// Counts.
+    /// Limit, counts.
     limit: i32,
     flag: bool,
 }

@@ -1,4 +1,4 @@
-//! Scale factors.
+//! Errors of scale factors.
 
 use crate::catalogue::{Acts, Bounds, Dimension, Family, Kind, Lasts, Parameter, Takes};
 use crate::kinds::mapped::Mapped;

@@ -123,13 +123,13 @@ fn build_markov(values: &Values, setup: &Setup) -> Result<Rule, BuildError> {
     Ok(Wander::rule(channels, process, setup))
 }
 
-/// A bias from sample to sample: `b ← keeps b + drives w`, of which the sample gets
-/// `keeps b + drives (mean w + bridge v)`. All in SI.
+/// A bias from sample to sample: `b ← keeps b + drives w`; the sample gets `keeps b + drives (mean
+/// w + bridge v)`. All in SI.
 #[derive(Clone, Copy, Debug)]
 struct Process {
     keeps: f64,
     drives: f64,
-    /// Standard deviation of what it starts from.
+    /// Standard deviation of the initial bias.
     starts: f64,
     bridge: f64,
     mean: f64,
@@ -168,7 +168,7 @@ impl SampleRule for Wander {
     fn on_epoch(&mut self, epoch: &mut Epoch, now: &Context<'_>) {
         let Process { keeps, drives, starts, bridge, mean } = self.process;
         let fresh = self.onset.is_new(now);
-        // What the second numbers are for: the start of a Markov process, the bridge of a walk.
+        // The second numbers serve as the start of a Markov process and as the bridge of a walk.
         let v = if bridge > 0.0 || fresh { self.second.normals(now) } else { [0.0; 6] };
         if fresh {
             self.adder.clear();

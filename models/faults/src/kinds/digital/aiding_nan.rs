@@ -1,4 +1,4 @@
-//! Numbers that are none, where a port has real numbers.
+//! NaN and infinity where a port has real numbers.
 
 use crate::catalogue::{Acts, Family, Kind, Lasts, Parameter, Takes};
 use crate::rule::{Context, Rule, SampleRule};

@@ -77,7 +77,7 @@ fn build(values: &Values, setup: &Setup) -> Result<Rule, BuildError> {
         "cleared" => Becomes::Cleared,
         _ => Becomes::Inverted,
     };
-    // A hit that is certain needs no dice.
+    // With certainty no random number is needed.
     let dice = (probability < 1.0).then(|| (Six::new(setup, channels, "hit"), probability));
     Ok(Rule::Samples(Box::new(BitFlip { channels, mask: mask as i32, becomes, dice })))
 }

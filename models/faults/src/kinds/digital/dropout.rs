@@ -1,4 +1,4 @@
-//! Samples without content: they come, but nothing was read into them.
+//! Samples without content: they arrive, but carry no new measurement.
 
 use crate::catalogue::{Acts, Bounds, Dimension, Family, Kind, Lasts, Parameter, Takes};
 use crate::kinds::channel::{counts, write};
@@ -128,7 +128,7 @@ fn build_intermittent(values: &Values, setup: &Setup) -> Result<Rule, BuildError
     Dropout::rule(values, values.choice("fill")? == "held", Some(chain))
 }
 
-/// Chances of a change before a sample.
+/// Probabilities of a change before a sample.
 #[derive(Clone, Copy, Debug)]
 struct Chain {
     leaves_out: f64,
@@ -136,7 +136,7 @@ struct Chain {
     stream: Stream,
 }
 
-/// What a sample is filled with.
+/// Content that fills a sample.
 #[derive(Clone, Copy, Debug, Default, serde::Serialize, serde::Deserialize)]
 struct Fill {
     counts: [i32; 6],
@@ -154,7 +154,7 @@ struct Dropout {
     channels: Channels,
     gimbal: bool,
     held: bool,
-    /// `None`: it is out all the time.
+    /// `None`: the samples are out all the time.
     chain: Option<Chain>,
     out: bool,
     fill: Fill,

@@ -1,4 +1,4 @@
-//! Flags that don't tell the truth.
+//! Flags that are wrong.
 
 use crate::catalogue::{Acts, Family, Kind, Lasts, Parameter, Takes};
 use crate::rule::{Context, Rule, SampleRule};

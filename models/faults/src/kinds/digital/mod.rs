@@ -1,4 +1,4 @@
-//! What happens to numbers after they were measured.
+//! Alteration of numbers after they were measured.
 
 mod aiding_nan;
 mod bit_flip;

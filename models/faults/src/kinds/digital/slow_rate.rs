@@ -96,7 +96,7 @@ impl SlowRate {
     fn check_counts(&self) -> Result<(), octant_state::StateError> {
         let every = self.every.unsigned_abs();
         octant_state::check_below("seen", self.seen as u64, every - 1)?;
-        // The sum of so many samples at most.
+        // Limit: the sum of `every` samples.
         let largest = every.saturating_mul(1 << 31);
         self.kept
             .iter()
@@ -123,7 +123,7 @@ impl SampleRule for SlowRate {
             let kept = &mut self.kept[channel];
             match self.between {
                 Between::Repeated if fresh => *kept = count,
-                // A count that was read fits.
+                // A stored count was read from a count, so that the cast is exact.
                 Between::Repeated => write(&mut epoch.sample, channel, *kept as i32),
                 Between::Zero if fresh => {}
                 Between::Zero => write(&mut epoch.sample, channel, 0),

@@ -1,4 +1,4 @@
-//! Counts that don't move any more.
+//! Counts that stay constant.
 
 use crate::catalogue::{Acts, Bounds, Dimension, Family, Kind, Lasts, Parameter, Takes};
 use crate::kinds::added::{counts_per_si, fitting};
@@ -175,7 +175,7 @@ fn build_limit(values: &Values, _: &Setup) -> Result<Rule, BuildError> {
 #[derive(Clone, Debug)]
 struct Limit {
     channels: Channels,
-    /// `None`: on the side of the sign.
+    /// `None`: the limit on the side of the count's sign.
     at: Option<i32>,
     flag: bool,
 }

@@ -1,4 +1,4 @@
-//! Channels that are wired or decoded wrongly.
+//! Channels with wrong wiring or decoding.
 
 use crate::catalogue::{Acts, Family, Kind, Lasts, Parameter, Takes};
 use crate::kinds::channel::{pair, read, write, write_saturating};

@@ -1,11 +1,11 @@
 //! Size effect.
 
 use crate::catalogue::{Acts, Dimension, Family, Kind, Lasts, Parameter, Takes};
-use crate::disturbance::Disturbance;
 use crate::kinds::plant::{fixed, within};
 use crate::rule::Rule;
 use crate::setup::{BuildError, Setup};
 use crate::values::Values;
+use octant_sample::disturbance::Disturbance;
 
 const ZERO: Option<&str> = Some(r#"["0 m", "0 m", "0 m"]"#);
 const ARMS: [&str; 3] = ["accelerometer_x", "accelerometer_y", "accelerometer_z"];

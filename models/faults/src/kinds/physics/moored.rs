@@ -1,7 +1,6 @@
 //! Motions of the whole case that the core doesn't expect: a jerk of the mooring, and sway.
 
 use crate::catalogue::{Acts, Bounds, Dimension, Family, Kind, Lasts, Parameter, Takes};
-use crate::disturbance::{Disturbance, Line, Motor};
 use crate::kinds::plant::{EDGE, angular, fixed, not_nothing, within};
 use crate::rule::{Context, PlantRule, Rule};
 use crate::setup::{BuildError, Setup, Stream};
@@ -10,6 +9,7 @@ use alloc::boxed::Box;
 use alloc::format;
 use alloc::vec::Vec;
 use octant_random::normal::{uniform, words};
+use octant_sample::disturbance::{Disturbance, Line, Motor};
 
 pub(super) static MOORING_JERK: Kind = Kind {
     name: "mooring-jerk",

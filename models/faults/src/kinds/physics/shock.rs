@@ -1,11 +1,11 @@
 //! A shock of the sensor block.
 
 use crate::catalogue::{Acts, Bounds, Dimension, Family, Kind, Lasts, Parameter, Takes};
-use crate::disturbance::Disturbance;
 use crate::kinds::plant::{fixed, something, within};
 use crate::rule::Rule;
 use crate::setup::{BuildError, Setup};
 use crate::values::Values;
+use octant_sample::disturbance::Disturbance;
 
 pub(super) static SHOCK: Kind = Kind {
     name: "shock",
@@ -63,7 +63,7 @@ fn build(values: &Values, _: &Setup) -> Result<Rule, BuildError> {
     let peak_mps2 = something(values, "peak", 1e6, "m/s²")?;
     let width_s = values.quantity("width")?;
     let recoil_s = values.quantity("recoil")?;
-    // The largest value of u(1−u)³(1+3u) is 16/81, at a third.
+    // The largest value of u(1−u)³(1+3u) is 16/81, at u = 1/3.
     let reach_s2 = (width_s + 2.0 * recoil_s * 16.0 / 81.0) * width_s / core::f64::consts::PI;
     within("peak", &peak_mps2.map(|peak| peak * reach_s2), 1.0, "m of displacement")?;
     Ok(fixed(Disturbance::Shock { peak_mps2, width_s, recoil_s }))

@@ -1,11 +1,11 @@
 //! Temperature.
 
 use crate::catalogue::{Acts, Bounds, Dimension, Family, Kind, Lasts, Parameter, Takes};
-use crate::disturbance::Disturbance;
 use crate::kinds::plant::fixed;
 use crate::rule::Rule;
 use crate::setup::{BuildError, Setup};
 use crate::values::Values;
+use octant_sample::disturbance::Disturbance;
 
 pub(super) static TEMPERATURE_RAMP: Kind = Kind {
     name: "temperature-ramp",

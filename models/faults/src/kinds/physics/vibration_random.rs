@@ -1,7 +1,6 @@
 //! Random vibration of the sensor block by its spectral density.
 
 use crate::catalogue::{Acts, Bounds, Dimension, Family, Kind, Lasts, Parameter, Takes};
-use crate::disturbance::{Disturbance, Line, Motor};
 use crate::kinds::plant::{EDGE, angular, frequency, not_nothing, within};
 use crate::rule::{Context, PlantRule, Rule};
 use crate::setup::{BuildError, Setup, Stream};
@@ -10,8 +9,9 @@ use alloc::boxed::Box;
 use alloc::format;
 use alloc::vec::Vec;
 use octant_random::normal::{uniform, words};
+use octant_sample::disturbance::{Disturbance, Line, Motor};
 
-/// Counters of an onset's numbers are a thousand apart: more than there can be lines.
+/// Distance of the counters of two onsets: more than there can be lines.
 const PER_FIRING: u64 = 1000;
 
 pub(super) static VIBRATION_RANDOM: Kind = Kind {

@@ -1,12 +1,12 @@
 //! Sinusoidal vibration of the sensor block.
 
 use crate::catalogue::{Acts, Bounds, Dimension, Family, Kind, Lasts, Parameter, Takes};
-use crate::disturbance::{Disturbance, Line};
 use crate::kinds::plant::{EDGE, angular, fixed, frequency, not_nothing, within};
 use crate::rule::Rule;
 use crate::setup::{BuildError, Setup};
 use crate::values::Values;
 use alloc::vec;
+use octant_sample::disturbance::{Disturbance, Line};
 
 pub(super) static VIBRATION_SINE: Kind = Kind {
     name: "vibration-sine",

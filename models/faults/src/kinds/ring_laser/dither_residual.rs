@@ -1,4 +1,4 @@
-//! Dither that is left in the increments.
+//! Dither that remains in the increments.
 
 use crate::catalogue::{Acts, Bounds, Dimension, Family, Kind, Lasts, Parameter, Takes};
 use crate::kinds::added::{Adder, counts_per_si};

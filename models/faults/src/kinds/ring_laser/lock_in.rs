@@ -1,4 +1,4 @@
-//! Lock-in: the two beams couple, and slow rotation is not seen.
+//! Lock-in: the two beams couple, and slow rotation is not measured.
 
 use crate::catalogue::{Acts, Bounds, Dimension, Family, Kind, Lasts, Parameter, Takes};
 use crate::kinds::added::counts_per_si;

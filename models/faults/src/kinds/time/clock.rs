@@ -1,11 +1,11 @@
-//! Whose clock is wrong, and by how much.
+//! Common parts of the clock faults: the clocks that are wrong, and their error.
 
 use crate::catalogue::{Parameter, Takes};
 use crate::setup::BuildError;
 use crate::values::Values;
 use octant_sample::Epoch;
 
-/// Which stamps are wrong.
+/// Parameter for the stamps that are wrong.
 pub(super) const CLOCK: Parameter = Parameter {
     name: "clock",
     takes: Takes::Choice(&[
@@ -17,13 +17,13 @@ pub(super) const CLOCK: Parameter = Parameter {
     doc: "Whose clock is wrong.",
 };
 
-/// What becomes of a clock's error at the end of the fault.
+/// Choices for a clock's error at the end of the fault.
 pub(super) const AFTERWARDS: &[(&str, &str)] = &[
     ("stays", "the clock goes on at its right rate from where it is, and keeps its error"),
     ("corrected", "the clock shows the right time again at once"),
 ];
 
-/// Whether a clock keeps its error.
+/// Returns whether a clock keeps its error after the fault.
 pub(super) fn stays(values: &Values) -> Result<bool, BuildError> {
     Ok(values.choice("afterwards")? == "stays")
 }
@@ -36,14 +36,14 @@ pub(super) struct Clocks {
 }
 
 impl Clocks {
-    /// From the parameter [`CLOCK`].
+    /// Reads the parameter [`CLOCK`].
     pub(super) fn of(values: &Values) -> Result<Self, BuildError> {
         let choice = values.choice("clock")?;
         Ok(Self { sample: choice != "reference", aiding: choice != "instrument" })
     }
 
     /// Adds an error to the stamps, each by its own time, ns. Stamps stay within the range of the
-    /// format: nothing is before zero.
+    /// format: none is before zero.
     pub(super) fn shift_by(self, epoch: &mut Epoch, error_ns: impl Fn(u64) -> i64) {
         let shift = |ns: &mut u64| *ns = ns.saturating_add_signed(error_ns(*ns));
         if self.sample {
@@ -54,13 +54,13 @@ impl Clocks {
         }
     }
 
-    /// Adds an error to the stamps.
+    /// Adds the same error to the stamps.
     pub(super) fn shift(self, epoch: &mut Epoch, error_ns: i64) {
         self.shift_by(epoch, |_| error_ns);
     }
 }
 
-/// A time to the nearest nanosecond that isn't none at all.
+/// Reads a time to the nearest nanosecond, which must not be zero.
 pub(super) fn nanoseconds(values: &Values, name: &'static str) -> Result<i64, BuildError> {
     let seconds = values.quantity(name)?;
     match to_ns(seconds * 1e9) {
@@ -72,7 +72,7 @@ pub(super) fn nanoseconds(values: &Values, name: &'static str) -> Result<i64, Bu
     }
 }
 
-/// To the nearest nanosecond; saturates.
+/// Rounds to the nearest nanosecond; saturates.
 pub(super) fn to_ns(ns: f64) -> i64 {
     libm::round(ns) as i64
 }

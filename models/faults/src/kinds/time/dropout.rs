@@ -1,4 +1,4 @@
-//! Samples that don't arrive.
+//! Samples that are lost.
 
 use crate::catalogue::{Acts, Family, Kind, Lasts, Parameter, Takes};
 use crate::kinds::chance::{self, LOSS};

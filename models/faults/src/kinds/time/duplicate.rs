@@ -1,5 +1,6 @@
 //! Samples that are delivered more than once.
 
+use super::queue::check_queue;
 use crate::catalogue::{Acts, Bounds, Dimension, Family, Kind, Lasts, Parameter, Takes};
 use crate::kinds::span::samples;
 use crate::rule::{Context, DeliveryRule, Rule};
@@ -56,7 +57,7 @@ fn build(values: &Values, setup: &Setup) -> Result<Rule, BuildError> {
 struct Duplicate {
     copies: usize,
     delay: u64,
-    /// Step in which the copies come, and of what.
+    /// Step in which the copies of an epoch are due, and the epoch.
     queue: VecDeque<(u64, Epoch)>,
 }
 
@@ -64,7 +65,7 @@ octant_state::state! { Duplicate { values: queue; parts: ; kept: copies, delay; 
 
 impl Duplicate {
     fn check_queue(&mut self) -> Result<(), octant_state::StateError> {
-        super::check_queue(&mut self.queue)
+        check_queue(&mut self.queue)
     }
 
     fn let_out(&mut self, out: &mut Vec<Epoch>) {
@@ -103,7 +104,8 @@ impl DeliveryRule for Duplicate {
     }
 
     fn most_out(&self, incoming: usize) -> usize {
-        // Its own, the copies that are due, and those that have to make room for them.
+        // The epochs themselves, the copies that are due, and those that have to make room for
+        // them.
         let rounds = if self.delay == 0 { 1 } else { 2 };
         incoming.saturating_mul(1 + rounds * self.copies)
     }

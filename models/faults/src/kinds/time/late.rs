@@ -1,5 +1,6 @@
-//! Samples that come late.
+//! Samples that arrive late.
 
+use super::queue::check_queue;
 use crate::catalogue::{Acts, Bounds, Dimension, Family, Kind, Lasts, Parameter, Takes};
 use crate::kinds::span::samples;
 use crate::rule::{Context, DeliveryRule, Rule};
@@ -76,7 +77,7 @@ enum CatchUp {
 struct LateDelivery {
     delay: u64,
     catch_up: CatchUp,
-    /// Step of delivery of each, not falling, and the epoch.
+    /// Step of delivery of each epoch, not falling, and the epoch.
     queue: VecDeque<(u64, Epoch)>,
 }
 
@@ -84,7 +85,7 @@ octant_state::state! { LateDelivery { values: queue; parts: ; kept: delay, catch
 
 impl LateDelivery {
     fn check_queue(&mut self) -> Result<(), octant_state::StateError> {
-        super::check_queue(&mut self.queue)
+        check_queue(&mut self.queue)
     }
 
     fn hold(&mut self, until: u64, epoch: &Epoch, out: &mut Vec<Epoch>) {
@@ -139,7 +140,7 @@ impl DeliveryRule for LateDelivery {
     }
 
     fn most_out(&self, incoming: usize) -> usize {
-        // Each step's for as many steps as the delay has, or what there is room for.
+        // Epochs of as many steps as the delay has, or as many as there is room for.
         incoming + incoming.saturating_mul(self.delay as usize).min(FLIGHT_MAX)
     }
 }

@@ -6,15 +6,13 @@ mod duplicate;
 mod jitter;
 mod late;
 mod offset;
+mod queue;
 mod rate;
 mod reorder;
 mod sequence;
 mod stamp;
 
 use crate::catalogue::Kind;
-use crate::station::FLIGHT_MAX;
-use alloc::collections::VecDeque;
-use octant_state::StateError;
 
 pub(super) static KINDS: &[&Kind] = &[
     &offset::TIME_OFFSET,
@@ -30,10 +28,3 @@ pub(super) static KINDS: &[&Kind] = &[
     &late::LATE_DELIVERY,
     &duplicate::DUPLICATE,
 ];
-
-/// Of a queue that was read: no more than can be held back, and room for as many.
-fn check_queue<T>(queue: &mut VecDeque<T>) -> Result<(), StateError> {
-    octant_state::check_below("queue", queue.len() as u64, FLIGHT_MAX as u64)?;
-    queue.reserve_exact(FLIGHT_MAX - queue.len());
-    Ok(())
-}

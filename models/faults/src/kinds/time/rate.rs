@@ -1,4 +1,4 @@
-//! Clocks that run at a wrong rate: too fast or slow, not at all, backwards.
+//! Clocks with a wrong rate: too fast or slow, stopped, backwards.
 
 use super::clock::{AFTERWARDS, CLOCK, Clocks, stays, to_ns};
 use crate::catalogue::{Acts, Bounds, Dimension, Family, Kind, Lasts, Parameter, Takes};
@@ -143,7 +143,7 @@ struct WrongRate {
     period_ns: u64,
     /// True time at which the rate went wrong.
     start_ns: u64,
-    /// Error left from onsets before.
+    /// Error left from earlier onsets.
     left_ns: i64,
     /// Error gained since the onset.
     gained_ns: i64,
@@ -168,7 +168,7 @@ impl SampleRule for WrongRate {
         }
         let (start_ns, left_ns, change) = (self.start_ns, self.left_ns, self.change);
         let gained = |ns: u64| to_ns(change * ns.saturating_sub(start_ns) as f64);
-        // A sample that comes late was stamped earlier: the error never shrinks by it.
+        // A late sample was stamped earlier, but must not make the error smaller.
         self.elapsed_ns = self.elapsed_ns.max(stamp_ns.saturating_sub(start_ns));
         self.gained_ns = gained(start_ns.saturating_add(self.elapsed_ns));
         self.clocks.shift_by(epoch, |ns| left_ns.saturating_add(gained(ns)));

@@ -1,4 +1,4 @@
-//! Samples that come in another order.
+//! Samples that arrive in another order.
 
 use crate::catalogue::{Acts, Family, Kind, Lasts, Parameter, Takes};
 use crate::rule::{Context, DeliveryRule, Rule};
@@ -58,9 +58,9 @@ fn build(values: &Values, setup: &Setup) -> Result<Rule, BuildError> {
 #[derive(Clone, Debug)]
 struct Reorder {
     window: usize,
-    /// Random numbers, where the order is random.
+    /// Stream of random numbers, if the order is random.
     shuffle: Option<Stream>,
-    /// In the order of their arrival, or shuffled as they come.
+    /// Epochs held, in the order of their arrival, or shuffled on arrival.
     held: Vec<Epoch>,
 }
 

@@ -1,4 +1,4 @@
-//! Numbers that jump although nothing was lost.
+//! Sequence numbers that jump although no sample was lost.
 
 use crate::catalogue::{Acts, Family, Kind, Lasts, Parameter, Takes};
 use crate::rule::{Context, Rule, SampleRule};

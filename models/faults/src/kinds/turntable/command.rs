@@ -78,16 +78,16 @@ fn instead(values: &Values, place: fn(&Context<'_>) -> GimbalCommand) -> Result<
     })))
 }
 
-/// Goes to another place instead of to new positions.
+/// Sends the turntable to another place instead of to new positions.
 #[derive(Clone, Debug)]
 struct Instead {
     positions: i64,
     place: fn(&Context<'_>) -> GimbalCommand,
-    /// New set points that are still to be replaced.
+    /// Number of new set points still to be replaced.
     left: i64,
     /// The last set point that came in.
     ordered: GimbalCommand,
-    /// What the turntable gets, once a set point was replaced.
+    /// Set point for the turntable, after the first replacement.
     instead: Option<GimbalCommand>,
 }
 
@@ -210,9 +210,9 @@ fn build_late(values: &Values, setup: &Setup) -> Result<Rule, BuildError> {
 
 #[derive(Clone, Debug)]
 struct CommandLate {
-    /// The last set points, as many as the delay has epochs.
+    /// Last set points, as many as the delay has epochs.
     ring: Vec<GimbalCommand>,
-    /// The oldest of them.
+    /// Index of the oldest.
     next: usize,
 }
 

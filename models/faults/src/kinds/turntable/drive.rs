@@ -1,11 +1,11 @@
-//! Drives that don't do what they are told.
+//! Drives that don't follow their commands.
 
 use super::gimbal::{GIMBAL, happens, limited};
 use crate::catalogue::{Acts, Bounds, Dimension, Family, Kind, Lasts, Parameter, Takes};
-use crate::disturbance::GimbalAction;
 use crate::rule::Rule;
 use crate::setup::{BuildError, Setup};
 use crate::values::Values;
+use octant_sample::disturbance::GimbalAction;
 
 pub(super) static STALL: Kind = Kind {
     name: "stall",

@@ -1,12 +1,12 @@
-//! Encoders that read another angle; nothing moves.
+//! Encoders that read a wrong angle; no part moves.
 
 use super::gimbal::{GIMBAL, chosen, happens, limited};
 use crate::catalogue::{Acts, Bounds, Dimension, Family, Kind, Lasts, Parameter, Takes};
-use crate::disturbance::{Disturbance, Gimbal, GimbalAction, Motor};
 use crate::rule::{Context, PlantRule, Rule};
 use crate::setup::{BuildError, Setup};
 use crate::values::Values;
 use alloc::boxed::Box;
+use octant_sample::disturbance::{Disturbance, Gimbal, GimbalAction, Motor};
 
 pub(super) static ENCODER_SLIP: Kind = Kind {
     name: "encoder-slip",

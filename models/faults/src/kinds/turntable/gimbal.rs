@@ -1,13 +1,13 @@
-//! The body moves against its drive: slip, play, ringing.
+//! Motions of the body against its drive: slip, play, ringing.
 
 use crate::catalogue::{Acts, Bounds, Dimension, Family, Kind, Lasts, Parameter, Takes};
-use crate::disturbance::{Disturbance, Gimbal, GimbalAction};
 use crate::kinds::plant::{fixed, frequency, within};
 use crate::rule::Rule;
 use crate::setup::{BuildError, Setup};
 use crate::values::Values;
+use octant_sample::disturbance::{Disturbance, Gimbal, GimbalAction};
 
-/// Which gimbal.
+/// Parameter for the gimbal.
 pub(super) const GIMBAL: Parameter = Parameter {
     name: "gimbal",
     takes: Takes::Choice(&[
@@ -23,12 +23,12 @@ pub(super) fn chosen(values: &Values) -> Result<Gimbal, BuildError> {
     Ok(if values.choice(GIMBAL.name)? == "azimuth" { Gimbal::Azimuth } else { Gimbal::Roll })
 }
 
-/// The rule of something that happens to the chosen gimbal.
+/// Makes the rule of an action on the chosen gimbal.
 pub(super) fn happens(values: &Values, action: GimbalAction) -> Result<Rule, BuildError> {
     Ok(fixed(Disturbance::Gimbal { gimbal: chosen(values)?, action }))
 }
 
-/// A quantity of a size up to a limit.
+/// Reads a quantity of a size up to a limit.
 pub(super) fn limited(
     values: &Values,
     name: &'static str,

@@ -1,4 +1,4 @@
-//! The unit under test loses its state.
+//! Loss of the state of the unit under test.
 
 use crate::catalogue::{Acts, Family, Kind, Lasts};
 use crate::rule::{Context, Rule, UnitEvent, UnitRule};

@@ -1,4 +1,4 @@
-//! The unit under test starts from a wrong calibration.
+//! Start of the unit under test from a wrong calibration.
 
 use super::power::Once;
 use crate::catalogue::{Acts, Dimension, Family, Kind, Lasts, Parameter, Takes};

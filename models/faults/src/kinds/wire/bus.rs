@@ -1,6 +1,6 @@
-//! What happens on a CAN bus.
+//! Faults of a CAN bus.
 
-use super::{SHARE, WAYS, count, number, rule, time, wire};
+use super::rule::{SHARE, WAYS, count, number, rule, time, wire};
 use crate::catalogue::{Kind, Lasts};
 use crate::wire::WireAction;
 

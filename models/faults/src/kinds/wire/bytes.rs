@@ -1,6 +1,6 @@
 //! Frames that arrive damaged.
 
-use super::{SHARE, WAYS, rule, wire};
+use super::rule::{SHARE, WAYS, rule, wire};
 use crate::catalogue::{Kind, Lasts, Parameter};
 use crate::wire::WireAction;
 

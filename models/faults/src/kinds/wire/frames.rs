@@ -1,6 +1,6 @@
-//! Frames that are lost, late, twice, in another order, or of nobody.
+//! Frames that are lost, late, doubled, in another order, or foreign.
 
-use super::{SHARE, WAYS, count, number, rule, time, wire};
+use super::rule::{SHARE, WAYS, count, number, rule, time, wire};
 use crate::catalogue::{Kind, Lasts, Parameter};
 use crate::wire::WireAction;
 

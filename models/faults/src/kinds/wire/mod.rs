@@ -4,15 +4,10 @@ mod bus;
 mod bytes;
 mod frames;
 mod port;
+mod rule;
 
-use crate::catalogue::{Acts, Bounds, Dimension, Family, Kind, Lasts, Parameter, Takes};
-use crate::rule::{Context, Rule, WireRule};
-use crate::setup::{BuildError, Setup, Stream};
-use crate::values::Values;
-use crate::wire::{Medium, Ways, WireAction, WireFault};
-use alloc::boxed::Box;
-use octant_random::philox::block;
-use octant_random::stream::Phase;
+use crate::catalogue::{Acts, Kind};
+use crate::wire::Medium;
 
 pub(super) static KINDS: &[&Kind] = &[
     &bytes::FLIP,
@@ -39,7 +34,7 @@ pub(super) static KINDS: &[&Kind] = &[
     &bus::OVERLOAD,
 ];
 
-/// Whether a kind of the wire can happen on a medium.
+/// Returns whether a kind of the wire can happen on a medium.
 #[must_use]
 pub fn happens_on(kind: &Kind, medium: Medium) -> bool {
     let line_or_datagrams =
@@ -51,98 +46,4 @@ pub fn happens_on(kind: &Kind, medium: Medium) -> bool {
         Medium::Datagrams => !kind.name.starts_with("can-") && !line.contains(&kind.name),
         Medium::Bus => !line.contains(&kind.name) && !line_or_datagrams.contains(&kind.name),
     }
-}
-
-/// Which ways a fault acts on.
-const WAYS: Parameter = Parameter {
-    name: "ways",
-    takes: Takes::Choice(&[
-        ("both", "what is sent to the device and what it answers"),
-        ("to-device", "what is sent to the device"),
-        ("to-harness", "what the device answers"),
-    ]),
-    default: Some("both"),
-    doc: "Which ways it acts on.",
-};
-
-/// Share of the frames that a fault acts on.
-const SHARE: Parameter = Parameter {
-    name: "share",
-    takes: Takes::Quantity(&[Dimension::Ratio], Bounds::Within(0.0, 1.0, "above 0, up to 100 %")),
-    default: Some("100 %"),
-    doc: "Probability that it acts on a frame, each on its own, above 0; 100 %: on all.",
-};
-
-const fn wire(
-    name: &'static str,
-    summary: &'static str,
-    model: &'static str,
-    parameters: &'static [Parameter],
-    lasts: Lasts,
-    build: fn(&Values, &Setup) -> Result<Rule, BuildError>,
-) -> Kind {
-    Kind { name, family: Family::Wire, acts: Acts::Wire, summary, model, parameters, lasts, build }
-}
-
-/// The rule of a fault that acts on frames.
-fn rule(values: &Values, setup: &Setup, action: WireAction) -> Result<Rule, BuildError> {
-    let chance = match values.get(SHARE.name) {
-        Some(_) => values.quantity(SHARE.name)?,
-        None => 1.0,
-    };
-    if !(chance > 0.0 && chance <= 1.0) {
-        let problem = alloc::format!("{chance}, a probability above 0 up to 1 is expected");
-        return Err(BuildError::value(SHARE.name, problem));
-    }
-    let ways = match values.get(WAYS.name) {
-        Some(_) => values.choice(WAYS.name)?,
-        None => "both",
-    };
-    let ways = Ways { to_device: ways != "to-harness", to_harness: ways != "to-device" };
-    Ok(Rule::Wire(Box::new(Wire { ways, chance, action, stream: setup.stream("wire") })))
-}
-
-#[derive(Clone, Debug)]
-struct Wire {
-    ways: Ways,
-    chance: f64,
-    action: WireAction,
-    stream: Stream,
-}
-
-octant_state::state! { Wire { values: ; parts: ; kept: ways, chance, action, stream } }
-
-impl WireRule for Wire {
-    fn begin(&mut self, now: &Context<'_>) -> WireFault {
-        let Self { ways, chance, action, stream } = *self;
-        // Each onset has numbers of its own.
-        let [low, high] = stream.key(Phase::Calibration);
-        let key = block([low, high], [now.firing.into(), 0, 0, 0]);
-        WireFault { ways, chance, action, key: [key[0], key[1]] }
-    }
-}
-
-/// A time above zero.
-const fn time(name: &'static str, default: &'static str, doc: &'static str) -> Parameter {
-    Parameter {
-        name,
-        takes: Takes::Quantity(&[Dimension::Time], Bounds::Within(0.0, 3600.0, "from 0 s to 1 h")),
-        default: Some(default),
-        doc,
-    }
-}
-
-/// A number of things.
-const fn count(
-    name: &'static str,
-    from: i64,
-    to: i64,
-    default: &'static str,
-    doc: &'static str,
-) -> Parameter {
-    Parameter { name, takes: Takes::Integer(from, to), default: Some(default), doc }
-}
-
-fn number(values: &Values, name: &'static str) -> Result<u32, BuildError> {
-    u32::try_from(values.integer(name)?).map_err(|_| BuildError::missing(name))
 }

@@ -1,6 +1,6 @@
-//! What happens to a port.
+//! Faults of a port.
 
-use super::{SHARE, WAYS, rule, time, wire};
+use super::rule::{SHARE, WAYS, rule, time, wire};
 use crate::catalogue::{Kind, Lasts};
 use crate::wire::WireAction;
 
@@ -106,7 +106,7 @@ mod tests {
             }
             assert!(!seen.contains(&fault.action), "{}", kind.name);
             seen.push(fault.action);
-            // Another onset has other numbers, the same one the same.
+            // Another onset has other numbers; the same onset has the same ones.
             let again = rule.begin(&crate::rule::Context { firing: 1, ..now });
             assert_ne!(fault.key, again.key);
             assert_eq!(fault.key, rule.begin(&now).key);

@@ -1,0 +1,88 @@
+//! Reasons why a run of several FMUs can't go on.
+
+use super::solve::SolveError;
+use octant_fmu_host::instance::InstanceError;
+
+/// Reasons why a system can't go on. Rows recorded before are kept.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum MasterError {
+    /// An FMU failed.
+    #[error("{node} failed at {time_s} s: {error}")]
+    Instance {
+        /// Name in the system.
+        node: String,
+        /// Time of the system, s.
+        time_s: f64,
+        /// Error of the FMU.
+        error: InstanceError,
+    },
+    /// A connection can't carry a value.
+    #[error("the connection {source_name} -> {target} can't carry {value} at {time_s} s: {reason}")]
+    Value {
+        /// The output.
+        source_name: String,
+        /// The input.
+        target: String,
+        /// The value of the output.
+        value: f64,
+        /// Time of the system, s.
+        time_s: f64,
+        /// Reason.
+        reason: String,
+    },
+    /// An FMU refused a value that no fault has altered.
+    #[error("{target} refused {value} at {time_s} s{said}")]
+    Refused {
+        /// The input.
+        target: String,
+        /// The value.
+        value: f64,
+        /// Time of the system, s.
+        time_s: f64,
+        /// Message that the FMU logged, after a colon; else empty.
+        said: String,
+    },
+    /// Values depend on themselves, and no solution was found.
+    #[error(
+        "the initial values of {} depend on each other, and {reason}: start values nearer to the \
+         solution, or an FMU between them that doesn't answer at once, may help",
+        .variables.join(" -> ")
+    )]
+    Loop {
+        /// Variables of the loop, in its order.
+        variables: Vec<String>,
+        /// Result of the iteration.
+        reason: String,
+    },
+    /// An FMU discarded a step, and the step can't be divided.
+    #[error("{node} discarded the step from {time_s} s to {end_s} s{said}; {reason}")]
+    Discarded {
+        /// The FMU that refused.
+        node: String,
+        /// Start of the step, s.
+        time_s: f64,
+        /// End, s.
+        end_s: f64,
+        /// Message that the FMU logged, after a colon; else empty.
+        said: String,
+        /// Reason why no smaller step is made.
+        reason: String,
+    },
+}
+
+impl MasterError {
+    /// Converts the result of a failed iteration.
+    pub(super) fn of_loop(variables: Vec<String>, error: SolveError<Self>) -> Self {
+        let reason = match error {
+            SolveError::Failed(error) => return error,
+            SolveError::NotSettled(residual) if residual.is_finite() => {
+                format!("after all iterations they still change by {residual:.1e} of their size")
+            }
+            SolveError::NotSettled(_) | SolveError::NotFinite => {
+                "the iteration leads to a value that is not finite".to_owned()
+            }
+            SolveError::Singular => "they have no single solution".to_owned(),
+        };
+        Self::Loop { variables, reason }
+    }
+}

@@ -1,0 +1,32 @@
+//! Runs several FMUs together in fixed steps: reads, initializes and steps a system structure, with
+//! faults on its connections.
+//!
+//! | module | idea |
+//! |---|---|
+//! | [`ssp`] | system structures as files: SSP |
+//! | [`flat`] | a structure without its systems: FMUs and wires |
+//! | [`order`] | order in which FMUs step, and the values they step from |
+//! | [`graph`], [`solve`] | dependencies, and the solution of loops |
+//! | [`convert`] | conversion of a value on a wire: units, transformations, types |
+//! | [`values`] | values on their way between types |
+//! | [`system`] | connectors found in the descriptions of the FMUs |
+
+pub mod convert;
+mod elements;
+pub mod error;
+pub mod experiment;
+pub mod faults;
+pub mod flat;
+pub mod graph;
+pub mod initialize;
+pub mod order;
+pub mod parameters;
+pub mod record;
+pub mod run;
+pub mod simulation;
+pub mod single;
+pub mod solve;
+pub mod ssp;
+pub mod summary;
+pub mod system;
+pub mod values;

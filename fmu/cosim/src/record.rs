@@ -1,0 +1,180 @@
+//! Records a run: rows of all connected variables and outputs, and the hash of its stream.
+//!
+//! Row 0 is the state after initialization. Each later row holds the outputs at its time, and the
+//! inputs with which the step to that time was made.
+
+use super::error::MasterError;
+use super::simulation::Simulation;
+use super::system::{Side, System, element_names};
+use crate::single::output::{Column, Outputs, Sink, SinkError};
+use octant_fmu_host::description::Description;
+use std::io;
+use std::path::Path;
+
+/// Reasons why a row can't be recorded.
+#[derive(Debug, thiserror::Error)]
+pub enum RecordError {
+    /// An FMU failed when its outputs were read.
+    #[error(transparent)]
+    Master(#[from] MasterError),
+    /// The file can't be written.
+    #[error("write the recording: {0}")]
+    Write(#[from] io::Error),
+}
+
+/// Writes rows into files.
+pub struct Recorder {
+    outputs: Outputs,
+    numbers: Vec<f64>,
+    sinks: Vec<Sink>,
+    /// Number of steps between rows.
+    every: u64,
+    rows: u64,
+}
+
+impl Recorder {
+    /// Creates the files of these paths, `.mcap` or `.csv`.
+    ///
+    /// # Errors
+    /// If a file can't be made.
+    pub fn new(
+        system: &System,
+        descriptions: &[&Description],
+        name: &str,
+        paths: &[&Path],
+        every: u64,
+    ) -> Result<Self, SinkError> {
+        let mut columns = Vec::new();
+        let mut place = 0;
+        for (node, description) in system.nodes.iter().zip(descriptions) {
+            for side in [&node.inputs, &node.outputs, &node.watched] {
+                columns.extend(of_side(&node.name, side, description, place));
+                place += side.plan.elements;
+            }
+        }
+        let numbers = vec![0.0; place];
+        let outputs = Outputs {
+            plan: octant_fmu_host::instance::Plan::default(),
+            columns,
+            left_out: Vec::new(),
+        };
+        let sinks = paths.iter().map(|path| Sink::file(path, &outputs, name));
+        Ok(Self { numbers, sinks: sinks.collect::<Result<_, _>>()?, outputs, every, rows: 0 })
+    }
+
+    /// Number of rows that were written.
+    #[must_use]
+    pub const fn rows(&self) -> u64 {
+        self.rows
+    }
+
+    /// Lists the names of the columns except time.
+    pub fn columns(&self) -> impl Iterator<Item = &str> {
+        self.outputs.columns.iter().map(|column| column.name.as_str())
+    }
+
+    /// Writes a row if one is due at this step, or if it is the `last`.
+    ///
+    /// # Errors
+    /// If an FMU fails, or a file can't be written.
+    pub fn row(
+        &mut self,
+        simulation: &mut Simulation<'_>,
+        system: &System,
+        last: bool,
+    ) -> Result<(), RecordError> {
+        if !simulation.steps().is_multiple_of(self.every) && !last {
+            return Ok(());
+        }
+        let mut place = 0;
+        let mut room = |elements: usize| {
+            place += elements;
+            place - elements..place
+        };
+        for (number, node) in system.nodes.iter().enumerate() {
+            let inputs = room(node.inputs.plan.elements);
+            self.numbers[inputs].copy_from_slice(simulation.inputs(number));
+            let outputs = room(node.outputs.plan.elements);
+            self.numbers[outputs].copy_from_slice(simulation.outputs(number));
+            let watched = room(node.watched.plan.elements);
+            simulation.watched(number, &mut self.numbers[watched])?;
+        }
+        let time_s = simulation.time_s(simulation.steps());
+        for sink in &mut self.sinks {
+            sink.row(time_s, &self.outputs, &self.numbers)?;
+        }
+        self.rows += 1;
+        Ok(())
+    }
+
+    /// Notes an event in the files that have a place for it.
+    ///
+    /// # Errors
+    /// If a file can't be written.
+    pub fn event(&mut self, time_s: f64, event: &octant_recorder::Event) -> io::Result<()> {
+        self.sinks.iter_mut().try_for_each(|sink| sink.event(time_s, event))
+    }
+
+    /// Finishes the files.
+    ///
+    /// # Errors
+    /// If one can't be written.
+    pub fn finish(self) -> io::Result<()> {
+        self.sinks.into_iter().try_for_each(Sink::finish)
+    }
+}
+
+fn of_side(node: &str, side: &Side, description: &Description, first: usize) -> Vec<Column> {
+    let mut columns = Vec::new();
+    for (number, range) in side.variables.iter().zip(&side.plan.places) {
+        let variable = &description.variables[*number];
+        for (name, place) in element_names(description, variable).into_iter().zip(range.clone()) {
+            columns.push(Column {
+                name: format!("{node}.{name}"),
+                kind: variable.kind,
+                place: first + place,
+                unit: variable.unit.clone(),
+            });
+        }
+    }
+    columns
+}
+
+/// Hash of the values on the connections: BLAKE3 over each step's number (u64), the values that
+/// every connected input got at its beginning, and the values that every connected output gave at
+/// its end, in the order of the structure; each as the 64 bits of its f64, little-endian. Point 0
+/// has the outputs alone.
+#[derive(Debug, Default)]
+pub struct ConnectionHash {
+    hasher: blake3::Hasher,
+    bytes: Vec<u8>,
+}
+
+/// Number of bytes gathered before the hash function is called, which is faster on large blocks.
+const GATHER_BYTES: usize = 128 * 1024;
+
+impl ConnectionHash {
+    /// Adds a communication point.
+    pub fn add(&mut self, simulation: &Simulation<'_>) {
+        self.bytes.extend_from_slice(&simulation.steps().to_le_bytes());
+        if simulation.steps() > 0 {
+            for value in simulation.delivered() {
+                self.bytes.extend_from_slice(&value.to_bits().to_le_bytes());
+            }
+        }
+        for value in simulation.sources() {
+            self.bytes.extend_from_slice(&value.to_bits().to_le_bytes());
+        }
+        if self.bytes.len() >= GATHER_BYTES {
+            self.hasher.update(&self.bytes);
+            self.bytes.clear();
+        }
+    }
+
+    /// Returns the hash, 64 hexadecimal digits.
+    #[must_use]
+    pub fn hex(mut self) -> String {
+        self.hasher.update(&self.bytes);
+        self.hasher.finalize().to_hex().to_string()
+    }
+}

@@ -1,0 +1,493 @@
+//! Runs a system from its file to its results: `octant run FILE.ssp`.
+
+use super::error::MasterError;
+use super::experiment::{Experiment, Said};
+use super::faults::{Faulting, looked_at};
+use super::flat::Flat;
+use super::order::Order;
+use super::parameters;
+use super::record::{ConnectionHash, RecordError, Recorder};
+use super::simulation::{Abilities, Settings, Simulation};
+use super::solve::Limits;
+use super::ssp::SspError;
+use super::ssp::annotation::FaultsText;
+use super::ssp::package::Package;
+use super::ssp::structure::{Implementation, Structure};
+use super::summary::{Ended, FmuResult, LoopResult, SCHEMA, Summary};
+use super::system::System;
+use octant_base::control::Control;
+use octant_fmu_host::description::Description;
+use octant_fmu_host::instance::{Instance, InterfaceKind, Options, Place, open};
+use octant_mapping::settings::Starts;
+use octant_recorder::Event;
+use octant_requirements::Verdict;
+use octant_scenario::{ScenarioError, connection_faults, text_of};
+use octant_score::judge::NO_REQUIREMENT;
+use octant_score::summary::FaultResult;
+use std::path::{Path, PathBuf};
+
+/// Maximum number of rows of a recording, where the interval isn't given.
+const ROWS_MAX: u64 = 20_000;
+/// Maximum number of times that a discarded step is halved.
+const HALVINGS: u32 = 10;
+/// Default seed.
+const SEED: u64 = 1;
+
+/// Settings of a run.
+#[derive(Clone, Debug, Default)]
+pub struct Request {
+    /// The system: an `.ssp`, an `.ssd`, or a folder with one.
+    pub path: PathBuf,
+    /// Start, end and step, where the command line gives them.
+    pub said: Said,
+    /// Order, where the command line gives it.
+    pub order: Option<Order>,
+    /// Seed, where the command line gives it.
+    pub seed: Option<u64>,
+    /// File of faults, instead of those of the structure.
+    pub faults: Option<PathBuf>,
+    /// Arguments `ID=TIME` that trigger faults by hand.
+    pub fires: Vec<String>,
+    /// Arguments `FMU.VARIABLE=VALUE` that set parameters and start values.
+    pub set: Vec<String>,
+    /// Process in which the FMUs run.
+    pub place: Place,
+    /// Number of steps between recorded rows.
+    pub every: Option<u64>,
+}
+
+/// Reasons why a system can't be run at all.
+#[derive(Debug, thiserror::Error)]
+pub enum PrepareError {
+    /// The files of the system aren't valid.
+    #[error(transparent)]
+    Ssp(#[from] SspError),
+    /// The faults aren't valid.
+    #[error(transparent)]
+    Faults(#[from] ScenarioError),
+    /// The settings of the run aren't valid.
+    #[error("{0}")]
+    Usage(String),
+    /// The initialization failed.
+    #[error("{0}")]
+    Master(#[from] MasterError),
+}
+
+impl PrepareError {
+    /// True if an FMU failed: the bench, not its inputs.
+    #[must_use]
+    pub const fn is_bench(&self) -> bool {
+        matches!(self, Self::Master(MasterError::Instance { .. }))
+    }
+}
+
+/// System that can be run.
+pub struct Prepared {
+    request: Request,
+    package: Package,
+    structure: Structure,
+    flat: Flat,
+    system: System,
+    settings: Settings,
+    order: Order,
+    seed: u64,
+    instances: Vec<Box<dyn Instance>>,
+    descriptions: Vec<Description>,
+    abilities: Vec<Abilities>,
+    starts: Vec<Starts>,
+    faults: Option<FaultsText>,
+    faulting: Faulting,
+    warnings: Vec<String>,
+}
+
+impl Prepared {
+    /// Reads a system, opens its FMUs, and resolves every name in them.
+    ///
+    /// # Errors
+    /// If anything doesn't fit; no step was made then.
+    pub fn new(request: Request) -> Result<Self, PrepareError> {
+        let package = Package::open(&request.path)?;
+        let structure = Structure::read(&package)?;
+        let flat = Flat::of(&structure)?;
+        let instances = open_all(&structure, &flat, request.place)?;
+        let descriptions: Vec<Description> =
+            instances.iter().map(|instance| instance.description().clone()).collect();
+        let described: Vec<&Description> = descriptions.iter().collect();
+        let experiment = Experiment::of(&request.said, &structure, &flat, &described)
+            .map_err(|error| SspError::of_file(&structure.file, error.to_string()))?;
+        let names: Vec<&str> = flat.components.iter().map(|c| c.name.as_str()).collect();
+        let ours = &structure.co_simulation;
+        let order = request.order.clone().or_else(|| ours.order.clone()).unwrap_or_default();
+        let numbers = order.of(&names).map_err(|error| PrepareError::Usage(error.to_string()))?;
+        let faults = match &request.faults {
+            Some(path) => {
+                Some(FaultsText { file: path.display().to_string(), text: text_of(path)? })
+            }
+            None => ours.faults.clone(),
+        };
+        let (text, file) = match &faults {
+            Some(faults) => (faults.text.as_str(), faults.file.as_str()),
+            None => ("schema = 1", "--faults FILE"),
+        };
+        let (step_s, steps) = (experiment.step_s, experiment.steps);
+        let list = connection_faults(text, file, step_s, steps, &request.fires)?;
+        let looked = looked_at(&list, file, &names)?;
+        let system = System::new(&structure, &flat, &described, &looked)?;
+        let seed = request.seed.or(ours.seed).unwrap_or(SEED);
+        let faulting = Faulting::new(&list, file, &system, &described, seed, step_s)?;
+        let mut warnings = flat.warnings.clone();
+        for fault in list.iter().filter(|fault| fault.is_idle()) {
+            let id = &fault.id;
+            warnings.push(format!(
+                "fault {id:?} is fired by hand, and no --fire {id}=TIME does: it won't fire"
+            ));
+        }
+        let starts =
+            parameters::starts(&structure, &flat, &described, &request.set, &mut warnings)?;
+        let abilities = (described.iter().zip(&flat.components))
+            .map(|(description, component)| {
+                let exchange = is_exchange(description, component.implementation);
+                let interface =
+                    if exchange { &description.model_exchange } else { &description.co_simulation };
+                interface.as_ref().map_or_else(Abilities::default, |i| Abilities::of(i, exchange))
+            })
+            .collect();
+        let settings = Settings {
+            order: numbers,
+            jacobi: order == Order::Jacobi,
+            start_s: experiment.start_s,
+            step_s,
+            steps,
+            tolerance: None,
+            loops: Limits::default(),
+            halvings: HALVINGS,
+        };
+        Ok(Self {
+            request,
+            package,
+            structure,
+            flat,
+            system,
+            settings,
+            order,
+            seed,
+            instances,
+            descriptions,
+            abilities,
+            starts,
+            faults,
+            faulting,
+            warnings,
+        })
+    }
+
+    /// Name of the system.
+    #[must_use]
+    pub fn name(&self) -> &str {
+        match self.structure.name.as_str() {
+            "" => "system",
+            name => name,
+        }
+    }
+
+    /// Number of steps.
+    #[must_use]
+    pub const fn steps(&self) -> u64 {
+        self.settings.steps
+    }
+
+    /// Communication step, s.
+    #[must_use]
+    pub const fn step_s(&self) -> f64 {
+        self.settings.step_s
+    }
+
+    /// Seed of the faults' random streams.
+    #[must_use]
+    pub const fn seed(&self) -> u64 {
+        self.seed
+    }
+
+    /// Returns the warnings.
+    #[must_use]
+    pub fn warnings(&self) -> &[String] {
+        &self.warnings
+    }
+
+    /// Returns structure and faults as texts, for the folder of the run: name and content.
+    ///
+    /// # Errors
+    /// If the structure can't be read again.
+    pub fn texts(&self) -> Result<Vec<(&'static str, String)>, SspError> {
+        let structure = self.package.text_of(self.package.structure())?;
+        let faults =
+            self.faults.iter().map(|faults| ("faults.toml", faults.text.trim_start().to_owned()));
+        Ok(std::iter::once(("SystemStructure.ssd", structure)).chain(faults).collect())
+    }
+
+    /// Runs the system and records into files of these paths.
+    ///
+    /// # Errors
+    /// If the system can't be initialized, or a file can't be made. Later failures are in the
+    /// summary.
+    pub fn run(self, paths: &[&Path], control: &Control) -> Result<Results, PrepareError> {
+        self.run_watched(paths, control, |_, _| Ok(()))
+    }
+
+    /// Runs as [`Self::run`], and calls `watch` at every communication point.
+    ///
+    /// # Errors
+    /// As [`Self::run`].
+    pub fn run_watched(
+        self,
+        paths: &[&Path],
+        control: &Control,
+        mut watch: impl FnMut(&mut Simulation<'_>, &System) -> Result<(), MasterError>,
+    ) -> Result<Results, PrepareError> {
+        let Self { system, settings, instances, starts, abilities, faulting, .. } = self;
+        let described: Vec<&Description> = self.descriptions.iter().collect();
+        let every = self.request.every.unwrap_or(settings.steps.div_ceil(ROWS_MAX)).max(1);
+        let mut simulation =
+            Simulation::new(&system, &settings, instances, abilities, Some(faulting));
+        for (node, starts) in starts.iter().enumerate() {
+            starts.apply(simulation.instances()[node].as_mut()).map_err(|error| {
+                let node = system.nodes[node].name.clone();
+                MasterError::Instance { node, time_s: settings.start_s, error }
+            })?;
+        }
+        let ended_by = simulation.initialize()?;
+        let name = if self.structure.name.is_empty() { "system" } else { &self.structure.name };
+        let mut recorder = Recorder::new(&system, &described, name, paths, every)
+            .map_err(|error| PrepareError::Usage(error.to_string()))?;
+        let mut hash = ConnectionHash::default();
+        let kept = Kept { recorder: &mut recorder, hash: &mut hash, watch: &mut watch };
+        let ended = drive(&mut simulation, &system, &settings, kept, ended_by, control);
+        let mut messages: Vec<(String, String)> = Vec::new();
+        let mut fmus = Vec::with_capacity(system.nodes.len());
+        let ended = match (ended, simulation.terminate()) {
+            (Ok(_), Err(error)) => Ended::Failed {
+                at_s: simulation.time_s(simulation.steps()),
+                reason: format!("failed to end the FMUs: {error}"),
+            },
+            (Ok(ended), Ok(())) => ended,
+            (Err(error), _) => Ended::Failed {
+                at_s: simulation.time_s(simulation.steps().saturating_sub(1)),
+                reason: error.to_string(),
+            },
+        };
+        for (number, component) in self.flat.components.iter().enumerate() {
+            let said = simulation.instances()[number].messages();
+            let counts = simulation.counts()[number];
+            let description = described[number];
+            let exchange = is_exchange(description, component.implementation);
+            fmus.push(FmuResult {
+                name: component.name.clone(),
+                source: component.source.clone(),
+                sha256: octant_base::hash::sha256(&component.file).ok(),
+                model: description.model_name.clone(),
+                token: description.token.clone(),
+                fmi: description.fmi_version.clone(),
+                interface: if exchange { "model-exchange" } else { "co-simulation" },
+                generation_tool: description.generation_tool.clone(),
+                tolerated: description.tolerated.clone(),
+                discarded: counts.discarded,
+                refused: counts.refused,
+                messages: said.len(),
+            });
+            messages.extend(said.iter().map(|m| (component.name.clone(), m.to_string())));
+        }
+        let receipts = simulation.station().map(|station| station.receipts()).unwrap_or_default();
+        let faults: Vec<FaultResult> = receipts.iter().map(FaultResult::from).collect();
+        let (verdict, reasons) = judge(&ended, &faults);
+        let event = Event {
+            kind: "receipts".into(),
+            detail: serde_json::to_value(&faults).unwrap_or_default(),
+        };
+        let written = recorder
+            .event(simulation.time_s(simulation.steps()), &event)
+            .and_then(|()| recorder.finish());
+        let (verdict, reasons) = match written {
+            Ok(()) => (verdict, reasons),
+            Err(error) => (Verdict::Error, vec![format!("failed to write the recording: {error}")]),
+        };
+        Ok(Results {
+            summary: Summary {
+                schema: SCHEMA,
+                octant: env!("CARGO_PKG_VERSION").to_owned(),
+                system: name.to_owned(),
+                seed: self.seed,
+                verdict,
+                reasons,
+                order: self.order.to_string(),
+                start_s: settings.start_s,
+                stop_s: settings.start_s + settings.steps as f64 * settings.step_s,
+                step_s: settings.step_s,
+                steps: simulation.steps(),
+                rejected: simulation.rejected(),
+                ended,
+                loops: simulation.loops().iter().map(LoopResult::from).collect(),
+                faults,
+                fmus,
+                connections: system.wires.len(),
+                recorded_every: every,
+                warnings: self.warnings,
+                stream_hash: hash.hex(),
+            },
+            messages,
+        })
+    }
+}
+
+/// Results of a run.
+#[derive(Clone, Debug)]
+pub struct Results {
+    /// The summary.
+    pub summary: Summary,
+    /// Messages that FMUs logged: the name of the FMU, and its text.
+    pub messages: Vec<(String, String)>,
+}
+
+/// Receivers of every communication point.
+struct Kept<'a, W> {
+    recorder: &'a mut Recorder,
+    hash: &'a mut ConnectionHash,
+    watch: &'a mut W,
+}
+
+/// Steps to the end.
+fn drive<W>(
+    simulation: &mut Simulation<'_>,
+    system: &System,
+    settings: &Settings,
+    kept: Kept<'_, W>,
+    mut ended_by: Option<usize>,
+    control: &Control,
+) -> Result<Ended, RecordError>
+where
+    W: FnMut(&mut Simulation<'_>, &System) -> Result<(), MasterError>,
+{
+    let Kept { recorder, hash, watch } = kept;
+    loop {
+        let at_s = simulation.time_s(simulation.steps());
+        let last = ended_by.is_some() || simulation.steps() == settings.steps;
+        hash.add(simulation);
+        watch(simulation, system)?;
+        recorder.row(simulation, system, last)?;
+        if let Some(node) = ended_by {
+            return Ok(Ended::AskedByFmu { fmu: system.nodes[node].name.clone(), at_s });
+        }
+        if last {
+            return Ok(Ended::AtStop);
+        }
+        if control.look(simulation.steps()) {
+            return Ok(Ended::Interrupted { at_s });
+        }
+        ended_by = simulation.advance()?;
+        tell_faults(simulation, recorder, at_s)?;
+    }
+}
+
+/// Writes onsets and ends of faults into the recording.
+fn tell_faults(
+    simulation: &mut Simulation<'_>,
+    recorder: &mut Recorder,
+    at_s: f64,
+) -> std::io::Result<()> {
+    let Some(station) = simulation.station() else { return Ok(()) };
+    for occurrence in station.occurrences() {
+        let (id, kind) = station.name(occurrence.fault).unwrap_or_default();
+        let event = Event {
+            kind: "fault".into(),
+            detail: serde_json::json!({
+                "id": id,
+                "kind": kind,
+                "begins": occurrence.begins,
+                "sample": occurrence.epoch,
+            }),
+        };
+        recorder.event(at_s, &event)?;
+    }
+    station.told();
+    Ok(())
+}
+
+/// Determines the verdict of a run, with its reasons.
+fn judge(ended: &Ended, faults: &[FaultResult]) -> (Verdict, Vec<String>) {
+    let mut reasons = Vec::new();
+    let mut verdict = Verdict::None;
+    match ended {
+        Ended::AtStop | Ended::AskedByFmu { .. } => {}
+        Ended::Interrupted { at_s } => {
+            verdict = Verdict::Inconclusive;
+            reasons.push(format!("interrupted at {at_s} s"));
+        }
+        Ended::Failed { reason, .. } => {
+            verdict = Verdict::Error;
+            reasons.push(reason.clone());
+        }
+    }
+    for fault in faults.iter().filter(|fault| !fault.fired) {
+        verdict = verdict.worst(Verdict::Inconclusive);
+        reasons.push(fault.sentence());
+    }
+    if verdict == Verdict::None {
+        reasons.push(NO_REQUIREMENT.to_owned());
+    }
+    (verdict, reasons)
+}
+
+/// Returns whether an FMU is run by model exchange.
+fn is_exchange(description: &Description, implementation: Implementation) -> bool {
+    match implementation {
+        Implementation::Any => description.co_simulation.is_none(),
+        Implementation::CoSimulation => false,
+        Implementation::ModelExchange => true,
+    }
+}
+
+fn open_all(
+    structure: &Structure,
+    flat: &Flat,
+    place: Place,
+) -> Result<Vec<Box<dyn Instance>>, SspError> {
+    let mut instances = Vec::with_capacity(flat.components.len());
+    for component in &flat.components {
+        let options = Options {
+            interface: match component.implementation {
+                Implementation::Any => InterfaceKind::Any,
+                Implementation::CoSimulation => InterfaceKind::CoSimulation,
+                Implementation::ModelExchange => InterfaceKind::ModelExchange,
+            },
+            place,
+            instance_name: Some(component.name.clone()),
+            ..Options::default()
+        };
+        let opened = open::open(&component.file, &options).map_err(|error| SspError {
+            file: structure.file.clone(),
+            line: Some(component.line),
+            element: format!("Component {:?}", component.name),
+            message: format!("failed to {error}"),
+        })?;
+        let description = opened.description();
+        let interfaces = [&description.co_simulation, &description.model_exchange];
+        let once = interfaces.into_iter().flatten().any(|one| one.only_once_per_process);
+        let others = &flat.components[..instances.len()];
+        if let Some(other) = others.iter().find(|other| other.file == component.file)
+            && once
+            && place == Place::ThisProcess
+        {
+            return Err(SspError {
+                file: structure.file.clone(),
+                line: Some(component.line),
+                element: format!("Component {:?}", component.name),
+                message: format!(
+                    "{} can be there once in a process, and {:?} is it already: leave out \
+                     --in-process",
+                    component.source, other.name
+                ),
+            });
+        }
+        instances.push(opened);
+    }
+    Ok(instances)
+}

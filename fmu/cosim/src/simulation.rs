@@ -1,0 +1,461 @@
+//! Steps FMUs together: transfers, steps, and the treatment of a refused step.
+//!
+//! Step n goes from communication point n − 1 to point n, which is at start + n · step. In Jacobi
+//! order all transfers of a step come first, and every FMU steps from the values at point n − 1. In
+//! Gauss-Seidel order an FMU's transfers come just before its step: from the FMUs before it in the
+//! order it gets values of point n.
+//!
+//! If an FMU discards a step, all FMUs return to their states at its beginning, and the step is
+//! made in parts: up to the time that the FMU reached and on from there, or in halves, and these
+//! again in halves. Values are transferred between the parts; faults don't advance until the step
+//! is complete.
+
+mod saved;
+mod settings;
+
+pub use settings::{Abilities, Counts, Settings};
+
+use super::error::MasterError;
+use super::faults::Faulting;
+use super::initialize::{Initializer, Loop};
+use super::system::{Side, System};
+use octant_faults::connection::Station;
+use octant_fmu_host::instance::{Instance, InstanceError, Outcome, Stepped};
+
+/// FMUs that run together.
+pub struct Simulation<'a> {
+    system: &'a System,
+    settings: &'a Settings,
+    instances: Vec<Box<dyn Instance>>,
+    abilities: Vec<Abilities>,
+    /// Faults on wires; elements are the numbers of the wires.
+    faulting: Option<Faulting>,
+    inputs: Vec<Vec<f64>>,
+    outputs: Vec<Vec<f64>>,
+    /// Outputs at the beginning of a part.
+    before: Vec<Vec<f64>>,
+    /// Wires into each FMU.
+    into: Vec<Vec<usize>>,
+    /// Wires that have faults.
+    faulted: Vec<bool>,
+    /// The step in which each wire was transferred last.
+    transferred: Vec<u64>,
+    /// Value that each input got at the beginning of the step.
+    delivered: Vec<f64>,
+    /// Ends of the remaining parts of a step.
+    ends: Vec<f64>,
+    /// Saved states, one for each FMU, while a part is made.
+    states: Vec<u64>,
+    rolls_back: bool,
+    /// Steps done.
+    step: u64,
+    /// Number of faults that were triggered by hand so far.
+    fired: usize,
+    counts: Vec<Counts>,
+    /// Number of parts of steps that were repeated.
+    rejected: u64,
+    loops: Vec<Loop>,
+}
+
+/// Result of an attempt at a step, or at a part of one.
+enum Attempt {
+    Done { ended_by: Option<usize> },
+    Discarded { node: usize, reached_s: f64 },
+}
+
+impl<'a> Simulation<'a> {
+    /// Creates a simulation of FMUs that are instantiated and have their parameters, in the order
+    /// of the system's nodes.
+    #[must_use]
+    pub fn new(
+        system: &'a System,
+        settings: &'a Settings,
+        instances: Vec<Box<dyn Instance>>,
+        abilities: Vec<Abilities>,
+        faulting: Option<Faulting>,
+    ) -> Self {
+        let nodes = &system.nodes;
+        let numbers = |side: fn(&super::system::Node) -> &Side| -> Vec<Vec<f64>> {
+            nodes.iter().map(|node| vec![0.0; side(node).plan.elements]).collect()
+        };
+        let mut into = vec![Vec::new(); nodes.len()];
+        for (number, wire) in system.wires.iter().enumerate() {
+            into[wire.to.node].push(number);
+        }
+        let wires = system.wires.len();
+        let has_fault =
+            |wire: usize| faulting.as_ref().is_some_and(|faulting| faulting.station.is_on(wire));
+        let able = |of: fn(&Abilities) -> bool| abilities.iter().all(of);
+        Self {
+            inputs: numbers(|node| &node.inputs),
+            outputs: numbers(|node| &node.outputs),
+            before: numbers(|node| &node.outputs),
+            into,
+            faulted: (0..wires).map(has_fault).collect(),
+            transferred: vec![0; wires],
+            delivered: vec![0.0; wires],
+            ends: Vec::new(),
+            states: Vec::with_capacity(nodes.len()),
+            rolls_back: able(|one| one.state) && able(|one| one.variable_step),
+            step: 0,
+            fired: 0,
+            counts: vec![Counts::default(); nodes.len()],
+            rejected: 0,
+            loops: Vec::new(),
+            system,
+            settings,
+            instances,
+            abilities,
+            faulting,
+        }
+    }
+
+    /// Returns the time of a communication point, s, as a product: a sum would accumulate rounding
+    /// errors.
+    #[must_use]
+    pub fn time_s(&self, point: u64) -> f64 {
+        self.settings.start_s + point as f64 * self.settings.step_s
+    }
+
+    /// Steps done.
+    #[must_use]
+    pub const fn steps(&self) -> u64 {
+        self.step
+    }
+
+    /// Returns the values that connected inputs got at the beginning of the last step, in the order
+    /// of the wires.
+    #[must_use]
+    pub fn delivered(&self) -> &[f64] {
+        &self.delivered
+    }
+
+    /// Returns the numbers of the connected inputs of an FMU.
+    #[must_use]
+    pub fn inputs(&self, node: usize) -> &[f64] {
+        &self.inputs[node]
+    }
+
+    /// Returns the numbers of the connected outputs of an FMU.
+    #[must_use]
+    pub fn outputs(&self, node: usize) -> &[f64] {
+        &self.outputs[node]
+    }
+
+    /// Returns the values of the connected outputs in the order of the wires.
+    pub fn sources(&self) -> impl Iterator<Item = f64> + '_ {
+        self.system.wires.iter().map(|wire| self.outputs[wire.from.node][wire.from.place])
+    }
+
+    /// Returns the loops that were found in the initialization.
+    #[must_use]
+    pub fn loops(&self) -> &[Loop] {
+        &self.loops
+    }
+
+    /// Returns the counts of each FMU.
+    #[must_use]
+    pub fn counts(&self) -> &[Counts] {
+        &self.counts
+    }
+
+    /// Number of parts of steps that were repeated because an FMU discarded them.
+    #[must_use]
+    pub const fn rejected(&self) -> u64 {
+        self.rejected
+    }
+
+    /// Returns the faults.
+    pub fn station(&mut self) -> Option<&mut Station> {
+        self.faulting.as_mut().map(|faulting| &mut faulting.station)
+    }
+
+    /// Returns the instances.
+    pub fn instances(&mut self) -> &mut [Box<dyn Instance>] {
+        &mut self.instances
+    }
+
+    fn failed(&self, node: usize, time_s: f64) -> impl Fn(InstanceError) -> MasterError + use<> {
+        let node = self.system.nodes[node].name.clone();
+        move |error| MasterError::Instance { node: node.clone(), time_s, error }
+    }
+
+    /// Initializes all FMUs; returns the index of one that requests the end of the simulation.
+    ///
+    /// # Errors
+    /// If one fails, or a loop can't be solved.
+    pub fn initialize(&mut self) -> Result<Option<usize>, MasterError> {
+        let settings = self.settings;
+        let start_s = settings.start_s;
+        let stop_s = Some(self.time_s(settings.steps));
+        for node in 0..self.instances.len() {
+            let entered =
+                self.instances[node].enter_initialization(start_s, stop_s, settings.tolerance);
+            entered.map_err(self.failed(node, start_s))?;
+        }
+        let initializer = Initializer {
+            system: self.system,
+            instances: &mut self.instances,
+            inputs: &mut self.inputs,
+            outputs: &mut self.outputs,
+            start_s,
+        };
+        self.loops = initializer.run(&settings.loops)?;
+        self.carry_texts(None, start_s)?;
+        let mut ended_by = None;
+        for node in 0..self.instances.len() {
+            let ended = self.instances[node].exit_initialization();
+            if ended.map_err(self.failed(node, start_s))? {
+                ended_by.get_or_insert(node);
+            }
+        }
+        for node in 0..self.instances.len() {
+            let groups = &self.system.nodes[node].outputs.plan.groups;
+            let mut rest = self.outputs[node].as_mut_slice();
+            for group in groups {
+                let (these, others) = rest.split_at_mut(group.elements);
+                let got = self.instances[node].get(group, these);
+                rest = others;
+                got.map_err(|error| MasterError::Instance {
+                    node: self.system.nodes[node].name.clone(),
+                    time_s: start_s,
+                    error,
+                })?;
+            }
+        }
+        Ok(ended_by)
+    }
+
+    /// Makes one step; returns the index of an FMU that requests the end of the simulation after
+    /// it.
+    ///
+    /// # Errors
+    /// If an FMU fails, or refuses the step in whole and in parts.
+    pub fn advance(&mut self) -> Result<Option<usize>, MasterError> {
+        let (start_s, end_s) = (self.time_s(self.step), self.time_s(self.step + 1));
+        self.step += 1;
+        self.begin_faults();
+        let mut ended_by = None;
+        let mut time_s = start_s;
+        // Ends of the remaining parts, the next one last.
+        self.ends.clear();
+        self.ends.push(end_s);
+        while let Some(until_s) = self.ends.last().copied() {
+            let whole = time_s == start_s && self.ends.len() == 1;
+            // The nominal length of the whole step: a difference of times would be rounded.
+            let length_s = if whole { self.settings.step_s } else { until_s - time_s };
+            if self.rolls_back {
+                self.keep(time_s)?;
+            }
+            match self.attempt(time_s, length_s)? {
+                Attempt::Done { ended_by: node } => {
+                    ended_by = ended_by.or(node);
+                    if self.rolls_back {
+                        self.forget(time_s)?;
+                    }
+                    time_s = until_s;
+                    self.ends.pop();
+                }
+                Attempt::Discarded { node, reached_s } => {
+                    self.counts[node].discarded += 1;
+                    self.rejected += 1;
+                    let shorter_s = self.shorter(node, time_s, length_s, reached_s)?;
+                    self.ends.push(time_s + shorter_s);
+                    self.go_back(time_s)?;
+                }
+            }
+        }
+        Ok(ended_by)
+    }
+
+    /// Evaluates triggers with the outputs at the beginning of the step.
+    fn begin_faults(&mut self) {
+        let Some(faulting) = &mut self.faulting else { return };
+        while let Some((_, id)) = faulting.fires.get(self.fired).filter(|(at, _)| *at == self.step)
+        {
+            faulting.station.fire(id);
+            self.fired += 1;
+        }
+        let (conditions, outputs) = (&faulting.conditions, &self.outputs);
+        faulting.station.begin(|fault| {
+            let condition = conditions.get(fault).copied().flatten()?;
+            condition.holds(outputs[condition.spot.node][condition.spot.place])
+        });
+    }
+
+    /// Makes all transfers, and steps all FMUs over an interval.
+    fn attempt(&mut self, time_s: f64, length_s: f64) -> Result<Attempt, MasterError> {
+        let settings = self.settings;
+        let mut ended_by = None;
+        if settings.jacobi {
+            for node in 0..self.instances.len() {
+                self.transfer(node, time_s)?;
+            }
+            self.carry_texts(None, time_s)?;
+        }
+        for node in &settings.order {
+            if !settings.jacobi {
+                self.transfer(*node, time_s)?;
+                self.carry_texts(Some(*node), time_s)?;
+            }
+            let stepped = self.exchange(*node, time_s, length_s)?;
+            match stepped.outcome {
+                Outcome::Discarded if !stepped.terminate => {
+                    return Ok(Attempt::Discarded { node: *node, reached_s: stepped.time_s });
+                }
+                _ if stepped.terminate => ended_by = ended_by.or(Some(*node)),
+                _ => {}
+            }
+        }
+        Ok(Attempt::Done { ended_by })
+    }
+
+    /// Transfers the values of the wires into an FMU.
+    fn transfer(&mut self, node: usize, time_s: f64) -> Result<(), MasterError> {
+        for number in &self.into[node] {
+            let wire = &self.system.wires[*number];
+            let value = self.outputs[wire.from.node][wire.from.place];
+            let mut value = wire.convert(value, time_s)?;
+            let again = std::mem::replace(&mut self.transferred[*number], self.step) == self.step;
+            if self.faulted[*number]
+                && let Some(faulting) = &mut self.faulting
+            {
+                value = faulting.station.transfer(*number, value, again);
+            }
+            if !again {
+                self.delivered[*number] = value;
+            }
+            self.inputs[node][wire.to.place] = value;
+        }
+        Ok(())
+    }
+
+    /// Transfers texts and bytes, into one FMU or all.
+    fn carry_texts(&mut self, only: Option<usize>, time_s: f64) -> Result<(), MasterError> {
+        for wire in &self.system.texts {
+            let (from, to) = (wire.from.0, wire.to.0);
+            if only.is_some_and(|only| only != to) {
+                continue;
+            }
+            if wire.binary {
+                let value = self.instances[from].get_binaries(&wire.from.1);
+                let value = value.map_err(self.failed(from, time_s))?;
+                let set = self.instances[to].set_binaries(&wire.to.1, &value);
+                set.map_err(self.failed(to, time_s))?;
+            } else {
+                let value = self.instances[from].get_strings(&wire.from.1);
+                let value = value.map_err(self.failed(from, time_s))?;
+                let set = self.instances[to].set_strings(&wire.to.1, &value);
+                set.map_err(self.failed(to, time_s))?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Sets the inputs of an FMU, steps it, and reads its outputs.
+    fn exchange(
+        &mut self,
+        node: usize,
+        time_s: f64,
+        length_s: f64,
+    ) -> Result<Stepped, MasterError> {
+        let sides = &self.system.nodes[node];
+        let (set, get) = (&sides.inputs.plan.groups, &sides.outputs.plan.groups);
+        let (inputs, outputs) = (&self.inputs[node], &mut self.outputs[node]);
+        let instance = &mut self.instances[node];
+        match instance.exchange(set, inputs, time_s, length_s, get, outputs) {
+            Ok(stepped) => Ok(stepped),
+            Err(error) if is_refusal(&error) => {
+                self.set_one_by_one(node, time_s)?;
+                let outputs = &mut self.outputs[node];
+                let stepped =
+                    self.instances[node].exchange(&[], &[], time_s, length_s, get, outputs);
+                stepped.map_err(self.failed(node, time_s))
+            }
+            Err(error) => Err(self.failed(node, time_s)(error)),
+        }
+    }
+
+    /// Finds out which inputs an FMU refused. An input that a fault has altered keeps its previous
+    /// value.
+    #[cold]
+    fn set_one_by_one(&mut self, node: usize, time_s: f64) -> Result<(), MasterError> {
+        let side = &self.system.nodes[node].inputs;
+        for (number, range) in side.variables.iter().zip(&side.plan.places) {
+            let instance = &mut self.instances[node];
+            let description = instance.description();
+            let group =
+                octant_fmu_host::instance::Group::of(description, &description.variables[*number]);
+            let set =
+                group.and_then(|group| instance.set(&group, &self.inputs[node][range.clone()]));
+            let error = match set {
+                Ok(()) => continue,
+                Err(error) if is_refusal(&error) => error,
+                Err(error) => return Err(self.failed(node, time_s)(error)),
+            };
+            let wires = self.into[node]
+                .iter()
+                .filter(|wire| range.contains(&self.system.wires[**wire].to.place));
+            let wires: Vec<usize> = wires.copied().collect();
+            let acts = |wire: &&usize| {
+                self.faulting.as_ref().is_some_and(|faulting| faulting.station.acts_on(**wire))
+            };
+            if wires.iter().any(|wire| acts(&wire)) {
+                self.counts[node].refused += 1;
+                continue;
+            }
+            let said = match error {
+                InstanceError::Failed { said, .. } => said,
+                _ => String::new(),
+            };
+            let wire = wires.first().map(|wire| &self.system.wires[*wire]);
+            return Err(MasterError::Refused {
+                target: wire.map_or_else(String::new, |wire| wire.target.clone()),
+                value: wire.map_or(f64::NAN, |wire| self.inputs[node][wire.to.place]),
+                time_s,
+                said,
+            });
+        }
+        Ok(())
+    }
+
+    /// Reads the unconnected outputs of an FMU.
+    ///
+    /// # Errors
+    /// If it fails.
+    pub fn watched(&mut self, node: usize, numbers: &mut [f64]) -> Result<(), MasterError> {
+        let time_s = self.time_s(self.step);
+        let mut rest = numbers;
+        for group in &self.system.nodes[node].watched.plan.groups {
+            let (these, others) = rest.split_at_mut(group.elements);
+            self.instances[node].get(group, these).map_err(self.failed(node, time_s))?;
+            rest = others;
+        }
+        Ok(())
+    }
+
+    /// Terminates all FMUs in order.
+    ///
+    /// # Errors
+    /// If one fails; the others are terminated all the same.
+    pub fn terminate(&mut self) -> Result<(), MasterError> {
+        let time_s = self.time_s(self.step);
+        let mut first = Ok(());
+        for node in 0..self.instances.len() {
+            let ended = self.instances[node].terminate().map_err(self.failed(node, time_s));
+            if first.is_ok() {
+                first = ended;
+            }
+        }
+        first
+    }
+}
+
+/// Returns whether a set function discarded a value, the only error treated as a refusal.
+fn is_refusal(error: &InstanceError) -> bool {
+    matches!(
+        error,
+        InstanceError::Failed { function, status, .. }
+            if status == "discard" && (function.starts_with("fmi2Set") || function.starts_with("fmi3Set"))
+    )
+}

@@ -1,0 +1,225 @@
+use super::input::{InputError, Inputs};
+use super::output::{Outputs, Sink, TOPIC};
+use super::*;
+use octant_fmu_host::description::{Causality, Description, Kind, Variability};
+use octant_mapping::settings::Settings;
+use octant_mapping::testing::{Scripted, With, description, variable};
+use octant_scenario::Set;
+
+/// y = 2 u + w[2], held: a copy of h; also a whole number and a text.
+fn model() -> Description {
+    use Causality::{Input, Output, Parameter};
+    let mut held = variable("h", 2, Kind::Float64, Input).in_unit("rad/s");
+    held.variability = Variability::Discrete;
+    description(
+        "gain",
+        vec![
+            variable("u", 1, Kind::Float64, Input).in_unit("m"),
+            held,
+            variable("on", 3, Kind::Boolean, Input),
+            variable("w", 4, Kind::Float64, Input).array(2),
+            variable("y", 6, Kind::Float64, Output).in_unit("m"),
+            variable("held", 7, Kind::Float64, Output),
+            variable("n", 8, Kind::Int32, Output),
+            variable("was_on", 9, Kind::Boolean, Output),
+            variable("m", 10, Kind::Float64, Output).array(2),
+            variable("words", 12, Kind::String, Output),
+            variable("k", 13, Kind::Float64, Parameter),
+        ],
+    )
+}
+
+fn gain() -> Box<dyn Instance> {
+    let mut steps = 0.0;
+    Scripted::boxed(model(), move |cells, _| {
+        steps += 1.0;
+        cells[6] = 2.0 * cells[1] + cells[5] + cells[13];
+        cells[7] = cells[2];
+        cells[8] = steps;
+        cells[9] = cells[3];
+        cells[10] = 0.1 * steps;
+        cells[11] = f64::NAN;
+        Ok(true)
+    })
+}
+
+fn inputs(text: &str) -> Result<Inputs, InputError> {
+    Inputs::from_reader(text.as_bytes(), "in.csv", &model())
+}
+
+fn run(text: &str, names: &[&str], span: Span, file: &str) -> (Finished, Vec<u8>) {
+    let names: Vec<String> = names.iter().map(|name| (*name).to_owned()).collect();
+    let outputs = Outputs::choose(&model(), &names).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join(file);
+    let mut sink = Sink::file(&path, &outputs, "gain").unwrap();
+    let mut inputs = inputs(text).unwrap();
+    let description = model();
+    let mut settings = Settings::new(&description);
+    settings.set("k", &[Set::Number(0.5)]).unwrap();
+    let starts = settings.finish().unwrap();
+    let mut instance = gain();
+    let control = Control::default();
+    let finished = simulate(
+        instance.as_mut(),
+        &starts,
+        Some(&mut inputs),
+        &outputs,
+        &span,
+        &mut sink,
+        &control,
+    )
+    .unwrap();
+    sink.finish().unwrap();
+    (finished, std::fs::read(&path).unwrap())
+}
+
+const INPUTS: &str = "time,u [cm],h [deg/s],on,w[2]\n0,0,180,0,7\n1,100,180,1,7\n1,300,360,1,8\n\
+                      # a comment\n2,300,0,false,8\n";
+
+#[test]
+fn what_is_continuous_is_interpolated_and_everything_else_held() {
+    let span = Span { start_s: 0.0, stop_s: 2.0, step_s: 0.25, tolerance: None };
+    let (finished, csv) = run(INPUTS, &[], span, "out.csv");
+    assert_eq!((finished.steps, finished.time_s, finished.terminated), (8, 2.0, false));
+    let text = String::from_utf8(csv).unwrap();
+    let lines: Vec<&str> = text.lines().collect();
+    assert_eq!(lines[0], "\"time\",\"y\",\"held\",\"n\",\"was_on\",\"m[1]\",\"m[2]\"");
+    // After initialization no step was made.
+    assert_eq!(lines[1], "0.0,0.0,0.0,0,0,0.0,0.0");
+    let rows: Vec<Vec<&str>> = lines[2..].iter().map(|line| line.split(',').collect()).collect();
+    let column = |index: usize| rows.iter().map(|row| row[index]).collect::<Vec<_>>();
+    // u at the start of each step: 0, 0.25, 0.5, 0.75 m, then 3 m after the step in it at 1 s.
+    assert_eq!(column(1), ["7.5", "8.0", "8.5", "9.0", "14.5", "14.5", "14.5", "14.5"]);
+    let pi = format!("{:?}", std::f64::consts::PI);
+    let two_pi = format!("{:?}", std::f64::consts::TAU);
+    let held: Vec<&str> = column(2);
+    assert!(held[..4].iter().all(|held| *held == pi), "{held:?}");
+    assert!(held[4..].iter().all(|held| *held == two_pi), "{held:?}");
+    assert_eq!(column(3), ["1", "2", "3", "4", "5", "6", "7", "8"]);
+    assert_eq!(column(4), ["0", "0", "0", "0", "1", "1", "1", "1"]);
+    assert_eq!(rows[2][5], "0.30000000000000004", "every digit");
+    assert_eq!(rows[2][6], "NaN");
+}
+
+#[test]
+fn some_outputs_and_a_last_step_that_is_shorter() {
+    let span = Span { start_s: 0.5, stop_s: 1.25, step_s: 0.5, tolerance: None };
+    let (finished, csv) = run(INPUTS, &["n", "m", "y"], span, "out.csv");
+    assert_eq!((finished.steps, finished.time_s), (2, 1.25));
+    let text = String::from_utf8(csv).unwrap();
+    let lines: Vec<&str> = text.lines().collect();
+    assert_eq!(lines[0], "\"time\",\"n\",\"m[1]\",\"m[2]\",\"y\"");
+    assert!(lines[2].starts_with("1.0,1,") && lines[3].starts_with("1.25,2,"), "{lines:?}");
+    let error = Outputs::choose(&model(), &["words".to_owned()]).unwrap_err().to_string();
+    assert!(error.contains("words is a String"), "{error}");
+    let error = Outputs::choose(&model(), &["z".to_owned()]).unwrap_err().to_string();
+    assert!(error.contains("no variable \"z\""), "{error}");
+    assert_eq!(Outputs::choose(&model(), &[]).unwrap().left_out, ["words"]);
+}
+
+#[test]
+fn rows_of_mcap_are_json_with_a_schema() {
+    let span = Span { start_s: 0.0, stop_s: 1.0, step_s: 0.5, tolerance: None };
+    let (_, bytes) = run(INPUTS, &["y", "was_on", "m[2]"], span, "out.mcap");
+    let messages: Vec<_> =
+        mcap::MessageStream::new(&bytes).unwrap().map(|message| message.unwrap()).collect();
+    assert_eq!(messages.len(), 3);
+    let last = &messages[2];
+    assert_eq!((last.channel.topic.as_str(), last.log_time), (TOPIC, 1_000_000_000));
+    assert_eq!(last.data.as_ref(), br#"{"time":1.0,"y":8.5,"was_on":false,"m[2]":null}"#);
+    let schema = last.channel.schema.as_ref().unwrap();
+    assert_eq!(schema.encoding, "jsonschema");
+    let schema: serde_json::Value = serde_json::from_slice(&schema.data).unwrap();
+    assert_eq!(schema["properties"]["y"]["description"], "in m");
+    let message: serde_json::Value = serde_json::from_slice(&last.data).unwrap();
+    assert!(jsonschema::draft202012::is_valid(&schema, &message));
+}
+
+#[test]
+fn an_array_has_a_column_or_one_for_each_element() {
+    let at_half = |text: &str| {
+        let mut inputs = inputs(text).unwrap();
+        inputs.at(0.5);
+        inputs.numbers
+    };
+    let apart = at_half("time,w[1],w[2],u\n0,1,2,3\n1,2,4,6\n");
+    assert_eq!(apart, at_half("time,w,u\n0,1 2,3\n1, 2  4 ,6\n"));
+    assert_eq!(apart, at_half("time,w[2],w[1],u\n0,2,1,3\n1,4,2,6\n"));
+}
+
+#[test]
+fn mistakes_in_inputs_have_file_line_and_column() {
+    for (text, expected) in [
+        ("", "in.csv:1:1: found \"\", expected time as the first column"),
+        ("u,time\n1,2\n", "in.csv:1:1: found \"u\", expected time as the first column"),
+        ("time [m],u\n1,2\n", "in.csv:1:1: found \"time [m]\""),
+        ("time,u\n", "in.csv:2:1: the file ends, expected a row of numbers"),
+        ("time,uu\n0,1\n", "in.csv:1:2: the FMU has no variable \"uu\"; nearest are \"u\""),
+        ("time,y\n0,1\n", "in.csv:1:2: y is an output of the FMU, expected an input"),
+        ("time,w\n0,1\n", "in.csv:2:2: found 1 numbers, expected 2"),
+        ("time,w\n0,1 x\n", "in.csv:2:2: found \"x\", expected a number"),
+        ("time,w,w[2]\n0,1 2,2\n", "in.csv:1:3: w[2] a second time"),
+        ("time,w[3]\n0,1\n", "in.csv:1:2: the FMU has no variable \"w[3]\""),
+        ("time,u,u\n0,1,1\n", "in.csv:1:3: u a second time"),
+        ("time,u [s]\n0,1\n", "in.csv:1:2: u: unit \"s\" (s) can't become \"m\" (m)"),
+        ("time,on [s]\n0,1\n", "in.csv:1:2: found the unit \"s\", and on has none"),
+        ("time,u,on\n0,1,1\n0.5,x,1\n", "in.csv:3:2: found \"x\", expected a number"),
+        ("time,u,on\n0,1,2\n", "in.csv:2:3: found \"2\", expected 0, 1, true or false"),
+        ("time,u\n1,1\n0,1\n", "in.csv:3:1: found the time 0 s after 1 s"),
+        ("time,u\n1\n", "in.csv:2:1: found 1 columns, expected 2"),
+    ] {
+        let error = inputs(text).err().map(|error| error.to_string()).unwrap_or_default();
+        assert!(error.contains(expected), "{text:?}:\n  {error}\n  {expected}");
+    }
+}
+
+#[test]
+fn spans_that_contradict_themselves_are_refused() {
+    let steps = |start_s, stop_s, step_s| Span { start_s, stop_s, step_s, tolerance: None }.steps();
+    assert_eq!(steps(0.0, 10.0, 0.005), Ok(2000));
+    assert_eq!(steps(0.1, 0.4, 0.1), Ok(3), "no step of rounding");
+    assert_eq!(steps(0.0, 1.0, 0.3), Ok(4));
+    assert_eq!(steps(1.0, 1.0, 0.3), Ok(0));
+    for (start_s, stop_s, step_s, expected) in [
+        (1.0, 0.0, 0.1, "a stop at or after the start"),
+        (0.0, f64::NAN, 0.1, "a stop at or after the start"),
+        (0.0, 1.0, 0.0, "a time above 0"),
+        (0.0, 1.0, -1.0, "a time above 0"),
+        (0.0, 1.0, 1e-300, "at most"),
+    ] {
+        let error = steps(start_s, stop_s, step_s).unwrap_err().to_string();
+        assert!(error.contains(expected), "{error}");
+    }
+}
+
+#[test]
+fn an_fmu_that_ends_or_fails_leaves_its_rows() {
+    for (behaviour, steps, failed) in
+        [(Ok(false), 3, false), (Err("was killed".to_owned()), 0, true)]
+    {
+        let outputs = Outputs::choose(&model(), &["y".to_owned()]).unwrap();
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("out.csv");
+        let mut sink = Sink::file(&path, &outputs, "gain").unwrap();
+        let mut instance =
+            Scripted::boxed(
+                model(),
+                move |_, time_s| {
+                    if time_s > 0.25 { behaviour.clone() } else { Ok(true) }
+                },
+            );
+        let span = Span { start_s: 0.0, stop_s: 1.0, step_s: 0.1, tolerance: None };
+        let control = Control::default();
+        let starts = Starts::default();
+        let finished =
+            simulate(instance.as_mut(), &starts, None, &outputs, &span, &mut sink, &control);
+        sink.finish().unwrap();
+        assert_eq!(finished.is_err(), failed);
+        if let Ok(finished) = finished {
+            assert_eq!((finished.steps, finished.terminated), (steps, true));
+        }
+        let rows = std::fs::read_to_string(&path).unwrap().lines().count() - 1;
+        assert!(rows >= 3, "{rows}");
+    }
+}

@@ -1,0 +1,233 @@
+//! Folder of a system structure: a plain folder, or unpacked from an `.ssp`.
+
+use super::SspError;
+use octant_fmu_host::archive::{Archive, Unpacked};
+use std::path::{Path, PathBuf};
+
+/// File name of the structure in a package.
+pub const STRUCTURE: &str = "SystemStructure.ssd";
+
+/// Maximum size of a file of a structure, bytes.
+const TEXT_MAX: u64 = 256 << 20;
+
+/// Reason why a source is no file of a package.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum SourceError {
+    /// It is a part of another file.
+    #[error("the source {found:?} was found: parts of other files are not part of this version")]
+    Part {
+        /// Source found.
+        found: String,
+    },
+    /// Its percent signs are wrong.
+    #[error("the source {found:?} was found, whose % signs are not those of a URI")]
+    Percent {
+        /// Source found.
+        found: String,
+    },
+    /// It isn't a relative path.
+    #[error(
+        "the source {found:?} was found, expected a file of the package, such as \
+         \"resources/plant.fmu\""
+    )]
+    Elsewhere {
+        /// Source found.
+        found: String,
+    },
+    /// It leads out of the package.
+    #[error(
+        "the source {found:?} was found, which leads out of the package; expected a file of the \
+         package, such as \"resources/plant.fmu\""
+    )]
+    Outside {
+        /// Source found.
+        found: String,
+    },
+    /// The file is missing.
+    #[error("the source {found:?} was found: there is no such file in {package}")]
+    Missing {
+        /// Source found.
+        found: String,
+        /// Name of the package.
+        package: String,
+    },
+}
+
+/// A folder with a system structure.
+#[derive(Debug)]
+pub struct Package {
+    /// Name as the user gave it.
+    name: String,
+    folder: PathBuf,
+    structure: PathBuf,
+    /// Temporary folder, removed with the package.
+    _unpacked: Option<Unpacked>,
+}
+
+/// Returns whether a path given to `octant run` is a system structure and not a scenario.
+#[must_use]
+pub fn is_system(path: &Path) -> bool {
+    let extension = path.extension().and_then(|e| e.to_str()).map(str::to_ascii_lowercase);
+    matches!(extension.as_deref(), Some("ssp" | "ssd"))
+        || (path.is_dir() && path.join(STRUCTURE).is_file())
+}
+
+impl Package {
+    /// Opens an `.ssp`, an `.ssd`, or a folder with a `SystemStructure.ssd`.
+    ///
+    /// # Errors
+    /// If there is none, or an archive is damaged or hostile.
+    pub fn open(path: &Path) -> Result<Self, SspError> {
+        let name = path.display().to_string();
+        let extension = path.extension().and_then(|e| e.to_str()).map(str::to_ascii_lowercase);
+        let (folder, structure) = if path.is_dir() {
+            (path.to_owned(), path.join(STRUCTURE))
+        } else if extension.as_deref() == Some("ssd") {
+            let folder = path.parent().filter(|p| !p.as_os_str().is_empty());
+            (folder.unwrap_or(Path::new(".")).to_owned(), path.to_owned())
+        } else {
+            return Self::unpack(path, name);
+        };
+        if !structure.is_file() {
+            let message = format!("failed to find {STRUCTURE} in it");
+            return Err(SspError::of_file(&name, message));
+        }
+        Ok(Self { name, folder, structure, _unpacked: None })
+    }
+
+    fn unpack(path: &Path, name: String) -> Result<Self, SspError> {
+        // These errors name the file already.
+        let failed = |error: octant_fmu_host::archive::ArchiveError| {
+            let text = error.to_string();
+            let message = text.strip_prefix(&format!("{name}: ")).unwrap_or(&text).to_owned();
+            SspError::of_file(&name, message)
+        };
+        let unpacked = Archive::open(path).and_then(|mut archive| archive.unpack());
+        let unpacked = unpacked.map_err(failed)?;
+        let folder = unpacked.path().to_owned();
+        let structure = folder.join(STRUCTURE);
+        if !structure.is_file() {
+            let message = format!("failed to find {STRUCTURE} in it");
+            return Err(SspError::of_file(&name, message));
+        }
+        Ok(Self { name, folder, structure, _unpacked: Some(unpacked) })
+    }
+
+    /// Returns the path of the `.ssd`.
+    #[must_use]
+    pub fn structure(&self) -> &Path {
+        &self.structure
+    }
+
+    /// Returns the name of a package's file for messages.
+    #[must_use]
+    pub fn name_of(&self, file: &Path) -> String {
+        match file.strip_prefix(&self.folder) {
+            // The user named this very file.
+            Ok(_) if self.structure == file && self.name.ends_with(".ssd") => self.name.clone(),
+            Ok(inner) => format!("{}/{}", self.name, inner.display()),
+            Err(_) => file.display().to_string(),
+        }
+    }
+
+    /// Reads the text of a file.
+    ///
+    /// # Errors
+    /// If it can't be read, isn't UTF-8, or is larger than any structure.
+    pub fn text_of(&self, file: &Path) -> Result<String, SspError> {
+        let name = self.name_of(file);
+        let failed =
+            |error: std::io::Error| SspError::of_file(&name, format!("failed to read it: {error}"));
+        let bytes = std::fs::metadata(file).map_err(failed)?.len();
+        if bytes > TEXT_MAX {
+            let message = format!("it has {bytes} bytes, at most {TEXT_MAX} are read");
+            return Err(SspError::of_file(&name, message));
+        }
+        let mut text = std::fs::read_to_string(file).map_err(failed)?;
+        if text.starts_with('\u{feff}') {
+            text.drain(..'\u{feff}'.len_utf8());
+        }
+        Ok(text)
+    }
+
+    /// Finds the file to which a source of the structure refers.
+    ///
+    /// # Errors
+    /// If it isn't a file within the package.
+    pub fn resolve(&self, source: &str) -> Result<PathBuf, SourceError> {
+        let found = || source.to_owned();
+        if source.contains('#') {
+            return Err(SourceError::Part { found: found() });
+        }
+        let decoded =
+            percent_decoded(source).ok_or_else(|| SourceError::Percent { found: found() })?;
+        let has_scheme = decoded.split_once(':').is_some_and(|(scheme, _)| !scheme.contains('/'));
+        if has_scheme || decoded.starts_with('/') || decoded.contains('\\') {
+            return Err(SourceError::Elsewhere { found: found() });
+        }
+        let mut path = self.folder.clone();
+        // `./resources/x.fmu` and `resources//x.fmu` are the same file.
+        for part in decoded.split('/').filter(|part| !part.is_empty() && *part != ".") {
+            if part == ".." {
+                return Err(SourceError::Outside { found: found() });
+            }
+            path.push(part);
+        }
+        if !path.is_file() {
+            return Err(SourceError::Missing { found: found(), package: self.name.clone() });
+        }
+        Ok(path)
+    }
+}
+
+/// Decodes `%20` and the like.
+fn percent_decoded(text: &str) -> Option<String> {
+    if !text.contains('%') {
+        return Some(text.to_owned());
+    }
+    let mut bytes = Vec::with_capacity(text.len());
+    let mut rest = text.as_bytes();
+    while let Some((first, after)) = rest.split_first() {
+        if *first == b'%' {
+            let digits = std::str::from_utf8(after.get(..2)?).ok()?;
+            bytes.push(u8::from_str_radix(digits, 16).ok()?);
+            rest = &after[2..];
+        } else {
+            bytes.push(*first);
+            rest = after;
+        }
+    }
+    String::from_utf8(bytes).ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sources_stay_within_the_package() {
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::create_dir(folder.path().join("resources")).unwrap();
+        std::fs::write(folder.path().join("resources/my plant.fmu"), "x").unwrap();
+        std::fs::write(folder.path().join(STRUCTURE), "<x/>").unwrap();
+        let package = Package::open(folder.path()).unwrap();
+        let inside = folder.path().join("resources/my plant.fmu");
+        for source in ["resources/my%20plant.fmu", "./resources//my plant.fmu"] {
+            assert_eq!(package.resolve(source).unwrap(), inside, "{source}");
+        }
+        for (source, reason) in [
+            ("../secret.fmu", "leads out"),
+            ("resources/%2e%2e/%2e%2e/secret.fmu", "leads out"),
+            ("/etc/passwd", "expected a file of the package"),
+            ("file:///etc/passwd", "expected a file of the package"),
+            ("https://example.com/x.fmu", "expected a file of the package"),
+            ("resources\\x.fmu", "expected a file of the package"),
+            ("resources/x%2.fmu", "% signs"),
+            ("resources/absent.fmu", "no such file"),
+            ("#other", "parts of other files"),
+        ] {
+            let error = package.resolve(source).unwrap_err().to_string();
+            assert!(error.contains(reason), "{source}: {error}");
+        }
+    }
+}

@@ -1,0 +1,392 @@
+//! `SystemStructure.ssd`: systems, components, connectors, connections and parameter bindings.
+
+pub use super::parts::{
+    Binding, Component, Connection, Connector, ConnectorKind, ConnectorType, End, Implementation,
+    Part, System,
+};
+
+use super::SspError;
+use super::annotation::{self, CoSimulation};
+use super::package::Package;
+use super::parameters::{self, Enumeration, TRANSFORMATIONS, kind_named};
+use super::xml::{self, Element, SSC, SSD};
+use octant_fmu_host::description::{BaseUnit, Kind};
+
+/// Maximum nesting depth of systems: far more than any design has.
+const DEPTH_MAX: usize = 64;
+
+/// A system structure.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Structure {
+    /// The file.
+    pub file: String,
+    /// Name.
+    pub name: String,
+    /// The outermost system.
+    pub system: System,
+    /// Units by name.
+    pub units: Vec<(String, BaseUnit)>,
+    /// Enumerations.
+    pub enumerations: Vec<Enumeration>,
+    /// Start of the default experiment, s.
+    pub start_s: Option<f64>,
+    /// End of the default experiment, s.
+    pub stop_s: Option<f64>,
+    /// Settings for this program alone.
+    pub co_simulation: CoSimulation,
+    /// Step for programs of the Open Simulation Platform, s.
+    pub osp_step_s: Option<f64>,
+}
+
+impl Structure {
+    /// Reads the structure of a package.
+    ///
+    /// # Errors
+    /// If a file can't be read, or asks for something that this program can't do.
+    pub fn read(package: &Package) -> Result<Self, SspError> {
+        let text = package.text_of(package.structure())?;
+        let file = package.name_of(package.structure());
+        let document = xml::parse(&text, &file)?;
+        let root = Element::root(&document, &file, SSD, "SystemStructureDescription")?;
+        parameters::version(&root)?;
+        root.only(
+            &[
+                "version",
+                "name",
+                "author",
+                "fileversion",
+                "copyright",
+                "license",
+                "generationTool",
+                "generationDateAndTime",
+            ],
+            &[(SSD, "System"), (SSD, "Enumerations"), (SSD, "Units"), (SSD, "DefaultExperiment")],
+        )?;
+        let Some(system) = root.child(SSD, "System")? else {
+            return Err(root.error("the element <System> is missing"));
+        };
+        let units = match root.child(SSD, "Units")? {
+            Some(units) => parameters::units(&units)?,
+            None => Vec::new(),
+        };
+        let enumerations = match root.child(SSD, "Enumerations")? {
+            Some(enumerations) => parameters::enumerations(&enumerations)?,
+            None => Vec::new(),
+        };
+        let (mut start_s, mut stop_s, mut osp_step_s) = (None, None, None);
+        if let Some(experiment) = root.child(SSD, "DefaultExperiment")? {
+            experiment.only(&["startTime", "stopTime"], &[])?;
+            start_s = experiment.finite("startTime")?;
+            stop_s = experiment.finite("stopTime")?;
+            osp_step_s = annotation::osp_step_s(&experiment)?;
+        }
+        let reader = Reader { package };
+        Ok(Self {
+            name: root.optional("name").unwrap_or_default().to_owned(),
+            system: reader.system(&system, 0)?,
+            units,
+            enumerations,
+            start_s,
+            stop_s,
+            co_simulation: annotation::of(&root, package)?,
+            osp_step_s,
+            file: file.clone(),
+        })
+    }
+}
+
+struct Reader<'p> {
+    package: &'p Package,
+}
+
+/// Children that every element of a system may have.
+const ELEMENT: [(&str, &str); 2] = [(SSD, "Connectors"), (SSD, "ParameterBindings")];
+
+impl Reader<'_> {
+    fn system(&self, element: &Element<'_>, depth: usize) -> Result<System, SspError> {
+        if depth > DEPTH_MAX {
+            return Err(element.error(format!("systems are more than {DEPTH_MAX} levels deep")));
+        }
+        let mut elements = ELEMENT.to_vec();
+        elements.extend([(SSD, "Elements"), (SSD, "Connections"), (SSD, "SignalDictionaries")]);
+        element.only(&["name"], &elements)?;
+        if let Some(dictionaries) = element.child(SSD, "SignalDictionaries")? {
+            return Err(dictionaries.error(
+                "signal dictionaries are not part of this version: connect the FMUs directly",
+            ));
+        }
+        let mut system = System {
+            name: element.optional("name").unwrap_or_default().to_owned(),
+            connectors: connectors(element)?,
+            elements: Vec::new(),
+            connections: Vec::new(),
+            bindings: self.bindings(element, None)?,
+            line: element.line(),
+        };
+        if let Some(parts) = element.child(SSD, "Elements")? {
+            parts.only(
+                &[],
+                &[(SSD, "Component"), (SSD, "System"), (SSD, "SignalDictionaryReference")],
+            )?;
+            for part in parts.children() {
+                let part_read = match part.name() {
+                    "Component" => Part::Component(self.component(&part)?),
+                    "System" => {
+                        part.required("name")?;
+                        Part::System(self.system(&part, depth + 1)?)
+                    }
+                    "SignalDictionaryReference" => {
+                        return Err(part.error(
+                            "signal dictionaries are not part of this version: connect the FMUs \
+                             directly",
+                        ));
+                    }
+                    _ => continue,
+                };
+                if part_read.name().is_empty() {
+                    return Err(part.error("the name is empty"));
+                }
+                if system.elements.iter().any(|known| known.name() == part_read.name()) {
+                    return Err(part.error("the name is taken by another element of the system"));
+                }
+                system.elements.push(part_read);
+            }
+        }
+        if let Some(list) = element.child(SSD, "Connections")? {
+            list.only(&[], &[(SSD, "Connection")])?;
+            for connection in list.children().filter(|child| child.is(SSD, "Connection")) {
+                system.connections.push(self::connection(&connection)?);
+            }
+        }
+        Ok(system)
+    }
+
+    fn component(&self, element: &Element<'_>) -> Result<Component, SspError> {
+        element.only(&["name", "type", "source", "implementation"], &ELEMENT)?;
+        match element.optional("type").unwrap_or("application/x-fmu-sharedlibrary") {
+            "application/x-fmu-sharedlibrary" => {}
+            other @ ("application/x-ssp-definition" | "application/x-ssp-package") => {
+                return Err(element.error(format!(
+                    "components of type {other} are not part of this version: put the system into \
+                     this file as an element <System>"
+                )));
+            }
+            other => {
+                return Err(element.error(format!(
+                    "the type {other:?} was found, expected application/x-fmu-sharedlibrary: only \
+                     FMUs can be run"
+                )));
+            }
+        }
+        let Some(source) = element.optional("source") else {
+            return Err(element.error("it has no source: there is no FMU to be run"));
+        };
+        let file =
+            self.package.resolve(source).map_err(|error| element.error(error.to_string()))?;
+        let implementation = match element.optional("implementation").unwrap_or("any") {
+            "any" => Implementation::Any,
+            "CoSimulation" => Implementation::CoSimulation,
+            "ModelExchange" => Implementation::ModelExchange,
+            other => {
+                return Err(element.error(format!(
+                    "implementation is {other:?}, expected any, CoSimulation or ModelExchange"
+                )));
+            }
+        };
+        Ok(Component {
+            name: element.required("name")?.to_owned(),
+            source: source.to_owned(),
+            implementation,
+            connectors: connectors(element)?,
+            bindings: self.bindings(element, Some(source))?,
+            line: element.line(),
+            file,
+        })
+    }
+
+    /// Reads the bindings of an element; `component` is the source of the component, to which some
+    /// sources are relative.
+    fn bindings(
+        &self,
+        element: &Element<'_>,
+        component: Option<&str>,
+    ) -> Result<Vec<Binding>, SspError> {
+        let Some(list) = element.child(SSD, "ParameterBindings")? else { return Ok(Vec::new()) };
+        list.only(&[], &[(SSD, "ParameterBinding")])?;
+        let mut bindings = Vec::new();
+        for binding in list.children().filter(|child| child.is(SSD, "ParameterBinding")) {
+            binding.only(
+                &["type", "source", "sourceBase", "prefix"],
+                &[(SSD, "ParameterValues"), (SSD, "ParameterMapping")],
+            )?;
+            let values = self.part(
+                &binding,
+                binding.child(SSD, "ParameterValues")?,
+                ("ParameterValues", "application/x-ssp-parameter-set"),
+                component,
+                parameters::parameter_set,
+            )?;
+            let mapping = match binding.child(SSD, "ParameterMapping")? {
+                Some(mapping) => {
+                    mapping.only(
+                        &["type", "source", "sourceBase"],
+                        &[(xml::SSM, "ParameterMapping")],
+                    )?;
+                    Some(self.part(
+                        &mapping,
+                        Some(mapping),
+                        ("ParameterMapping", "application/x-ssp-parameter-mapping"),
+                        component,
+                        parameters::mapping,
+                    )?)
+                }
+                None => None,
+            };
+            bindings.push(Binding {
+                values,
+                mapping,
+                prefix: binding.optional("prefix").unwrap_or_default().to_owned(),
+                line: binding.line(),
+            });
+        }
+        Ok(bindings)
+    }
+
+    /// Reads a parameter set or mapping: from the file that `element` names, or from `inline`.
+    fn part<T>(
+        &self,
+        element: &Element<'_>,
+        inline: Option<Element<'_>>,
+        (name, mime): (&str, &str),
+        component: Option<&str>,
+        read: impl Fn(&Element<'_>) -> Result<T, SspError>,
+    ) -> Result<T, SspError> {
+        if let Some(found) = element.optional("type").filter(|found| *found != mime) {
+            return Err(element.error(format!("the type {found:?} was found, expected {mime}")));
+        }
+        let inside = inline.as_ref().and_then(|inline| inline.children().next());
+        let Some(source) = element.optional("source") else {
+            return match inside {
+                Some(inside) => read(&inside),
+                None => Err(element.error(format!("neither a source nor a <{name}> was found"))),
+            };
+        };
+        if inside.is_some() {
+            return Err(element.error(format!("both a source and a <{name}> were found")));
+        }
+        match element.optional("sourceBase").unwrap_or("SSD") {
+            "SSD" => {}
+            "component" => {
+                let of = component.map_or_else(String::new, |source| format!(" {source}"));
+                return Err(element.error(format!(
+                    "sourceBase \"component\" is not part of this version: put the file beside the \
+                     FMU{of}"
+                )));
+            }
+            other => {
+                let message = format!("sourceBase is {other:?}, expected SSD or component");
+                return Err(element.error(message));
+            }
+        }
+        let path =
+            self.package.resolve(source).map_err(|error| element.error(error.to_string()))?;
+        let text = self.package.text_of(&path)?;
+        let file = self.package.name_of(&path);
+        let document = xml::parse(&text, &file)?;
+        read(&Element { node: document.root_element(), file: &file })
+    }
+}
+
+fn connectors(element: &Element<'_>) -> Result<Vec<Connector>, SspError> {
+    let Some(list) = element.child(SSD, "Connectors")? else { return Ok(Vec::new()) };
+    list.only(&[], &[(SSD, "Connector")])?;
+    let mut connectors: Vec<Connector> = Vec::new();
+    for element in list.children().filter(|child| child.is(SSD, "Connector")) {
+        let read = connector(&element)?;
+        if connectors.iter().any(|known| known.name == read.name) {
+            return Err(element.error("found a second time, expected unique names"));
+        }
+        connectors.push(read);
+    }
+    Ok(connectors)
+}
+
+fn connector(element: &Element<'_>) -> Result<Connector, SspError> {
+    let name = element.required("name")?;
+    let kind = match element.required("kind")? {
+        "input" => ConnectorKind::Input,
+        "output" => ConnectorKind::Output,
+        "parameter" => ConnectorKind::Parameter,
+        "calculatedParameter" => ConnectorKind::CalculatedParameter,
+        "structuralParameter" => ConnectorKind::StructuralParameter,
+        "constant" => ConnectorKind::Constant,
+        "local" => ConnectorKind::Local,
+        other => {
+            return Err(element.error(format!(
+                "the kind {other:?} was found, expected input, output, parameter, \
+                 calculatedParameter, structuralParameter, constant or local"
+            )));
+        }
+    };
+    let mut connector = Connector {
+        name: name.to_owned(),
+        kind,
+        of_type: None,
+        dimensions: Vec::new(),
+        line: element.line(),
+    };
+    for child in element.children() {
+        if child.name() == "Clock" {
+            return Err(child.error("clocks are not part of this version"));
+        }
+        if child.is(SSC, "Dimension") {
+            child.only(&["size", "sizeConnector"], &[])?;
+            let size = child.integer("size")?;
+            connector.dimensions.push(size.and_then(|size| u64::try_from(size).ok()));
+            continue;
+        }
+        let Some(kind) = kind_named(child.name()).filter(|_| child.is(SSC, child.name())) else {
+            // Geometry and the like; anything else is refused below.
+            continue;
+        };
+        child.only(&["unit", "name", "mime-type"], &[])?;
+        if connector.of_type.is_some() {
+            return Err(child.error("found a second type, expected one"));
+        }
+        let enumeration = child.optional("name").map(str::to_owned);
+        if kind == Kind::Enumeration && enumeration.is_none() {
+            return Err(child.error("the attribute \"name\" is missing"));
+        }
+        connector.of_type = Some(ConnectorType {
+            name: child.name().to_owned(),
+            kind,
+            unit: child.optional("unit").map(str::to_owned),
+            enumeration,
+        });
+    }
+    let mut known: Vec<(&str, &str)> = vec![(SSC, "Dimension")];
+    let types: Vec<&str> = element.children().map(|child| child.name()).collect();
+    known.extend(types.iter().filter(|name| kind_named(name).is_some()).map(|name| (SSC, *name)));
+    element.only(&["name", "kind"], &known)?;
+    Ok(connector)
+}
+
+fn connection(element: &Element<'_>) -> Result<Connection, SspError> {
+    element.only(
+        &["startElement", "startConnector", "endElement", "endConnector", "suppressUnitConversion"],
+        &TRANSFORMATIONS,
+    )?;
+    let end = |of: &str, connector: &str| {
+        Ok(End {
+            element: element.optional(of).map(str::to_owned),
+            connector: element.required(connector)?.to_owned(),
+        })
+    };
+    Ok(Connection {
+        start: end("startElement", "startConnector")?,
+        end: end("endElement", "endConnector")?,
+        suppress_unit_conversion: element.boolean("suppressUnitConversion")?.unwrap_or(false),
+        transformation: parameters::transformation(element)?,
+        line: element.line(),
+    })
+}

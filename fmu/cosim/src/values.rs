@@ -1,0 +1,99 @@
+//! Values passed between variables of different types.
+
+use octant_fmu_host::description::Kind;
+
+/// Returns the name of a type.
+#[must_use]
+pub const fn kind_name(kind: Kind) -> &'static str {
+    match kind {
+        Kind::Float64 => "Float64",
+        Kind::Float32 => "Float32",
+        Kind::Int8 => "Int8",
+        Kind::UInt8 => "UInt8",
+        Kind::Int16 => "Int16",
+        Kind::UInt16 => "UInt16",
+        Kind::Int32 => "Int32",
+        Kind::UInt32 => "UInt32",
+        Kind::Int64 => "Int64",
+        Kind::UInt64 => "UInt64",
+        Kind::Boolean => "Boolean",
+        Kind::String => "String",
+        Kind::Binary => "Binary",
+        Kind::Enumeration => "Enumeration",
+        Kind::Clock => "Clock",
+    }
+}
+
+/// Returns whether a type is floating-point.
+#[must_use]
+pub const fn is_float(kind: Kind) -> bool {
+    matches!(kind, Kind::Float64 | Kind::Float32)
+}
+
+/// Returns whether a type is passed as a number: all except texts, bytes and clocks.
+#[must_use]
+pub const fn is_numeric(kind: Kind) -> bool {
+    !matches!(kind, Kind::String | Kind::Binary | Kind::Clock)
+}
+
+/// Bound up to which whole numbers are exact in f64, the type in which they are passed.
+const EXACT: f64 = (1u64 << 53) as f64;
+
+/// Returns the smallest and the largest value of a whole-number type (as far as they are exact);
+/// `None` for other types.
+#[must_use]
+pub const fn limits(kind: Kind) -> Option<(f64, f64)> {
+    Some(match kind {
+        Kind::Int8 => (i8::MIN as f64, i8::MAX as f64),
+        Kind::UInt8 => (0.0, u8::MAX as f64),
+        Kind::Int16 => (i16::MIN as f64, i16::MAX as f64),
+        Kind::UInt16 => (0.0, u16::MAX as f64),
+        Kind::Int32 => (i32::MIN as f64, i32::MAX as f64),
+        Kind::UInt32 => (0.0, u32::MAX as f64),
+        Kind::Int64 | Kind::Enumeration => (-EXACT, EXACT),
+        Kind::UInt64 => (0.0, EXACT),
+        Kind::Boolean => (0.0, 1.0),
+        _ => return None,
+    })
+}
+
+/// Returns whether a type has a value without rounding. Every f64 fits Float32, by rounding.
+#[must_use]
+pub fn fits(value: f64, kind: Kind) -> bool {
+    match limits(kind) {
+        Some((from, to)) => value >= from && value <= to && value == value.trunc(),
+        None => is_float(kind),
+    }
+}
+
+/// Rounds a value to its type: only Float32 changes.
+#[inline]
+#[must_use]
+pub fn rounded(value: f64, kind: Kind) -> f64 {
+    if matches!(kind, Kind::Float32) { f64::from(value as f32) } else { value }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_value_fits_a_type_or_does_not() {
+        for (value, kind, expected) in [
+            (127.0, Kind::Int8, true),
+            (128.0, Kind::Int8, false),
+            (0.5, Kind::Int32, false),
+            (-1.0, Kind::UInt64, false),
+            (9007199254740992.0, Kind::UInt64, true),
+            (f64::NAN, Kind::Int32, false),
+            (f64::NAN, Kind::Float64, true),
+            (1.0, Kind::Boolean, true),
+            (2.0, Kind::Boolean, false),
+            (1.0, Kind::String, false),
+        ] {
+            assert_eq!(fits(value, kind), expected, "{value} {kind:?}");
+        }
+        assert_eq!(rounded(0.1, Kind::Float32), f64::from(0.1f32));
+        assert_eq!(rounded(0.1, Kind::Float64), 0.1);
+    }
+}

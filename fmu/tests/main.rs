@@ -1,8 +1,0 @@
-//! What an importer of the FMUs gets, in one program.
-#![allow(clippy::unwrap_used)]
-
-mod abuse;
-mod calibrator_config;
-mod can_bus;
-#[cfg(target_os = "linux")]
-mod exports;

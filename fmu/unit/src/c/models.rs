@@ -1,0 +1,112 @@
+//! The models in this library.
+
+use super::layout::Layout;
+use super::mode::Standard;
+use super::token::token;
+use crate::calibrator::Calibrator;
+use crate::calibrator_can::CalibratorCan;
+use crate::component::{Component, Network};
+use crate::plant::Plant;
+use crate::table::Model;
+use crate::values::Values;
+use std::sync::OnceLock;
+
+/// A component of unknown type.
+pub(super) trait AnyComponent: Send + core::fmt::Debug {
+    fn step(&mut self, values: &mut Values) -> Result<(), String>;
+    fn period_ns(&self) -> u64;
+    fn terminate(&mut self, values: &mut Values);
+    fn remark(&mut self) -> Option<String>;
+    fn network(&mut self) -> Option<&mut dyn Network>;
+    fn save(&self, bytes: &mut Vec<u8>);
+    fn boxed_clone(&self) -> Box<dyn AnyComponent>;
+}
+
+/// Adapter that adds the optional parts of a component.
+struct Boxed<C>(C);
+
+impl<C: Component> core::fmt::Debug for Boxed<C> {
+    fn fmt(&self, to: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        to.write_str(C::MODEL.name)
+    }
+}
+
+impl<C: Component> AnyComponent for Boxed<C> {
+    fn step(&mut self, values: &mut Values) -> Result<(), String> {
+        self.0.step(values).map_err(|error| error.to_string())
+    }
+
+    fn period_ns(&self) -> u64 {
+        self.0.period_ns()
+    }
+
+    fn terminate(&mut self, values: &mut Values) {
+        self.0.terminate(values);
+    }
+
+    fn remark(&mut self) -> Option<String> {
+        self.0.remark()
+    }
+
+    fn network(&mut self) -> Option<&mut dyn Network> {
+        self.0.network()
+    }
+
+    fn save(&self, bytes: &mut Vec<u8>) {
+        self.0.save(bytes);
+    }
+
+    fn boxed_clone(&self) -> Box<dyn AnyComponent> {
+        Box::new(Self(self.0.clone()))
+    }
+}
+
+type Made = Result<Box<dyn AnyComponent>, String>;
+
+fn boxed<C: Component>(made: Result<C, C::Error>) -> Made {
+    let component = made.map_err(|error| error.to_string())?;
+    Ok(Box::new(Boxed(component)))
+}
+
+/// Factory of the components of a model.
+#[derive(Debug)]
+pub(super) struct Maker {
+    pub model: &'static Model,
+    pub initialize: fn(&mut Values) -> Made,
+    pub load: fn(&[u8], &Values) -> Made,
+    layout: OnceLock<Layout>,
+    tokens: OnceLock<[String; 2]>,
+}
+
+impl Maker {
+    pub(super) const fn of<C: Component>() -> Self {
+        Self {
+            model: C::MODEL,
+            initialize: |values| boxed(C::initialize(values)),
+            load: |bytes, values| boxed(C::load(bytes, values)),
+            layout: OnceLock::new(),
+            tokens: OnceLock::new(),
+        }
+    }
+
+    pub(super) fn layout(&self) -> &Layout {
+        self.layout.get_or_init(|| Layout::of(self.model))
+    }
+
+    pub(super) fn token(&self, standard: Standard) -> &str {
+        let tokens = self.tokens.get_or_init(|| {
+            [Standard::Fmi2, Standard::Fmi3].map(|standard| token(self.model, standard))
+        });
+        &tokens[standard as usize]
+    }
+}
+
+/// All models.
+static MAKERS: [Maker; 3] =
+    [Maker::of::<Calibrator>(), Maker::of::<Plant>(), Maker::of::<CalibratorCan>()];
+
+/// Finds the model with this token.
+pub(super) fn find(standard: Standard, token: &str) -> Option<&'static Maker> {
+    let found = MAKERS.iter().find(|maker| maker.token(standard) == token)?;
+    (standard == Standard::Fmi3 || !found.model.needs_clocks()).then_some(found)
+}

@@ -1,0 +1,113 @@
+//! A model that panics, fails and makes several periods on demand.
+
+use crate::c::models::Maker;
+use crate::component::Component;
+use crate::table::{Enumeration, Kind, Model, Variable};
+use crate::values::Values;
+
+static LEVEL: Enumeration = Enumeration {
+    name: "Level",
+    description: "Two levels that are not neighbours.",
+    items: &[(1, "low", ""), (5, "high", "")],
+};
+
+static VARIABLES: [Variable; 9] = [
+    Variable::input("u", Kind::Real).elements(2),
+    Variable::input("trouble", Kind::Integer).within(0.0, 9.0),
+    Variable::input("anything", Kind::Real).non_finite(),
+    Variable::input("level", Kind::Enumeration(&LEVEL)).start(&[1.0]),
+    Variable::input("on", Kind::Boolean),
+    Variable::parameter("gain", Kind::Real).start(&[2.0]).tunable(),
+    Variable::parameter("limit", Kind::Count).within(1.0, 1000.0).start(&[100.0]),
+    depending(Variable::output("y", Kind::Real)),
+    Variable::output("count", Kind::Count),
+];
+
+const fn depending(mut variable: Variable) -> Variable {
+    variable.depends_on = &["u", "on"];
+    variable
+}
+
+pub(super) static MODEL: Model = Model {
+    name: "Counter",
+    stem: "counter",
+    description: "It counts.",
+    variables: &VARIABLES,
+    periods_per_step: (1, 4),
+};
+
+pub(super) const U: usize = MODEL.slot("u");
+pub(super) const TROUBLE: usize = MODEL.slot("trouble");
+pub(super) const ANYTHING: usize = MODEL.slot("anything");
+pub(super) const LEVEL_SLOT: usize = MODEL.slot("level");
+pub(super) const ON: usize = MODEL.slot("on");
+pub(super) const GAIN: usize = MODEL.slot("gain");
+pub(super) const LIMIT: usize = MODEL.slot("limit");
+pub(super) const Y: usize = MODEL.slot("y");
+pub(super) const COUNT: usize = MODEL.slot("count");
+
+pub(super) const PERIOD_S: f64 = 0.01;
+
+/// Test model that sums `gain · u[1]`; `trouble` 1 panics, 2 refuses, 3 refuses in every second
+/// period, 4 panics at the end. It refuses a limit of 13.
+#[derive(Clone)]
+struct Counter {
+    count: u64,
+    sum: f64,
+}
+
+/// Reason why the model refuses.
+#[derive(Debug, thiserror::Error)]
+#[error("{0}")]
+pub(super) struct Trouble(&'static str);
+
+impl Component for Counter {
+    const MODEL: &'static Model = &MODEL;
+
+    type Error = Trouble;
+
+    fn initialize(values: &mut Values) -> Result<Self, Trouble> {
+        if values.count(LIMIT) == 13 {
+            return Err(Trouble("limit is 13, a lucky number is expected"));
+        }
+        values.set_real(Y, -1.0);
+        values.set_count(COUNT, 0);
+        Ok(Self { count: 0, sum: 0.0 })
+    }
+
+    fn period_ns(&self) -> u64 {
+        10_000_000
+    }
+
+    fn step(&mut self, values: &mut Values) -> Result<(), Trouble> {
+        match values.integer(TROUBLE) {
+            1 => panic!("trouble was asked for"),
+            2 => return Err(Trouble("trouble is 2")),
+            3 if self.count % 2 == 1 => return Err(Trouble("trouble is 3")),
+            _ => {}
+        }
+        self.count += 1;
+        self.sum += values.real(GAIN) * values.real(U);
+        values.set_real(Y, self.sum);
+        values.set_count(COUNT, self.count);
+        Ok(())
+    }
+
+    fn terminate(&mut self, values: &mut Values) {
+        assert_ne!(values.integer(TROUBLE), 4, "trouble at the end");
+        values.set_real(Y, 1000.0);
+    }
+
+    fn save(&self, bytes: &mut Vec<u8>) {
+        bytes.extend(self.count.to_le_bytes());
+        bytes.extend(self.sum.to_le_bytes());
+    }
+
+    fn load(bytes: &[u8], _: &Values) -> Result<Self, Trouble> {
+        let parts = bytes.split_first_chunk().map(|(count, sum)| (count, sum.try_into()));
+        let Some((count, Ok(sum))) = parts else { return Err(Trouble("16 bytes are expected")) };
+        Ok(Self { count: u64::from_le_bytes(*count), sum: f64::from_le_bytes(sum) })
+    }
+}
+
+pub(super) static MAKER: Maker = Maker::of::<Counter>();

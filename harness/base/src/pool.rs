@@ -1,0 +1,81 @@
+//! Tasks on several threads, their results in order.
+
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Mutex, PoisonError};
+
+/// Does tasks 0 to `count`, at most `jobs` at a time. Each result stands in its task's place: `None` for a
+/// task that gave none, or was not begun because `is_cancelled`.
+///
+/// The work of a task shows in no other one, so the results don't depend on `jobs`.
+///
+/// # Errors
+/// The failure of the first task in order. After a failure no further task is begun.
+pub fn in_order<T: Send, E: Send>(
+    jobs: usize,
+    count: usize,
+    is_cancelled: impl Fn() -> bool + Sync,
+    work: impl Fn(usize) -> Result<Option<T>, E> + Sync,
+) -> Result<Vec<Option<T>>, E> {
+    let next = AtomicUsize::new(0);
+    let results: Mutex<Vec<Result<Option<T>, E>>> =
+        Mutex::new((0..count).map(|_| Ok(None)).collect());
+    std::thread::scope(|scope| {
+        for _ in 0..jobs.clamp(1, count.max(1)) {
+            scope.spawn(|| {
+                while !is_cancelled() {
+                    let task = next.fetch_add(1, Ordering::Relaxed);
+                    if task >= count {
+                        break;
+                    }
+                    let result = work(task);
+                    if result.is_err() {
+                        next.fetch_max(count, Ordering::Relaxed);
+                    }
+                    results.lock().unwrap_or_else(PoisonError::into_inner)[task] = result;
+                }
+            });
+        }
+    });
+    results.into_inner().unwrap_or_else(PoisonError::into_inner).into_iter().collect()
+}
+
+/// Processors that this process may use, at least 1.
+#[must_use]
+pub fn processors() -> usize {
+    std::thread::available_parallelism().map_or(1, usize::from)
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "tests")]
+
+    use super::*;
+
+    #[test]
+    fn results_are_in_order_and_the_first_failure_is_told() {
+        let doubled = in_order(3, 50, || false, |i| Ok::<_, usize>(Some(2 * i))).unwrap();
+        assert!(doubled.iter().enumerate().all(|(i, d)| *d == Some(2 * i)));
+        let failed = in_order(3, 50, || false, |i| if i % 7 == 3 { Err(i) } else { Ok(Some(i)) });
+        assert_eq!(failed, Err(3));
+        assert_eq!(in_order(3, 0, || false, |_| Ok::<Option<u8>, ()>(None)), Ok(Vec::new()));
+    }
+
+    #[test]
+    fn nothing_is_begun_after_a_failure_or_a_cancellation() {
+        let begun = AtomicUsize::new(0);
+        let count = |_| {
+            begun.fetch_add(1, Ordering::Relaxed);
+            Err::<Option<u8>, _>("broken")
+        };
+        assert_eq!(in_order(1, 1000, || false, count), Err("broken"));
+        assert_eq!(begun.load(Ordering::Relaxed), 1);
+        let is_full = || begun.load(Ordering::Relaxed) >= 5;
+        let work = |i| {
+            begun.fetch_add(1, Ordering::Relaxed);
+            Ok::<_, ()>(Some(i))
+        };
+        let done = in_order(1, 1000, is_full, work).unwrap();
+        assert_eq!(done.iter().flatten().count(), 4);
+        assert_eq!(done[..5], [Some(0), Some(1), Some(2), Some(3), None]);
+    }
+}

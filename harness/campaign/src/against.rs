@@ -1,0 +1,439 @@
+//! Compares a predicted ensemble with the cases of a campaign.
+//!
+//! Cases that differ only in the seed are a sample of one ensemble. For every error the sample's σ
+//! has a confidence interval (χ²) and its mean another (Student), so wide that together they hold
+//! the truth with probability [`CONFIDENCE`] (Bonferroni). The prediction agrees where it is
+//! inside.
+
+mod comparison;
+
+pub use comparison::{Comparison, Detects, Row};
+
+use crate::case::{self, CaseResult, ResultError};
+use crate::plan::{Case, Plan, PlanError};
+use octant_observe::ensemble::{Ensemble, EnsembleError, ensemble};
+use octant_sample::parameters::NAMES;
+use octant_scenario::Method;
+use octant_score::summary::{Calibration, Navigation, Summary};
+use octant_statistics::sample::{Interval, mean};
+use octant_statistics::{deviation, paired, power};
+use serde::{Deserialize, Serialize};
+use std::collections::HashSet;
+use std::path::Path;
+
+/// Version of the form of a comparison.
+pub const SCHEMA: u32 = 1;
+/// Probability that all intervals of a comparison hold the truth.
+pub const CONFIDENCE: f64 = 0.95;
+/// Minimum number of runs for a conclusion: σ is then known to a third.
+pub const RUNS_MIN: usize = 50;
+/// Maximum number of times at which a drift is compared.
+const DRIFT_TIMES: usize = 12;
+
+/// Ensembles of a campaign.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Against {
+    /// Version of this form: [`SCHEMA`].
+    pub schema: u32,
+    /// Every ensemble that could be compared.
+    pub compared: Vec<Comparison>,
+    /// Ensembles that couldn't be compared, with the reason.
+    pub left_out: Vec<String>,
+}
+
+impl Default for Against {
+    /// Creates a comparison without ensembles.
+    fn default() -> Self {
+        Self { schema: SCHEMA, compared: Vec::new(), left_out: Vec::new() }
+    }
+}
+
+/// Selection of the ensembles to compare; `None` selects any.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Selection<'a> {
+    /// BLAKE3 of the scenario's file, hexadecimal.
+    pub blake3: Option<&'a str>,
+    /// Keys that are set.
+    pub set: Option<&'a [String]>,
+}
+
+/// Reasons why ensembles can't be compared with a campaign. The text fits after "failed to".
+#[derive(Debug, thiserror::Error)]
+pub enum AgainstError {
+    /// A scenario isn't the planned one.
+    #[error(transparent)]
+    Plan(#[from] PlanError),
+    /// A result can't be read.
+    #[error(transparent)]
+    Result(#[from] ResultError),
+    /// A scenario can't be set up.
+    #[error(transparent)]
+    Ensemble(#[from] EnsembleError),
+    /// No case was selected.
+    #[error("compare: the campaign has no such case")]
+    NoCase,
+}
+
+/// Compares predicted ensembles with the results in the folder of a campaign.
+///
+/// # Errors
+/// If a scenario isn't the planned one, a result can't be read, or nothing was
+/// selected.
+pub fn against(
+    plan: &Plan,
+    folder: &Path,
+    selection: &Selection<'_>,
+) -> Result<Against, AgainstError> {
+    let mut groups: Vec<Vec<&Case>> = Vec::new();
+    for case in &plan.cases {
+        let planned = plan.planned(case)?;
+        let chosen = selection.blake3.is_none_or(|blake3| blake3 == planned.blake3)
+            && selection.set.is_none_or(|set| set == case.set);
+        if !chosen {
+            continue;
+        }
+        let same = |group: &&mut Vec<&Case>| {
+            group.first().is_some_and(|first| {
+                first.scenario == case.scenario
+                    && first.set == case.set
+                    && first.faults == case.faults
+            })
+        };
+        match groups.iter_mut().find(same) {
+            Some(group) => group.push(case),
+            None => groups.push(vec![case]),
+        }
+    }
+    if groups.is_empty() {
+        return Err(AgainstError::NoCase);
+    }
+    let mut found = Against::default();
+    let mut single = 0;
+    for group in groups {
+        let [first, _, ..] = group.as_slice() else {
+            single += 1;
+            continue;
+        };
+        let planned = plan.planned(first)?;
+        let scenario = planned.scenario(first)?;
+        let name = named(first);
+        if !scenario.faults.is_empty() {
+            let faults: Vec<&str> =
+                scenario.faults.iter().map(|fault| fault.spec.id.as_str()).collect();
+            found.left_out.push(format!(
+                "{name}: {} cases have faults, which no ensemble predicts: {}",
+                group.len(),
+                faults.join(", ")
+            ));
+            continue;
+        }
+        let sample = Sample::read(folder, &group)?;
+        let methods = std::iter::once(Method::Primary)
+            .chain(scenario.baseline.as_ref().map(|_| Method::Baseline));
+        for method in methods {
+            let ensemble = match ensemble(&scenario, method) {
+                Ok(ensemble) => ensemble,
+                Err(error @ EnsembleError::Setup(_)) => return Err(error.into()),
+                Err(error) => {
+                    found.left_out.push(format!("{name}: {error}"));
+                    continue;
+                }
+            };
+            match compare(first, &ensemble, &sample, method) {
+                Ok(comparison) => found.compared.push(comparison),
+                Err(reason) => found.left_out.push(format!("{name}: {reason}")),
+            }
+        }
+    }
+    if single > 0 {
+        found.left_out.push(format!(
+            "{single} cases are alone with what is set in them: an ensemble differs by seeds only"
+        ));
+    }
+    Ok(found)
+}
+
+fn named(case: &Case) -> String {
+    if case.set.is_empty() {
+        case.scenario.clone()
+    } else {
+        format!("{} with {}", case.scenario, case.set.join(", "))
+    }
+}
+
+/// Results of the cases of an ensemble.
+#[derive(Default)]
+struct Sample {
+    summaries: Vec<Summary>,
+    open: usize,
+    broken: usize,
+    repeated: usize,
+}
+
+impl Sample {
+    fn read(folder: &Path, cases: &[&Case]) -> Result<Self, ResultError> {
+        let mut sample = Self::default();
+        let mut streams = HashSet::new();
+        for case in cases {
+            let path = case::file(folder, &case.id);
+            if !path.exists() {
+                sample.open += 1;
+                continue;
+            }
+            match CaseResult::read(&path)?.summary {
+                Some(summary) if !streams.insert(summary.stream_hash.clone()) => {
+                    sample.repeated += 1;
+                }
+                Some(summary) => sample.summaries.push(summary),
+                None => sample.broken += 1,
+            }
+        }
+        Ok(sample)
+    }
+
+    /// Lists the published calibrations, with the navigation after them.
+    fn of(&self, method: Method) -> Vec<(&Calibration, Option<&Navigation>)> {
+        fn one(summary: &Summary, method: Method) -> Option<(&Calibration, Option<&Navigation>)> {
+            let (calibration, navigation) = match method {
+                Method::Primary => (&summary.calibration, &summary.navigation),
+                Method::Baseline => {
+                    let baseline = summary.baseline.as_ref()?;
+                    (&baseline.calibration, &baseline.navigation)
+                }
+            };
+            let calibration = calibration.as_ref().filter(|c| c.refused.is_none())?;
+            Some((calibration, navigation.as_ref()))
+        }
+        self.summaries.iter().filter_map(|summary| one(summary, method)).collect()
+    }
+}
+
+/// Interpolates latitude and longitude error at a time between two points of a series.
+fn at(navigation: &Navigation, hours: f64) -> Option<[f64; 2]> {
+    let series = &navigation.series_hours;
+    let after = series.partition_point(|point| point[0] < hours);
+    let [to_h, to @ ..] = *series.get(after).or(series.last().filter(|p| p[0] >= hours - 1e-3))?;
+    let [from_h, from @ ..] = *series.get(after.checked_sub(1)?)?;
+    let part = if to_h > from_h { ((hours - from_h) / (to_h - from_h)).min(1.0) } else { 1.0 };
+    Some([0, 1].map(|axis| from[axis] + part * (to[axis] - from[axis])))
+}
+
+fn compare(
+    first: &Case,
+    ensemble: &Ensemble,
+    sample: &Sample,
+    method: Method,
+) -> Result<Comparison, String> {
+    let runs = sample.of(method);
+    let count = runs.len();
+    if count < 2 {
+        return Err(match sample.repeated {
+            0 => format!("{count} of its cases have a calibration to compare"),
+            repeated => format!(
+                "{count} of its cases have a calibration to compare: {repeated} more are the same runs \
+                 again, by their streams"
+            ),
+        });
+    }
+    let every = ensemble.drift.len().div_ceil(DRIFT_TIMES).max(1);
+    let times: Vec<_> = ensemble.drift.iter().skip(every - 1).step_by(every).collect();
+    let rows = NAMES.len() + 2 * times.len();
+    // Each row has two intervals.
+    let each = 1.0 - (1.0 - CONFIDENCE) / (2 * rows) as f64;
+    let (low, high) = deviation::factors(count as u64 - 1, each)
+        .ok_or_else(|| format!("{count} runs know no σ"))?;
+    let student =
+        paired::student(count - 1, each).ok_or_else(|| format!("{count} runs know no σ"))?;
+
+    let mut states = Vec::with_capacity(NAMES.len());
+    for name in NAMES {
+        let Some(state) = ensemble.states.iter().find(|state| state.name == name) else { continue };
+        let values: Option<Vec<f64>> = runs
+            .iter()
+            .map(|(calibration, _)| calibration.parameters.get(name).and_then(|p| p.error))
+            .collect();
+        let values = values.ok_or_else(|| format!("{name} has no error in one of its cases"))?;
+        let predicted = (state.mean, state.sigma);
+        states.push(row(
+            name.to_owned(),
+            &state.unit,
+            None,
+            predicted,
+            &values,
+            (low, high),
+            student,
+        ));
+    }
+    let mut drift = Vec::with_capacity(2 * times.len());
+    for (axis, what) in ["latitude", "longitude"].into_iter().enumerate() {
+        for time in &times {
+            let values: Option<Vec<f64>> = runs
+                .iter()
+                .map(|(_, navigation)| Some(at((*navigation)?, time.hours)?[axis]))
+                .collect();
+            let values = values
+                .ok_or_else(|| format!("one of its cases has no drift at {:.1} h", time.hours))?;
+            let band = if axis == 0 { time.latitude_arcmin } else { time.longitude_arcmin };
+            let name = format!("{what} at {:.1} h", time.hours);
+            let predicted = (band.mean, band.sigma);
+            drift.push(row(
+                name,
+                "arcmin",
+                Some(time.hours),
+                predicted,
+                &values,
+                (low, high),
+                student,
+            ));
+        }
+    }
+    let ratios: Vec<f64> = states.iter().filter_map(|row| row.ratio).collect();
+    let mut comparison = Comparison {
+        scenario: first.scenario.clone(),
+        set: first.set.clone(),
+        method: ensemble.method.clone(),
+        runs: count,
+        open: sample.open,
+        without: sample.broken + sample.summaries.len() - count,
+        repeated: sample.repeated,
+        confidence: CONFIDENCE,
+        known_to: 0.5 * (high - low),
+        detects: detects(count as u64, each),
+        states,
+        drift,
+        mean_ratio: mean(&ratios),
+        stands: None,
+        words: Vec::new(),
+        not_modelled: ensemble.not_modelled.clone(),
+    };
+    conclude(&mut comparison);
+    Ok(comparison)
+}
+
+fn row(
+    name: String,
+    unit: &str,
+    hours: Option<f64>,
+    (predicted_mean, predicted_sigma): (f64, f64),
+    values: &[f64],
+    (low, high): (f64, f64),
+    student: f64,
+) -> Row {
+    let value = octant_statistics::sample::deviation(values).unwrap_or(f64::NAN);
+    let simulated_sigma = Interval { value, low: value * low, high: value * high };
+    let middle = mean(values).unwrap_or(f64::NAN);
+    let error = student * value / libm::sqrt(values.len() as f64);
+    let simulated_mean = Interval { value: middle, low: middle - error, high: middle + error };
+    // Without random parts, both are exact to rounding.
+    let rounding = 1e-9 * (predicted_mean.abs() + predicted_sigma);
+    let within = |predicted: f64, interval: &Interval| {
+        interval.low - rounding <= predicted && predicted <= interval.high + rounding
+    };
+    Row {
+        agrees: within(predicted_sigma, &simulated_sigma)
+            && within(predicted_mean, &simulated_mean),
+        ratio: (value > 0.0).then(|| predicted_sigma / value),
+        unit: unit.to_owned(),
+        name,
+        hours,
+        predicted_mean,
+        predicted_sigma,
+        simulated_mean,
+        simulated_sigma,
+    }
+}
+
+fn detects(runs: u64, each: f64) -> Option<Detects> {
+    let (ratio_below, ratio_above) = power::sigma_ratios(runs, each, power::POWER)?;
+    let mean_sigma = power::mean_shift(runs, each, power::POWER)?;
+    Some(Detects { ratio_below, ratio_above, mean_sigma })
+}
+
+/// Concludes whether the prediction holds, and writes the reasons.
+fn conclude(comparison: &mut Comparison) {
+    let rows = || comparison.states.iter().chain(&comparison.drift);
+    let differing: Vec<&Row> = rows().filter(|row| !row.agrees).collect();
+    let error = format!("{:.0} %", 100.0 * comparison.known_to);
+    let mut words = Vec::new();
+    let stands = if !differing.is_empty() {
+        words.push(format!(
+            "the prediction can't stand for these runs: {} of {} figures differ by more than the \
+             sample's own error of {error}",
+            differing.len(),
+            rows().count()
+        ));
+        words.extend(differing.iter().map(|row| in_words(row)));
+        Some(false)
+    } else if comparison.runs >= RUNS_MIN && comparison.without > 0 {
+        words.push(format!(
+            "all {} figures agree within the sample's own error of {error}, of the {} cases that have a \
+             calibration: of the other {} no prediction says anything, and it can't stand for them",
+            rows().count(),
+            comparison.runs,
+            comparison.without
+        ));
+        None
+    } else if comparison.runs < RUNS_MIN {
+        words.push(format!(
+            "{} runs know σ to {error} only: from {RUNS_MIN} on it is said whether the prediction can \
+             stand for them",
+            comparison.runs
+        ));
+        None
+    } else {
+        words.push(format!(
+            "the prediction can stand for these runs: all {} figures agree within the sample's own \
+             error of {error}",
+            rows().count()
+        ));
+        Some(true)
+    };
+    if let Some(detects) = &comparison.detects {
+        words.push(format!(
+            "{} runs find with 90 % an error whose σ is below {:.2} or above {:.2} of the predicted one, \
+             or whose mean is {:.2} σ off",
+            comparison.runs, detects.ratio_below, detects.ratio_above, detects.mean_sigma
+        ));
+    }
+    if let Some(ratio) = comparison.mean_ratio {
+        words.push(format!(
+            "predicted over simulated σ is {ratio:.3} in the mean over the parameters"
+        ));
+    }
+    if comparison.open > 0 {
+        words.push(format!("{} more cases have not been run", comparison.open));
+    }
+    if comparison.repeated > 0 {
+        words.push(format!(
+            "{} cases are the same runs as others, by their streams, and don't count again",
+            comparison.repeated
+        ));
+    }
+    if comparison.without > 0 {
+        words.push(format!(
+            "{} cases are not in the sample: they ended as errors, or refused their calibration",
+            comparison.without
+        ));
+    }
+    comparison.stands = stands;
+    comparison.words = words;
+}
+
+fn in_words(row: &Row) -> String {
+    let Row {
+        name, unit, predicted_sigma, predicted_mean, simulated_sigma, simulated_mean, ..
+    } = row;
+    let outside =
+        |value: f64, interval: &Interval| !(interval.low..=interval.high).contains(&value);
+    if outside(*predicted_sigma, simulated_sigma) {
+        format!(
+            "{name}: σ is {predicted_sigma:.4} {unit} predicted and {:.4} simulated",
+            simulated_sigma.value
+        )
+    } else {
+        format!(
+            "{name}: the mean is {predicted_mean:.4} {unit} predicted and {:.4} simulated",
+            simulated_mean.value
+        )
+    }
+}

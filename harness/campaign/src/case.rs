@@ -1,0 +1,436 @@
+//! Runs one case to its summary, and stores its result as a file.
+
+pub use super::make::hash_of;
+use super::plan::{Case, Plan, PlanError, PlannedScenario};
+use octant_base::control::Control;
+use octant_requirements::{Comparison, Verdict};
+use octant_run::method::MethodError;
+use octant_run::{Recording, assemble, run_method};
+use octant_scenario::Method;
+use octant_score::rederive;
+use octant_score::summary::Summary;
+use octant_score::verdict::RequirementResult;
+use serde::{Deserialize, Serialize};
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// Version of the result file.
+pub const SCHEMA: u32 = 2;
+/// First version whose results contain the hashes of their inputs; older ones are read without.
+const CHAINED: u32 = 2;
+
+/// Result of a case. If it has a summary, it contains nothing of host or clock.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct CaseResult {
+    /// Version of this form: [`SCHEMA`].
+    pub schema: u32,
+    /// The case.
+    pub case: String,
+    /// BLAKE3 of everything that defines the case, hexadecimal: its scenario, additional checks,
+    /// settings, faults and seed. Its first digits are the case's id. Null in files of version 1.
+    #[serde(default)]
+    pub case_blake3: Option<String>,
+    /// BLAKE3 of the summary, computed by [`hash_of_summary`]; null without one.
+    #[serde(default)]
+    pub summary_blake3: Option<String>,
+    /// Worst verdict of all parts: an error if the case has no summary, inconclusive if it checks
+    /// no requirement.
+    pub verdict: Verdict,
+    /// Reason why there is no summary; null if there is one.
+    pub error: Option<String>,
+    /// Summary of the run.
+    pub summary: Option<Summary>,
+}
+
+/// Reasons why a case gave no summary.
+#[derive(Debug, thiserror::Error)]
+pub enum CaseError {
+    /// The scenario isn't the planned one, or isn't valid.
+    #[error(transparent)]
+    Plan(#[from] PlanError),
+    /// The case could not be run.
+    #[error(transparent)]
+    Method(#[from] MethodError),
+    /// The summary can't be written.
+    #[error("write the summary: {0}")]
+    Json(#[from] serde_json::Error),
+}
+
+/// Input of a case's process, on its standard input.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Job {
+    /// The case.
+    pub case: Case,
+    /// Scenario.
+    pub scenario: PlannedScenario,
+    /// Limit of its memory, MiB.
+    pub memory_mib: u64,
+    /// The folder of the campaign.
+    pub folder: PathBuf,
+}
+
+/// Runs a case.
+///
+/// # Errors
+/// If its scenario isn't the planned one, or can't be run.
+pub fn run(
+    planned: &PlannedScenario,
+    case: &Case,
+    control: &Control,
+) -> Result<CaseResult, CaseError> {
+    let scenario = planned.scenario(case)?;
+    let one = |method| run_method(&scenario, method, case.seed, Recording::HashAlone, control);
+    let primary = one(Method::Primary)?;
+    let baseline = match &scenario.baseline {
+        Some(_) => Some(one(Method::Baseline)?),
+        None => None,
+    };
+    let summary = assemble(&scenario, case.seed, primary, baseline)?.summary;
+    Ok(CaseResult::of(&case.id, Some(hash_of(planned, case)), summary)?)
+}
+
+/// Computes the BLAKE3 of a summary as JSON with sorted keys and without white space, hexadecimal:
+/// independent of the file's formatting, and with any fields that a newer program added.
+#[must_use]
+pub fn hash_of_summary(summary: &serde_json::Value) -> String {
+    blake3::hash(summary.to_string().as_bytes()).to_hex().to_string()
+}
+
+/// Returns the verdict of a case whose run had `verdict`: a case that checks nothing is
+/// inconclusive.
+fn verdict_of(verdict: Verdict, summary: &Summary) -> Verdict {
+    let nothing = summary.requirements.is_empty();
+    verdict.worst(if nothing { Verdict::Inconclusive } else { Verdict::Pass })
+}
+
+/// Reasons why the result of a case can't be read. The text fits after "failed to".
+#[derive(Debug, thiserror::Error)]
+pub enum ResultError {
+    /// The file can't be read.
+    #[error("read {path}: {source}")]
+    System {
+        /// The file.
+        path: PathBuf,
+        /// Error of the operating system.
+        source: io::Error,
+    },
+    /// The file isn't the result of a case.
+    #[error("read {path}: expected the result of a case: {source}")]
+    Form {
+        /// The file.
+        path: PathBuf,
+        /// Problem found.
+        source: serde_json::Error,
+    },
+    /// The file has a version that this program doesn't read.
+    #[error(
+        "read {path}: found version {found}, this program reads versions 1 to {SCHEMA}{}",
+        if *.found > SCHEMA { ": a newer Octant wrote it" } else { "" }
+    )]
+    Version {
+        /// The file.
+        path: PathBuf,
+        /// Its version.
+        found: u32,
+    },
+    /// The file is named for another case.
+    #[error(
+        "read {path}: it is the result of case {case}, expected that of the case it is named for"
+    )]
+    Name {
+        /// The file.
+        path: PathBuf,
+        /// Case of its result.
+        case: String,
+    },
+    /// The result contradicts itself.
+    #[error("read {path}: it contradicts itself: {}", .contradictions.join("; "))]
+    Contradiction {
+        /// The file.
+        path: PathBuf,
+        /// Contradictions.
+        contradictions: Vec<String>,
+    },
+    /// The result isn't that of the planned case.
+    #[error("read {path}: its {what} is {found}, the plan has {expected}")]
+    Foreign {
+        /// The file.
+        path: PathBuf,
+        /// Part that differs.
+        what: String,
+        /// Value in the result.
+        found: String,
+        /// Value in the plan.
+        expected: String,
+    },
+}
+
+impl CaseResult {
+    /// Creates the result of a case with a summary.
+    ///
+    /// # Errors
+    /// If the summary can't be written as JSON.
+    pub fn of(
+        case: &str,
+        case_blake3: Option<String>,
+        summary: Summary,
+    ) -> Result<Self, serde_json::Error> {
+        Ok(Self {
+            schema: SCHEMA,
+            case: case.to_owned(),
+            case_blake3,
+            summary_blake3: Some(hash_of_summary(&serde_json::to_value(&summary)?)),
+            verdict: verdict_of(summary.verdict, &summary),
+            error: None,
+            summary: Some(summary),
+        })
+    }
+
+    /// Creates the result of a case without a summary.
+    #[must_use]
+    pub fn broken(case: &str, error: String) -> Self {
+        Self {
+            schema: SCHEMA,
+            case: case.to_owned(),
+            case_blake3: None,
+            summary_blake3: None,
+            verdict: Verdict::Error,
+            error: Some(error),
+            summary: None,
+        }
+    }
+
+    /// Returns the verdict of a requirement: an error without a summary, inconclusive if it wasn't
+    /// checked.
+    #[must_use]
+    pub fn check(&self, requirement: &str) -> Verdict {
+        let Some(summary) = &self.summary else { return Verdict::Error };
+        let checks = summary.requirements.iter().filter(|check| check.id == requirement);
+        // If a requirement is checked more than once, all checks must hold.
+        checks.map(|check| check.verdict).reduce(Verdict::worst).unwrap_or(Verdict::Inconclusive)
+    }
+
+    /// Returns the bytes of the result file.
+    ///
+    /// # Errors
+    /// If it can't be written as JSON.
+    pub fn to_json(&self) -> Result<String, serde_json::Error> {
+        Ok(serde_json::to_string(self)? + "\n")
+    }
+
+    /// Reads a result file and checks that it is consistent: its hashes, and its verdict with its
+    /// values and limits.
+    ///
+    /// # Errors
+    /// If it can't be read, or isn't the result of its case: found and expected.
+    pub fn read(path: &Path) -> Result<Self, ResultError> {
+        let bytes = std::fs::read(path)
+            .map_err(|source| ResultError::System { path: path.to_owned(), source })?;
+        Self::from_bytes(path, &bytes)
+    }
+
+    /// Reads as [`CaseResult::read`], from bytes.
+    ///
+    /// # Errors
+    /// If it can't be read, or isn't the result of its case: found and expected.
+    pub fn from_bytes(path: &Path, bytes: &[u8]) -> Result<Self, ResultError> {
+        let result = Self::unjudged(path, bytes)?;
+        match result.contradictions(bytes).as_slice() {
+            [] => Ok(result),
+            all => Err(ResultError::Contradiction {
+                path: path.to_owned(),
+                contradictions: all.to_vec(),
+            }),
+        }
+    }
+
+    /// Reads the result file of a case as it is: its verdict isn't reliable until it is derived
+    /// again.
+    ///
+    /// # Errors
+    /// If it can't be read, or isn't the result of its case: found and expected.
+    pub fn unjudged(path: &Path, bytes: &[u8]) -> Result<Self, ResultError> {
+        let form = |source| ResultError::Form { path: path.to_owned(), source };
+        // The version is checked first: nothing else is reliable in a newer file.
+        let Version { schema } = serde_json::from_slice(bytes).map_err(form)?;
+        if !(1..=SCHEMA).contains(&schema) {
+            return Err(ResultError::Version { path: path.to_owned(), found: schema });
+        }
+        let result: Self = serde_json::from_slice(bytes).map_err(form)?;
+        let name = path.file_name().map_or("".into(), |name| name.to_string_lossy());
+        if name.split('.').next() != Some(result.case.as_str()) {
+            return Err(ResultError::Name { path: path.to_owned(), case: result.case });
+        }
+        Ok(result)
+    }
+
+    /// Reads the result of a planned case in the folder of its campaign, with the BLAKE3 of the
+    /// file. `None` if there is none.
+    ///
+    /// # Errors
+    /// If it can't be read, or isn't the result of its case: found and expected.
+    pub fn of_plan(
+        plan: &Plan,
+        folder: &Path,
+        case: &Case,
+    ) -> Result<Option<(Self, String)>, ResultError> {
+        let path = file(folder, &case.id);
+        let bytes = match std::fs::read(&path) {
+            Ok(bytes) => bytes,
+            Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
+            Err(source) => return Err(ResultError::System { path, source }),
+        };
+        let result = Self::from_bytes(&path, &bytes)?;
+        if let Ok(planned) = plan.planned(case) {
+            result.belongs(&path, planned, case)?;
+        }
+        Ok(Some((result, blake3::hash(&bytes).to_hex().to_string())))
+    }
+
+    /// Checks that the result belongs to a planned case, with its seed and checks.
+    fn belongs(
+        &self,
+        path: &Path,
+        planned: &PlannedScenario,
+        case: &Case,
+    ) -> Result<(), ResultError> {
+        let wrong = |what: &str, found: &str, expected: &str| {
+            Err(ResultError::Foreign {
+                path: path.to_owned(),
+                what: what.to_owned(),
+                found: found.to_owned(),
+                expected: expected.to_owned(),
+            })
+        };
+        let Some(summary) = &self.summary else { return Ok(()) };
+        if self.schema >= CHAINED {
+            let expected = hash_of(planned, case);
+            let found = self.case_blake3.as_deref().unwrap_or("none");
+            if found != expected {
+                return wrong("case_blake3", found, &expected);
+            }
+        }
+        if summary.seed != case.seed {
+            return wrong("seed", &summary.seed.to_string(), &case.seed.to_string());
+        }
+        for check in &planned.checks {
+            let of_it = |result: &&RequirementResult| result.id == check.id;
+            let same = |result: &&RequirementResult| {
+                (result.measure.as_str(), result.comparison, result.limit)
+                    == (check.measure.as_str(), check.comparison, check.limit)
+            };
+            let mut found = summary.requirements.iter().filter(of_it).peekable();
+            // A missing check is reported as not checked.
+            if let Some(first) = found.peek().copied()
+                && !found.any(|result| same(&result))
+            {
+                let sign =
+                    |comparison: Comparison, limit: f64| format!("{} {limit}", comparison.sign());
+                return wrong(
+                    &format!("requirement {}", check.id),
+                    &format!("{} {}", first.measure, sign(first.comparison, first.limit)),
+                    &format!("{} {}", check.measure, sign(check.comparison, check.limit)),
+                );
+            }
+        }
+        Ok(())
+    }
+
+    /// Lists the contradictions within the result.
+    fn contradictions(&self, bytes: &[u8]) -> Vec<String> {
+        let mut found = Vec::new();
+        if let Some(hash) = self.case_blake3.as_ref().filter(|hash| !hash.starts_with(&self.case)) {
+            found.push(format!("its case_blake3 {hash} is not that of case {}", self.case));
+        }
+        let Some(summary) = &self.summary else {
+            if self.verdict != Verdict::Error {
+                found.push(format!("it says {} without a summary", self.verdict.name()));
+            }
+            return found;
+        };
+        if self.schema >= CHAINED {
+            let hash = serde_json::from_slice::<serde_json::Value>(bytes)
+                .ok()
+                .and_then(|mut all| Some(hash_of_summary(&all.get_mut("summary")?.take())));
+            if hash != self.summary_blake3 {
+                let none = || "none".to_owned();
+                found.push(format!(
+                    "its summary_blake3 is {}, its summary gives {}",
+                    self.summary_blake3.clone().unwrap_or_else(none),
+                    hash.unwrap_or_else(none)
+                ));
+            }
+        }
+        found.extend(rederive::contradictions(summary));
+        let expected = match &self.error {
+            None => verdict_of(summary.verdict, summary),
+            Some(_) => Verdict::Error,
+        };
+        if self.verdict != expected {
+            let [said, expected] = [self.verdict, expected].map(Verdict::name);
+            found.push(format!("it says {said}, its summary comes to {expected}"));
+        }
+        found
+    }
+}
+
+#[derive(Deserialize)]
+struct Version {
+    schema: u32,
+}
+
+/// Outcome of storing a result.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Kept {
+    /// The result was written.
+    New,
+    /// The same bytes were there already.
+    Same,
+    /// A different result was there: the same case has two results. This one is stored beside it.
+    Differs(PathBuf),
+}
+
+/// Returns the result file of a case in the folder of its campaign.
+#[must_use]
+pub fn file(folder: &Path, id: &str) -> PathBuf {
+    folder.join("cases").join(id.get(..2).unwrap_or("")).join(format!("{id}.json"))
+}
+
+/// Stores a result: whole or not at all, and never over a different one.
+///
+/// # Errors
+/// If the operating system refuses.
+pub fn keep(folder: &Path, id: &str, bytes: &[u8]) -> io::Result<Kept> {
+    let path = file(folder, id);
+    let parent = path.parent().unwrap_or(folder);
+    std::fs::create_dir_all(parent)?;
+    let new = super::new_file(parent)?;
+    std::fs::write(new.path(), bytes)?;
+    new.as_file().sync_data()?;
+    match new.persist_noclobber(&path) {
+        Ok(_) => Ok(Kept::New),
+        Err(refused) if refused.error.kind() == io::ErrorKind::AlreadyExists => {
+            if std::fs::read(&path)? == bytes {
+                return Ok(Kept::Same);
+            }
+            let hash = blake3::hash(bytes).to_hex();
+            let other = path.with_file_name(format!("{id}.differs-{}.json", &hash.as_str()[..8]));
+            refused.file.persist(&other).map_err(|error| error.error)?;
+            Ok(Kept::Differs(other))
+        }
+        Err(refused) => Err(refused.error),
+    }
+}
+
+/// Finds a different result of the same case.
+pub(crate) fn differing(path: &Path, id: &str) -> Option<PathBuf> {
+    let start = format!("{id}.differs-");
+    let mut found: Vec<PathBuf> = std::fs::read_dir(path.parent()?)
+        .ok()?
+        .flatten()
+        .filter(|entry| entry.file_name().to_string_lossy().starts_with(&start))
+        .map(|entry| entry.path())
+        .collect();
+    found.sort();
+    found.into_iter().next()
+}

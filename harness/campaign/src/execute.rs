@@ -1,0 +1,342 @@
+//! Runs all cases of a plan, each in a process of its own: a crash, a hang or excessive memory is
+//! an error of that case alone.
+
+pub use super::shard::{Shard, ShardError};
+
+use super::case::{self, CaseResult, Job, Kept, differing};
+use super::plan::{Case, Plan, PlanError};
+use super::process::{Ended, TRIES, command, wait};
+use super::status::StatusError;
+use octant_base::pool::in_order;
+use octant_requirements::Verdict;
+use std::io::{Read, Write};
+use std::path::{Path, PathBuf};
+use std::process::{ExitStatus, Stdio};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
+
+/// Exit status of a process that stored its result.
+const KEPT: i32 = 0;
+/// Exit status of a process that has a result and can't store it (EX_CANTCREAT of sysexits.h): not
+/// the fault of its case, and the next process would fail too.
+pub const NOT_KEPT: u8 = 73;
+/// Bytes of a process's standard error that are kept.
+const WORDS: u64 = 4096;
+
+/// Settings of an execution.
+#[derive(Debug)]
+pub struct Options<'a> {
+    /// Folder.
+    pub folder: &'a Path,
+    /// Program that runs a case.
+    pub program: &'a Path,
+    /// Number of cases run at a time.
+    pub jobs: usize,
+    /// Part of the plan to run.
+    pub shard: Shard,
+    /// End of the cases to run, as a place in the plan.
+    pub end: usize,
+    /// True if cases that ended as errors are run again.
+    pub again: bool,
+    /// Set to end the execution.
+    pub cancel: &'a AtomicBool,
+}
+
+/// Event of an execution.
+#[derive(Clone, Debug)]
+pub enum Event {
+    /// Number of cases that have results already.
+    There(usize),
+    /// A case has ended.
+    Done(Done),
+}
+
+/// Outcome of a case.
+#[derive(Clone, Debug)]
+pub struct Done {
+    /// Place in the plan.
+    pub index: usize,
+    /// Verdict.
+    pub verdict: Verdict,
+    /// First reason, unless the verdict is a pass.
+    pub reason: Option<String>,
+    /// Path of this result beside an earlier, different result of the same case.
+    pub differs: Option<PathBuf>,
+}
+
+/// Summary of an execution.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Outcome {
+    /// Cases that were run.
+    pub run: usize,
+    /// Cases that had results already.
+    pub skipped: usize,
+    /// Cases that were not begun because the end was requested.
+    pub left: usize,
+    /// Results that differ from an earlier one of the same case.
+    pub differing: Vec<PathBuf>,
+}
+
+/// Reasons why a campaign could not be run.
+#[derive(Debug, thiserror::Error)]
+pub enum ExecuteError {
+    /// The plan isn't valid, or a scenario was changed.
+    #[error(transparent)]
+    Plan(#[from] PlanError),
+    /// The folder has results that are not of this plan.
+    #[error(
+        "run {folder}: it has results of {count} cases that the plan doesn't have, such as {one}"
+    )]
+    Foreign {
+        /// The folder.
+        folder: PathBuf,
+        /// Number of such cases.
+        count: usize,
+        /// Example of such a case.
+        one: String,
+    },
+    /// An existing result doesn't belong to its case, or contradicts itself.
+    #[error(transparent)]
+    Result(#[from] StatusError),
+    /// A process could not store its result; its own message.
+    #[error("{0}")]
+    NotKept(String),
+    /// The process of a case was ended from outside in every attempt.
+    #[error(
+        "run case {case}: its process was ended from outside {TRIES} times, the last time by {by}: the \
+         case has no result"
+    )]
+    Ended {
+        /// The case.
+        case: String,
+        /// Signal, or other cause.
+        by: String,
+    },
+    /// A result could not be stored, or a process could not be started.
+    #[error("{action} {path}: {source}")]
+    System {
+        /// Action that failed.
+        action: &'static str,
+        /// Path that the action concerned.
+        path: PathBuf,
+        /// Error of the operating system.
+        source: std::io::Error,
+    },
+}
+
+/// Runs the cases that have no result yet. `tell` is called with each as it ends, in any order.
+///
+/// # Errors
+/// If the folder isn't of this plan, or the operating system refuses; stored results stay.
+pub fn execute(
+    plan: &Plan,
+    options: &Options<'_>,
+    tell: &(dyn Fn(&Event) + Sync),
+) -> Result<Outcome, ExecuteError> {
+    plan.check_files()?;
+    refuse_foreign(plan, options.folder)?;
+    clean(options.folder);
+    if options.again {
+        forget_errors(plan, options)?;
+    }
+    let up_to_end = || plan.cases.iter().enumerate().take(options.end);
+    let mine = || up_to_end().filter(|(index, _)| options.shard.has(*index));
+    let open: Vec<(usize, &Case)> =
+        mine().filter(|(_, case)| !case::file(options.folder, &case.id).exists()).collect();
+    let skipped = mine().count() - open.len();
+    tell(&Event::There(skipped));
+    let work = |task: usize| {
+        let (index, case) = open[task];
+        let done = one(plan, case, options)?.map(|done| Done { index, ..done });
+        Ok::<_, ExecuteError>(done.map(|done| {
+            let differs = done.differs.clone();
+            tell(&Event::Done(done));
+            differs
+        }))
+    };
+    let is_cancelled = || options.cancel.load(Ordering::Relaxed);
+    let done = in_order(options.jobs, open.len(), is_cancelled, work);
+    // A process that was ended may have left incomplete files.
+    clean(options.folder);
+    let done: Vec<_> = done?.into_iter().flatten().collect();
+    let run = done.len();
+    let mut differing: Vec<PathBuf> = done.into_iter().flatten().collect();
+    differing.sort();
+    Ok(Outcome { run, skipped, left: open.len() - run, differing })
+}
+
+/// Removes incomplete results that killed processes left.
+fn clean(folder: &Path) {
+    for part in std::fs::read_dir(folder.join("cases")).into_iter().flatten().flatten() {
+        super::clean(&part.path());
+    }
+}
+
+/// Removes the results of cases without a summary.
+fn forget_errors(plan: &Plan, options: &Options<'_>) -> Result<(), ExecuteError> {
+    for (index, case) in plan.cases.iter().enumerate() {
+        let path = case::file(options.folder, &case.id);
+        if options.shard.has(index)
+            && path.exists()
+            && CaseResult::read(&path).is_ok_and(|result| result.error.is_some())
+        {
+            std::fs::remove_file(&path).map_err(|source| ExecuteError::System {
+                action: "remove",
+                path: path.clone(),
+                source,
+            })?;
+        }
+    }
+    Ok(())
+}
+
+/// Runs one case, again if its process is ended from outside; `None` if it was ended by a request.
+fn one(plan: &Plan, case: &Case, options: &Options<'_>) -> Result<Option<Done>, ExecuteError> {
+    let mut by = String::new();
+    for _ in 0..TRIES {
+        match try_one(plan, case, options)? {
+            Tried::Done(done) => return Ok(Some(done)),
+            Tried::Cancelled => return Ok(None),
+            Tried::Outside(signal) => by = signal,
+        }
+    }
+    Err(ExecuteError::Ended { case: case.id.clone(), by })
+}
+
+enum Tried {
+    Done(Done),
+    Cancelled,
+    /// The process was ended from outside.
+    Outside(String),
+}
+
+/// Runs one case in a process of its own.
+fn try_one(plan: &Plan, case: &Case, options: &Options<'_>) -> Result<Tried, ExecuteError> {
+    let system = |action, path: &Path, source| ExecuteError::System {
+        action,
+        path: path.to_owned(),
+        source,
+    };
+    let job = Job {
+        case: case.clone(),
+        scenario: plan.planned(case)?.clone(),
+        memory_mib: plan.limits.memory_mib,
+        folder: options.folder.to_owned(),
+    };
+    let mut child = command(options.program)
+        .args(["campaign", "one"])
+        .stdin(Stdio::piped())
+        .stdout(Stdio::null())
+        .stderr(Stdio::piped())
+        .spawn()
+        .map_err(|error| system("start", options.program, error))?;
+    let input = child.stdin.take();
+    let words = child.stderr.take();
+    // Standard error is read at the same time: a full pipe would block the process.
+    let (status, words) = std::thread::scope(|scope| {
+        let words = scope.spawn(move || {
+            let mut text = String::new();
+            if let Some(mut words) = words {
+                // Output that isn't text, or that is cut off, is read up to that point.
+                let _ = words.by_ref().take(WORDS).read_to_string(&mut text);
+                let _ = std::io::copy(&mut words, &mut std::io::sink());
+            }
+            text
+        });
+        if let Some(mut input) = input {
+            // If the process has ended already, its status tells.
+            let _ = serde_json::to_writer(&mut input, &job);
+            let _ = input.flush();
+        }
+        // A limit that isn't a number counts as no limit.
+        let limit = Duration::try_from_secs_f64(plan.limits.time_s).unwrap_or(Duration::MAX);
+        let status = wait(&mut child, limit, options.cancel);
+        (status, words.join().unwrap_or_default())
+    });
+    let error = match status.map_err(|error| system("wait for", options.program, error))? {
+        Ended::Cancelled => return Ok(Tried::Cancelled),
+        // The process may have been ended after it stored the result.
+        Ended::Outside(_) | Ended::TooLong if case::file(options.folder, &case.id).exists() => {
+            return Ok(Tried::Done(kept(case, options)?));
+        }
+        Ended::Outside(by) => return Ok(Tried::Outside(by)),
+        Ended::Status(status) if status.code() == Some(KEPT) => {
+            return Ok(Tried::Done(kept(case, options)?));
+        }
+        Ended::Status(status) if status.code() == Some(i32::from(NOT_KEPT)) => {
+            return Err(ExecuteError::NotKept(said(&words).to_owned()));
+        }
+        Ended::Status(status) => failure(status, &words, plan.limits.memory_mib),
+        Ended::TooLong => format!("it took more than its {} s", plan.limits.time_s),
+    };
+    let result = CaseResult::broken(&case.id, error);
+    let bytes = result.to_json().map_err(|error| system("write", options.folder, error.into()))?;
+    let path = case::file(options.folder, &case.id);
+    let kept = case::keep(options.folder, &case.id, bytes.as_bytes())
+        .map_err(|error| system("write", &path, error))?;
+    let differs = if let Kept::Differs(other) = kept { Some(other) } else { None };
+    Ok(Tried::Done(Done { index: 0, verdict: result.verdict, reason: result.error, differs }))
+}
+
+/// Returns the outcome from the stored result.
+fn kept(case: &Case, options: &Options<'_>) -> Result<Done, ExecuteError> {
+    let path = case::file(options.folder, &case.id);
+    let result = CaseResult::read(&path).map_err(|reason| ExecuteError::System {
+        action: "read",
+        path: path.clone(),
+        source: std::io::Error::other(reason),
+    })?;
+    let reasons = result.summary.as_ref().map(|summary| summary.reasons.as_slice());
+    let reason = reasons.and_then(|reasons| reasons.first().cloned());
+    let reason = reason.filter(|_| result.verdict != Verdict::Pass);
+    Ok(Done { index: 0, verdict: result.verdict, reason, differs: differing(&path, &case.id) })
+}
+
+/// Returns the message of a process, without the name of the program.
+fn said(words: &str) -> &str {
+    let said = words.lines().map(str::trim).find(|line| !line.is_empty()).unwrap_or("");
+    said.trim_start_matches("octant: ")
+}
+
+/// Describes why a process stored nothing.
+fn failure(status: ExitStatus, words: &str, memory_mib: u64) -> String {
+    let said = said(words);
+    if words.contains("memory allocation of") {
+        return format!("it wanted more than its {memory_mib} MiB of memory");
+    }
+    match status.code() {
+        Some(_) if !said.is_empty() => said.to_owned(),
+        Some(code) => format!("it ended with status {code} and no word"),
+        None => format!("it crashed: {status}{}{said}", if said.is_empty() { "" } else { ", " }),
+    }
+}
+
+/// Refuses a folder with results of another plan, which would be counted as well.
+pub(crate) fn refuse_foreign(plan: &Plan, folder: &Path) -> Result<(), ExecuteError> {
+    let known: std::collections::HashSet<&str> =
+        plan.cases.iter().map(|case| case.id.as_str()).collect();
+    let mut foreign: Vec<String> =
+        results(folder).into_iter().filter(|id| !known.contains(id.as_str())).collect();
+    foreign.sort();
+    match foreign.first() {
+        None => Ok(()),
+        Some(one) => Err(ExecuteError::Foreign {
+            folder: folder.to_owned(),
+            count: foreign.len(),
+            one: one.clone(),
+        }),
+    }
+}
+
+/// Lists the ids of the cases that have results in a folder.
+pub(crate) fn results(folder: &Path) -> Vec<String> {
+    let read = |folder: PathBuf| std::fs::read_dir(folder).into_iter().flatten().flatten();
+    read(folder.join("cases"))
+        .flat_map(|part| read(part.path()))
+        .filter_map(|entry| {
+            let name = entry.file_name().to_string_lossy().into_owned();
+            let id = name.strip_suffix(".json")?;
+            (!id.contains('.')).then(|| id.to_owned())
+        })
+        .collect()
+}

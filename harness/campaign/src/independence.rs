@@ -1,0 +1,98 @@
+//! Groups cases into independent draws, and finds parts of a design without effect.
+//!
+//! A seed is an instrument with its noise: all of its combinations are one draw. Cases with the
+//! same stream of samples are one draw too, whatever their seeds; they are the same run, repeated
+//! under the label of a factor without effect or of a value in another spelling.
+
+use super::besides::besides;
+use super::case::CaseResult;
+use super::plan::{Case, FactorValue, Plan};
+use super::report::combination::of_grid;
+use octant_requirements::Verdict;
+use octant_statistics::cluster;
+use std::collections::{BTreeMap, HashMap};
+
+/// Evidence of a case for a requirement.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Shown {
+    /// True if the requirement was met in a run that completed its plan.
+    pub passed: bool,
+    /// Hash of the stream; `None` for a case without a summary.
+    pub stream: Option<String>,
+}
+
+impl Shown {
+    /// Extracts a result's evidence for a requirement. Everything except a pass counts as not
+    /// passed: a check that failed or was inconclusive, a refused calibration, an error.
+    #[must_use]
+    pub fn of(result: &CaseResult, requirement: &str) -> Self {
+        Self {
+            passed: passes(result, requirement),
+            stream: result.summary.as_ref().map(|summary| summary.stream_hash.clone()),
+        }
+    }
+}
+
+/// Returns whether a result counts as passed for a requirement.
+pub(super) fn passes(result: &CaseResult, requirement: &str) -> bool {
+    result.check(requirement) == Verdict::Pass && besides(result) == Verdict::Pass
+}
+
+/// Returns the independent draw of each case, numbered from 0, from its seed and its stream.
+#[must_use]
+pub fn draws<'a>(cases: impl IntoIterator<Item = (&'a Case, Option<&'a str>)>) -> Vec<usize> {
+    cluster::draws(cases.into_iter().map(|(case, stream)| (case.seed, stream)))
+}
+
+/// Parts of a design without effect.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Idle {
+    /// Cases with the same stream, grouped by it, in the order of the plan.
+    pub repeated: Vec<Vec<String>>,
+    /// Factors of the grid none of whose values changed a stream.
+    pub factors: Vec<String>,
+}
+
+/// Finds cases that are the same run, and factors without effect.
+#[must_use]
+pub fn idle<'a>(plan: &Plan, cases: impl IntoIterator<Item = (&'a Case, Option<&'a str>)>) -> Idle {
+    let run: Vec<(&Case, &str)> =
+        cases.into_iter().filter_map(|(case, stream)| Some((case, stream?))).collect();
+    let mut by_stream: HashMap<&str, Vec<usize>> = HashMap::new();
+    for (index, (_, stream)) in run.iter().enumerate() {
+        by_stream.entry(stream).or_default().push(index);
+    }
+    let mut repeated: Vec<&Vec<usize>> = by_stream.values().filter(|all| all.len() > 1).collect();
+    repeated.sort();
+    let ids = |all: &Vec<usize>| all.iter().map(|index| run[*index].0.id.clone()).collect();
+    Idle {
+        repeated: repeated.into_iter().map(ids).collect(),
+        factors: (of_grid(plan).into_iter())
+            .filter(|factor| changes_nothing(factor, &run))
+            .collect(),
+    }
+}
+
+/// Returns whether all cases that differ in this factor alone have the same streams. Cases are
+/// compared within a scenario and a seed, where nothing else differs.
+fn changes_nothing(factor: &str, run: &[(&Case, &str)]) -> bool {
+    type Others<'a> = (&'a str, u64, BTreeMap<&'a str, String>);
+    let shown = |value: &FactorValue| format!("{value:?}");
+    let mut first: HashMap<Others<'_>, &str> = HashMap::new();
+    let mut compared = false;
+    for (case, stream) in run {
+        if !case.factors.contains_key(factor) {
+            continue;
+        }
+        let others = case.factors.iter().filter(|(name, _)| *name != factor);
+        let others = others.map(|(name, value)| (name.as_str(), shown(value))).collect();
+        match first.entry((case.scenario.as_str(), case.seed, others)) {
+            std::collections::hash_map::Entry::Vacant(entry) => _ = entry.insert(stream),
+            std::collections::hash_map::Entry::Occupied(entry) if entry.get() == stream => {
+                compared = true;
+            }
+            std::collections::hash_map::Entry::Occupied(_) => return false,
+        }
+    }
+    compared
+}

@@ -1,0 +1,166 @@
+//! Drift of the cases: figures with bounds, and percentiles over time.
+
+use super::elements::{heading, with_bounds};
+use crate::report::Report;
+use crate::report::figures::{CombinationFigures, EnvelopeFigures, PERCENTILES, ScenarioFigures};
+use maud::{Markup, html};
+use octant_base::number;
+use octant_report::chart::{Band, Chart, Line, Role};
+
+/// Maximum number of combinations that are drawn.
+pub(super) const DRAWN_MAX: usize = 24;
+
+pub(super) fn table(report: &Report<'_>) -> Markup {
+    let statistics = &report.statistics;
+    let none = statistics.combinations.iter().all(|figures| figures.navigated == 0);
+    html! {
+        (heading("drift"))
+        @if none {
+            p.empty { "No case has a navigation." }
+        } @else {
+            p.hint { "Radial errors at the end of the navigation: CEP50 is their median, R95 their 95th percentile. The \
+                rate is the regression of the radial error on time through the origin, time-RMS is √(1/T ∫ r² dt). Below \
+                each figure its interval at " (number::plain(100.0 * statistics.confidence, 3))
+                " %, from order statistics, without a distribution; ∞ where there are too few cases. Cases that were \
+                refused or ended as errors are in the sample, beyond every number: a figure that falls on one is not \
+                defined." }
+            div.wide tabindex="0" role="region" aria-label="Drift by combination" {
+                table {
+                    thead { tr {
+                        th { "Combination" } th.n { "Cases" } th.n { "CEP50, nmi" } th.n { "R95, nmi" }
+                        th.n { "Largest, 95 %, nmi" } th.n { "Rate 50 %, nmi/h" } th.n { "Rate 95 %, nmi/h" }
+                        th.n { "Time-RMS 50 %, nmi" } th.n { "95 %" }
+                    } }
+                    tbody { @for scenario in &statistics.scenarios {
+                        @let mine: Vec<_> = report.combinations.iter().zip(&statistics.combinations)
+                            .filter(|(combination, _)| combination.scenario == scenario.scenario).collect();
+                        @if mine.len() > 1 { (whole(scenario)) }
+                        @for (combination, figures) in &mine {
+                            @let name = if mine.len() > 1 { combination.short() } else { combination.name() };
+                            (row(&name, figures))
+                        }
+                    } }
+                }
+            }
+            @if statistics.scenarios.iter().any(|scenario| scenario.combinations > 1) {
+                p.hint { "Rows of a whole scenario have no interval: the same instruments are in all of its combinations." }
+            }
+            (marks(report))
+        }
+    }
+}
+
+/// Renders a scenario over all of its combinations.
+fn whole(scenario: &ScenarioFigures) -> Markup {
+    let value = |value: Option<f64>| match value {
+        None => "–".to_owned(),
+        Some(value) if value.is_finite() => number::significant(value, 3),
+        Some(_) => "not defined".to_owned(),
+    };
+    html! {
+        tr.group {
+            td { (scenario.scenario) }
+            td.n { (scenario.navigated)
+                @if scenario.beyond > 0 { div.reason { (scenario.beyond) " beyond" } } }
+            td.n { (value(scenario.cep50_nmi)) } td.n { (value(scenario.r95_nmi)) } td.n { }
+            td.n { (value(scenario.rate50_nmi_per_h)) } td.n { (value(scenario.rate95_nmi_per_h)) }
+            td.n { (value(scenario.time_rms_nmi)) } td.n { }
+        }
+    }
+}
+
+fn row(name: &str, figures: &CombinationFigures) -> Markup {
+    html! {
+        tr {
+            td { (name) }
+            td.n { (figures.navigated)
+                @if figures.navigated < figures.cases { div.reason { "of " (figures.cases) } }
+                @if figures.beyond > 0 { div.reason { (figures.beyond) " beyond" } } }
+            @match (figures.at_end, figures.largest_nmi, figures.rate_nmi_per_h, figures.time_rms_nmi) {
+                (Some(at_end), Some(largest), Some(rate), Some(time_rms)) => {
+                    td.n { (with_bounds(&at_end.cep50)) }
+                    td.n { (with_bounds(&at_end.r95)) }
+                    td.n { (with_bounds(&largest.p95)) }
+                    td.n { (with_bounds(&rate.rate50)) }
+                    td.n { (with_bounds(&rate.rate95)) }
+                    td.n { (with_bounds(&time_rms.p50)) }
+                    td.n { (with_bounds(&time_rms.p95)) }
+                }
+                _ => { @for _ in 0..7 { td.n { "–" } } }
+            }
+        }
+    }
+}
+
+/// Renders errors at 24 h and 72 h, for navigations that lasted as long.
+fn marks(report: &Report<'_>) -> Markup {
+    let all = || report.combinations.iter().zip(&report.statistics.combinations);
+    if all().all(|(_, figures)| figures.at_marks.is_empty()) {
+        return html! {};
+    }
+    html! {
+        h3 { "At marks" }
+        table {
+            thead { tr { th { "Combination" } th.n { "After" } th.n { "CEP50, nmi" } th.n { "R95, nmi" } } }
+            tbody { @for (combination, figures) in all() { @for (mark, position) in &figures.at_marks { tr {
+                td { (combination.name()) } td.n { (mark) }
+                td.n { (with_bounds(&position.cep50)) } td.n { (with_bounds(&position.r95)) }
+            } } } }
+        }
+    }
+}
+
+/// Draws percentiles of the errors over time. Curves of a prediction belong into the same charts.
+pub(super) fn envelopes(report: &Report<'_>) -> Markup {
+    let all = || {
+        (report.combinations.iter().zip(&report.statistics.combinations))
+            .filter_map(|(combination, figures)| Some((combination, figures.envelope.as_ref()?)))
+    };
+    let count = all().count();
+    html! {
+        (heading("envelopes"))
+        @if count == 0 {
+            p.empty { "There are no errors over time, or their lengths differ too much for one picture." }
+        } @else {
+            p.hint { "Navigation minus truth, by percentile of the cases at each time. Every pair has its own scale. A case \
+                beyond every number counts as far below for the percentiles under the median and as far above for those \
+                over it: a percentile that falls on one isn't drawn, and neither is the median." }
+            @for (combination, envelope) in all().take(DRAWN_MAX) {
+                h3 { (combination.name()) }
+                div.pairs {
+                    (chart(&combination.name(), "Latitude error", envelope, &envelope.latitude_arcmin))
+                    (chart(&combination.name(), "Longitude error", envelope, &envelope.longitude_arcmin))
+                }
+            }
+            @if count > DRAWN_MAX {
+                p.hint { "The other " (count - DRAWN_MAX) " combinations are in statistics.json." }
+            }
+        }
+    }
+}
+
+fn chart(of: &str, name: &str, envelope: &EnvelopeFigures, curves: &[Vec<f64>]) -> Markup {
+    let mut chart =
+        Chart::new(&format!("{name}, {of}"), "hours of navigation", &format!("{name}, arcmin"));
+    (chart.width, chart.height) = (480.0, 200.0);
+    let [least, low, middle, high, greatest] = [0, 1, 2, 3, 4];
+    let value = |curve: usize, k: usize| {
+        curves.get(curve).and_then(|curve| curve.get(k)).copied().unwrap_or(f64::NAN)
+    };
+    let percentile = |curve: usize| number::plain(100.0 * PERCENTILES[curve], 3);
+    for (role, from, to) in [(Role::Reference, least, greatest), (Role::Primary, low, high)] {
+        let points = envelope.hours.iter().enumerate();
+        chart.bands.push(Band {
+            label: format!("{} to {} %", percentile(from), percentile(to)),
+            role,
+            points: points.map(|(k, hours)| [*hours, value(from, k), value(to, k)]).collect(),
+        });
+    }
+    let points = envelope.hours.iter().enumerate();
+    chart.lines.push(Line {
+        label: "median".to_owned(),
+        role: Role::Primary,
+        points: points.map(|(k, hours)| [*hours, value(middle, k)]).collect(),
+    });
+    chart.render()
+}

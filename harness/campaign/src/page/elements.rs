@@ -1,0 +1,64 @@
+//! Elements that several sections of the page have: headings, links, estimates.
+
+use maud::{Markup, html};
+use octant_base::number;
+use octant_statistics::sample::Interval;
+
+/// Maximum number of rows of a table on the page; the rest is in separate files.
+pub(super) const ROWS_MAX: usize = 2000;
+
+/// Sections of the page: anchor and heading.
+pub(super) const SECTIONS: [(&str, &str); 10] = [
+    ("requirements", "Requirements"),
+    ("drift", "Drift"),
+    ("envelopes", "Errors over time"),
+    ("prediction", "Predicted and simulated"),
+    ("convergence", "Convergence"),
+    ("sensitivity", "Sensitivity"),
+    ("findings", "Cases to look at"),
+    ("discrepancies", "Discrepancies"),
+    ("trace", "Trace"),
+    ("provenance", "Provenance"),
+];
+
+/// Renders a heading with an anchor.
+pub(super) fn heading(anchor: &str) -> Markup {
+    let name = SECTIONS.iter().find(|(id, _)| *id == anchor).map_or(anchor, |(_, name)| name);
+    html! { h2 id=(anchor) { (name) } }
+}
+
+/// Returns the first digits of a hash.
+pub(super) fn short(hash: &str) -> &str {
+    hash.get(..16).unwrap_or(hash)
+}
+
+/// Renders a case, as a link to its result if there is one.
+pub(super) fn case_link(case: &str, beside: bool) -> Markup {
+    html! {
+        @if beside {
+            a.mono href={ "cases/" (case.get(..2).unwrap_or("")) "/" (case) ".json" } { (case) }
+        } @else {
+            span.mono { (case) }
+        }
+    }
+}
+
+/// Renders an estimate with its interval.
+pub(super) fn with_bounds(interval: &Interval) -> Markup {
+    let end = |value: f64| {
+        if value.is_finite() { number::significant(value, 3) } else { "∞".to_owned() }
+    };
+    let low = if interval.low.is_finite() {
+        number::significant(interval.low, 3)
+    } else {
+        "0".to_owned()
+    };
+    if !interval.value.is_finite() {
+        // The estimate falls on a case whose value is beyond every number.
+        return html! { "not defined" div.reason { "from " (low) } };
+    }
+    html! {
+        (number::significant(interval.value, 3))
+        div.reason { (low) " to " (end(interval.high)) }
+    }
+}

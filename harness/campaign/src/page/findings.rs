@@ -1,0 +1,120 @@
+//! Lists the cases to inspect, each with its command line, and the discrepancies with their
+//! dispositions.
+
+use super::elements::{case_link, heading};
+use crate::report::Report;
+use crate::report::rows::{Outcome, Row};
+use maud::{Markup, html};
+use octant_base::number;
+use octant_report::discrepancies::table;
+
+/// Maximum number of cases shown of each kind.
+const SHOWN: usize = 50;
+/// Number of cases of a discrepancy that are shown at once; the others are folded.
+const FIRST: usize = 5;
+
+pub(super) fn section(report: &Report<'_>, beside: bool) -> Markup {
+    let outliers = &report.statistics.outliers;
+    let of = |wanted: &dyn Fn(&Outcome) -> Option<String>| -> Vec<(String, String)> {
+        let why = |row: &Row<'_>| Some((row.case.id.clone(), wanted(row.outcome.as_ref()?)?));
+        report.rows.iter().filter_map(why).collect()
+    };
+    let errors = of(&|outcome| outcome.error.clone());
+    let refused = of(&|outcome| outcome.refused.clone());
+    let unfired = of(&|outcome| {
+        (!outcome.unfired.is_empty())
+            .then(|| format!("never fired: {}", outcome.unfired.join(", ")))
+    });
+    let differing = of(&|outcome| {
+        outcome.differs.then(|| "the same case came to two results, both are kept".to_owned())
+    });
+    html! {
+        (heading("findings"))
+        h3 { "Outliers" }
+        @if outliers.is_empty() {
+            p { "No case stands out from its combination." }
+        } @else {
+            p.hint { "Cases whose logarithm is further from the median of their combination than 3.5 modified z-scores \
+                (median and median absolute deviation, Iglewicz and Hoaglin)." }
+            div.wide tabindex="0" role="region" aria-label="Outliers" {
+                table {
+                    thead { tr {
+                        th { "Case" } th { "Combination" } th { "Measure" } th.n { "Value" } th.n { "Median" } th.n { "Score" }
+                    } }
+                    tbody { @for outlier in outliers.iter().take(SHOWN) {
+                        tr {
+                            td { (case_link(&outlier.case, beside)) }
+                            td { (report.combinations.get(outlier.combination).map_or_else(String::new, |c| c.name())) }
+                            td.mono { (outlier.measure) }
+                            td.n { (number::significant(outlier.value, 3)) }
+                            td.n { (number::significant(outlier.median, 3)) }
+                            td.n { @if outlier.score.is_finite() { (number::fixed(outlier.score, 1)) } @else { "∞" } }
+                        }
+                        tr.again { td colspan="6" { code { (report.case_again(&outlier.case)) } } }
+                    } }
+                }
+            }
+            (more(outliers.len(), "statistics.json"))
+        }
+        (cases(report, "Cases that ended as errors", "No case ended as an error.", &errors, beside))
+        @if !refused.is_empty() { (cases(report, "Calibrations that were refused", "", &refused, beside)) }
+        (cases(report, "Faults that never fired", "Every fault that was injected fired.", &unfired, beside))
+        (cases(report, "Cases that came to two results", "No case came to two results.", &differing, beside))
+    }
+}
+
+fn more(all: usize, place: &str) -> Markup {
+    html! { @if all > SHOWN { p.hint { (all - SHOWN) " more are in " (place) "." } } }
+}
+
+fn cases(
+    report: &Report<'_>,
+    title: &str,
+    none: &str,
+    all: &[(String, String)],
+    beside: bool,
+) -> Markup {
+    html! {
+        h3 { (title) }
+        @if all.is_empty() {
+            p { (none) }
+        } @else {
+            table {
+                thead { tr { th { "Case" } th { "What" } } }
+                tbody { @for (case, why) in all.iter().take(SHOWN) {
+                    tr {
+                        td { (case_link(case, beside)) }
+                        td { (why) div.reason { code { (report.case_again(case)) } } }
+                    }
+                } }
+            }
+            (more(all.len(), "cases.parquet"))
+        }
+    }
+}
+
+/// Renders everything that isn't a pass, with the dispositions.
+pub(super) fn discrepancies(report: &Report<'_>, beside: bool) -> Markup {
+    let hint = "What is said of them stands in dispositions.toml, which people fill in. It changes no \
+        verdict. One more case makes another discrepancy, of which nothing is said yet.";
+    let list = |cases: &[String]| list(cases, beside);
+    html! {
+        (heading("discrepancies"))
+        (table(&report.statistics.discrepancies, &report.dispositions, hint, &list))
+    }
+}
+
+fn list(cases: &[String], beside: bool) -> Markup {
+    let (first, rest) = cases.split_at(cases.len().min(FIRST));
+    html! {
+        div.reason {
+            @for case in first { (case_link(case, beside)) " " }
+            @if !rest.is_empty() {
+                details {
+                    summary { (rest.len()) " more" }
+                    @for case in rest { (case_link(case, beside)) " " }
+                }
+            }
+        }
+    }
+}

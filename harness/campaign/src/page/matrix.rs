@@ -1,0 +1,103 @@
+//! Trace in both directions: from each requirement to its cases, and from each case to its
+//! requirements.
+
+use super::elements::{ROWS_MAX, case_link, heading};
+use super::requirements::check;
+use crate::report::Report;
+use crate::report::combination::shown;
+use maud::{Markup, html};
+use octant_report::page::badge;
+
+pub(super) fn section(report: &Report<'_>, beside: bool) -> Markup {
+    let trace = &report.trace;
+    html! {
+        (heading("trace"))
+        p.hint { "A case leads to the file of its result. A campaign keeps no recordings: octant campaign case runs a \
+            case again, to the same stream hash, with its recording and the report of a run." }
+        h3 { "From requirements to cases" }
+        @if trace.requirements.is_empty() { p.empty { "There is no requirement." } }
+        @for row in &trace.requirements {
+            details {
+                summary {
+                    strong { (row.id) } ": "
+                    @match row.verdict { Some(verdict) => (badge(verdict)), None => span.soft { "not by a run" } }
+                    " " (row.cases.len()) " cases, verified by " (row.verification)
+                }
+                p.reason { (row.reason) }
+                p.cases {
+                    @for link in row.cases.iter().take(ROWS_MAX) {
+                        span.key { (case_link(&link.case, beside)) " "
+                            @match link.verdict { Some(verdict) => (verdict.name()), None => "not run" } } " "
+                    }
+                }
+                (rest(row.cases.len()))
+            }
+        }
+        (missing("Requirements without a case", &trace.without_case, false))
+        (missing("Cases without a requirement", &trace.without_requirement, beside))
+        @if !report.status.not_by_test.is_empty() {
+            h3 { "Requirements that no run verifies" }
+            p { (report.status.not_by_test.join(", ")) }
+        }
+        h3 { "From cases to requirements" }
+        (cases(report, beside))
+    }
+}
+
+fn rest(all: usize) -> Markup {
+    html! {
+        @if all > ROWS_MAX {
+            p.hint { (all - ROWS_MAX) " more: octant campaign trace lists all of them." }
+        }
+    }
+}
+
+fn missing(title: &str, ids: &[String], cases: bool) -> Markup {
+    html! {
+        h3 { (title) }
+        @if ids.is_empty() { p { "None." } } @else {
+            p.cases { @for id in ids.iter().take(ROWS_MAX) {
+                @if cases { (case_link(id, true)) } @else { strong { (id) } } " "
+            } }
+            (rest(ids.len()))
+        }
+    }
+}
+
+fn cases(report: &Report<'_>, beside: bool) -> Markup {
+    let requirements = &report.statistics.requirements;
+    html! {
+        details {
+            summary { (report.rows.len()) " cases" }
+            div.wide tabindex="0" role="region" aria-label="Cases" {
+                table {
+                    thead { tr {
+                        th { "Case" } th { "Scenario and factors" } th.n { "Seed" } th.n { "Verdict" }
+                        @for r in requirements { th.n { (r.id) } }
+                        th style="padding-left:14px" { "Stream hash" }
+                    } }
+                    tbody { @for row in report.rows.iter().take(ROWS_MAX) {
+                        @let outcome = row.outcome.as_ref();
+                        tr {
+                            td { (case_link(&row.case.id, beside)) }
+                            td { (row.case.scenario)
+                                @for (name, value) in &row.case.factors { "; " (name) " " (shown(value)) } }
+                            td.n { (row.case.seed) }
+                            td.n { (check(outcome.map(|outcome| outcome.verdict))) }
+                            @for r in requirements { td.n {
+                                @match crate::report::discrepancy::checks_of(report.plan, row, &r.id) {
+                                    Some(verdict) => (check(verdict)),
+                                    None => "–",
+                                }
+                            } }
+                            td.mono style="padding-left:14px" {
+                                (outcome.and_then(|o| o.stream_hash.as_deref()).map_or("–", super::elements::short))
+                            }
+                        }
+                    } }
+                }
+            }
+            (rest(report.rows.len()))
+        }
+    }
+}

@@ -1,0 +1,173 @@
+//! Verdicts of the requirements: overall, and by combination.
+
+use super::elements::heading;
+use crate::report::requirement::{Part, RequirementFigures};
+use crate::report::{POLICY, Report};
+use maud::{Markup, html};
+use octant_base::number;
+use octant_report::page::badge;
+use octant_requirements::Verdict;
+use octant_requirements::requirement::percent;
+use octant_requirements::trace::Counts;
+use octant_statistics::cluster::Draws;
+use octant_statistics::proportion::Needed;
+
+pub(super) fn section(report: &Report<'_>) -> Markup {
+    let all = &report.statistics.requirements;
+    html! {
+        (heading("requirements"))
+        @if all.is_empty() {
+            p.empty { "No requirement was checked: whatever happened, nothing is shown by it." }
+        } @else {
+            (table(all))
+            p.hint { "The bound is that of Clopper and Pearson on the probability that an independent draw passes in \
+                all of its checks, one-sided. Where nothing is asked of the draws together, every check has to pass. "
+                (POLICY) }
+        }
+        @if !report.status.not_by_test.is_empty() {
+            p { "Not verified by runs: " (report.status.not_by_test.join(", ")) "." }
+        }
+        @for note in &report.notes { p.hint { (note) } }
+        @if !all.is_empty() && report.combinations.len() > 1 { (by_combination(report)) }
+    }
+}
+
+fn table(all: &[RequirementFigures]) -> Markup {
+    html! {
+        div.wide tabindex="0" role="region" aria-label="Requirements" {
+            table {
+                thead { tr {
+                    th { "Requirement" } th { "Has to hold" } th.n { "Checks" } th.n { "Draws" } th.n { "Bound" }
+                    th.n { "Asked" } th.n { "Still needed" } th.n { "Least margin" } th.n { "Verdict" }
+                } }
+                tbody { @for r in all { tr {
+                    td { strong { (r.id) }
+                        @if let Some(text) = &r.text { div.reason { (text) } }
+                        @if let Some(clause) = &r.clause { div.reason { (clause) } } }
+                    td {
+                        @if let Some(measure) = &r.measure {
+                            span.mono { (measure) } " " (sign(r.comparison.unwrap_or(""))) " "
+                            (r.limit.map_or_else(String::new, |limit| number::plain(limit, 6)))
+                        }
+                        div.reason { (r.reason) }
+                        @if r.asked.is_none() { @if let Some(claim) = &r.claim { div.reason { (claim) } } }
+                    }
+                    td.n { (checks(r.counts)) }
+                    td.n { (draws(r.draws)) }
+                    td.n { (share(r.lower_bound)) div.reason { "at " (percent(r.confidence)) } }
+                    td.n { (r.asked.map_or_else(|| "every check".to_owned(), |asked| percent(asked.pass))) }
+                    td.n { (needed(r)) }
+                    td.n {
+                        @match &r.nearest {
+                            Some(nearest) => {
+                                (number::significant(nearest.margin, 3))
+                                div.reason.mono { (nearest.case) }
+                            }
+                            None => "–",
+                        }
+                    }
+                    td.n { (badge(r.verdict)) }
+                } } }
+            }
+        }
+    }
+}
+
+fn sign(sign: &str) -> &str {
+    match sign {
+        "<=" => "≤",
+        ">=" => "≥",
+        other => other,
+    }
+}
+
+/// Renders `84 of 90 pass`, and the verdicts of the others.
+fn checks(counts: Counts) -> Markup {
+    let Counts { pass, inconclusive, fail, error, missing } = counts;
+    let all = pass + inconclusive + fail + error + missing;
+    let others =
+        [(fail, "fail"), (error, "error"), (inconclusive, "inconclusive"), (missing, "not run")];
+    html! {
+        @if all == 0 { "none" } @else { (pass) " of " (all) " pass" }
+        @for (count, name) in others { @if count > 0 { div.reason { (count) " " (name) } } }
+    }
+}
+
+/// Renders `84 of 84 pass`, and the number without a result.
+fn draws(draws: Draws) -> Markup {
+    html! {
+        (draws.passed) " of " (draws.all()) " pass"
+        @if draws.open > 0 { div.reason { (draws.open) " open" } }
+    }
+}
+
+/// Renders a probability, always rounded down: a bound must not look better than it is.
+fn share(bound: Option<f64>) -> String {
+    let down = |p: f64| libm::floor(p * 1e4) / 1e2;
+    bound.map_or_else(|| "–".to_owned(), |p| format!("{} %", number::fixed(down(p), 2)))
+}
+
+fn needed(r: &RequirementFigures) -> Markup {
+    let text = |needed: Needed| match needed {
+        Needed::Runs(runs) => runs.to_string(),
+        Needed::CannotBeMet => "cannot be met".to_owned(),
+    };
+    html! {
+        @match (r.needed_if_all_pass, r.needed_at_rate) {
+            (None, _) => "–",
+            (Some(all), rate) => {
+                (text(all))
+                @if all != Needed::Runs(0) { div.reason { "if all pass" } }
+                @if let Some(rate) = rate.filter(|rate| *rate != all) {
+                    div.reason { (text(rate)) " at this rate" }
+                }
+            }
+        }
+    }
+}
+
+/// Renders requirements by combination. The draws of a combination are its cases; over all
+/// combinations they are the replicates.
+fn by_combination(report: &Report<'_>) -> Markup {
+    let all = &report.statistics.requirements;
+    let class = |part: &Part| match part.counts {
+        Counts { fail: 0, error: 0, inconclusive: 0, missing: 0, .. } => "n",
+        _ => "n over",
+    };
+    html! {
+        h3 { "By combination" }
+        p.hint { "The cases of a replicate have the same instrument, noise and faults in every combination. Within \
+            one combination they are independent draws, and the bound is of that combination alone; over all of them a draw \
+            passes if it does in every combination, and the number of draws is that of the replicates." }
+        div.wide tabindex="0" role="region" aria-label="Requirements by combination" {
+            table {
+                thead { tr {
+                    th { "Combination" }
+                    @for r in all { th.n { (r.id) " passed" } th.n { "bound" } }
+                } }
+                tbody { @for (place, combination) in report.combinations.iter().enumerate() { tr {
+                    td { (combination.name()) }
+                    @for r in all {
+                        @match r.combinations.get(place) {
+                            Some(part) if total(part.counts) > 0 => {
+                                td class=(class(part)) { (part.counts.pass) " of " (total(part.counts)) }
+                                td.n { (share(part.lower_bound)) }
+                            }
+                            _ => { td.n { "–" } td.n { "–" } }
+                        }
+                    }
+                } } }
+            }
+        }
+    }
+}
+
+fn total(counts: Counts) -> u64 {
+    let Counts { pass, inconclusive, fail, error, missing } = counts;
+    pass + inconclusive + fail + error + missing
+}
+
+/// Renders the verdict of a check in a case; `None` if it hasn't run.
+pub(super) fn check(verdict: Option<Verdict>) -> Markup {
+    html! { @match verdict { Some(verdict) => (badge(verdict)), None => span.soft { "not run" } } }
+}

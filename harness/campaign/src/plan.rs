@@ -1,0 +1,392 @@
+//! Plan: the list of a campaign's cases, each with an id derived from its content.
+//!
+//! A plan never changes after it is made. A campaign that grows makes another plan, in which every
+//! earlier case keeps its id.
+
+use super::file::{Limits, Stop};
+use super::requirements::Planned;
+use octant_requirements::RequirementsError;
+use octant_requirements::requirement::Ensemble;
+use octant_requirements::verdict::LimitCheck;
+use octant_scenario::{Scenario, ScenarioError};
+use octant_statistics::proportion::Demand;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+/// Version of `plan.json`.
+pub const SCHEMA: u32 = 1;
+/// Name of a plan in the folder of its campaign.
+pub const FILE_NAME: &str = "plan.json";
+/// Maximum number of cases of a plan.
+pub const CASES_MAX: u64 = 10_000_000;
+
+/// The plan of a campaign.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Plan {
+    /// Version of this form: [`SCHEMA`].
+    pub schema: u32,
+    /// BLAKE3 of everything below except names of files, hexadecimal.
+    pub id: String,
+    /// Name of the campaign.
+    pub title: String,
+    /// File of the campaign.
+    pub campaign: PathBuf,
+    /// Limits of a case.
+    pub limits: CaseLimits,
+    /// Early stopping.
+    pub stop: Option<StopRule>,
+    /// Names of the factors, in the order of the campaign.
+    pub factors: Vec<String>,
+    /// Requirements of the campaign's own file that are verified by runs.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub requirements: Vec<Planned>,
+    /// Requirements of that file that no run can verify.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub not_by_test: Vec<String>,
+    /// The scenarios.
+    pub scenarios: Vec<PlannedScenario>,
+    /// Cases, in the order in which they are begun.
+    pub cases: Vec<Case>,
+}
+
+/// Limits of a case.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct CaseLimits {
+    /// Time, s.
+    pub time_s: f64,
+    /// Address space, MiB.
+    pub memory_mib: u64,
+}
+
+impl From<Limits> for CaseLimits {
+    fn from(limits: Limits) -> Self {
+        Self { time_s: limits.time_s, memory_mib: limits.memory_mib }
+    }
+}
+
+/// Early stopping.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct StopRule {
+    /// Requirement that decides.
+    pub requirement: String,
+    /// Evidence required.
+    pub demand: Demand,
+    /// Number of cases between evaluations, in the order of the plan.
+    pub every: u64,
+}
+
+impl From<Stop> for StopRule {
+    fn from(stop: Stop) -> Self {
+        Self { requirement: stop.requirement, demand: stop.demand, every: stop.every }
+    }
+}
+
+/// A scenario of a plan.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct PlannedScenario {
+    /// Name in the campaign.
+    pub id: String,
+    /// File.
+    pub file: PathBuf,
+    /// BLAKE3 of the file, hexadecimal.
+    pub blake3: String,
+    /// Ids of the requirements that its cases check.
+    pub requirements: Vec<String>,
+    /// Checks of those requirements that the scenario itself doesn't have.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub checks: Vec<LimitCheck>,
+}
+
+/// Case: everything that determines its result.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Case {
+    /// First 16 digits of the BLAKE3 over the scenario's BLAKE3, the additional checks, `set`,
+    /// `faults` and `seed`.
+    pub id: String,
+    /// Name of the scenario.
+    pub scenario: String,
+    /// Seed of the run.
+    pub seed: u64,
+    /// Number of the run in its combination, from 0.
+    pub replicate: u32,
+    /// Keys that are set in the scenario, as `KEY=VALUE`.
+    pub set: Vec<String>,
+    /// Faults that are injected; null: all faults of the scenario.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub faults: Option<Vec<String>>,
+    /// Value of each factor, for display and statistics.
+    pub factors: BTreeMap<String, FactorValue>,
+}
+
+/// Value of a factor in a case.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(untagged)]
+pub enum FactorValue {
+    /// Number, in the factor's unit.
+    Number(f64),
+    /// Anything else, as text.
+    Text(String),
+}
+
+/// Reasons why there is no plan.
+#[derive(Debug, thiserror::Error)]
+pub enum PlanError {
+    /// A file of the campaign isn't valid.
+    #[error(transparent)]
+    File(#[from] ScenarioError),
+    /// The file of requirements isn't valid.
+    #[error(transparent)]
+    Requirements(#[from] RequirementsError),
+    /// A file can't be read or written.
+    #[error("{action} {path}: {source}")]
+    System {
+        /// Action that failed.
+        action: &'static str,
+        /// Path that the action concerned.
+        path: PathBuf,
+        /// Error of the operating system.
+        source: std::io::Error,
+    },
+    /// The campaign contradicts itself.
+    #[error("plan {campaign}: {reason}")]
+    Contradiction {
+        /// The campaign.
+        campaign: PathBuf,
+        /// Reason.
+        reason: String,
+    },
+    /// The file isn't a plan.
+    #[error("read {path}: {reason}")]
+    Form {
+        /// The file.
+        path: PathBuf,
+        /// Problem found.
+        reason: String,
+    },
+}
+
+impl Plan {
+    /// Reads a plan.
+    ///
+    /// # Errors
+    /// If it can't be read, isn't a plan of this version, or was changed after it was made.
+    pub fn read(path: &Path) -> Result<Self, PlanError> {
+        let form = |reason: String| PlanError::Form { path: path.to_owned(), reason };
+        let text = system("read", path, std::fs::read_to_string(path))?;
+        let version: Version = serde_json::from_str(&text)
+            .map_err(|error| form(format!("expected a plan of a campaign: {error}")))?;
+        if version.schema != SCHEMA {
+            return Err(form(format!(
+                "found version {}, this program reads version {SCHEMA}{}",
+                version.schema,
+                if version.schema > SCHEMA { ": a newer Octant wrote it" } else { "" }
+            )));
+        }
+        let plan: Self = serde_json::from_str(&text)
+            .map_err(|error| form(format!("expected a plan of a campaign: {error}")))?;
+        let hash = plan.hash();
+        if hash != plan.id {
+            return Err(form(format!(
+                "it was changed after it was made: its contents give the id {}, expected {}",
+                short(&hash),
+                short(&plan.id)
+            )));
+        }
+        Ok(plan)
+    }
+
+    /// Writes the plan as `plan.json` into a folder, which is created. An existing plan is kept if
+    /// it is the same, and replaced if it is a part of this one and `extend` is set.
+    ///
+    /// # Errors
+    /// If there is another plan, or the operating system refuses.
+    pub fn write(&self, folder: &Path, extend: bool) -> Result<Written, PlanError> {
+        let path = folder.join(FILE_NAME);
+        let mut written = Written::New;
+        if path.exists() {
+            let there = Self::read(&path)?;
+            if there.id == self.id {
+                return Ok(Written::There);
+            }
+            let ids: std::collections::HashSet<&str> = self.ids().collect();
+            let gone = there.ids().filter(|id| !ids.contains(id)).count();
+            let form = |reason: String| PlanError::Form { path: path.clone(), reason };
+            if gone > 0 {
+                return Err(form(format!(
+                    "another plan is there, of which {gone} of {} cases are not in this one: expected \
+                     an empty folder",
+                    there.cases.len()
+                )));
+            }
+            if !extend {
+                return Err(form(format!(
+                    "a plan with {} of these {} cases is there: --extend takes it over, with its \
+                     results",
+                    there.cases.len(),
+                    self.cases.len()
+                )));
+            }
+            written = Written::Extended(self.cases.len() - there.cases.len());
+        }
+        system("create", folder, std::fs::create_dir_all(folder))?;
+        super::clean(folder);
+        let text = self.to_json();
+        let new = system("create a file in", folder, super::new_file(folder))?;
+        system("write", &path, std::fs::write(new.path(), text))?;
+        system("write", &path, new.persist(&path).map_err(|error| error.error))?;
+        Ok(written)
+    }
+
+    fn ids(&self) -> impl Iterator<Item = &str> {
+        self.cases.iter().map(|case| case.id.as_str())
+    }
+
+    fn to_json(&self) -> String {
+        // Values of these types can always be serialised.
+        serde_json::to_string_pretty(self).unwrap_or_default() + "\n"
+    }
+
+    /// Computes the id from the contents, independent of the places of files.
+    pub(super) fn hash(&self) -> String {
+        let placeless = |scenario: &PlannedScenario| PlannedScenario {
+            file: PathBuf::new(),
+            ..scenario.clone()
+        };
+        let unnamed = Self {
+            id: String::new(),
+            campaign: PathBuf::new(),
+            scenarios: self.scenarios.iter().map(placeless).collect(),
+            ..self.clone()
+        };
+        blake3::hash(unnamed.to_json().as_bytes()).to_hex().to_string()
+    }
+
+    /// Returns a case by its id.
+    #[must_use]
+    pub fn case(&self, id: &str) -> Option<&Case> {
+        self.cases.iter().find(|case| case.id == id)
+    }
+
+    /// Returns the scenario of a case.
+    ///
+    /// # Errors
+    /// If there is none of its name.
+    pub fn planned(&self, case: &Case) -> Result<&PlannedScenario, PlanError> {
+        let found = self.scenarios.iter().find(|scenario| scenario.id == case.scenario);
+        found.ok_or_else(|| PlanError::Contradiction {
+            campaign: self.campaign.clone(),
+            reason: format!(
+                "case {} is of scenario {:?}, which isn't there",
+                case.id, case.scenario
+            ),
+        })
+    }
+
+    /// Returns the requirement on all cases together, for a requirement of the plan.
+    pub(super) fn ensemble(&self, id: &str) -> Option<Ensemble> {
+        self.requirements.iter().find(|planned| planned.check.id == id)?.ensemble
+    }
+
+    /// Checks that the scenarios' files are those that were planned.
+    ///
+    /// # Errors
+    /// If one can't be read, or was changed.
+    pub fn check_files(&self) -> Result<(), PlanError> {
+        self.scenarios.iter().try_for_each(PlannedScenario::check_file)
+    }
+
+    /// Checks that every case can be set up, before any is run.
+    pub(super) fn check_cases(&self) -> Result<(), PlanError> {
+        // If nothing is drawn, replicates of a combination differ in their seed alone.
+        let mut seen = std::collections::HashSet::new();
+        for case in &self.cases {
+            if seen.insert((&case.scenario, &case.set, &case.faults)) {
+                let scenario = self.planned(case)?.with(case)?;
+                if !scenario.source.has_plant() || scenario.realtime.by_clock {
+                    return Err(PlanError::Contradiction {
+                        campaign: self.campaign.clone(),
+                        reason: format!(
+                            "scenario {:?} is not simulated: a campaign needs source.uri = \"plant\", \
+                             and realtime.pace = \"free\"",
+                            case.scenario
+                        ),
+                    });
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+impl PlannedScenario {
+    fn check_file(&self) -> Result<(), PlanError> {
+        let bytes = system("read", &self.file, std::fs::read(&self.file))?;
+        let found = blake3::hash(&bytes).to_hex().to_string();
+        if found == self.blake3 {
+            return Ok(());
+        }
+        Err(PlanError::Form {
+            path: self.file.clone(),
+            reason: format!(
+                "it was changed after the campaign was planned: found {}, expected {}",
+                short(&found),
+                short(&self.blake3)
+            ),
+        })
+    }
+
+    /// Returns the scenario of a case, as it is run.
+    ///
+    /// # Errors
+    /// If the file isn't the planned one, or the scenario isn't valid.
+    pub fn scenario(&self, case: &Case) -> Result<Scenario, PlanError> {
+        self.check_file()?;
+        self.with(case)
+    }
+
+    fn with(&self, case: &Case) -> Result<Scenario, PlanError> {
+        let mut scenario = Scenario::load(&self.file, &case.set)?;
+        scenario.requirements.extend(self.checks.iter().map(|check| {
+            octant_scenario::Requirement {
+                check: check.clone(),
+                text: String::new(),
+                limit_text: check.limit.to_string(),
+                clause: None,
+            }
+        }));
+        let Some(faults) = &case.faults else { return Ok(scenario) };
+        scenario
+            .with_only(faults)
+            .map_err(|error| PlanError::Form { path: self.file.clone(), reason: error.to_string() })
+    }
+}
+
+/// Outcome of writing a plan.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Written {
+    /// There was no plan.
+    New,
+    /// The same plan was there already.
+    There,
+    /// The plan replaced a smaller one; holds the number of new cases.
+    Extended(usize),
+}
+
+#[derive(Deserialize)]
+struct Version {
+    schema: u32,
+}
+
+/// Returns the first digits of a hash, for display.
+pub(crate) fn short(hash: &str) -> &str {
+    hash.get(..12).unwrap_or(hash)
+}
+
+pub(super) fn system<T>(
+    action: &'static str,
+    path: &Path,
+    result: std::io::Result<T>,
+) -> Result<T, PlanError> {
+    result.map_err(|source| PlanError::System { action, path: path.to_owned(), source })
+}

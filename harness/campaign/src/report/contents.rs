@@ -1,0 +1,269 @@
+//! Contents of a report: numbers, discrepancies and texts, from the plan of a campaign and its
+//! results.
+
+use super::combination::Combination;
+use super::error::ReportError;
+use super::figures::{CombinationFigures, OutlierFigures, ScenarioFigures};
+use super::requirement::RequirementFigures;
+use super::rows::Row;
+use super::selftest::SelfTest;
+use super::{about, discrepancy, figures, requirement, rows, selftest, tables};
+use crate::against::{Against, Selection, against};
+use crate::execute::{Shard, refuse_foreign};
+use crate::plan::Plan;
+use crate::status::{self, Status, StatusError};
+use crate::trace::trace;
+use octant_evidence::discrepancy::Discrepancy;
+use octant_evidence::disposition::{self, Dispositions};
+use octant_evidence::manifest::shell_line;
+use octant_requirements::Verdict;
+use octant_requirements::requirement::Requirements;
+use octant_requirements::trace::Trace;
+use serde::Serialize;
+use std::collections::BTreeMap;
+use std::path::Path;
+
+/// Version of `statistics.json`.
+pub const SCHEMA: u32 = 1;
+/// Maximum number of reasons listed.
+const REASONS_MAX: usize = 12;
+
+/// Counting rule of cases: the same here, in `[stop]`, in comparisons and in nights.
+pub const POLICY: &str = "The unit is the independent draw, an instrument with its noise: all cases of a \
+    seed are one draw, and so are cases with the same stream. A draw passes a requirement if all of its \
+    checks pass. A calibration that was refused, a check that came to nothing and an error count as not \
+    passed; in percentiles such a case is beyond every number, and a figure that falls on one is not \
+    defined. Cases that have not run are told and count as nothing.";
+
+/// Numbers over the cases: `statistics.json`.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Statistics {
+    /// Version of this form: [`SCHEMA`].
+    pub schema: u32,
+    /// Name of the campaign.
+    pub title: String,
+    /// Plan.
+    pub plan: String,
+    /// Overall verdict.
+    pub verdict: Verdict,
+    /// BLAKE3 over all results, in the order of the plan.
+    pub results_blake3: String,
+    /// Cases that count.
+    pub cases: usize,
+    /// Independent draws among them, on which every bound is based.
+    pub draws: usize,
+    /// Counting rule of cases, as text.
+    pub policy: &'static str,
+    /// Cases without a result.
+    pub open: usize,
+    /// Cases by verdict.
+    pub verdicts: BTreeMap<&'static str, usize>,
+    /// Confidence of all intervals, two-sided.
+    pub confidence: f64,
+    /// Requirements that runs verify.
+    pub requirements: Vec<RequirementFigures>,
+    /// The scenarios.
+    pub scenarios: Vec<ScenarioFigures>,
+    /// Combinations with the factors of the grid.
+    pub combinations: Vec<CombinationFigures>,
+    /// Cases that stand out from their combination.
+    pub outliers: Vec<OutlierFigures>,
+    /// Discrepancies with their dispositions.
+    pub discrepancies: Vec<Discrepancy>,
+}
+
+/// Predicts the ensembles by linear theory, and compares them with the cases. This needs the files
+/// of the scenarios, which a folder copied from elsewhere lacks.
+fn predicted(plan: &Plan, folder: &Path) -> Against {
+    if plan.cases.is_empty() {
+        return Against::default();
+    }
+    against(plan, folder, &Selection::default())
+        .unwrap_or_else(|error| Against { left_out: vec![error.to_string()], ..Against::default() })
+}
+
+/// Content of a report.
+#[derive(Clone, Debug)]
+pub struct Report<'a> {
+    /// The plan.
+    pub plan: &'a Plan,
+    /// Name of the folder: command lines are relative to the one above it.
+    pub name: String,
+    /// Progress of the campaign.
+    pub status: Status,
+    /// Numbers over the cases.
+    pub statistics: Statistics,
+    /// Predicted ensembles, compared with the cases.
+    pub prediction: Against,
+    /// The cases.
+    pub rows: Vec<Row<'a>>,
+    /// Combinations of the cases, as in the statistics.
+    pub combinations: Vec<Combination>,
+    /// Dispositions of the discrepancies.
+    pub dispositions: Dispositions,
+    /// Texts of the requirements.
+    pub about: Requirements,
+    /// Trace from requirements to cases and back.
+    pub trace: Trace,
+    /// The self-test of the program.
+    pub selftest: Option<SelfTest>,
+    /// Notes about missing parts.
+    pub notes: Vec<String>,
+    /// Merged tables with their BLAKE3.
+    pub tables: Vec<(String, String)>,
+}
+
+impl<'a> Report<'a> {
+    /// Builds the report of a campaign, from its plan and the results in its folder.
+    ///
+    /// # Errors
+    /// If something in the folder can't be read, or isn't of the plan.
+    pub fn of(plan: &'a Plan, folder: &Path) -> Result<Self, ReportError> {
+        refuse_foreign(plan, folder)?;
+        let dispositions = Dispositions::read(&folder.join(disposition::FILE_NAME))?;
+        let result = |StatusError(error)| ReportError::Result(error);
+        let status = status::of(plan, folder, Shard::WHOLE).map_err(result)?;
+        let end = match &plan.stop {
+            Some(rule) => status::decide(plan, folder, rule).map_err(result)?.end(plan.cases.len()),
+            None => plan.cases.len(),
+        };
+        let (rows, results_blake3) = rows::read(plan, folder, end)?;
+        let (combinations, grid) = figures::combinations(plan, end);
+        let (about, notes) = about::requirements(plan);
+        let trace = trace(plan, &about, folder, end)?;
+        let run = rows.iter().filter(|row| row.outcome.is_some()).count();
+        let (tables, mut wrong) = tables::look(plan, folder, run)?;
+        let selftest = selftest::read(folder).unwrap_or_else(|reason| {
+            wrong.push(reason);
+            None
+        });
+        if let Some(test) = selftest.as_ref().filter(|test| test.verdict != Verdict::Pass) {
+            wrong.push(format!("the self-test of the program came to {}", test.verdict.name()));
+        }
+        let draws = rows::draws(&rows);
+        let mut of_combinations: Vec<CombinationFigures> = combinations
+            .iter()
+            .map(|combination| CombinationFigures::of(plan, &grid, combination, &rows, &draws))
+            .collect();
+        figures::mark(&mut of_combinations);
+        let statistics = Statistics {
+            schema: SCHEMA,
+            title: plan.title.clone(),
+            plan: plan.id.clone(),
+            verdict: status.verdict(),
+            results_blake3,
+            cases: status.cases,
+            draws: status.draws,
+            policy: POLICY,
+            open: status.open,
+            verdicts: status.verdicts.clone(),
+            confidence: figures::CONFIDENCE,
+            requirements: requirement::of(plan, &status, &about, &combinations, &rows),
+            scenarios: (plan.scenarios.iter())
+                .map(|scenario| ScenarioFigures::of(&scenario.id, &grid, &combinations, &rows))
+                .collect(),
+            combinations: of_combinations,
+            outliers: figures::standing_out(&combinations, &rows),
+            discrepancies: discrepancy::find(plan, &status, &combinations, &rows, &wrong),
+        };
+        let absolute = std::path::absolute(folder).unwrap_or_else(|_| folder.to_owned());
+        let name = absolute.file_name().map_or(".".into(), |name| name.to_string_lossy());
+        let name = name.into_owned();
+        Ok(Self {
+            plan,
+            name,
+            status,
+            statistics,
+            prediction: predicted(plan, folder),
+            rows,
+            combinations,
+            dispositions,
+            about,
+            trace,
+            selftest,
+            notes,
+            tables,
+        })
+    }
+
+    /// Returns the number of discrepancies without a disposition.
+    #[must_use]
+    pub fn open(&self) -> usize {
+        self.dispositions.open(&self.statistics.discrepancies).count()
+    }
+
+    /// Lists the entries whose discrepancy doesn't occur any more.
+    #[must_use]
+    pub fn gone(&self) -> Vec<&disposition::Entry> {
+        self.dispositions.gone(&self.statistics.discrepancies)
+    }
+
+    /// Returns the reasons for the verdict.
+    #[must_use]
+    pub fn reasons(&self) -> Vec<String> {
+        if self.statistics.verdict == Verdict::Pass {
+            let count = self.statistics.requirements.len();
+            return vec![format!("{count} of {count} requirements are shown by their cases")];
+        }
+        // A failed check is part of its requirement's reason.
+        let mut all: Vec<String> = (self.statistics.discrepancies.iter())
+            .filter(|found| !["check", "evidence"].contains(&found.kind))
+            .map(|found| found.what.clone())
+            .collect();
+        let more = all.len().saturating_sub(REASONS_MAX);
+        all.truncate(REASONS_MAX);
+        if more > 0 {
+            all.push(format!("and {more} more discrepancies"));
+        }
+        all
+    }
+
+    /// Returns the command lines that make the campaign again, in the folder above its own.
+    #[must_use]
+    pub fn again(&self) -> Vec<Vec<String>> {
+        let line = |words: &[&str]| words.iter().map(|word| (*word).to_owned()).collect();
+        let campaign = self.plan.campaign.display().to_string();
+        let name = self.name.as_str();
+        vec![
+            line(&["octant", "campaign", "plan", &campaign, "--out", name]),
+            line(&["octant", "campaign", "run", name]),
+            line(&["octant", "campaign", "merge", name]),
+            line(&["octant", "campaign", "report", name]),
+        ]
+    }
+
+    /// Returns the command line that runs a case again, with all the evidence of a run.
+    #[must_use]
+    pub fn case_again(&self, case: &str) -> String {
+        let words = ["octant", "campaign", "case", &self.name, case];
+        shell_line(&words.map(str::to_owned))
+    }
+
+    /// Returns the bytes of `statistics.json`.
+    ///
+    /// # Errors
+    /// If it can't be written as JSON.
+    pub fn statistics_json(&self) -> Result<String, ReportError> {
+        json("statistics.json", &self.statistics)
+    }
+
+    /// Returns the bytes of `prediction.json`.
+    ///
+    /// # Errors
+    /// If it can't be written as JSON.
+    pub fn prediction_json(&self) -> Result<String, ReportError> {
+        json("prediction.json", &self.prediction)
+    }
+}
+
+fn json(what: &'static str, value: &impl Serialize) -> Result<String, ReportError> {
+    let text = serde_json::to_string_pretty(value)
+        .map_err(|error| ReportError::Format { what, reason: error.to_string() })?;
+    Ok(octant_score::summary::rows_on_one_line(&text) + "\n")
+}
+
+/// Returns the command line that makes the campaign again.
+pub(crate) fn again(report: &Report<'_>) -> String {
+    let lines: Vec<String> = report.again().iter().map(|words| shell_line(words)).collect();
+    lines.join(" && ")
+}

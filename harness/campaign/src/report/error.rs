@@ -1,0 +1,54 @@
+//! Reasons why there is no report of a campaign.
+
+use crate::case::ResultError;
+use crate::execute::ExecuteError;
+use crate::plan::PlanError;
+use octant_evidence::ManifestError;
+use octant_evidence::disposition::DispositionError;
+use std::path::PathBuf;
+
+/// Reasons why there is no report.
+#[derive(Debug, thiserror::Error)]
+pub enum ReportError {
+    /// The plan isn't valid.
+    #[error(transparent)]
+    Plan(#[from] PlanError),
+    /// The folder has results of another plan.
+    #[error(transparent)]
+    Foreign(#[from] ExecuteError),
+    /// A result can't be read.
+    #[error(transparent)]
+    Result(#[from] ResultError),
+    /// A file can't be read or written.
+    #[error("{action} {path}: {source}")]
+    System {
+        /// Action that failed.
+        action: &'static str,
+        /// Path that the action concerned.
+        path: PathBuf,
+        /// Error of the operating system.
+        source: std::io::Error,
+    },
+    /// The content of a file isn't valid.
+    #[error("read {path}: {reason}")]
+    Form {
+        /// The file.
+        path: PathBuf,
+        /// Problem found.
+        reason: String,
+    },
+    /// The results can't be written in a format.
+    #[error("write {what}: {reason}")]
+    Format {
+        /// Format to be written.
+        what: &'static str,
+        /// Reason.
+        reason: String,
+    },
+    /// The dispositions can't be read.
+    #[error(transparent)]
+    Dispositions(#[from] DispositionError),
+    /// The manifest can't be written.
+    #[error(transparent)]
+    Manifest(#[from] ManifestError),
+}

@@ -1,0 +1,154 @@
+//! Folder of a campaign as evidence: inputs, results, and a manifest with the hash of every file,
+//! signed as that of a run.
+
+use super::contents::{Report, again};
+use super::error::ReportError;
+use super::junit::junit;
+use octant_evidence::manifest::{CampaignFacts, program_sha256};
+use octant_evidence::signature::{self, Key};
+use octant_evidence::{Manifest, RunFacts, disposition};
+use std::io::ErrorKind;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::SystemTime;
+
+/// Name of the page in the folder of a campaign.
+pub const PAGE: &str = "report.html";
+/// Name of the statistics file.
+pub const STATISTICS: &str = "statistics.json";
+/// Name of the file that compares predicted ensembles with the cases.
+pub const PREDICTION: &str = "prediction.json";
+/// Name of the JUnit file.
+pub const JUNIT: &str = "junit.xml";
+/// Folder with copies of the files from which the campaign was planned.
+pub const INPUTS: &str = "inputs";
+
+/// Writes everything into the folder of a campaign: dispositions, statistics, JUnit, page, copies
+/// of the inputs, and the manifest last. Existing files with the same content aren't touched.
+///
+/// # Errors
+/// If a file can't be written, or nothing can be appended to the dispositions: then nothing is
+/// written.
+pub fn write(
+    report: &mut Report<'_>,
+    folder: &Path,
+    key: Option<Arc<Key>>,
+    started: SystemTime,
+) -> Result<Manifest, ReportError> {
+    let path = folder.join(disposition::FILE_NAME);
+    let discrepancies = &report.statistics.discrepancies;
+    // Without discrepancies and without an existing file there is nothing to write.
+    if !(discrepancies.is_empty() && report.dispositions.text.is_empty()) {
+        let dispositions = &report.dispositions;
+        report.dispositions = dispositions.with(
+            discrepancies,
+            &path,
+            "this campaign",
+            "octant campaign report DIR",
+        )?;
+    }
+    let xml = junit(report)
+        .map_err(|error| ReportError::Format { what: JUNIT, reason: error.to_string() })?;
+    let (statistics, prediction) = (report.statistics_json()?, report.prediction_json()?);
+    let html = crate::page::render(report, true);
+    if !report.dispositions.text.is_empty() {
+        keep(&path, report.dispositions.text.as_bytes())?;
+    }
+    keep(&folder.join(STATISTICS), statistics.as_bytes())?;
+    keep(&folder.join(PREDICTION), prediction.as_bytes())?;
+    keep(&folder.join(JUNIT), xml.as_bytes())?;
+    keep(&folder.join(PAGE), html.as_bytes())?;
+    inputs(report, folder)?;
+    // An old signature doesn't apply to the new manifest.
+    let old = folder.join(signature::FILE_NAME);
+    match std::fs::remove_file(&old) {
+        Err(source) if source.kind() != ErrorKind::NotFound => {
+            return Err(ReportError::System { action: "remove", path: old, source });
+        }
+        _ => {}
+    }
+    let program = program_sha256();
+    let (first, last) = times(report, folder);
+    let facts = RunFacts {
+        command_line: report.again().pop().unwrap_or_default(),
+        campaign: Some(CampaignFacts {
+            title: report.plan.title.clone(),
+            plan: report.plan.id.clone(),
+            verdict: report.statistics.verdict,
+            cases: report.statistics.cases,
+            open_cases: report.statistics.open,
+            discrepancies: report.statistics.discrepancies.len(),
+            open_discrepancies: report.open(),
+            results_blake3: report.statistics.results_blake3.clone(),
+            program_sha256: program,
+            selftest: report.selftest.as_ref().map(|test| test.verdict),
+            first_result: first,
+            last_result: last,
+            rerun: again(report),
+        }),
+        key,
+        ..RunFacts::between(started, SystemTime::now())
+    };
+    Ok(Manifest::write(folder, &facts)?)
+}
+
+/// Returns the times of the first and the last result, from the file system.
+fn times(report: &Report<'_>, folder: &Path) -> (Option<String>, Option<String>) {
+    let of = |case: &str| {
+        let path = crate::case::file(folder, case);
+        std::fs::metadata(path).ok()?.modified().ok()
+    };
+    let run = report.rows.iter().filter(|row| row.outcome.is_some());
+    let all: Vec<SystemTime> = run.filter_map(|row| of(&row.case.id)).collect();
+    let text = |time: &SystemTime| humantime::format_rfc3339_seconds(*time).to_string();
+    (all.iter().min().map(text), all.iter().max().map(text))
+}
+
+/// Copies the campaign's file, its requirements and its scenarios, if they are still the planned
+/// ones. An existing copy stays.
+fn inputs(report: &mut Report<'_>, folder: &Path) -> Result<(), ReportError> {
+    let plan = report.plan;
+    let mut files: Vec<(PathBuf, PathBuf)> = Vec::new();
+    let folder = folder.join(INPUTS);
+    for scenario in &plan.scenarios {
+        let name = scenario.file.file_name().unwrap_or_default().to_string_lossy();
+        let hash = scenario.blake3.get(..12).unwrap_or(&scenario.blake3);
+        let copy = folder.join(format!("{hash}-{name}"));
+        let bytes = std::fs::read(&scenario.file).ok();
+        let planned = bytes.is_some_and(|b| blake3::hash(&b).to_hex().as_str() == scenario.blake3);
+        if planned && !files.iter().any(|(_, other)| *other == copy) {
+            files.push((scenario.file.clone(), copy));
+        }
+    }
+    // Only if the campaign's plan is still the same.
+    if crate::plan::Plan::of(&plan.campaign).is_ok_and(|now| now.id == plan.id) {
+        files.push((plan.campaign.clone(), folder.join("campaign.toml")));
+        let campaign = crate::file::Campaign::load(&plan.campaign).ok();
+        if let Some(path) = campaign.and_then(|campaign| campaign.requirements) {
+            files.push((path, folder.join("requirements.toml")));
+        }
+    }
+    if files.is_empty() {
+        return Ok(());
+    }
+    std::fs::create_dir_all(&folder).map_err(|source| ReportError::System {
+        action: "create",
+        path: folder.clone(),
+        source,
+    })?;
+    for (from, to) in files {
+        let bytes = std::fs::read(&from).map_err(|source| ReportError::System {
+            action: "read",
+            path: from,
+            source,
+        })?;
+        keep(&to, &bytes)?;
+    }
+    Ok(())
+}
+
+/// Writes a file whole or not at all, and only if it changes.
+fn keep(path: &Path, bytes: &[u8]) -> Result<(), ReportError> {
+    let wrong = |source| ReportError::System { action: "write", path: path.to_owned(), source };
+    crate::keep(path, bytes).map_err(wrong)
+}

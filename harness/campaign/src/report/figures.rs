@@ -1,0 +1,424 @@
+//! Numbers over the cases of a campaign: `statistics.json`.
+//!
+//! The statistics themselves are those of [`octant_statistics`]. An end of an interval for which
+//! there are too few cases is null.
+//!
+//! A case that ran without a navigation, because its calibration was refused or it ended as an
+//! error, is part of every figure, as a value beyond every number: percentiles are those of the
+//! full sample, and null where they fall on such cases. Leaving them out would bias the drift to
+//! that of the good cases. Cases with the same stream count once.
+
+use super::combination::{self, Combination, number_of, takes_part};
+use super::rows::{Curve, Drift, Row};
+use crate::plan::{Case, Plan};
+use octant_statistics::convergence::{Step, convergence};
+use octant_statistics::envelope::envelope;
+use octant_statistics::outlier::{LIMIT, Scale, outliers};
+use octant_statistics::quantile::interval;
+use octant_statistics::rank::{Correlation, spearman};
+use octant_statistics::rate::{RateBounds, rate_bounds};
+use octant_statistics::sample::{Interval, percentile, rms};
+use serde::Serialize;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// Default confidence of all intervals, two-sided.
+pub const CONFIDENCE: f64 = 0.95;
+/// Percentiles of the envelopes.
+pub const PERCENTILES: [f64; 5] = [0.05, 0.25, 0.5, 0.75, 0.95];
+/// Measure that is correlated with the factors.
+pub const DRIFT: &str = "navigation.radial_error_nmi.rate_per_h";
+
+/// Radial position errors of many cases, nmi.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Position {
+    /// Number of cases that have it.
+    pub cases: usize,
+    /// Median.
+    pub cep50: Interval,
+    /// 95th percentile.
+    pub r95: Interval,
+    /// Root mean square.
+    pub drms: f64,
+}
+
+impl Position {
+    fn of(radial_nmi: &[f64]) -> Option<Self> {
+        Some(Self {
+            cases: radial_nmi.len(),
+            cep50: interval(radial_nmi, 0.5, CONFIDENCE)?,
+            r95: interval(radial_nmi, 0.95, CONFIDENCE)?,
+            drms: rms(radial_nmi)?,
+        })
+    }
+}
+
+/// Median and 95th percentile of a measure.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Spread {
+    /// Median.
+    pub p50: Interval,
+    /// 95th percentile.
+    pub p95: Interval,
+}
+
+impl Spread {
+    fn of(values: &[f64]) -> Option<Self> {
+        Some(Self {
+            p50: interval(values, 0.5, CONFIDENCE)?,
+            p95: interval(values, 0.95, CONFIDENCE)?,
+        })
+    }
+}
+
+/// Drift of the cases of one combination.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct CombinationFigures {
+    /// Scenario.
+    pub scenario: String,
+    /// Factors of the grid with their values.
+    pub factors: BTreeMap<String, String>,
+    /// Cases of the plan.
+    pub cases: usize,
+    /// Independent draws among those that ran, on which the figures are based.
+    pub draws: usize,
+    /// Draws with a navigation.
+    pub navigated: usize,
+    /// Draws without a navigation: refused or ended as errors, beyond every number.
+    pub beyond: usize,
+    /// Radial error at the end of the navigation; null, as everything below, if no case navigated.
+    pub at_end: Option<Position>,
+    /// Radial error at marks that all navigations reached.
+    pub at_marks: BTreeMap<String, Position>,
+    /// Largest radial error, nmi.
+    pub largest_nmi: Option<Spread>,
+    /// Radial error rate, nmi/h.
+    pub rate_nmi_per_h: Option<RateBounds>,
+    /// Time-RMS of the radial error, nmi.
+    pub time_rms_nmi: Option<Spread>,
+    /// Percentiles of the errors over time.
+    pub envelope: Option<EnvelopeFigures>,
+    /// Convergence of the median of the radial error at the end.
+    pub convergence_cep50: Vec<Step>,
+    /// Convergence of its 95th percentile.
+    pub convergence_r95: Vec<Step>,
+    /// Correlation of the drift with each drawn factor.
+    pub sensitivity: Vec<FactorFigures>,
+}
+
+/// Percentiles of latitude and longitude error over time.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct EnvelopeFigures {
+    /// Times, h.
+    pub hours: Vec<f64>,
+    /// Percentiles, 0 to 1.
+    pub percentiles: Vec<f64>,
+    /// Latitude error, arcmin: a curve for each percentile.
+    pub latitude_arcmin: Vec<Vec<f64>>,
+    /// Longitude error, arcmin.
+    pub longitude_arcmin: Vec<Vec<f64>>,
+}
+
+/// Correlation of the drift with a factor.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct FactorFigures {
+    /// The factor.
+    pub factor: String,
+    /// Cases in which the factor has an effect.
+    pub cases: usize,
+    /// Spearman's rank correlation with the radial error rate; null with fewer than three cases, or
+    /// if one of them is constant.
+    pub correlation: Option<Correlation>,
+    /// True if significant at 5 %, with all correlations of the campaign considered.
+    pub stands_out: bool,
+}
+
+/// All cases of a scenario over its combinations. They aren't independent of each other, so there
+/// are no bounds.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ScenarioFigures {
+    /// Name.
+    pub scenario: String,
+    /// Combinations.
+    pub combinations: usize,
+    /// Cases with a navigation.
+    pub navigated: usize,
+    /// Cases that ran without one: beyond every number.
+    pub beyond: usize,
+    /// Median of the radial error at the end, nmi.
+    pub cep50_nmi: Option<f64>,
+    /// 95th percentile.
+    pub r95_nmi: Option<f64>,
+    /// Median of the radial error rates, nmi/h.
+    pub rate50_nmi_per_h: Option<f64>,
+    /// 95th percentile.
+    pub rate95_nmi_per_h: Option<f64>,
+    /// Median of the time-RMS, nmi.
+    pub time_rms_nmi: Option<f64>,
+    /// Spearman's ρ of the drift with the numeric factors of the grid. Without a probability,
+    /// because the same instruments occur at all values.
+    pub grid: Vec<GridFigures>,
+}
+
+/// Correlation of the drift with a factor of the grid.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct GridFigures {
+    /// The factor.
+    pub factor: String,
+    /// Cases.
+    pub cases: usize,
+    /// Spearman's ρ with the radial error rate.
+    pub rho: f64,
+}
+
+/// Outlying case.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct OutlierFigures {
+    /// The case.
+    pub case: String,
+    /// Combination, as a place in the list of them.
+    pub combination: usize,
+    /// The measure.
+    pub measure: &'static str,
+    /// Value.
+    pub value: f64,
+    /// Median of the combination.
+    pub median: f64,
+    /// Modified z-score of the logarithm; null if it isn't finite.
+    pub score: f64,
+}
+
+/// Cases of a sample that ran, each with its drift; a case without one is beyond every number.
+struct Sample<'a> {
+    cases: Vec<(&'a Case, Option<&'a Drift>)>,
+}
+
+impl<'a> Sample<'a> {
+    /// Selects the cases at these places, the first of each draw.
+    fn of_draws(rows: &'a [Row<'_>], places: &[usize], draws: &[usize]) -> Self {
+        let mut seen = BTreeSet::new();
+        let is_new = |place: &&usize| draws.get(**place).is_none_or(|draw| seen.insert(*draw));
+        let run = |place: &&usize| rows.get(**place).is_some_and(|row| row.outcome.is_some());
+        Self::of(rows, places.iter().filter(run).filter(is_new).copied())
+    }
+
+    fn of(rows: &'a [Row<'_>], places: impl Iterator<Item = usize>) -> Self {
+        let one = |place: usize| {
+            let row = rows.get(place)?;
+            Some((row.case, row.outcome.as_ref()?.drift.as_ref()))
+        };
+        Self { cases: places.filter_map(one).collect() }
+    }
+
+    fn navigated(&self) -> usize {
+        self.cases.iter().filter(|(_, drift)| drift.is_some()).count()
+    }
+
+    fn beyond(&self) -> usize {
+        self.cases.len() - self.navigated()
+    }
+
+    /// Returns a measure of all cases; empty if no case navigates.
+    fn column(&self, of: impl Fn(&Drift) -> f64) -> Vec<f64> {
+        if self.navigated() == 0 {
+            return Vec::new();
+        }
+        self.cases.iter().map(|(_, drift)| drift.map_or(f64::INFINITY, &of)).collect()
+    }
+}
+
+/// A measure of a drift.
+type Measure = fn(&Drift) -> f64;
+
+/// Measures that are searched for outliers.
+const OUTLYING: [(&str, Measure); 2] = [
+    ("navigation.radial_error_nmi.max", |drift| drift.max_nmi),
+    (DRIFT, |drift| drift.rate_nmi_per_h),
+];
+
+fn drift<'a>(rows: &'a [Row<'_>], case: usize) -> Option<&'a Drift> {
+    rows.get(case)?.outcome.as_ref()?.drift.as_ref()
+}
+
+impl CombinationFigures {
+    pub(super) fn of(
+        plan: &Plan,
+        grid: &[String],
+        combination: &Combination,
+        rows: &[Row<'_>],
+        draws: &[usize],
+    ) -> Self {
+        let sample = Sample::of_draws(rows, &combination.cases, draws);
+        let column = |f: fn(&Drift) -> f64| sample.column(f);
+        let last = column(|drift| drift.final_nmi);
+        let of_last = |p: f64| convergence(&last, |values| interval(values, p, CONFIDENCE));
+        let curves: Vec<&Curve> =
+            sample.cases.iter().filter_map(|(_, drift)| drift.as_ref()?.curve.as_ref()).collect();
+        let values = |name: &String| {
+            let cases = combination.cases.iter().filter_map(|case| plan.cases.get(*case));
+            cases.filter_map(|case| case.factors.get(name)).collect::<Vec<_>>()
+        };
+        let is_number = |name: &String| values(name).into_iter().all(|v| number_of(v).is_some());
+        let drawn = |name: &&String| !grid.contains(*name) && is_number(name);
+        Self {
+            scenario: combination.scenario.clone(),
+            factors: combination.factors.iter().cloned().collect(),
+            cases: combination.cases.len(),
+            draws: sample.cases.len(),
+            navigated: sample.navigated(),
+            beyond: sample.beyond(),
+            at_end: Position::of(&last),
+            at_marks: marks(&sample),
+            largest_nmi: Spread::of(&column(|drift| drift.max_nmi)),
+            rate_nmi_per_h: rate_bounds(&column(|drift| drift.rate_nmi_per_h), CONFIDENCE),
+            time_rms_nmi: Spread::of(&column(|drift| drift.rms_nmi)),
+            envelope: EnvelopeFigures::of(&curves, sample.beyond()),
+            convergence_cep50: of_last(0.5),
+            convergence_r95: of_last(0.95),
+            sensitivity: (plan.factors.iter().filter(drawn))
+                .filter_map(|name| FactorFigures::of(name, &sample))
+                .collect(),
+        }
+    }
+}
+
+/// Collects radial errors at the marks that every navigating case reached.
+fn marks(sample: &Sample<'_>) -> BTreeMap<String, Position> {
+    let drifts = || sample.cases.iter().filter_map(|(_, drift)| *drift);
+    let names: BTreeSet<&String> = drifts().flat_map(|drift| drift.marks_nmi.keys()).collect();
+    let of = |name: &String| {
+        let reached = drifts().all(|drift| drift.marks_nmi.contains_key(name));
+        let value = |drift: &Drift| drift.marks_nmi.get(name).copied().unwrap_or(f64::INFINITY);
+        Some((name.clone(), Position::of(&reached.then(|| sample.column(value))?)?))
+    };
+    names.into_iter().filter_map(of).collect()
+}
+
+impl EnvelopeFigures {
+    /// Builds the envelope up to the end of the shortest navigation; `None` for navigations whose
+    /// lengths differ so much that their grids differ.
+    ///
+    /// An error has a sign, and one beyond every number may have either: it counts as far below for
+    /// the percentiles under the median and as far above for those over it. The median of such a
+    /// sample isn't defined.
+    fn of(curves: &[&Curve], beyond: usize) -> Option<Self> {
+        let step_s = curves.first()?.step_s;
+        if curves.iter().any(|curve| curve.step_s != step_s) {
+            return None;
+        }
+        let points = curves.iter().map(|curve| curve.latitude_arcmin.len()).min()?;
+        let of = |column: fn(&Curve) -> &[f64]| {
+            let all: Vec<&[f64]> = curves.iter().filter_map(|c| column(c).get(..points)).collect();
+            let with = |far: f64, percentiles: &[f64]| {
+                let far = vec![far; points];
+                let rest = std::iter::repeat_n(far.as_slice(), beyond);
+                let all: Vec<&[f64]> = all.iter().copied().chain(rest).collect();
+                envelope(&all, points, percentiles).ok()
+            };
+            let curve = |p: f64| match p.total_cmp(&0.5) {
+                std::cmp::Ordering::Less => with(f64::NEG_INFINITY, &[p])?.curves.pop(),
+                std::cmp::Ordering::Equal if beyond > 0 => Some(vec![f64::NAN; points]),
+                _ => with(f64::INFINITY, &[p])?.curves.pop(),
+            };
+            PERCENTILES.into_iter().map(curve).collect::<Option<Vec<_>>>()
+        };
+        Some(Self {
+            hours: (0..points).map(|k| k as f64 * step_s / 3600.0).collect(),
+            percentiles: PERCENTILES.to_vec(),
+            latitude_arcmin: of(|curve| &curve.latitude_arcmin)?,
+            longitude_arcmin: of(|curve| &curve.longitude_arcmin)?,
+        })
+    }
+}
+
+impl FactorFigures {
+    /// Correlates a factor; `None` if it isn't numeric.
+    fn of(name: &str, sample: &Sample<'_>) -> Option<Self> {
+        let (mut values, mut rates) = (Vec::new(), Vec::new());
+        for (case, drift) in &sample.cases {
+            let Some(value) = case.factors.get(name) else { continue };
+            let number = number_of(value)?;
+            if takes_part(case, name) {
+                values.push(number);
+                rates.push(drift.map_or(f64::INFINITY, |drift| drift.rate_nmi_per_h));
+            }
+        }
+        Some(Self {
+            factor: name.to_owned(),
+            cases: values.len(),
+            correlation: spearman(&values, &rates),
+            stands_out: false,
+        })
+    }
+}
+
+/// Marks significant correlations, with all correlations considered.
+pub(super) fn mark(all: &mut [CombinationFigures]) {
+    let looked_at: usize = (all.iter().flat_map(|figures| &figures.sensitivity))
+        .filter(|factor| factor.correlation.is_some())
+        .count();
+    for factor in all.iter_mut().flat_map(|figures| &mut figures.sensitivity) {
+        factor.stands_out = factor.correlation.is_some_and(|c| c.stands_out(0.05, looked_at));
+    }
+}
+
+impl ScenarioFigures {
+    pub(super) fn of(
+        scenario: &str,
+        grid: &[String],
+        combinations: &[Combination],
+        rows: &[Row<'_>],
+    ) -> Self {
+        let mine: Vec<&Combination> =
+            combinations.iter().filter(|combination| combination.scenario == scenario).collect();
+        let sample = Sample::of(rows, mine.iter().flat_map(|c| &c.cases).copied());
+        let at = |p: f64, f: fn(&Drift) -> f64| percentile(&sample.column(f), p);
+        let of_grid = |factor: &String| {
+            let found = FactorFigures::of(factor, &sample)?;
+            let rho = found.correlation?.rho;
+            Some(GridFigures { factor: factor.clone(), cases: found.cases, rho })
+        };
+        Self {
+            scenario: scenario.to_owned(),
+            combinations: mine.len(),
+            navigated: sample.navigated(),
+            beyond: sample.beyond(),
+            cep50_nmi: at(0.5, |drift| drift.final_nmi),
+            r95_nmi: at(0.95, |drift| drift.final_nmi),
+            rate50_nmi_per_h: at(0.5, |drift| drift.rate_nmi_per_h),
+            rate95_nmi_per_h: at(0.95, |drift| drift.rate_nmi_per_h),
+            time_rms_nmi: at(0.5, |drift| drift.rms_nmi),
+            grid: grid.iter().filter_map(of_grid).collect(),
+        }
+    }
+}
+
+/// Lists cases that stand out from their combination, the farthest first.
+pub(super) fn standing_out(combinations: &[Combination], rows: &[Row<'_>]) -> Vec<OutlierFigures> {
+    let mut found = Vec::new();
+    for (place, combination) in combinations.iter().enumerate() {
+        let there: Vec<(&Case, &Drift)> = (combination.cases.iter())
+            .filter_map(|case| Some((rows.get(*case)?.case, drift(rows, *case)?)))
+            .collect();
+        for (measure, of) in OUTLYING {
+            let values: Vec<f64> = there.iter().map(|(_, drift)| of(drift)).collect();
+            let median = percentile(&values, 0.5).unwrap_or(f64::NAN);
+            found.extend(outliers(&values, Scale::Logarithm, LIMIT).into_iter().filter_map(|o| {
+                Some(OutlierFigures {
+                    case: there.get(o.index)?.0.id.clone(),
+                    combination: place,
+                    measure,
+                    value: *values.get(o.index)?,
+                    median,
+                    score: o.score,
+                })
+            }));
+        }
+    }
+    found.sort_by(|a, b| b.score.abs().total_cmp(&a.score.abs()).then(a.case.cmp(&b.case)));
+    found
+}
+
+/// Returns the combinations of a plan with the names of the factors that span them.
+pub(super) fn combinations(plan: &Plan, end: usize) -> (Vec<Combination>, Vec<String>) {
+    (combination::of(plan, end), combination::of_grid(plan))
+}

@@ -1,0 +1,23 @@
+//! Report of a campaign: numbers, discrepancies, and the evidence of both.
+//!
+//! [`rows`] reads the results, [`combination`] groups them, [`figures`] and [`requirement`] are
+//! their statistics, [`discrepancy`] lists everything that isn't a pass,
+//! [`disposition`](octant_evidence::disposition) has its dispositions, [`Report`] puts them together.
+//! [`evidence`] writes all of it into the folder of the campaign. The page is [`crate::page`].
+
+mod about;
+pub mod combination;
+mod contents;
+pub mod discrepancy;
+mod error;
+pub mod evidence;
+pub mod figures;
+pub mod junit;
+pub mod requirement;
+pub mod rows;
+pub mod selftest;
+mod tables;
+
+pub(crate) use contents::again;
+pub use contents::{POLICY, Report, SCHEMA, Statistics};
+pub use error::ReportError;

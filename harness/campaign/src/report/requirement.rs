@@ -1,0 +1,223 @@
+//! Figures of each requirement over the cases: overall, by combination, and in the order of the
+//! cases.
+
+use super::combination::Combination;
+use super::figures::CONFIDENCE;
+use super::rows::{self, Outcome, Row};
+use crate::plan::Plan;
+use crate::status::{RequirementStatus, Status};
+use octant_requirements::Verdict;
+use octant_requirements::requirement::{Ensemble, Requirements};
+use octant_requirements::trace::{Counts, claim};
+use octant_score::verdict::RequirementResult;
+use octant_statistics::cluster::Draws;
+use octant_statistics::convergence::{Step, convergence, pass};
+use octant_statistics::proportion::{Demand, Needed, further_at_rate, success_lower_bound};
+use serde::Serialize;
+use std::collections::BTreeMap;
+
+/// Figures of a requirement over the cases.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct RequirementFigures {
+    /// Id.
+    pub id: String,
+    /// Text; null if its file isn't there, or was changed.
+    pub text: Option<String>,
+    /// Document and clause of origin.
+    pub clause: Option<String>,
+    /// Measure; null if no case checks it.
+    pub measure: Option<String>,
+    /// Comparison of the measure with the limit.
+    pub comparison: Option<&'static str>,
+    /// The limit, in the unit of the measure.
+    pub limit: Option<f64>,
+    /// Overall verdict.
+    pub verdict: Verdict,
+    /// Reason.
+    pub reason: String,
+    /// Checks.
+    pub counts: Counts,
+    /// Independent draws: one passes if all of its checks did.
+    pub draws: Draws,
+    /// Result of the draws, as a sentence; null if none is known.
+    pub claim: Option<String>,
+    /// Requirement on all cases together; null if every case must pass.
+    pub asked: Option<Ensemble>,
+    /// Confidence of the lower bound, one-sided: the required one, or 95 %.
+    pub confidence: f64,
+    /// Lower bound of the probability that a draw passes (Clopper and Pearson); null where none is known.
+    pub lower_bound: Option<f64>,
+    /// Further draws that suffice if all of them pass; null if nothing is required of them
+    /// together.
+    pub needed_if_all_pass: Option<Needed>,
+    /// Further draws that suffice if they fail at the present rate.
+    pub needed_at_rate: Option<Needed>,
+    /// Case that came nearest to the limit, or farthest beyond it.
+    pub nearest: Option<Nearest>,
+    /// Convergence of the probability that a draw passes, with two-sided bounds of 95 %.
+    pub convergence: Vec<Step>,
+    /// Parts by combination, in their order.
+    pub combinations: Vec<Part>,
+}
+
+/// Case with the least margin.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Nearest {
+    /// The case.
+    pub case: String,
+    /// The measure.
+    pub value: f64,
+    /// Margin to the limit, negative if the limit is exceeded.
+    pub margin: f64,
+}
+
+/// The checks of one combination.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Part {
+    /// Checks.
+    pub counts: Counts,
+    /// Independent draws.
+    pub draws: Draws,
+    /// Lower bound of the probability that a draw of it passes; null if none is known.
+    pub lower_bound: Option<f64>,
+}
+
+fn bound(draws: Draws, confidence: f64) -> Option<f64> {
+    (draws.known() > 0).then(|| success_lower_bound(draws.not_passed, draws.known(), confidence))
+}
+
+/// Verdicts of the cases that check a requirement, by check and by draw.
+struct Counted {
+    counts: Counts,
+    /// Draw of each case and whether it passed, in the order of the plan.
+    rows: Vec<(usize, Option<bool>)>,
+}
+
+impl Counted {
+    fn of<'a>(plan: &Plan, id: &str, rows: impl Iterator<Item = (usize, &'a Row<'a>)>) -> Self {
+        let mut counted = Self { counts: Counts::default(), rows: Vec::new() };
+        for (draw, row) in rows {
+            if !checks(plan, &row.case.scenario, id) {
+                continue;
+            }
+            let counts = &mut counted.counts;
+            *match row.outcome.as_ref().map(|outcome| outcome.check(id)) {
+                None => &mut counts.missing,
+                Some(Verdict::Pass) => &mut counts.pass,
+                Some(Verdict::None | Verdict::Inconclusive) => &mut counts.inconclusive,
+                Some(Verdict::Fail) => &mut counts.fail,
+                Some(Verdict::Error) => &mut counts.error,
+            } += 1;
+            let passed = |outcome: &Outcome| {
+                outcome.check(id) == Verdict::Pass && outcome.besides == Verdict::Pass
+            };
+            counted.rows.push((draw, row.outcome.as_ref().map(passed)));
+        }
+        counted
+    }
+
+    fn draws(&self) -> Draws {
+        Draws::of(self.rows.iter().copied())
+    }
+
+    /// Returns whether each known draw passed, in the order in which they began.
+    fn passed(&self) -> Vec<bool> {
+        let mut rows: BTreeMap<usize, Vec<(usize, Option<bool>)>> = BTreeMap::new();
+        for row in &self.rows {
+            rows.entry(row.0).or_default().push(*row);
+        }
+        let known = rows.into_values().map(Draws::of).filter(|draws| draws.known() > 0);
+        known.map(|draws| draws.passed > 0).collect()
+    }
+}
+
+/// Returns whether the cases of a scenario check a requirement.
+pub(super) fn checks(plan: &Plan, scenario: &str, id: &str) -> bool {
+    let planned = plan.scenarios.iter().find(|planned| planned.id == scenario);
+    planned.is_some_and(|planned| planned.requirements.iter().any(|own| own == id))
+}
+
+/// Computes the figures of each requirement, in the order of the ids.
+pub(super) fn of(
+    plan: &Plan,
+    status: &Status,
+    about: &Requirements,
+    combinations: &[Combination],
+    rows: &[Row<'_>],
+) -> Vec<RequirementFigures> {
+    let draws = rows::draws(rows);
+    status
+        .requirements
+        .iter()
+        .map(|(id, status)| one(plan, id, status, about, combinations, rows, &draws))
+        .collect()
+}
+
+fn one(
+    plan: &Plan,
+    id: &str,
+    status: &RequirementStatus,
+    about: &Requirements,
+    combinations: &[Combination],
+    rows: &[Row<'_>],
+    draws: &[usize],
+) -> RequirementFigures {
+    let results = || {
+        rows.iter().filter_map(|row| {
+            let checks = &row.outcome.as_ref()?.checks;
+            Some((row.case.id.as_str(), checks.iter().find(|check| check.id == id)?))
+        })
+    };
+    let planned = plan.requirements.iter().find(|planned| planned.check.id == id);
+    let first: Option<&RequirementResult> = results().next().map(|(_, result)| result);
+    let (measure, comparison, limit) = match (planned, first) {
+        (Some(planned), _) => {
+            let check = &planned.check;
+            (Some(check.measure.clone()), Some(check.comparison.sign()), Some(check.limit))
+        }
+        (None, Some(result)) => {
+            (Some(result.measure.clone()), Some(result.comparison.sign()), Some(result.limit))
+        }
+        (None, None) => (None, None, None),
+    };
+    let all = Counted::of(plan, id, draws.iter().copied().zip(rows));
+    let counted = all.draws();
+    let confidence = status.ensemble.map_or(CONFIDENCE, |asked| asked.confidence);
+    let nearest = results()
+        .filter_map(|(case, result)| {
+            let (value, margin) = (result.value?, result.margin?);
+            Some(Nearest { case: case.to_owned(), value, margin })
+        })
+        .min_by(|a, b| a.margin.total_cmp(&b.margin));
+    let own = about.get(id);
+    RequirementFigures {
+        id: id.to_owned(),
+        text: own.map(|own| own.text.clone()).filter(|text| !text.is_empty()),
+        clause: own.and_then(|own| own.clause.clone()),
+        measure,
+        comparison,
+        limit,
+        verdict: status.verdict,
+        reason: status.reason.clone(),
+        counts: all.counts,
+        draws: counted,
+        claim: bound(counted, confidence).map(|lower| claim(counted, lower, confidence)),
+        asked: status.ensemble,
+        confidence,
+        lower_bound: bound(counted, confidence),
+        needed_if_all_pass: status.needed,
+        needed_at_rate: status.ensemble.map(|Ensemble { pass, confidence }| {
+            further_at_rate(Demand { pass, confidence }, counted.not_passed, counted.known())
+        }),
+        nearest,
+        convergence: convergence(&all.passed(), |passed| pass(passed, CONFIDENCE)),
+        combinations: (combinations.iter())
+            .map(|combination| {
+                let row = |case: &usize| Some((*draws.get(*case)?, rows.get(*case)?));
+                let mine = Counted::of(plan, id, combination.cases.iter().filter_map(row));
+                let draws = mine.draws();
+                Part { counts: mine.counts, draws, lower_bound: bound(draws, confidence) }
+            })
+            .collect(),
+    }
+}

@@ -1,0 +1,95 @@
+//! Requirements of a campaign: read from their file and put into its cases.
+
+use octant_requirements::file::{Checker, read};
+use octant_requirements::requirement::{Check, Ensemble, Limit, Requirement, Requirements};
+use octant_requirements::signed;
+use octant_requirements::verdict::LimitCheck;
+use octant_requirements::{Problem, RequirementsError};
+use octant_scenario::read::requirement::{MeasureError, limit_of, path_of};
+use serde::{Deserialize, Serialize};
+use std::path::Path;
+
+/// Requirement of a campaign's file that is verified by runs.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Planned {
+    /// Check of a case.
+    pub check: LimitCheck,
+    /// Requirement on all cases together; without it every case must pass.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub ensemble: Option<Ensemble>,
+}
+
+/// Provides the measures of a summary, and their units.
+#[derive(Clone, Copy, Debug)]
+pub struct Measures;
+
+impl Checker for Measures {
+    fn measure(&self, measure: &str) -> Result<(), String> {
+        path_of(measure).map(|_| ()).map_err(|error| error.to_string())
+    }
+
+    fn limit(&self, measure: &str, limit: &Limit) -> Result<(), String> {
+        number(measure, limit).map(|_| ()).map_err(|error| error.to_string())
+    }
+}
+
+fn number(measure: &str, limit: &Limit) -> Result<f64, MeasureError> {
+    match limit {
+        Limit::Number(number) => Ok(*number),
+        Limit::Quantity(text) => limit_of(path_of(measure)?, text),
+    }
+}
+
+/// Reads a file of requirements, whose measures and limits must be those of a run.
+///
+/// # Errors
+/// If it can't be read or isn't valid: every problem with its place.
+pub fn load(path: &Path) -> Result<Requirements, RequirementsError> {
+    let file = path.display().to_string();
+    let text = std::fs::read_to_string(path).map_err(|error| RequirementsError {
+        file: file.clone(),
+        problems: vec![Problem {
+            line: 1,
+            column: 1,
+            path: String::new(),
+            message: error.to_string(),
+        }],
+    })?;
+    let requirements = read(&text, &file, &Measures)?;
+    let problems = one_sided(&requirements, &text);
+    if problems.is_empty() { Ok(requirements) } else { Err(RequirementsError { file, problems }) }
+}
+
+/// Finds limits on only one side of a signed measure.
+fn one_sided(requirements: &Requirements, text: &str) -> Vec<Problem> {
+    let checks = || requirements.requirements.iter().filter_map(|r| Some((&r.id, r.check()?)));
+    let both = || checks().map(|(_, check)| (check.measure.as_str(), check.comparison));
+    let problem = |(id, check): (&String, &Check)| {
+        let message = signed::one_sided((&check.measure, check.comparison), both())?;
+        let quoted = format!("\"{}\"", check.measure);
+        let at = |line: &str| Some(line.find(&quoted)? + 1);
+        let (line, column) = (text.lines().enumerate())
+            .find_map(|(line, text)| Some((line + 1, at(text)?)))
+            .unwrap_or((1, 1));
+        Some(Problem { line, column, path: format!("requirements.{id}.measure"), message })
+    };
+    checks().filter_map(problem).collect()
+}
+
+/// Lists the requirements of a file that are verified by runs.
+pub(super) fn planned(requirements: &Requirements) -> Vec<Planned> {
+    let of = |requirement: &Requirement| {
+        let check = requirement.check()?;
+        Some(Planned {
+            check: LimitCheck {
+                id: requirement.id.clone(),
+                measure: check.measure.clone(),
+                comparison: check.comparison,
+                // The limit was checked when the file was read.
+                limit: number(&check.measure, &check.limit).unwrap_or(f64::NAN),
+            },
+            ensemble: check.ensemble,
+        })
+    };
+    requirements.requirements.iter().filter_map(of).collect()
+}

@@ -1,0 +1,287 @@
+//! Results of cases as tables: one row per case, per checked requirement, and per point of a drift.
+
+use super::besides::besides;
+use super::case::{self, CaseResult};
+use super::plan::{Case, FactorValue, Plan};
+use super::table::{Kind, TableError, Value, Values, write};
+use octant_score::summary::Summary;
+use std::borrow::Cow;
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
+use std::sync::Arc;
+
+/// Column with the numerics version of a case's result.
+pub(super) const NUMERICS: &str = "numerics";
+
+/// Columns with their kinds.
+pub(crate) type Columns = &'static [(&'static str, Kind)];
+
+/// Column with the BLAKE3 of a case's result file.
+pub(super) const RESULT: &str = "result_blake3";
+
+/// Tables: name of the file, and its first columns; other columns follow, sorted by name.
+pub const TABLES: [(&str, Columns); 3] = [
+    (
+        "cases",
+        &[
+            ("case", Kind::Text),
+            ("scenario", Kind::Text),
+            ("seed", Kind::Integer),
+            ("replicate", Kind::Integer),
+            ("verdict", Kind::Text),
+            ("besides", Kind::Text),
+            ("reasons", Kind::Text),
+            ("error", Kind::Text),
+            ("stream_hash", Kind::Text),
+            (NUMERICS, Kind::Integer),
+            (RESULT, Kind::Text),
+            ("set", Kind::Text),
+        ],
+    ),
+    (
+        "checks",
+        &[
+            ("case", Kind::Text),
+            ("requirement", Kind::Text),
+            ("measure", Kind::Text),
+            ("comparison", Kind::Text),
+            ("limit", Kind::Number),
+            ("value", Kind::Number),
+            ("margin", Kind::Number),
+            ("verdict", Kind::Text),
+            ("reason", Kind::Text),
+        ],
+    ),
+    (
+        "drift",
+        &[
+            ("case", Kind::Text),
+            ("hours", Kind::Number),
+            ("latitude_error_arcmin", Kind::Number),
+            ("longitude_error_arcmin", Kind::Number),
+        ],
+    ),
+];
+
+/// Rows, with the columns that they need.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Rows {
+    pub(super) columns: BTreeMap<String, Values>,
+    pub(super) rows: usize,
+}
+
+impl Rows {
+    fn new(first: Columns) -> Self {
+        let empty = |(name, kind): &(&str, Kind)| ((*name).to_owned(), Values::new(*kind));
+        Self { columns: first.iter().map(empty).collect(), rows: 0 }
+    }
+
+    fn push(&mut self, row: BTreeMap<String, Value>) {
+        for (name, value) in row {
+            let column = self.columns.entry(name).or_insert_with(|| {
+                let mut column = Values::new(value.kind());
+                (0..self.rows).for_each(|_| column.push(None));
+                column
+            });
+            column.push(Some(value));
+        }
+        self.rows += 1;
+        for column in self.columns.values_mut().filter(|column| column.len() < self.rows) {
+            column.push(None);
+        }
+    }
+
+    fn write(&self, first: Columns, path: &Path, plan: &str) -> Result<(), TableError> {
+        let kinds = self.columns.iter().map(|(name, values)| (name.as_str(), values.kind()));
+        let columns = ordered(first, &kinds.collect());
+        write(path, plan, &columns, |index| Ok(Cow::Borrowed(&self.columns[&columns[index].0])))
+    }
+}
+
+/// Lists columns in the order in which they are written.
+pub(super) fn ordered(first: Columns, kinds: &BTreeMap<&str, Kind>) -> Vec<(String, Kind)> {
+    let others = kinds.keys().copied().filter(|name| !first.iter().any(|(other, _)| other == name));
+    let names = first.iter().map(|(name, _)| *name).chain(others);
+    names.filter_map(|name| Some((name.to_owned(), *kinds.get(name)?))).collect()
+}
+
+/// Writes the tables of cases, in the order of the plan, from the results in a folder.
+///
+/// # Errors
+/// If a result can't be read or contradicts itself, or the operating system refuses.
+pub fn tables(
+    plan: &Plan,
+    folder: &Path,
+    cases: impl Iterator<Item = usize>,
+    path: impl Fn(&str) -> std::path::PathBuf,
+) -> Result<(), TableError> {
+    let all = rows(plan, folder, cases, &texts(plan))?;
+    for ((name, first), rows) in TABLES.iter().zip(&all) {
+        rows.write(first, &path(name), &plan.id)?;
+    }
+    Ok(())
+}
+
+/// Lists the text factors: a factor that is a number in one case and a text in another is a text in
+/// all.
+pub(super) fn texts(plan: &Plan) -> BTreeSet<&str> {
+    let texts = (plan.cases.iter().flat_map(|case| &case.factors))
+        .filter(|(_, value)| matches!(value, FactorValue::Text(_)));
+    texts.map(|(name, _)| name.as_str()).collect()
+}
+
+/// Collects the rows of all tables from the results in a folder.
+pub(super) fn rows(
+    plan: &Plan,
+    folder: &Path,
+    cases: impl Iterator<Item = usize>,
+    texts: &BTreeSet<&str>,
+) -> Result<[Rows; 3], TableError> {
+    let [mut all_cases, mut checks, mut drift] = TABLES.map(|(_, first)| Rows::new(first));
+    for index in cases {
+        let Some(case) = plan.cases.get(index) else { continue };
+        let file = case::file(folder, &case.id);
+        // The reason begins with action and file, as the error does.
+        let form = |reason: String| {
+            let start = format!("read {}: ", file.display());
+            let reason = reason.strip_prefix(&start).unwrap_or(&reason).to_owned();
+            TableError::Form { path: file.clone(), reason }
+        };
+        let read =
+            CaseResult::of_plan(plan, folder, case).map_err(|error| form(error.to_string()))?;
+        let (result, hash) = read.ok_or_else(|| form("it is gone".to_owned()))?;
+        all_cases.push(case_row(case, &result, &hash, texts));
+        if let Some(summary) = &result.summary {
+            check_rows(case, summary).for_each(|row| checks.push(row));
+            drift_rows(case, summary).for_each(|row| drift.push(row));
+        }
+    }
+    Ok([all_cases, checks, drift])
+}
+
+fn text(value: impl Into<Arc<str>>) -> Value {
+    Value::Text(value.into())
+}
+
+fn row<'a>(pairs: impl IntoIterator<Item = (&'a str, Option<Value>)>) -> BTreeMap<String, Value> {
+    let there = |(name, value): (&str, Option<Value>)| Some((name.to_owned(), value?));
+    pairs.into_iter().filter_map(there).collect()
+}
+
+fn case_row(
+    case: &Case,
+    result: &CaseResult,
+    hash: &str,
+    texts: &BTreeSet<&str>,
+) -> BTreeMap<String, Value> {
+    let summary = result.summary.as_ref();
+    let mut all = row([
+        ("case", Some(text(case.id.as_str()))),
+        ("scenario", Some(text(case.scenario.as_str()))),
+        ("seed", i64::try_from(case.seed).ok().map(Value::Integer)),
+        ("replicate", Some(Value::Integer(i64::from(case.replicate)))),
+        ("verdict", Some(text(result.verdict.name()))),
+        ("besides", Some(text(besides(result).name()))),
+        ("reasons", summary.map(|summary| text(summary.reasons.join("; ")))),
+        ("error", result.error.as_deref().map(text)),
+        ("stream_hash", summary.map(|summary| text(summary.stream_hash.as_str()))),
+        (NUMERICS, summary.and_then(|summary| Some(Value::Integer(i64::from(summary.numerics?))))),
+        (RESULT, Some(text(hash))),
+        ("set", Some(text(case.set.join("; ")))),
+    ]);
+    for (name, value) in &case.factors {
+        let value = match value {
+            FactorValue::Number(number) if texts.contains(name.as_str()) => {
+                text(number.to_string())
+            }
+            FactorValue::Number(number) => Value::Number(*number),
+            FactorValue::Text(text) => Value::Text(text.as_str().into()),
+        };
+        all.insert(format!("factor.{name}"), value);
+    }
+    if let Some(document) = summary.and_then(|summary| serde_json::to_value(summary).ok()) {
+        measures(&document, &mut all);
+    }
+    all
+}
+
+/// Parts of a summary that have columns of their own, or don't concern the case.
+const NOT_MEASURES: [&str; 9] = [
+    "schema",
+    "octant",
+    "numerics",
+    "seed",
+    "scenario",
+    "verdict",
+    "reasons",
+    "requirements",
+    "stream_hash",
+];
+
+/// Collects every value of a summary under its dotted path; values of a fault under its id.
+fn measures(document: &serde_json::Value, all: &mut BTreeMap<String, Value>) {
+    let serde_json::Value::Object(parts) = document else { return };
+    for (name, part) in parts.iter().filter(|(name, _)| !NOT_MEASURES.contains(&name.as_str())) {
+        if name == "faults" {
+            for fault in part.as_array().into_iter().flatten() {
+                let id = fault.get("id").and_then(serde_json::Value::as_str).unwrap_or("");
+                walk(&format!("faults.{id}"), fault, all);
+            }
+        } else {
+            walk(name, part, all);
+        }
+    }
+}
+
+fn walk(path: &str, value: &serde_json::Value, all: &mut BTreeMap<String, Value>) {
+    match value {
+        serde_json::Value::Object(parts) => {
+            for (name, part) in parts {
+                walk(&format!("{path}.{name}"), part, all);
+            }
+        }
+        serde_json::Value::Number(number) => {
+            all.extend(number.as_f64().map(|number| (path.to_owned(), Value::Number(number))));
+        }
+        serde_json::Value::Bool(value) => _ = all.insert(path.to_owned(), Value::Boolean(*value)),
+        serde_json::Value::String(text) => {
+            _ = all.insert(path.to_owned(), Value::Text(text.as_str().into()));
+        }
+        // Series have a table of their own.
+        serde_json::Value::Array(_) | serde_json::Value::Null => {}
+    }
+}
+
+fn check_rows<'a>(
+    case: &'a Case,
+    summary: &'a Summary,
+) -> impl Iterator<Item = BTreeMap<String, Value>> + 'a {
+    summary.requirements.iter().map(|result| {
+        row([
+            ("case", Some(text(case.id.as_str()))),
+            ("requirement", Some(text(result.id.as_str()))),
+            ("measure", Some(text(result.measure.as_str()))),
+            ("comparison", Some(text(result.comparison.sign()))),
+            ("limit", Some(Value::Number(result.limit))),
+            ("value", result.value.map(Value::Number)),
+            ("margin", result.margin.map(Value::Number)),
+            ("verdict", Some(text(result.verdict.name()))),
+            ("reason", result.reason.as_deref().map(text)),
+        ])
+    })
+}
+
+fn drift_rows<'a>(
+    case: &'a Case,
+    summary: &'a Summary,
+) -> impl Iterator<Item = BTreeMap<String, Value>> + 'a {
+    let series = summary.navigation.iter().flat_map(|navigation| &navigation.series_hours);
+    series.map(|[hours, latitude, longitude]| {
+        row([
+            ("case", Some(text(case.id.as_str()))),
+            ("hours", Some(Value::Number(*hours))),
+            ("latitude_error_arcmin", Some(Value::Number(*latitude))),
+            ("longitude_error_arcmin", Some(Value::Number(*longitude))),
+        ])
+    })
+}

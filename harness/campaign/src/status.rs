@@ -1,0 +1,353 @@
+//! Progress of a campaign, and its failures.
+
+use super::besides::{besides, is_refused_alone};
+use super::case::{self, CaseResult, ResultError, differing};
+use super::independence::{self, Shown};
+use super::plan::{Case, Plan, StopRule};
+use super::shard::Shard;
+use super::stop::{self, Decision};
+use octant_base::number::plain;
+use octant_requirements::Verdict;
+use octant_requirements::requirement::Ensemble;
+use octant_requirements::trace::{Counts, judge};
+use octant_score::numerics::differs;
+use octant_statistics::cluster::Draws;
+use octant_statistics::proportion::{Demand, Needed, further_if_all_pass};
+use serde::Serialize;
+use std::cell::RefCell;
+use std::collections::BTreeMap;
+use std::fmt::Write as _;
+use std::path::Path;
+
+/// Maximum number of cases that are named.
+const NAMED: usize = 10;
+
+/// State of a campaign.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Status {
+    /// Name of the campaign.
+    pub title: String,
+    /// Plan.
+    pub plan: String,
+    /// Cases.
+    pub cases: usize,
+    /// Cases without a result.
+    pub open: usize,
+    /// Independent draws among the cases, on which any bound is based.
+    pub draws: usize,
+    /// Cases with the same stream of samples: each group is one run, repeated.
+    pub repeated: Vec<Vec<String>>,
+    /// Factors without effect.
+    pub idle_factors: Vec<String>,
+    /// Cases by verdict.
+    pub verdicts: BTreeMap<&'static str, usize>,
+    /// Worst verdict of the cases except for their requirements: a case that ended as an error, a
+    /// refused calibration, a fault that never fired, a case that checks nothing.
+    pub besides: Verdict,
+    /// Status of each requirement.
+    pub requirements: BTreeMap<String, RequirementStatus>,
+    /// Requirements that no run can verify.
+    pub not_by_test: Vec<String>,
+    /// First cases that failed or ended as errors, with reasons.
+    pub bad: Vec<Bad>,
+    /// Cases with two results.
+    pub differing: Vec<String>,
+    /// Cases by other numerics versions, counted, with the meaning of the difference.
+    pub numerics: Vec<String>,
+    /// Reason why no more cases are run; null if all are.
+    pub stopped: Option<String>,
+}
+
+/// Status of a requirement over the cases.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct RequirementStatus {
+    /// Overall verdict.
+    pub verdict: Verdict,
+    /// Reason, in plain words.
+    pub reason: String,
+    /// Checks.
+    pub counts: Counts,
+    /// Independent draws.
+    pub draws: Draws,
+    /// Requirement on all cases together; null if every case must pass.
+    pub ensemble: Option<Ensemble>,
+    /// Further draws that suffice if all of them pass; null if nothing is required of them
+    /// together.
+    pub needed: Option<Needed>,
+}
+
+/// Case that isn't a pass.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Bad {
+    /// The case.
+    pub case: String,
+    /// Verdict.
+    pub verdict: Verdict,
+    /// First reason.
+    pub reason: String,
+}
+
+/// Error of a state that can't be determined, because a result can't be read.
+#[derive(Debug, thiserror::Error)]
+#[error("failed to {0}")]
+pub struct StatusError(#[from] pub ResultError);
+
+/// Determines the state of a part of the campaign in a folder.
+///
+/// # Errors
+/// If an existing result can't be read.
+pub fn of(plan: &Plan, folder: &Path, shard: Shard) -> Result<Status, StatusError> {
+    let mine = || plan.cases.iter().enumerate().filter(|(index, _)| shard.has(*index));
+    let mut status = Status {
+        title: plan.title.clone(),
+        plan: plan.id.clone(),
+        cases: 0,
+        open: 0,
+        draws: 0,
+        repeated: Vec::new(),
+        idle_factors: Vec::new(),
+        verdicts: BTreeMap::new(),
+        besides: Verdict::Pass,
+        requirements: BTreeMap::new(),
+        not_by_test: plan.not_by_test.clone(),
+        bad: Vec::new(),
+        differing: Vec::new(),
+        numerics: Vec::new(),
+        stopped: None,
+    };
+    let end = match &plan.stop {
+        None => plan.cases.len(),
+        Some(rule) => {
+            let decision = decide(plan, folder, rule)?;
+            status.stopped = in_words(rule, decision);
+            decision.end(plan.cases.len())
+        }
+    };
+    let mut counts: BTreeMap<&str, Counts> = BTreeMap::new();
+    // Includes requirements that no case checks.
+    let of_file = plan.requirements.iter().map(|planned| &planned.check.id);
+    let of_scenarios = plan.scenarios.iter().flat_map(|scenario| &scenario.requirements);
+    for id in of_file.chain(of_scenarios) {
+        counts.entry(id).or_default();
+    }
+    let mut looked: Vec<Looked<'_>> = Vec::new();
+    let mut numerics: BTreeMap<Option<u32>, usize> = BTreeMap::new();
+    status.cases = mine().filter(|(index, _)| *index < end).count();
+    for (_, case) in mine().filter(|(index, _)| *index < end) {
+        let path = case::file(folder, &case.id);
+        let checked = plan.scenarios.iter().find(|scenario| scenario.id == case.scenario);
+        let checked = checked.iter().flat_map(|scenario| &scenario.requirements);
+        let read = CaseResult::of_plan(plan, folder, case);
+        let Some((result, _)) = read? else {
+            status.open += 1;
+            let checked: Vec<&String> = checked.collect();
+            checked.iter().for_each(|id| counts.entry(id).or_default().missing += 1);
+            let passed = checked.into_iter().map(|id| (id.as_str(), None)).collect();
+            looked.push(Looked { case, stream: None, passed });
+            continue;
+        };
+        *status.verdicts.entry(result.verdict.name()).or_default() += 1;
+        let counted = |id: &String| plan.ensemble(id).is_some();
+        let is_counted = checked.clone().next().is_some() && checked.clone().all(counted);
+        if !(is_counted && is_refused_alone(&result)) {
+            status.besides = status.besides.worst(besides(&result));
+        }
+        let passed =
+            checked.clone().map(|id| (id.as_str(), Some(independence::passes(&result, id))));
+        let passed = passed.collect();
+        let stream = result.summary.as_ref().map(|summary| summary.stream_hash.clone());
+        if let Some(summary) = &result.summary {
+            *numerics.entry(summary.numerics).or_default() += 1;
+        }
+        looked.push(Looked { case, stream, passed });
+        for id in checked {
+            let counts = counts.entry(id).or_default();
+            *match result.check(id) {
+                Verdict::Pass => &mut counts.pass,
+                Verdict::None | Verdict::Inconclusive => &mut counts.inconclusive,
+                Verdict::Fail => &mut counts.fail,
+                Verdict::Error => &mut counts.error,
+            } += 1;
+        }
+        if differing(&path, &case.id).is_some() {
+            status.differing.push(case.id.clone());
+        }
+        if result.verdict > Verdict::Inconclusive && status.bad.len() < NAMED {
+            let reasons = result.summary.map(|summary| summary.reasons).unwrap_or_default();
+            let reason = result.error.or_else(|| reasons.into_iter().next()).unwrap_or_default();
+            status.bad.push(Bad { case: case.id.clone(), verdict: result.verdict, reason });
+        }
+    }
+    let others = numerics.into_iter().filter_map(|(version, cases)| {
+        Some(format!("{cases} of {} cases: {}", status.cases, differs(version)?))
+    });
+    status.numerics = others.collect();
+    let draws = independence::draws(looked.iter().map(|l| (l.case, l.stream.as_deref())));
+    status.draws = draws.iter().max().map_or(0, |last| last + 1);
+    let idle = independence::idle(plan, looked.iter().map(|l| (l.case, l.stream.as_deref())));
+    (status.repeated, status.idle_factors) = (idle.repeated, idle.factors);
+    let mut rows: BTreeMap<&str, Vec<(usize, Option<bool>)>> = BTreeMap::new();
+    for (looked, draw) in looked.iter().zip(&draws) {
+        for (id, passed) in &looked.passed {
+            rows.entry(id).or_default().push((*draw, *passed));
+        }
+    }
+    let of = |(id, counts): (&str, Counts)| {
+        let ensemble = plan.ensemble(id);
+        let draws = Draws::of(rows.remove(id).unwrap_or_default());
+        let (verdict, reason) = judge(ensemble, counts, draws);
+        let needed = ensemble.map(|Ensemble { pass, confidence }| {
+            further_if_all_pass(Demand { pass, confidence }, draws.not_passed, draws.known())
+        });
+        (id.to_owned(), RequirementStatus { verdict, reason, counts, draws, ensemble, needed })
+    };
+    status.requirements = counts.into_iter().map(of).collect();
+    Ok(status)
+}
+
+/// Case that counts, with its evidence for each requirement that it checks.
+struct Looked<'a> {
+    case: &'a Case,
+    stream: Option<String>,
+    passed: Vec<(&'a str, Option<bool>)>,
+}
+
+/// Evaluates the stopping rule on the results in a folder.
+///
+/// # Errors
+/// If an existing result can't be read, or contradicts itself.
+pub fn decide(plan: &Plan, folder: &Path, rule: &StopRule) -> Result<Decision, StatusError> {
+    let wrong = RefCell::new(None);
+    let decision = stop::decide(plan, rule, |case| {
+        let read = CaseResult::of_plan(plan, folder, case).unwrap_or_else(|error| {
+            wrong.borrow_mut().get_or_insert(error);
+            None
+        });
+        Some(Shown::of(&read?.0, &rule.requirement))
+    });
+    wrong.into_inner().map_or(Ok(decision), |error| Err(error.into()))
+}
+
+fn in_words(rule: &StopRule, decision: Decision) -> Option<String> {
+    let StopRule { requirement, demand, .. } = rule;
+    let asked = format!(
+        "{} % at a confidence of {} %",
+        plain(100.0 * demand.pass, 6),
+        plain(100.0 * demand.confidence, 6)
+    );
+    match decision {
+        Decision::Shown { end } => Some(format!(
+            "{requirement} is shown to be kept with {asked} after {end} cases: no more are needed"
+        )),
+        Decision::Refuted { end } => Some(format!(
+            "{requirement} is shown not to be kept with {asked} after {end} cases: no more are needed"
+        )),
+        Decision::Open { .. } => None,
+    }
+}
+
+impl Status {
+    /// Returns the verdict: the worst of the requirements and the other findings, an error if a
+    /// case has two results, and no pass before all cases have run, or without any case.
+    #[must_use]
+    pub fn verdict(&self) -> Verdict {
+        if !self.differing.is_empty() {
+            return Verdict::Error;
+        }
+        let unfinished = self.open > 0 || self.cases == 0 || self.requirements.is_empty();
+        let least = if unfinished { Verdict::Inconclusive } else { Verdict::Pass };
+        let requirements = self.requirements.values().map(|requirement| requirement.verdict);
+        requirements.fold(self.besides.worst(least), Verdict::worst)
+    }
+
+    /// Describes the parts of the design without effect.
+    #[must_use]
+    pub fn idle_in_words(&self) -> Vec<String> {
+        let idle = self.idle_factors.iter().map(|factor| {
+            format!(
+                "factor {factor} changes nothing: cases that differ in it have the same streams"
+            )
+        });
+        let cases: usize = self.repeated.iter().map(Vec::len).sum();
+        let repeated = (cases > 0).then(|| {
+            let streams = self.repeated.len();
+            format!(
+                "{cases} cases came to {streams} stream{}: cases of the same stream are one run and count \
+                 once, the first are {}",
+                if streams == 1 { "" } else { "s" },
+                self.repeated.iter().flatten().take(3).cloned().collect::<Vec<_>>().join(", ")
+            )
+        });
+        idle.chain(repeated).collect()
+    }
+
+    /// Renders the state as text.
+    #[must_use]
+    pub fn text(&self) -> String {
+        let counts = |counts: &BTreeMap<&'static str, usize>| {
+            let one = |verdict: &Verdict| {
+                let count = counts.get(verdict.name())?;
+                Some(format!("{count} {}", verdict.name()))
+            };
+            Verdict::ALL.iter().filter_map(one).collect::<Vec<_>>().join(", ")
+        };
+        let mut text = format!(
+            "{}: {}\n  {} of {} cases have run: {}\n",
+            self.title,
+            self.verdict().name(),
+            self.cases - self.open,
+            self.cases,
+            counts(&self.verdicts)
+        );
+        let many = |count: usize| if count == 1 { "" } else { "s" };
+        _ = writeln!(text, "  {} independent draw{}", self.draws, many(self.draws));
+        for found in self.idle_in_words() {
+            _ = writeln!(text, "  {found}");
+        }
+        for (id, requirement) in &self.requirements {
+            _ = writeln!(text, "  {id}: {}: {}", requirement.verdict.name(), requirement.reason);
+            match requirement.needed {
+                None | Some(Needed::Runs(0)) => {}
+                Some(Needed::Runs(runs)) => {
+                    _ = writeln!(
+                        text,
+                        "    {runs} more independent draws would show it, if all of them pass"
+                    );
+                }
+                Some(Needed::CannotBeMet) => {
+                    text += "    no number of further draws can show it\n";
+                }
+            }
+        }
+        if !self.not_by_test.is_empty() {
+            let ids = self.not_by_test.join(", ");
+            _ = writeln!(text, "  not verified by runs: {ids}");
+        }
+        if self.requirements.is_empty() {
+            text += "  no requirement checked\n";
+        }
+        for told in &self.numerics {
+            _ = writeln!(text, "  {told}");
+        }
+        if let Some(stopped) = &self.stopped {
+            _ = writeln!(text, "  {stopped}");
+        }
+        for Bad { case, verdict, reason } in &self.bad {
+            _ = writeln!(text, "  case {case}: {}: {reason}", verdict.name());
+        }
+        let bad: usize = [Verdict::Fail, Verdict::Error]
+            .iter()
+            .filter_map(|verdict| self.verdicts.get(verdict.name()))
+            .sum();
+        if bad > self.bad.len() {
+            _ = writeln!(text, "  and {} more", bad - self.bad.len());
+        }
+        for case in &self.differing {
+            _ = writeln!(
+                text,
+                "  case {case} came to two results: this is no deterministic program"
+            );
+        }
+        text
+    }
+}

@@ -1,0 +1,477 @@
+//! Tables as Parquet files: written and read one column at a time.
+//!
+//! A file has one row group, every column may be null, and it contains nothing of host or clock:
+//! the same table gives the same bytes.
+
+use parquet::basic::{Compression, LogicalType, Repetition, Type as Physical, ZstdLevel};
+use parquet::column::reader::{ColumnReader, ColumnReaderImpl};
+use parquet::data_type::{BoolType, ByteArray, ByteArrayType, DataType, DoubleType, Int64Type};
+use parquet::errors::ParquetError;
+use parquet::file::metadata::KeyValue;
+use parquet::file::properties::WriterProperties;
+use parquet::file::reader::{FileReader, SerializedFileReader};
+use parquet::file::writer::SerializedFileWriter;
+use parquet::schema::types::Type;
+use std::fs::File;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// Version of the tables' layout.
+pub const SCHEMA: &str = "1";
+/// Metadata key of the version.
+const VERSION_KEY: &str = "octant.schema";
+/// Metadata key of the plan's id.
+const PLAN_KEY: &str = "octant.plan";
+
+/// Values of a column, by row.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Values {
+    /// Texts; equal neighbours share one allocation.
+    Text(Vec<Option<Arc<str>>>),
+    /// Numbers.
+    Number(Vec<Option<f64>>),
+    /// Whole numbers.
+    Integer(Vec<Option<i64>>),
+    /// Booleans.
+    Boolean(Vec<Option<bool>>),
+}
+
+/// Kind of a column.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Kind {
+    /// Texts.
+    Text,
+    /// Numbers.
+    Number,
+    /// Whole numbers.
+    Integer,
+    /// Booleans.
+    Boolean,
+}
+
+/// One value.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Value {
+    /// A text.
+    Text(Arc<str>),
+    /// A number.
+    Number(f64),
+    /// A whole number.
+    Integer(i64),
+    /// Boolean.
+    Boolean(bool),
+}
+
+impl Value {
+    /// Returns the kind of column that holds it.
+    #[must_use]
+    pub const fn kind(&self) -> Kind {
+        match self {
+            Self::Text(_) => Kind::Text,
+            Self::Number(_) => Kind::Number,
+            Self::Integer(_) => Kind::Integer,
+            Self::Boolean(_) => Kind::Boolean,
+        }
+    }
+}
+
+impl Values {
+    /// Creates an empty column of a kind.
+    #[must_use]
+    pub const fn new(kind: Kind) -> Self {
+        match kind {
+            Kind::Text => Self::Text(Vec::new()),
+            Kind::Number => Self::Number(Vec::new()),
+            Kind::Integer => Self::Integer(Vec::new()),
+            Kind::Boolean => Self::Boolean(Vec::new()),
+        }
+    }
+
+    /// Returns the kind.
+    #[must_use]
+    pub const fn kind(&self) -> Kind {
+        match self {
+            Self::Text(_) => Kind::Text,
+            Self::Number(_) => Kind::Number,
+            Self::Integer(_) => Kind::Integer,
+            Self::Boolean(_) => Kind::Boolean,
+        }
+    }
+
+    /// Number of rows.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        match self {
+            Self::Text(all) => all.len(),
+            Self::Number(all) => all.len(),
+            Self::Integer(all) => all.len(),
+            Self::Boolean(all) => all.len(),
+        }
+    }
+
+    /// Returns whether there are no rows.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// Appends a value, or null; a value of another kind becomes text in a text column, and null in
+    /// any other.
+    pub fn push(&mut self, value: Option<Value>) {
+        match (self, value) {
+            (Self::Text(all), value) => push_text(
+                all,
+                value.map(|value| match value {
+                    Value::Text(text) => text,
+                    Value::Number(number) => number.to_string().into(),
+                    Value::Integer(number) => number.to_string().into(),
+                    Value::Boolean(value) => value.to_string().into(),
+                }),
+            ),
+            (Self::Number(all), Some(Value::Number(number))) => all.push(Some(number)),
+            (Self::Number(all), Some(Value::Integer(number))) => all.push(Some(number as f64)),
+            (Self::Integer(all), Some(Value::Integer(number))) => all.push(Some(number)),
+            (Self::Boolean(all), Some(Value::Boolean(value))) => all.push(Some(value)),
+            (Self::Number(all), _) => all.push(None),
+            (Self::Integer(all), _) => all.push(None),
+            (Self::Boolean(all), _) => all.push(None),
+        }
+    }
+
+    /// Returns the value of a row.
+    #[must_use]
+    pub fn at(&self, row: usize) -> Option<Value> {
+        match self {
+            Self::Text(all) => all.get(row)?.clone().map(Value::Text),
+            Self::Number(all) => (*all.get(row)?).map(Value::Number),
+            Self::Integer(all) => (*all.get(row)?).map(Value::Integer),
+            Self::Boolean(all) => (*all.get(row)?).map(Value::Boolean),
+        }
+    }
+}
+
+/// Appends a text, sharing it with the last one if they are equal.
+fn push_text(all: &mut Vec<Option<Arc<str>>>, text: Option<Arc<str>>) {
+    let text = text.map(|text| match all.last() {
+        Some(Some(last)) if *last == text => Arc::clone(last),
+        _ => text,
+    });
+    all.push(text);
+}
+
+/// Reasons why a table could not be written or read.
+#[derive(Debug, thiserror::Error)]
+pub enum TableError {
+    /// The operating system refused.
+    #[error("{action} {path}: {source}")]
+    System {
+        /// Action that failed.
+        action: &'static str,
+        /// Path that the action concerned.
+        path: PathBuf,
+        /// Error of the operating system.
+        source: std::io::Error,
+    },
+    /// The file isn't an octant table, or isn't complete.
+    #[error("read {path}: {reason}")]
+    Form {
+        /// The file.
+        path: PathBuf,
+        /// Problem found.
+        reason: String,
+    },
+    /// The table could not be written.
+    #[error("write {path}: {reason}")]
+    Write {
+        /// The file.
+        path: PathBuf,
+        /// Reason.
+        reason: String,
+    },
+}
+
+/// Writes a table whose columns are built one after another, in the given order of names.
+///
+/// # Errors
+/// If the operating system refuses; an earlier file then stays unchanged.
+pub fn write<'a>(
+    path: &Path,
+    plan: &str,
+    columns: &[(String, Kind)],
+    mut values: impl FnMut(usize) -> Result<std::borrow::Cow<'a, Values>, TableError>,
+) -> Result<(), TableError> {
+    let folder = path.parent().unwrap_or(Path::new("."));
+    let system = |source| TableError::System { action: "write", path: path.to_owned(), source };
+    std::fs::create_dir_all(folder).map_err(system)?;
+    super::clean(folder);
+    let new = super::new_file(folder).map_err(system)?;
+    let wrong = |error: ParquetError| TableError::Write {
+        path: path.to_owned(),
+        reason: error.to_string(),
+    };
+    let fields = columns.iter().map(|(name, kind)| field(name, *kind)).collect::<Result<_, _>>();
+    let root = Type::group_type_builder("octant").with_fields(fields.map_err(wrong)?).build();
+    let pair = |key: &str, value: &str| KeyValue::new(key.to_owned(), value.to_owned());
+    let properties = WriterProperties::builder()
+        .set_compression(Compression::ZSTD(ZstdLevel::try_new(3).map_err(wrong)?))
+        .set_key_value_metadata(Some(vec![pair(VERSION_KEY, SCHEMA), pair(PLAN_KEY, plan)]))
+        .build();
+    let file = new.as_file().try_clone().map_err(system)?;
+    let schema = Arc::new(root.map_err(wrong)?);
+    let mut writer =
+        SerializedFileWriter::new(file, schema, Arc::new(properties)).map_err(wrong)?;
+    let mut group = writer.next_row_group().map_err(wrong)?;
+    let mut index = 0;
+    while let Some(mut column) = group.next_column().map_err(wrong)? {
+        let values = values(index)?;
+        match &*values {
+            Values::Text(all) => {
+                let bytes = |text: &Arc<str>| ByteArray::from(&**text);
+                put(&mut column, all, bytes, |c| c.typed::<ByteArrayType>())
+            }
+            Values::Number(all) => put(&mut column, all, |v| *v, |c| c.typed::<DoubleType>()),
+            Values::Integer(all) => put(&mut column, all, |v| *v, |c| c.typed::<Int64Type>()),
+            Values::Boolean(all) => put(&mut column, all, |v| *v, |c| c.typed::<BoolType>()),
+        }
+        .map_err(wrong)?;
+        column.close().map_err(wrong)?;
+        index += 1;
+    }
+    group.close().map_err(wrong)?;
+    writer.close().map_err(wrong)?;
+    new.as_file().sync_data().map_err(system)?;
+    new.persist(path).map_err(|error| system(error.error))?;
+    Ok(())
+}
+
+/// Number of rows passed to the library, or taken from it, at a time: it needs values in types of
+/// its own.
+const ROWS_AT_A_TIME: usize = 16 * 1024;
+
+fn put<T, D: DataType>(
+    column: &mut parquet::file::writer::SerializedColumnWriter<'_>,
+    values: &[Option<T>],
+    to: impl Fn(&T) -> D::T,
+    typed: impl for<'a, 'b> Fn(
+        &'a mut parquet::file::writer::SerializedColumnWriter<'b>,
+    ) -> &'a mut parquet::column::writer::ColumnWriterImpl<'b, D>,
+) -> Result<(), ParquetError> {
+    for values in values.chunks(ROWS_AT_A_TIME) {
+        let levels: Vec<i16> = values.iter().map(|value| i16::from(value.is_some())).collect();
+        let there: Vec<D::T> = values.iter().flatten().map(&to).collect();
+        typed(column).write_batch(&there, Some(&levels), None)?;
+    }
+    Ok(())
+}
+
+fn field(name: &str, kind: Kind) -> Result<Arc<Type>, ParquetError> {
+    let physical = match kind {
+        Kind::Text => Physical::BYTE_ARRAY,
+        Kind::Number => Physical::DOUBLE,
+        Kind::Integer => Physical::INT64,
+        Kind::Boolean => Physical::BOOLEAN,
+    };
+    Type::primitive_type_builder(name, physical)
+        .with_logical_type((kind == Kind::Text).then_some(LogicalType::String))
+        .with_repetition(Repetition::OPTIONAL)
+        .build()
+        .map(Arc::new)
+}
+
+/// Existing table.
+pub struct Table {
+    path: PathBuf,
+    reader: SerializedFileReader<File>,
+    /// Id of its plan.
+    pub plan: String,
+    /// Names and kinds of the columns.
+    pub columns: Vec<(String, Kind)>,
+    /// Number of rows.
+    pub rows: usize,
+}
+
+impl std::fmt::Debug for Table {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Table").field("path", &self.path).field("rows", &self.rows).finish()
+    }
+}
+
+impl Table {
+    /// Opens a table.
+    ///
+    /// # Errors
+    /// If it can't be read, isn't an octant table, or a newer version wrote it.
+    pub fn open(path: &Path) -> Result<Self, TableError> {
+        let form = |reason: String| TableError::Form { path: path.to_owned(), reason };
+        let file = File::open(path).map_err(|source| TableError::System {
+            action: "read",
+            path: path.to_owned(),
+            source,
+        })?;
+        let reader = SerializedFileReader::new(file).map_err(|error| form(error.to_string()))?;
+        let metadata = reader.metadata();
+        let pairs = metadata.file_metadata().key_value_metadata();
+        let value = |key: &str| {
+            let pair = pairs.into_iter().flatten().find(|pair| pair.key == key)?;
+            pair.value.clone()
+        };
+        let Some(version) = value(VERSION_KEY) else {
+            return Err(form(format!("it has no {VERSION_KEY}: expected a table of a campaign")));
+        };
+        if version != SCHEMA {
+            return Err(form(format!("found version {version}, this program reads {SCHEMA}")));
+        }
+        let plan = value(PLAN_KEY).ok_or_else(|| form(format!("it has no {PLAN_KEY}")))?;
+        let rows: i64 = metadata.file_metadata().num_rows();
+        if metadata.num_row_groups() > 1 {
+            return Err(form(format!(
+                "found {} row groups, expected one",
+                metadata.num_row_groups()
+            )));
+        }
+        let columns = metadata.file_metadata().schema_descr().columns();
+        let columns = columns.iter().map(|column| {
+            let kind = match column.physical_type() {
+                Physical::DOUBLE => Kind::Number,
+                Physical::INT64 => Kind::Integer,
+                Physical::BOOLEAN => Kind::Boolean,
+                Physical::BYTE_ARRAY => Kind::Text,
+                other => return Err(form(format!("column {} has type {other}", column.name()))),
+            };
+            Ok((column.name().to_owned(), kind))
+        });
+        let columns = columns.collect::<Result<Vec<_>, _>>()?;
+        let rows = usize::try_from(rows).map_err(|_| form(format!("it has {rows} rows")))?;
+        Ok(Self { path: path.to_owned(), reader, plan, columns, rows })
+    }
+
+    /// Returns the values of a column; `None` if there is no such column.
+    ///
+    /// # Errors
+    /// If the file is damaged.
+    pub fn column(&self, name: &str) -> Result<Option<Values>, TableError> {
+        let Some(index) = self.columns.iter().position(|(other, _)| other == name) else {
+            return Ok(None);
+        };
+        let (_, kind) = &self.columns[index];
+        let form = |error: ParquetError| TableError::Form {
+            path: self.path.clone(),
+            reason: error.to_string(),
+        };
+        if self.rows == 0 {
+            return Ok(Some(Values::new(*kind)));
+        }
+        let group = self.reader.get_row_group(0).map_err(form)?;
+        let values = match group.get_column_reader(index).map_err(form)? {
+            ColumnReader::DoubleColumnReader(reader) => self.all(reader, |v| v).map(Values::Number),
+            ColumnReader::Int64ColumnReader(reader) => self.all(reader, |v| v).map(Values::Integer),
+            ColumnReader::BoolColumnReader(reader) => self.all(reader, |v| v).map(Values::Boolean),
+            ColumnReader::ByteArrayColumnReader(reader) => {
+                let mut all = Vec::with_capacity(self.rows);
+                self.each(reader, |bytes: Option<ByteArray>| {
+                    push_text(&mut all, bytes.map(|b| String::from_utf8_lossy(b.data()).into()));
+                })
+                .map(|()| Values::Text(all))
+            }
+            _ => Err(ParquetError::General(format!("column {name} has another type"))),
+        };
+        values.map_err(form).map(Some)
+    }
+
+    fn all<D: DataType, T>(
+        &self,
+        reader: ColumnReaderImpl<D>,
+        from: impl Fn(D::T) -> T,
+    ) -> Result<Vec<Option<T>>, ParquetError> {
+        let mut all = Vec::with_capacity(self.rows);
+        self.each(reader, |value| all.push(value.map(&from)))?;
+        Ok(all)
+    }
+
+    /// Passes on every value of a column.
+    fn each<D: DataType>(
+        &self,
+        mut reader: ColumnReaderImpl<D>,
+        mut take: impl FnMut(Option<D::T>),
+    ) -> Result<(), ParquetError> {
+        let mut left = self.rows;
+        while left > 0 {
+            let (mut levels, mut there) = (Vec::new(), Vec::new());
+            let wanted = left.min(ROWS_AT_A_TIME);
+            let (records, _, _) =
+                reader.read_records(wanted, Some(&mut levels), None, &mut there)?;
+            if records == 0 {
+                return Err(ParquetError::General(format!("{left} rows are missing")));
+            }
+            left -= records;
+            let mut there = there.into_iter();
+            for level in levels {
+                take(if level > 0 { there.next() } else { None });
+            }
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+    use std::borrow::Cow;
+
+    type Row = (Option<String>, Option<f64>, Option<i64>, Option<bool>);
+
+    /// More rows than are passed at a time, with nulls on both sides of the boundary.
+    #[test]
+    fn a_long_table_is_read_as_it_was_written() {
+        let rows = 2 * ROWS_AT_A_TIME + 77;
+        let kept = |row: usize| row % 3 != 1;
+        let all = [
+            Values::Text(
+                (0..rows).map(|row| kept(row).then(|| (row / 50).to_string().into())).collect(),
+            ),
+            Values::Number((0..rows).map(|row| kept(row).then_some(row as f64)).collect()),
+        ];
+        let columns: Vec<(String, Kind)> =
+            all.iter().zip(["a", "b"]).map(|(v, name)| (name.to_owned(), v.kind())).collect();
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("table.parquet");
+        write(&path, "p", &columns, |i| Ok(Cow::Borrowed(&all[i]))).unwrap();
+        let table = Table::open(&path).unwrap();
+        assert_eq!(table.rows, rows);
+        for ((name, _), values) in columns.iter().zip(&all) {
+            assert!(table.column(name).unwrap().unwrap() == *values, "{name}");
+        }
+        let Some(Values::Text(texts)) = table.column("a").unwrap() else { panic!("texts") };
+        let (first, later) = (texts[2].as_ref().unwrap(), texts[3].as_ref().unwrap());
+        assert!(Arc::ptr_eq(first, later), "held once");
+    }
+
+    proptest! {
+        #[test]
+        fn what_was_written_is_read(rows in proptest::collection::vec(any::<Row>(), 0..50)) {
+            let folder = tempfile::tempdir().unwrap();
+            let path = folder.path().join("a/table.parquet");
+            let all = [
+                Values::Text(rows.iter().map(|row| row.0.as_deref().map(Arc::from)).collect()),
+                Values::Number(rows.iter().map(|row| row.1.filter(|v| !v.is_nan())).collect()),
+                Values::Integer(rows.iter().map(|row| row.2).collect()),
+                Values::Boolean(rows.iter().map(|row| row.3).collect()),
+            ];
+            let columns: Vec<(String, Kind)> =
+                all.iter().zip(["a", "b.c", "d", "e"]).map(|(v, name)| (name.to_owned(), v.kind())).collect();
+            let write_it = |path: &Path| write(path, "of this plan", &columns, |i| Ok(Cow::Borrowed(&all[i])));
+            write_it(&path).unwrap();
+            let table = Table::open(&path).unwrap();
+            prop_assert_eq!(&table.columns, &columns);
+            prop_assert_eq!(table.plan.as_str(), "of this plan");
+            for ((name, _), values) in columns.iter().zip(&all) {
+                prop_assert_eq!(&table.column(name).unwrap().unwrap(), values);
+            }
+            prop_assert_eq!(table.column("none").unwrap(), None);
+            let again = folder.path().join("again.parquet");
+            write_it(&again).unwrap();
+            prop_assert_eq!(std::fs::read(&path).unwrap(), std::fs::read(&again).unwrap());
+        }
+    }
+}

@@ -1,0 +1,137 @@
+//! Traces the requirements of a campaign to its cases and their results, and back.
+
+use super::besides::besides;
+use super::case::{self, CaseResult, ResultError, differing};
+use super::file::Campaign;
+use super::independence;
+use super::plan::{Plan, PlanError};
+use super::requirements;
+use octant_requirements::requirement::{Check, Limit, Requirement, Requirements, Verification};
+use octant_requirements::trace::{Case, CaseResult as Traced, Trace};
+use octant_requirements::{Comparison, Verdict};
+use std::path::Path;
+
+/// Reads the requirements of the campaign of a plan; empty if it names no file of them.
+///
+/// # Errors
+/// If the campaign or its file can't be read, or the file was changed after the campaign was
+/// planned.
+pub fn requirements_of(plan: &Plan) -> Result<Requirements, PlanError> {
+    let campaign = Campaign::load(&plan.campaign)?;
+    let Some(path) = campaign.requirements else {
+        if plan.requirements.is_empty() && plan.not_by_test.is_empty() {
+            return Ok(Requirements { title: plan.title.clone(), ..Requirements::default() });
+        }
+        let reason = "it names no file of requirements, and was planned with one".to_owned();
+        return Err(PlanError::Contradiction { campaign: plan.campaign.clone(), reason });
+    };
+    let requirements = requirements::load(&path)?;
+    if requirements::planned(&requirements) != plan.requirements {
+        return Err(PlanError::Form {
+            path,
+            reason: "it was changed after the campaign was planned".to_owned(),
+        });
+    }
+    Ok(requirements)
+}
+
+/// Adds to the requirements of a file those that scenarios have of their own, which are checked as
+/// well.
+#[must_use]
+pub fn with_those_of_scenarios(plan: &Plan, of_file: &Requirements) -> Requirements {
+    let mut all = of_file.clone();
+    for planned in &plan.scenarios {
+        // For a missing scenario only the ids are known.
+        let case = plan.cases.iter().find(|case| case.scenario == planned.id);
+        let scenario = case.and_then(|case| planned.scenario(case).ok());
+        for id in &planned.requirements {
+            if all.get(id).is_some() {
+                continue;
+            }
+            let own = scenario.as_ref();
+            let own = own.and_then(|s| s.requirements.iter().find(|own| own.check.id == *id));
+            let text = own.map_or("", |own| own.text.as_str());
+            let check = Check {
+                measure: own.map_or_else(String::new, |own| own.check.measure.clone()),
+                comparison: own.map_or(Comparison::AtMost, |own| own.check.comparison),
+                limit: Limit::Number(own.map_or(f64::NAN, |own| own.check.limit)),
+                ensemble: None,
+            };
+            let mut requirement = Requirement::new(id, text, Verification::Test(check));
+            requirement.section = vec![format!("Scenario {}", planned.id)];
+            all.requirements.push(requirement);
+        }
+    }
+    all
+}
+
+/// Traces a campaign by the results in its folder: all that its cases check, from the file of
+/// requirements or from the scenarios themselves. Cases of the plan before `end` count, as in
+/// [`status::of`](super::status::of): a rule may have stopped the campaign there.
+///
+/// # Errors
+/// If an existing result can't be read.
+pub fn trace(
+    plan: &Plan,
+    requirements: &Requirements,
+    folder: &Path,
+    end: usize,
+) -> Result<Trace, ResultError> {
+    let requirements = &with_those_of_scenarios(plan, requirements);
+    let mut streams: Vec<Option<String>> = Vec::with_capacity(plan.cases.len());
+    let mut of = |case: &super::plan::Case| -> Result<Case, ResultError> {
+        let planned = plan.scenarios.iter().find(|scenario| scenario.id == case.scenario);
+        let of_file = |id: &&String| requirements.get(id).is_some();
+        let verifies: Vec<String> = (planned.iter())
+            .flat_map(|scenario| scenario.requirements.iter().filter(of_file))
+            .cloned()
+            .collect();
+        let path = case::file(folder, &case.id);
+        let result = if let Some((result, _)) = CaseResult::of_plan(plan, folder, case)? {
+            // A check that passes in a run without evidence isn't a pass either, and of two results
+            // none counts.
+            let most = match besides(&result) {
+                _ if differing(&path, &case.id).is_some() => Verdict::Error,
+                Verdict::Fail => Verdict::Inconclusive,
+                other => other,
+            };
+            // A failed check of such a run doesn't count among the failures that an ensemble may
+            // have.
+            let allowed = |id: &str| {
+                let check = requirements.get(id).and_then(Requirement::check);
+                check.is_some_and(|check| check.ensemble.is_some())
+            };
+            let check = |id: &String| {
+                let check = match result.check(id) {
+                    Verdict::Fail if most != Verdict::Pass && allowed(id) => most,
+                    check => check.worst(most),
+                };
+                (id.clone(), traced(check))
+            };
+            let checks = verifies.iter().map(check).collect();
+            streams.push(result.summary.as_ref().map(|summary| summary.stream_hash.clone()));
+            Some(Traced {
+                verdict: traced(result.verdict),
+                checks,
+                // A campaign keeps summaries; a recording is made by running the case again.
+                recording: None,
+                folder: Some(path.display().to_string()),
+            })
+        } else {
+            streams.push(None);
+            None
+        };
+        Ok(Case { id: case.id.clone(), verifies, draw: 0, result })
+    };
+    let mut cases = plan.cases.iter().take(end).map(&mut of).collect::<Result<Vec<_>, _>>()?;
+    let rows = plan.cases.iter().zip(streams.iter().map(Option::as_deref));
+    for (case, draw) in cases.iter_mut().zip(independence::draws(rows)) {
+        case.draw = draw;
+    }
+    Ok(Trace::new(requirements, &cases))
+}
+
+/// Converts a verdict without requirements into inconclusive.
+fn traced(verdict: Verdict) -> Verdict {
+    if verdict == Verdict::None { Verdict::Inconclusive } else { verdict }
+}

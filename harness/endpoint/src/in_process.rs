@@ -1,0 +1,84 @@
+//! The core in this process.
+
+use super::{Conclusion, Endpoint, EndpointError};
+use octant_calibration::{Config, Core};
+use octant_sample::Epoch;
+use octant_sample::parameters::ParameterEstimate;
+use octant_sample::{Output, Parameters};
+
+/// The calibration core, called directly.
+#[derive(Clone, Debug)]
+pub struct InProcess {
+    core: Core,
+    revision: u32,
+    /// Configuration with which the core starts after each restart.
+    config: Box<Config>,
+}
+
+impl InProcess {
+    /// Creates a core that waits for its first sample.
+    ///
+    /// # Errors
+    /// If the configuration contradicts itself.
+    pub fn new(config: &Config) -> Result<Self, octant_calibration::state_machine::ConfigError> {
+        Ok(Self { core: Core::new(config)?, revision: 0, config: Box::new(config.clone()) })
+    }
+
+    /// Returns the core behind the endpoint, for data that no wire carries: diagnostics and table.
+    #[must_use]
+    pub fn core(&self) -> &Core {
+        &self.core
+    }
+}
+
+impl Endpoint for InProcess {
+    #[inline]
+    fn step(&mut self, epoch: &Epoch, output: &mut Output) -> Result<(), EndpointError> {
+        self.core.step_into(&epoch.sample, epoch.aiding.as_ref(), output);
+        self.revision = output.parameters_revision;
+        Ok(())
+    }
+
+    fn uri(&self) -> String {
+        "in-process".to_owned()
+    }
+
+    fn restart(&mut self, offset: Option<&Parameters>) -> Result<(), EndpointError> {
+        let mut config = Config::clone(&self.config);
+        if let Some(offset) = offset {
+            config.initial_parameters = super::sum(&config.initial_parameters, offset);
+        }
+        self.core = Core::new(&config).map_err(|error| EndpointError::Restart {
+            uri: "in-process".to_owned(),
+            reason: error.to_string(),
+        })?;
+        self.revision = 0;
+        Ok(())
+    }
+
+    fn parameters(&self) -> ParameterEstimate {
+        ParameterEstimate {
+            revision: self.revision,
+            parameters: *self.core.parameters(),
+            sigma: *self.core.sigma(),
+        }
+    }
+
+    /// Ends the stream: see [`Core::end_of_stream`].
+    fn end_of_stream(&mut self) -> Result<Option<Output>, EndpointError> {
+        let output = self.core.end_of_stream();
+        self.revision = output.parameters_revision;
+        Ok(Some(output))
+    }
+
+    fn conclusion(&mut self) -> Conclusion {
+        let quality = self.core.diagnostics().quality;
+        Conclusion {
+            refused: self.core.refusal().map(ToString::to_string),
+            nis_mean: Some(quality.nis_mean),
+            measurements: Some(quality.used + quality.rejected),
+            table: self.core.table().cloned(),
+            events: Vec::new(),
+        }
+    }
+}

@@ -1,0 +1,285 @@
+//! Endpoints: the core in this process, in an FMU, or at the other end of a wire.
+
+pub mod answer;
+mod fmu;
+mod in_process;
+mod live;
+mod served;
+
+pub use fmu::FmuEndpoint;
+pub use in_process::InProcess;
+pub use live::{LiveEndpoint, configuration};
+pub use served::ServedCore;
+
+use octant_calibration::Config;
+use octant_calibration::state_machine::ConfigError;
+use octant_calibration::table::CalibrationTable;
+use octant_faults::wire::Wired;
+use octant_link::harness::SessionError;
+use octant_mapping::stepper::UseError;
+use octant_realtime::clock::HostTime;
+use octant_recorder::Event;
+use octant_sample::Epoch;
+use octant_sample::parameters::ParameterEstimate;
+use octant_sample::{Output, Parameters};
+use octant_scenario::{self as scenario, Scenario};
+
+/// Realisation of the calibration core.
+pub trait Endpoint {
+    /// Passes one epoch to the core and writes its answer into `output`, whose content is undefined
+    /// after an error.
+    ///
+    /// # Errors
+    /// If the endpoint failed as a part of the bench: device gone, process died.
+    fn step(&mut self, epoch: &Epoch, output: &mut Output) -> Result<(), EndpointError>;
+
+    /// Returns which quantities the core's answers contain.
+    fn tells(&self) -> Tells {
+        Tells::ALL
+    }
+
+    /// Name of the endpoint in messages: its URI.
+    fn uri(&self) -> String;
+
+    /// Sends one epoch without waiting for the answer.
+    ///
+    /// # Errors
+    /// As [`Self::step`].
+    fn send(&mut self, epoch: &Epoch, output: &mut Output) -> Result<Sent, EndpointError> {
+        self.step(epoch, output)?;
+        Ok(Sent::Answered)
+    }
+
+    /// Waits for an answer until a time of the host. Answers come in the order of their epochs;
+    /// `Some` holds the number of epochs before the answered one that will have no answer. `None`:
+    /// no answer came, and `output` is unchanged.
+    ///
+    /// # Errors
+    /// As [`Self::step`].
+    fn answer(
+        &mut self,
+        _until: HostTime,
+        _output: &mut Output,
+    ) -> Result<Option<usize>, EndpointError> {
+        Ok(None)
+    }
+
+    /// Returns the relation of the endpoint's own clock to the host's, where both are compared.
+    fn remote_clock(&self) -> Option<RemoteClock> {
+        None
+    }
+
+    /// Restarts the core as at power on: it forgets everything and waits for its first sample. With
+    /// an offset (SI) its stored parameters differ by it from the configured ones; without, they
+    /// are the configured ones.
+    ///
+    /// # Errors
+    /// If the endpoint failed, or can't restart its core.
+    fn restart(&mut self, offset: Option<&Parameters>) -> Result<(), EndpointError>;
+
+    /// Returns the parameters as of the last output.
+    fn parameters(&self) -> ParameterEstimate;
+
+    /// Returns the wire to the core, where faults can be injected on one.
+    fn wired(&mut self) -> Option<&mut dyn Wired> {
+        None
+    }
+
+    /// Tells the core that the source has ended; returns its output then. `None`: the endpoint
+    /// can't pass this on.
+    ///
+    /// # Errors
+    /// If the endpoint failed.
+    fn end_of_stream(&mut self) -> Result<Option<Output>, EndpointError> {
+        Ok(None)
+    }
+
+    /// Returns the facts about the core at the end of a run that its outputs don't contain;
+    /// afterwards [`Self::parameters`] returns those of the end.
+    fn conclusion(&mut self) -> Conclusion {
+        Conclusion::default()
+    }
+}
+
+impl<E: Endpoint + ?Sized> Endpoint for Box<E> {
+    fn step(&mut self, epoch: &Epoch, output: &mut Output) -> Result<(), EndpointError> {
+        (**self).step(epoch, output)
+    }
+
+    fn tells(&self) -> Tells {
+        (**self).tells()
+    }
+
+    fn uri(&self) -> String {
+        (**self).uri()
+    }
+
+    fn send(&mut self, epoch: &Epoch, output: &mut Output) -> Result<Sent, EndpointError> {
+        (**self).send(epoch, output)
+    }
+
+    fn answer(
+        &mut self,
+        until: HostTime,
+        output: &mut Output,
+    ) -> Result<Option<usize>, EndpointError> {
+        (**self).answer(until, output)
+    }
+
+    fn remote_clock(&self) -> Option<RemoteClock> {
+        (**self).remote_clock()
+    }
+
+    fn restart(&mut self, offset: Option<&Parameters>) -> Result<(), EndpointError> {
+        (**self).restart(offset)
+    }
+
+    fn parameters(&self) -> ParameterEstimate {
+        (**self).parameters()
+    }
+
+    fn end_of_stream(&mut self) -> Result<Option<Output>, EndpointError> {
+        (**self).end_of_stream()
+    }
+
+    fn conclusion(&mut self) -> Conclusion {
+        (**self).conclusion()
+    }
+
+    fn wired(&mut self) -> Option<&mut dyn Wired> {
+        (**self).wired()
+    }
+}
+
+/// Quantities that a core's answers contain. The others aren't judged.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Tells {
+    /// Gimbal command.
+    pub commands: bool,
+    /// Latitude and longitude.
+    pub position: bool,
+    /// Velocity over ground.
+    pub velocity: bool,
+    /// Attitude.
+    pub attitude: bool,
+}
+
+impl Tells {
+    /// All quantities.
+    pub const ALL: Self = Self { commands: true, position: true, velocity: true, attitude: true };
+}
+
+/// Statement of a core at the end of a run, as far as its realisation provides one.
+#[derive(Clone, Debug, Default)]
+pub struct Conclusion {
+    /// Reason for refusing the calibration.
+    pub refused: Option<String>,
+    /// Mean NIS of the measurements used.
+    pub nis_mean: Option<f64>,
+    /// Measurements, used and rejected.
+    pub measurements: Option<u64>,
+    /// The calibration table, where the calibration was accepted.
+    pub table: Option<CalibrationTable>,
+    /// Events of the connection to be recorded: frames that a wire carried and lost.
+    pub events: Vec<Event>,
+}
+
+/// Result of sending an epoch without waiting.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Sent {
+    /// The answer has already come.
+    Answered,
+    /// The epoch is underway; [`Endpoint::answer`] returns its answer.
+    Underway,
+    /// The epoch could not be sent: too many are underway, or the port didn't accept it.
+    NotSent,
+}
+
+/// Relation of an endpoint's clock to the host's.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RemoteClock {
+    /// Lead of the endpoint's clock at the last exchange, ns.
+    pub offset_ns: f64,
+    /// Bound on the error of the offset, ns.
+    pub bound_ns: f64,
+    /// Relative rate error, positive if the endpoint's clock is faster; `None`: not known yet.
+    pub skew: Option<f64>,
+    /// Number of time exchanges.
+    pub exchanges: u64,
+}
+
+/// Reasons why the endpoint of a scenario can't be opened.
+#[derive(Debug, thiserror::Error)]
+pub enum OpenError {
+    /// The core's configuration contradicts itself.
+    #[error(transparent)]
+    Core(#[from] ConfigError),
+    /// An FMU can't be used.
+    #[error(transparent)]
+    Use(#[from] UseError),
+    /// A device can't be used.
+    #[error("begin a session with the device: {0}")]
+    Live(#[from] SessionError),
+    /// The line or bus is too slow for the clock.
+    #[error(transparent)]
+    Load(#[from] octant_link::load::LoadError),
+    /// A second method was requested of a device, which has one core with one configuration.
+    #[error(
+        "set the core at {uri} to the second method of the scenario's [baseline]: only Octant's own core \
+         takes one"
+    )]
+    OneMethod {
+        /// The port.
+        uri: String,
+    },
+}
+
+/// Opens the endpoint of a scenario with the core of `config`; `None` where it is the core in this
+/// process, which is called directly: see [`InProcess`].
+///
+/// # Errors
+/// If it can't be opened, or doesn't fit.
+pub fn open(scenario: &Scenario, config: &Config) -> Result<Option<Box<dyn Endpoint>>, OpenError> {
+    match &scenario.endpoint {
+        scenario::Endpoint::InProcess => Ok(None),
+        scenario::Endpoint::Fmu(fmu) => {
+            Ok(Some(Box::new(FmuEndpoint::open(scenario, fmu, config)?)))
+        }
+        scenario::Endpoint::Live(live) => {
+            Ok(Some(Box::new(LiveEndpoint::open(scenario, live, config)?)))
+        }
+    }
+}
+
+/// Adds an offset to stored parameters.
+fn sum(stored: &Parameters, offset: &Parameters) -> Parameters {
+    let (stored, offset) = (stored.to_array(), offset.to_array());
+    Parameters::from_array(&std::array::from_fn(|i| stored[i] + offset[i]))
+}
+
+/// Reasons why an endpoint could not go on.
+#[derive(Debug, thiserror::Error)]
+pub enum EndpointError {
+    /// The device or process behind the endpoint is gone.
+    #[error("endpoint {uri} is gone: {reason}")]
+    Gone {
+        /// URI of the endpoint.
+        uri: String,
+        /// Description of the failure.
+        reason: String,
+    },
+    /// The session with the device can't go on.
+    #[error("endpoint {0}")]
+    Live(#[from] SessionError),
+    /// The core's answer broke the rules.
+    #[error(transparent)]
+    Misbehaved(#[from] answer::Misbehaviour),
+    /// The core behind the endpoint can't be restarted.
+    #[error("restart the core at {uri}: {reason}")]
+    Restart {
+        /// URI of the endpoint.
+        uri: String,
+        /// Reason.
+        reason: String,
+    },
+}

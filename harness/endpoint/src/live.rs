@@ -1,0 +1,342 @@
+//! A core at the other end of a wire: a device on a serial line, a CAN bus or UDP.
+//!
+//! In lock-step each sample is sent, and its answer is awaited and requested again until it has
+//! come: the outputs are therefore those of the device's core to the last bit, however bad the line
+//! is. By the clock a sample is sent once, and its answer is taken when it comes.
+
+use super::{Conclusion, Endpoint, EndpointError, OpenError, RemoteClock, Sent};
+use octant_calibration::Config;
+use octant_faults::catalogue::Acts;
+use octant_faults::wire::Wired;
+use octant_link::clock::ClockEstimator;
+use octant_link::harness::{ANEW, Event, Harness, Options, Patience, Sending, SessionError};
+use octant_link::{PortError, Uri, Wire, load, port};
+use octant_realtime::clock::{HostTime, now};
+use octant_recorder as recorder;
+use octant_sample::Epoch;
+use octant_sample::parameters::PARAMETER_COUNT;
+use octant_sample::parameters::ParameterEstimate;
+use octant_sample::{Output, Parameters};
+use octant_scenario::{Live, Scenario};
+use octant_wire::message::{Gathered, OutputMessage, Pacing, Reason, Role, Step};
+use std::collections::VecDeque;
+use std::time::{Duration, Instant};
+
+/// Endpoint of a device.
+#[derive(Debug)]
+pub struct LiveEndpoint {
+    harness: Harness,
+    uri: Uri,
+    /// Longest time to wait for a port that went away.
+    reconnect: Duration,
+    estimate: ParameterEstimate,
+    begun: Instant,
+    underway: Underway,
+}
+
+/// Samples that were sent by the clock and are not answered yet.
+#[derive(Debug)]
+struct Underway {
+    steps: VecDeque<Step>,
+    /// Answer whose parameters haven't come yet.
+    held: Option<Held>,
+    clock: ClockEstimator,
+    /// Time of the last time exchange.
+    asked: HostTime,
+    /// Number of hellos without a session since the last answer.
+    anew: u32,
+}
+
+/// Answer, with a flag that tells whether parameters come after it.
+#[derive(Debug)]
+struct Held {
+    message: OutputMessage,
+    waits: bool,
+}
+
+/// Interval between time exchanges, ns.
+const TIME_EXCHANGE_NS: u64 = 1_000_000_000;
+
+impl LiveEndpoint {
+    /// Checks whether a device can do what a scenario requires, before any port is opened.
+    ///
+    /// # Errors
+    /// If it can't.
+    pub fn check(scenario: &Scenario, live: &Live) -> Result<(), OpenError> {
+        if scenario.baseline.is_some() {
+            return Err(OpenError::OneMethod { uri: live.uri.to_string() });
+        }
+        if scenario.realtime.by_clock {
+            let rate_hz = 1e9 / scenario.sample_period_ns as f64;
+            load::real_time(&live.uri, rate_hz, load::bus(&live.uri))?;
+        }
+        Ok(())
+    }
+
+    /// Begins a session with the device of a scenario, in lock-step.
+    ///
+    /// # Errors
+    /// If no device answers, or the device doesn't fit.
+    pub fn open(scenario: &Scenario, live: &Live, config: &Config) -> Result<Self, OpenError> {
+        Self::check(scenario, live)?;
+        let options = Options {
+            configuration: configuration(config),
+            patience: Patience {
+                hello: Duration::from_secs_f64(live.hello_s),
+                answer: Duration::from_secs_f64(live.answer_s),
+                repeat: Duration::from_secs_f64(live.repeat_s),
+            },
+            ..Options::lock_step(config.sample_period_ns)
+        };
+        let pacing = if scenario.realtime.by_clock { Pacing::RealTime } else { Pacing::LockStep };
+        let options = Options { pacing, ..options };
+        let mut port = port::open(&live.uri, Role::Harness).map_err(SessionError::from)?;
+        if scenario.faults.iter().any(|fault| fault.spec.kind.acts == Acts::Wire) {
+            port = octant_link::fault::around(port);
+        }
+        let mut wire = Wire::new(live.uri.to_string(), port, Role::Harness);
+        if let Some(bus) = load::bus(&live.uri) {
+            wire.set_bus(bus);
+        }
+        let harness = Harness::open(wire, options)?;
+        Ok(Self {
+            harness,
+            uri: live.uri.clone(),
+            reconnect: Duration::from_secs_f64(live.reconnect_s),
+            estimate: NOTHING,
+            begun: Instant::now(),
+            underway: Underway {
+                // As many steps as a step number can distinguish.
+                steps: VecDeque::with_capacity(1 << 14),
+                held: None,
+                clock: ClockEstimator::new(10.0),
+                asked: HostTime::default(),
+                anew: 0,
+            },
+        })
+    }
+
+    /// Releases the held answer, when its parameters have come or won't come any more. Returns the
+    /// number of earlier samples that will have no answer.
+    fn release(&mut self, output: &mut Output) -> Option<usize> {
+        let held = self.underway.held.take()?;
+        let position = self.underway.steps.iter().position(|step| *step == held.message.step)?;
+        self.underway.steps.drain(..=position);
+        *output = held.message.output;
+        // If parameters were lost on the way, their revision is not announced.
+        output.parameters_revision = self.estimate.revision;
+        Some(position)
+    }
+
+    /// Returns the session, for its counters.
+    #[must_use]
+    pub fn harness(&self) -> &Harness {
+        &self.harness
+    }
+
+    /// Waits for a port that went away in the middle of a step, and requests the answer again.
+    #[cold]
+    fn back(&mut self, error: SessionError, output: &mut Output) -> Result<(), EndpointError> {
+        let SessionError::Port(PortError::Gone { .. }) = error else { return Err(error.into()) };
+        let begun = Instant::now();
+        loop {
+            if begun.elapsed() >= self.reconnect {
+                return Err(error.into());
+            }
+            std::thread::sleep(Duration::from_millis(50));
+            if self.harness.reopen(begun.elapsed()).is_err() {
+                continue;
+            }
+            match self.harness.step_again(output) {
+                Ok(_) => return Ok(()),
+                Err(SessionError::Port(PortError::Gone { .. })) => {}
+                Err(error) => return Err(error.into()),
+            }
+        }
+    }
+
+    fn take_parameters(&mut self) {
+        if let Some(Gathered { revision, parameters, sigma, .. }) = self.harness.parameters()
+            && (*revision != self.estimate.revision || self.estimate.sigma[0].is_nan())
+        {
+            self.estimate =
+                ParameterEstimate { revision: *revision, parameters: *parameters, sigma: *sigma };
+        }
+    }
+}
+
+const NOTHING: ParameterEstimate = ParameterEstimate {
+    revision: 0,
+    parameters: Parameters {
+        gyro_bias: [0.0; 3],
+        gyro_scale: [0.0; 3],
+        gyro_misalignment: [0.0; 6],
+        g_dependent: [0.0; 9],
+        accel_bias: [0.0; 3],
+        accel_scale: [0.0; 3],
+        accel_misalignment: [0.0; 3],
+    },
+    sigma: [f64::NAN; PARAMETER_COUNT],
+};
+
+impl Endpoint for LiveEndpoint {
+    fn step(&mut self, epoch: &Epoch, output: &mut Output) -> Result<(), EndpointError> {
+        let answer = self.harness.step(&epoch.sample, epoch.aiding.as_ref(), output);
+        if let Err(error) = answer {
+            self.back(error, output)?;
+        }
+        if output.parameters_revision != self.estimate.revision || self.estimate.sigma[0].is_nan() {
+            self.take_parameters();
+        }
+        Ok(())
+    }
+
+    fn uri(&self) -> String {
+        self.uri.to_string()
+    }
+
+    fn send(&mut self, epoch: &Epoch, _output: &mut Output) -> Result<Sent, EndpointError> {
+        let time = now();
+        if time.since(self.underway.asked) >= TIME_EXCHANGE_NS {
+            self.underway.asked = time;
+            self.harness.request_time()?;
+        }
+        Ok(match self.harness.send_sample(&epoch.sample, epoch.aiding.as_ref())? {
+            Sending::Sent(step) => {
+                self.underway.steps.push_back(step);
+                Sent::Underway
+            }
+            Sending::NotTaken(_) | Sending::WindowFull => Sent::NotSent,
+        })
+    }
+
+    fn answer(
+        &mut self,
+        until: HostTime,
+        output: &mut Output,
+    ) -> Result<Option<usize>, EndpointError> {
+        loop {
+            if self.underway.held.as_ref().is_some_and(|held| !held.waits)
+                && let Some(skipped) = self.release(output)
+            {
+                return Ok(Some(skipped));
+            }
+            let wait = Duration::from_nanos(until.since(now()));
+            let Some(event) = self.harness.poll(wait)? else {
+                // The port may have waited slightly less than requested.
+                if now() >= until {
+                    return Ok(None);
+                }
+                continue;
+            };
+            match event {
+                Event::Output(message) => {
+                    self.underway.anew = 0;
+                    // Messages come in order, so the parameters of an answer that is still held
+                    // won't come any more.
+                    let before = self.release(output);
+                    let waits = message.parameters_follow
+                        && message.output.parameters_revision != self.estimate.revision;
+                    self.underway.held = Some(Held { message, waits });
+                    if before.is_some() {
+                        return Ok(before);
+                    }
+                }
+                Event::Parameters(_) => {
+                    self.take_parameters();
+                    if let Some(held) = &mut self.underway.held {
+                        held.waits &=
+                            held.message.output.parameters_revision != self.estimate.revision;
+                    }
+                }
+                Event::Time(stamps) => self.underway.clock.add(&stamps),
+                Event::Anew => {
+                    self.underway.anew += 1;
+                    if self.underway.anew >= ANEW {
+                        return Err(self.harness.started_anew().into());
+                    }
+                }
+                _ => {}
+            }
+        }
+    }
+
+    fn remote_clock(&self) -> Option<RemoteClock> {
+        let estimate = self.underway.clock.estimate()?;
+        Some(RemoteClock {
+            offset_ns: estimate.offset_ns,
+            bound_ns: estimate.bound_ns,
+            skew: estimate.skew,
+            exchanges: estimate.exchanges,
+        })
+    }
+
+    fn restart(&mut self, offset: Option<&Parameters>) -> Result<(), EndpointError> {
+        self.estimate = NOTHING;
+        self.underway.steps.clear();
+        self.underway.held = None;
+        Ok(self.harness.restart(offset)?)
+    }
+
+    fn parameters(&self) -> ParameterEstimate {
+        self.estimate
+    }
+
+    fn end_of_stream(&mut self) -> Result<Option<Output>, EndpointError> {
+        let output = self.harness.end()?;
+        self.take_parameters();
+        Ok(output)
+    }
+
+    fn wired(&mut self) -> Option<&mut dyn Wired> {
+        self.harness.wire().wired()
+    }
+
+    fn conclusion(&mut self) -> Conclusion {
+        let (counts, effort) = (self.harness.counts(), self.harness.effort());
+        let theirs = self.harness.theirs();
+        let wall_s = self.begun.elapsed().as_secs_f64();
+        let detail = serde_json::json!({
+            "port": self.uri.to_string(),
+            "device": theirs.name.as_str(),
+            "firmware": theirs.firmware.as_str(),
+            "pacing": theirs.pacing.name(),
+            "configuration_compared": self.harness.agreement().configuration_compared,
+            "wall_s": wall_s,
+            "sent": counts.sent,
+            "not_sent": counts.not_sent,
+            "received": counts.received,
+            "repeated": effort.repeated,
+            "doubled": effort.doubled,
+            "lost": counts.lost,
+            "damaged": counts.damaged,
+            "missing": counts.missing,
+            "out_of_order": counts.out_of_order,
+            "unreadable": counts.unreadable,
+            "reconnected": effort.reconnected,
+            "away_s": effort.away.as_secs_f64(),
+            "bus_load": (counts.bus_s > 0.0).then(|| counts.bus_s / wall_s),
+            "error_frames": counts.error_frames,
+            "error_passive": counts.error_passive,
+            "bus_off": counts.bus_off,
+            "restarted": counts.restarted,
+            "arbitration_lost": counts.arbitration_lost,
+        });
+        let event = recorder::Event { kind: "link".to_owned(), detail };
+        Conclusion { events: vec![event], ..Conclusion::default() }
+    }
+}
+
+impl Drop for LiveEndpoint {
+    fn drop(&mut self) {
+        self.harness.bye(Reason::DONE, "the run is over");
+    }
+}
+
+/// Computes the hash that both ends compare in their hello, over the whole configuration of the
+/// core; zeros if it can't be encoded.
+#[must_use]
+pub fn configuration(config: &Config) -> [u8; 32] {
+    // The configuration consists of numbers and names, which are encoded bit by bit.
+    postcard::to_stdvec(config).map_or([0; 32], |bytes| blake3::hash(&bytes).into())
+}

@@ -1,0 +1,58 @@
+//! Facts for the manifest about the recordings from which a run took its samples.
+
+use octant_base::hash::sha256;
+use octant_scenario::{FileName, Scenario, Source};
+use serde::{Deserialize, Serialize};
+
+/// Recording from which samples came.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct InputFacts {
+    /// The file.
+    pub file: String,
+    /// SHA-256, hexadecimal.
+    pub sha256: String,
+}
+
+/// Reason why a recording can't be hashed.
+#[derive(Debug, thiserror::Error)]
+pub enum InputError {
+    /// The name of the file can't be expanded.
+    #[error("{reason}")]
+    Name {
+        /// Name found, and what is expected.
+        reason: String,
+    },
+    /// The file can't be read.
+    #[error("read {file}: {error}")]
+    Read {
+        /// The file.
+        file: String,
+        /// Error of the operating system.
+        error: std::io::Error,
+    },
+}
+
+/// Hashes the recordings of a scenario before the run.
+///
+/// # Errors
+/// If one can't be read.
+pub fn inputs(scenario: &Scenario) -> Result<Vec<InputFacts>, InputError> {
+    let names: Vec<FileName> = match &scenario.source {
+        Source::Replay { file, .. } => vec![file.clone()],
+        Source::Text(mapping) => {
+            mapping.files.all().map(|path| FileName(path.display().to_string())).collect()
+        }
+        Source::Plant | Source::Fmu(_) | Source::Live(_) => Vec::new(),
+    };
+    let one = |name: FileName| {
+        let path = name
+            .path(&scenario.folder)
+            .map_err(|reason| InputError::Name { reason: reason.to_string() })?;
+        let file = path.display().to_string();
+        match sha256(&path) {
+            Ok(sha256) => Ok(InputFacts { file, sha256 }),
+            Err(error) => Err(InputError::Read { file, error }),
+        }
+    };
+    names.into_iter().map(one).collect()
+}

@@ -1,0 +1,26 @@
+//! Evidence of a run: its folder, written atomically, the manifest, its signature, and the
+//! discrepancies with their dispositions.
+
+pub mod attestation;
+pub mod build;
+mod difference;
+pub mod discrepancy;
+pub mod disposition;
+mod error;
+mod facts;
+pub mod files;
+mod fmus;
+pub mod folder;
+mod host;
+mod inputs;
+pub mod inside;
+mod leftover;
+pub mod manifest;
+mod names;
+pub mod signature;
+
+pub use fmus::fmus;
+pub use folder::LOCK;
+pub use folder::{Existing, FolderError, RunFolder};
+pub use inputs::{InputError, InputFacts, inputs};
+pub use manifest::{FmuFacts, Manifest, ManifestError, RunFacts};

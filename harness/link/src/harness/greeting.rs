@@ -1,0 +1,112 @@
+//! Greeting of a session: hellos until the other end answers.
+
+use super::error::{Heard, SessionError};
+use super::options::Patience;
+use crate::asking::Taken;
+use crate::wire::{Counts, Incoming, Wire};
+use octant_wire::message::{Hello, Message, Reason};
+use std::time::Instant;
+
+/// Draws a random session number other than 0, so that no recent session has the same.
+pub(super) fn draw_session() -> u32 {
+    use std::hash::{BuildHasher, Hasher};
+    // `RandomState` is keyed by random numbers of the system.
+    let mut hasher = std::collections::hash_map::RandomState::new().build_hasher();
+    hasher.write_u32(std::process::id());
+    (hasher.finish() as u32).max(1)
+}
+
+fn newer(wire: &Wire, found: u16) -> SessionError {
+    SessionError::Newer {
+        port: wire.name().to_owned(),
+        reason: octant_wire::Unreadable::NewerVersion { found },
+    }
+}
+
+pub(super) fn heard(wire: &Wire, before: &Counts, bye: Option<Reason>) -> Heard {
+    let now = wire.counts();
+    Heard {
+        messages: now.received - before.received,
+        lost: now.lost - before.lost,
+        damaged: now.damaged - before.damaged,
+        not_sent: now.not_sent - before.not_sent,
+        off_bus: wire.is_off_bus(),
+        bye,
+    }
+}
+
+/// True if a reason refuses a session; the others end one.
+fn refuses(reason: Reason) -> bool {
+    matches!(
+        reason,
+        Reason::VERSION
+            | Reason::ROLE
+            | Reason::SESSION
+            | Reason::PACING
+            | Reason::PERIOD
+            | Reason::CONFIGURATION
+            | Reason::UNSUPPORTED
+    )
+}
+
+/// True if a terminal would execute a character, or reorder the line because of it.
+pub(super) fn is_control(c: char) -> bool {
+    c.is_control() || matches!(c, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
+}
+
+pub(super) fn say_hello(
+    wire: &mut Wire,
+    ours: &Hello,
+    patience: &Patience,
+    stale: &mut Option<Reason>,
+) -> Result<Hello, SessionError> {
+    let before = wire.counts();
+    let begun = Instant::now();
+    let mut intervals = Taken::default().ask(patience.repeat, patience.hello);
+    let (mut asked, mut newer_seen) = (0, None);
+    loop {
+        wire.send(&Message::Hello(*ours), patience.repeat)?;
+        asked += 1;
+        let asked_at = Instant::now();
+        loop {
+            let left = intervals.now().saturating_sub(asked_at.elapsed());
+            match wire.receive(left)? {
+                // No checksum protects the version of a hello on a bus: it must arrive twice.
+                Some(Incoming::Newer(found)) if newer_seen.replace(found) == Some(found) => {
+                    return Err(newer(wire, found));
+                }
+                Some(Incoming::Message(Message::Hello(theirs)))
+                    if theirs.session == ours.session =>
+                {
+                    return Ok(theirs);
+                }
+                // A bye by which the device ended an earlier session may still be on the line.
+                Some(Incoming::Message(Message::Bye(bye))) if !refuses(bye.reason) => {
+                    *stale = Some(bye.reason);
+                }
+                Some(Incoming::Message(Message::Bye(bye))) => {
+                    return Err(SessionError::Bye {
+                        port: wire.name().to_owned(),
+                        during: "its hello".to_owned(),
+                        bye,
+                    });
+                }
+                _ => {}
+            }
+            if asked_at.elapsed() >= intervals.now() {
+                break;
+            }
+        }
+        intervals.again();
+        let waited = begun.elapsed();
+        if waited >= patience.hello {
+            return Err(SessionError::NoAnswer {
+                port: wire.name().to_owned(),
+                waited_for: "hello".to_owned(),
+                waited,
+                asked,
+                heard: heard(wire, &before, *stale),
+            });
+        }
+    }
+}

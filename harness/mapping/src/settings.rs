@@ -1,0 +1,382 @@
+//! Values that are set in an FMU before it starts, checked against its description.
+
+use super::convert::{ConversionError, article, conversion};
+use super::find::{UnknownVariable, count, find, unknown};
+use octant_fmu_host::description::{Causality, Description, Initial, Kind, Variability, Variable};
+use octant_fmu_host::instance::{Access, Group, Instance, InstanceError};
+use octant_scenario::channel::{Channel, Class};
+use octant_scenario::{Dimension, Set, quantity_of};
+use std::ops::Range;
+
+/// Values that are set before an FMU starts.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Starts {
+    /// Numbers by group, those of configuration mode first.
+    numbers: Vec<(Group, Vec<f64>)>,
+    /// Texts.
+    texts: Vec<(Group, Vec<String>)>,
+}
+
+impl Starts {
+    /// Sets the values.
+    ///
+    /// # Errors
+    /// If the FMU refuses.
+    pub fn apply(&self, instance: &mut dyn Instance) -> Result<(), InstanceError> {
+        for (group, numbers) in &self.numbers {
+            instance.set(group, numbers)?;
+        }
+        for (group, texts) in &self.texts {
+            instance.set_strings(group, texts)?;
+        }
+        Ok(())
+    }
+}
+
+/// Reason why a value can't be set.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum SettingError {
+    /// No variable has the name.
+    #[error(transparent)]
+    Unknown(#[from] UnknownVariable),
+    /// The variable has another number of elements.
+    #[error("found {found} values, and {name} has {expected} elements")]
+    Count {
+        /// Name of the variable.
+        name: String,
+        /// Number of values.
+        found: usize,
+        /// Number of elements.
+        expected: usize,
+    },
+    /// The name is that of one element of an array.
+    #[error("{name} is one element of {array}: expected a value for each of its elements")]
+    Element {
+        /// Name found.
+        name: String,
+        /// Name of the array.
+        array: String,
+    },
+    /// The variable has no start value that may be changed.
+    #[error("{variable} can't be set: it is {is}")]
+    Fixed {
+        /// Name of the variable.
+        variable: String,
+        /// Its causality and variability, in words.
+        is: &'static str,
+    },
+    /// The type of the variable doesn't have the value.
+    #[error(
+        "found {}, and {variable} is {}: expected {expected}",
+        in_words(.found),
+        article(.kind.name())
+    )]
+    Value {
+        /// Name of the variable.
+        variable: String,
+        /// Its type.
+        kind: Kind,
+        /// Value found.
+        found: Set,
+        /// Value expected.
+        expected: String,
+    },
+    /// The value is beyond a limit of the variable.
+    #[error("found {found}{unit}, and {variable} is {side} {limit}{unit}")]
+    Limit {
+        /// Name of the variable.
+        variable: String,
+        /// Value found, in the variable's unit.
+        found: f64,
+        /// `at least` or `at most`.
+        side: &'static str,
+        /// Limit.
+        limit: f64,
+        /// Unit after a blank; empty if there is none.
+        unit: String,
+    },
+    /// A quantity was found for a variable without unit.
+    #[error("found {found:?}, and {variable} has no unit in its description: expected a number")]
+    NoUnit {
+        /// Name of the variable.
+        variable: String,
+        /// Quantity found.
+        found: String,
+    },
+    /// A quantity is of a dimension that scenarios don't have.
+    #[error("found {found:?}, of a dimension that no variable of a scenario has")]
+    NoDimension {
+        /// Quantity found.
+        found: String,
+    },
+    /// A quantity doesn't fit the variable's unit.
+    #[error(transparent)]
+    Conversion(#[from] ConversionError),
+}
+
+fn in_words(value: &Set) -> String {
+    match value {
+        Set::Number(number) => format!("the number {number}"),
+        Set::Flag(flag) => flag.to_string(),
+        Set::Text(text) => format!("{text:?}"),
+    }
+}
+
+/// Collects values to set; a later value of a variable replaces an earlier one.
+#[derive(Debug)]
+pub struct Settings<'a> {
+    description: &'a Description,
+    numbers: Vec<(&'a Variable, Vec<f64>)>,
+    texts: Vec<(&'a Variable, Vec<String>)>,
+}
+
+impl<'a> Settings<'a> {
+    /// Creates an empty collection for an FMU.
+    #[must_use]
+    pub fn new(description: &'a Description) -> Self {
+        Self { description, numbers: Vec::new(), texts: Vec::new() }
+    }
+
+    /// Sets a variable by its name.
+    ///
+    /// # Errors
+    /// If there is no such variable, it can't be set, or a value doesn't fit: found and expected.
+    pub fn set(&mut self, name: &str, values: &[Set]) -> Result<(), SettingError> {
+        let description = self.description;
+        for (variable, range) in whole(description, name, values.len(), settable)? {
+            let values = &values[range];
+            check_settable(variable)?;
+            if variable.kind == Kind::String {
+                let texts = values.iter().map(|value| match value {
+                    Set::Text(text) => Ok(text.clone()),
+                    other => Err(wrong(variable, other, "a text")),
+                });
+                let texts = texts.collect::<Result<_, _>>()?;
+                self.texts.retain(|(known, _)| !std::ptr::eq(*known, variable));
+                self.texts.push((variable, texts));
+            } else {
+                let numbers = values.iter().map(|value| number(description, variable, value));
+                self.put(variable, numbers.collect::<Result<_, _>>()?);
+            }
+        }
+        Ok(())
+    }
+
+    /// Sets the numbers of a variable of one of our own FMUs, without conversion.
+    ///
+    /// # Errors
+    /// If the FMU doesn't have it.
+    pub fn own(&mut self, name: &str, numbers: &[f64]) -> Result<(), SettingError> {
+        for (variable, range) in whole(self.description, name, numbers.len(), settable)? {
+            self.put(variable, numbers[range].to_vec());
+        }
+        Ok(())
+    }
+
+    fn put(&mut self, variable: &'a Variable, numbers: Vec<f64>) {
+        match self.numbers.iter_mut().find(|(known, _)| std::ptr::eq(*known, variable)) {
+            Some((_, values)) => *values = numbers,
+            None => self.numbers.push((variable, numbers)),
+        }
+    }
+
+    /// Returns everything that was set.
+    ///
+    /// # Errors
+    /// If the variables can't be set together.
+    pub fn finish(self) -> Result<Starts, InstanceError> {
+        let mut numbers: Vec<(Group, Vec<f64>)> = Vec::new();
+        for (variable, values) in self.numbers {
+            let one = Group::of(self.description, variable)?;
+            let same = |(group, _): &&mut (Group, Vec<f64>)| {
+                group.kind == one.kind && group.access == one.access
+            };
+            match numbers.iter_mut().find(same) {
+                Some((group, all)) => {
+                    group.references.extend(one.references);
+                    group.elements += one.elements;
+                    all.extend(values);
+                }
+                None => numbers.push((one, values)),
+            }
+        }
+        numbers.sort_by_key(|(group, _)| group.access != Access::Configuration);
+        let texts = self.texts.into_iter();
+        let texts =
+            texts.map(|(variable, texts)| Ok((Group::of(self.description, variable)?, texts)));
+        Ok(Starts { numbers, texts: texts.collect::<Result<_, InstanceError>>()? })
+    }
+}
+
+/// Finds the whole variables to which a name refers, each with its range of the given values.
+fn whole<'a>(
+    description: &'a Description,
+    name: &str,
+    values: usize,
+    could: impl Fn(&Variable) -> bool,
+) -> Result<Vec<(&'a Variable, Range<usize>)>, SettingError> {
+    let Some(found) = find(description, name, values).filter(|found| !found.negated) else {
+        return Err(unknown(description, name, could).into());
+    };
+    if found.elements.len() != values {
+        return Err(SettingError::Count {
+            name: name.to_owned(),
+            found: values,
+            expected: found.elements.len(),
+        });
+    }
+    let Some((first, _)) = found.elements.first() else { return Ok(Vec::new()) };
+    // An array in the file, or one whose elements are scalars there.
+    if found.elements.iter().all(|(variable, _)| std::ptr::eq(*variable, *first)) {
+        if count(description, first) != values {
+            return Err(SettingError::Element { name: name.to_owned(), array: first.name.clone() });
+        }
+        return Ok(vec![(first, 0..values)]);
+    }
+    Ok(found.elements.iter().enumerate().map(|(n, (variable, _))| (*variable, n..n + 1)).collect())
+}
+
+fn check_settable(variable: &Variable) -> Result<(), SettingError> {
+    if settable(variable) {
+        return Ok(());
+    }
+    Err(SettingError::Fixed {
+        variable: variable.name.clone(),
+        is: match (variable.variability, variable.causality) {
+            (Variability::Constant, _) => "a constant",
+            (_, Causality::CalculatedParameter) => "calculated from parameters",
+            (_, Causality::Independent) => "the independent variable",
+            (_, Causality::Output) => "an output that the FMU calculates",
+            _ => "calculated by the FMU",
+        },
+    })
+}
+
+/// Returns whether a variable has a start value that may be changed.
+fn settable(variable: &Variable) -> bool {
+    if variable.variability == Variability::Constant {
+        return false;
+    }
+    match variable.causality {
+        Causality::Parameter | Causality::StructuralParameter | Causality::Input => true,
+        Causality::CalculatedParameter | Causality::Independent => false,
+        Causality::Output | Causality::Local => {
+            matches!(variable.initial, Some(Initial::Exact | Initial::Approx))
+        }
+    }
+}
+
+fn wrong(variable: &Variable, found: &Set, expected: &str) -> SettingError {
+    SettingError::Value {
+        variable: variable.name.clone(),
+        kind: variable.kind,
+        found: found.clone(),
+        expected: expected.to_owned(),
+    }
+}
+
+/// Converts a value into the number that is passed to the FMU, within the limits of the variable
+/// and its type.
+fn number(
+    description: &Description,
+    variable: &Variable,
+    value: &Set,
+) -> Result<f64, SettingError> {
+    let number = match (variable.kind, value) {
+        (Kind::Boolean, Set::Flag(flag)) => return Ok(f64::from(u8::from(*flag))),
+        (Kind::Boolean, other) => return Err(wrong(variable, other, "true or false")),
+        (Kind::Binary | Kind::Clock | Kind::String, other) => {
+            return Err(wrong(variable, other, "another variable: such can't be set here"));
+        }
+        (Kind::Enumeration, value) => return item(description, variable, value),
+        (Kind::Float64 | Kind::Float32, Set::Number(number)) => *number,
+        (Kind::Float64 | Kind::Float32, Set::Text(text)) => quantity(description, variable, text)?,
+        (Kind::Float64 | Kind::Float32, other) => {
+            return Err(wrong(variable, other, "a number, or a quantity with its unit"));
+        }
+        (kind, Set::Number(number)) => {
+            let (from, to) = limits(kind);
+            if number.fract() != 0.0 || !(from..=to).contains(number) {
+                return Err(wrong(variable, value, &format!("a whole number from {from} to {to}")));
+            }
+            *number
+        }
+        (_, other) => return Err(wrong(variable, other, "a whole number")),
+    };
+    let unit = variable.unit.as_ref().map_or(String::new(), |unit| format!(" {unit}"));
+    let beyond = |side, limit| SettingError::Limit {
+        variable: variable.name.clone(),
+        found: number,
+        side,
+        limit,
+        unit: unit.clone(),
+    };
+    if let Some(min) = variable.min.filter(|min| number < *min) {
+        return Err(beyond("at least", min));
+    }
+    if let Some(max) = variable.max.filter(|max| number > *max) {
+        return Err(beyond("at most", max));
+    }
+    Ok(number)
+}
+
+/// Returns the value of an enumeration's item, by its name or its number.
+fn item(description: &Description, variable: &Variable, value: &Set) -> Result<f64, SettingError> {
+    let items = variable
+        .enumeration
+        .as_ref()
+        .and_then(|name| description.enumeration(name))
+        .unwrap_or_default();
+    let found = match value {
+        Set::Text(text) => items.iter().find(|(_, name)| name == text),
+        Set::Number(number) => items.iter().find(|(item, _)| *item as f64 == *number),
+        Set::Flag(_) => None,
+    };
+    if let Some((item, _)) = found {
+        return Ok(*item as f64);
+    }
+    let known: Vec<String> =
+        items.iter().map(|(item, name)| format!("{name:?} ({item})")).collect();
+    Err(wrong(variable, value, &format!("one of {}", known.join(", "))))
+}
+
+/// Converts a quantity into the unit of the variable.
+fn quantity(
+    description: &Description,
+    variable: &Variable,
+    text: &str,
+) -> Result<f64, SettingError> {
+    let Ok(found) = quantity_of(text) else {
+        let found = Set::Text(text.to_owned());
+        return Err(wrong(variable, &found, "a number, or a quantity with its unit"));
+    };
+    if variable.unit.is_none() {
+        return Err(SettingError::NoUnit {
+            variable: variable.name.clone(),
+            found: text.to_owned(),
+        });
+    }
+    let Some(dimension) = Dimension::of(found) else {
+        return Err(SettingError::NoDimension { found: text.to_owned() });
+    };
+    // Treated as a channel into the FMU.
+    let channel =
+        Channel { name: "the value", class: Class::Quantity(dimension), elements: 1, doc: "" };
+    let conversion = conversion(description, variable, &channel, None, 1.0)?;
+    Ok(conversion.from_si(found.si))
+}
+
+/// Returns the range of a whole-number type that f64 holds exactly.
+fn limits(kind: Kind) -> (f64, f64) {
+    const EXACT: f64 = 9_007_199_254_740_992.0;
+    match kind {
+        Kind::Int8 => (i8::MIN.into(), i8::MAX.into()),
+        Kind::UInt8 => (0.0, u8::MAX.into()),
+        Kind::Int16 => (i16::MIN.into(), i16::MAX.into()),
+        Kind::UInt16 => (0.0, u16::MAX.into()),
+        Kind::Int32 => (i32::MIN.into(), i32::MAX.into()),
+        Kind::UInt32 => (0.0, u32::MAX.into()),
+        Kind::UInt64 => (0.0, EXACT),
+        _ => (-EXACT, EXACT),
+    }
+}

@@ -1,0 +1,291 @@
+//! Covariance analysis of a procedure: predicts the result of its filter without a run.
+//!
+//! The filter's own covariance gives its gains. The true errors of all 39 states ([`Truth`]) are
+//! carried along and updated by those gains in Joseph form, so that a filter with too few states
+//! (six positions without G) is judged by its actual errors and not by the covariance that it
+//! believes. After the calibration the true errors are carried through free navigation with the
+//! vertical channel held, which gives the predicted drift.
+
+use super::platform::{Platform, SAMPLE_S};
+use super::truth::{TrueErrors, Truth, Unseen};
+use nalgebra::{Matrix3, Vector3};
+use octant_calibration::config::{AidingMode, Config, ErrorModel, Estimator, Kalman};
+use octant_calibration::covariance::{
+    Covariance, DR, DV, PARAMETERS, PHI, STATE_COUNT, Transition,
+};
+use octant_calibration::filter::{add_process_noise, prior_sigmas};
+use octant_calibration::schedule::{Cursor, dwell_s};
+use octant_earth::ellipsoid::Ellipsoid;
+use octant_earth::units::ARCMIN;
+use octant_sample::GimbalAngles;
+
+/// Longest step of navigation, s.
+const NAVIGATION_STEP_S: f64 = 10.0;
+/// Time between two points of the drift, s.
+const DRIFT_EVERY_S: f64 = 600.0;
+
+/// Predicted one-sigma drift at one time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Drift {
+    /// Time since the start of navigation, h.
+    pub hours: f64,
+    /// σ of the latitude error, arcmin.
+    pub latitude_arcmin: f64,
+    /// σ of the longitude error, arcmin.
+    pub longitude_arcmin: f64,
+}
+
+/// Predicted result of a procedure.
+#[derive(Clone, Debug)]
+pub struct Prediction {
+    /// Covariance that the filter believes at the end of the calibration.
+    pub believed: Covariance,
+    /// True covariance of the filter's errors.
+    pub achieved: Covariance,
+    /// Drift in navigation, a point every ten minutes.
+    pub drift: Vec<Drift>,
+}
+
+/// Position error of an ensemble at one time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PositionError {
+    /// Time since the start of navigation, h.
+    pub hours: f64,
+    /// Mean, north and east, m.
+    pub mean_m: [f64; 2],
+    /// Variances, north and east, m².
+    pub variances_m2: [f64; 2],
+    /// Covariance of north and east, m².
+    pub covariance_m2: f64,
+}
+
+/// Predicted result of an ensemble.
+#[derive(Clone, Debug)]
+pub struct Reached {
+    /// Covariance that the filter believes at the end of the calibration.
+    pub believed: Covariance,
+    /// Mean of the true errors: parameters true − estimated, all others computed − true.
+    pub mean: [f64; STATE_COUNT],
+    /// Covariance of the true errors.
+    pub achieved: Covariance,
+    /// Position error in navigation, a point every ten minutes.
+    pub drift: Vec<PositionError>,
+}
+
+/// Reasons why a procedure can't be analysed.
+#[derive(Debug, thiserror::Error)]
+pub enum AnalysisError {
+    /// The estimator isn't the Kalman filter.
+    #[error(
+        "predict the covariance: found another estimator in procedure.calibration, expected \"kalman\""
+    )]
+    NotKalman,
+    /// The sequence doesn't fit.
+    #[error("plan the calibration: {0}")]
+    DoesNotFit(#[from] octant_calibration::schedule::DoesNotFit),
+}
+
+/// Predicts the result of `config`'s calibration, and the drift of navigation after it.
+///
+/// `c_nc` is the attitude of the case; `true_sigmas` are the true standard deviations of all 39
+/// states (SI), which the filter's prior may or may not match. All else is as the filter assumes.
+///
+/// # Errors
+/// If the calibration isn't by Kalman filter, or its sequence doesn't fit its duration.
+pub fn predict(
+    config: &Config,
+    c_nc: &Matrix3<f64>,
+    true_sigmas: &[f64; STATE_COUNT],
+) -> Result<Prediction, AnalysisError> {
+    let truth = Truth {
+        covariance: Covariance::from_sigmas(true_sigmas),
+        mean: [0.0; STATE_COUNT],
+        noise: noise_of(config),
+        reference_sigma: None,
+        wanders: Vec::new(),
+        temperature: None,
+        mooring: Vec::new(),
+        sway: Vec::new(),
+        unseen: Unseen::Nothing,
+        start_s: 0.0,
+        non_orthogonality_rad: 0.0,
+    };
+    let Reached { believed, achieved, drift, .. } = reach(config, c_nc, &truth)?;
+    let earth = Ellipsoid::at(config.site.latitude_rad, config.site.height_m);
+    let drift = drift.iter().map(|at| at.sigmas(&earth)).collect();
+    Ok(Prediction { believed, achieved, drift })
+}
+
+impl PositionError {
+    /// Returns the standard deviations, arcmin.
+    fn sigmas(&self, earth: &Ellipsoid) -> Drift {
+        let [north, east] = arcmin_m(earth);
+        let [n, e] = self.variances_m2;
+        Drift {
+            hours: self.hours,
+            latitude_arcmin: libm::sqrt(n.max(0.0)) / north,
+            longitude_arcmin: libm::sqrt(e.max(0.0)) / east,
+        }
+    }
+}
+
+/// Returns the metres per arc minute of latitude and of longitude.
+pub(super) fn arcmin_m(earth: &Ellipsoid) -> [f64; 2] {
+    [earth.meridian_radius_m * ARCMIN, earth.transverse_radius_m * earth.cos_latitude * ARCMIN]
+}
+
+/// Returns the white noise that the filter assumes: gyros, rad²/s, and accelerometers, (m/s)²/s.
+fn noise_of(config: &Config) -> (f64, f64) {
+    let square = |density: f64| density * density;
+    (square(config.noise.angle_random_walk), square(config.noise.velocity_random_walk))
+}
+
+/// Predicts the result of an ensemble with this truth under the filter of `config`.
+///
+/// # Errors
+/// If the calibration isn't by Kalman filter, or its sequence doesn't fit its duration.
+pub fn reach(
+    config: &Config,
+    c_nc: &Matrix3<f64>,
+    truth: &Truth,
+) -> Result<Reached, AnalysisError> {
+    let Some(calibration) = &config.calibration else { return Err(AnalysisError::NotKalman) };
+    let Estimator::Kalman(kalman) = &calibration.estimator else {
+        return Err(AnalysisError::NotKalman);
+    };
+    let rates = config.turntable;
+    let dwell = dwell_s(&calibration.sequence, calibration.duration_s, &rates)?;
+    let home = GimbalAngles::default();
+    let cursor = Cursor::new(calibration.sequence.clone(), home, rates, dwell, SAMPLE_S, false);
+    let mut platform = Platform::new(config, *c_nc, truth.non_orthogonality_rad, home, cursor);
+    let mut errors = TrueErrors::new(truth);
+    let (start_s, end_s) = (truth.start_s, calibration.duration_s);
+    let believed =
+        calibrate(&mut platform, kalman, noise_of(config), (start_s, end_s), &mut errors);
+    let (mean, achieved) = errors.moments();
+
+    let mut drift = Vec::new();
+    if let Some(plan) = &config.navigation
+        && let Some(duration_s) = plan.duration_s
+    {
+        let at = platform.target();
+        let cursor = Cursor::new(plan.rotation.clone(), at, rates, plan.dwell_s, SAMPLE_S, true);
+        let platform = Platform::new(config, *c_nc, truth.non_orthogonality_rad, at, cursor);
+        // A step must be shorter than the correlation times, because a wander counts as constant
+        // within it.
+        let step_s = (truth.wanders.iter())
+            .map(|wander| 0.1 * wander.correlation_time_s)
+            .fold(NAVIGATION_STEP_S, f64::min)
+            .max(1.0);
+        drift = navigate(platform, &mut errors, end_s, duration_s, step_s);
+    }
+    Ok(Reached { believed, mean, achieved, drift })
+}
+
+fn calibrate(
+    platform: &mut Platform<'_>,
+    kalman: &Kalman,
+    noise: (f64, f64),
+    (start_s, end_s): (f64, f64),
+    errors: &mut TrueErrors,
+) -> Covariance {
+    let mut believed = Covariance::from_sigmas(&prior_sigmas(kalman));
+    let (first, r) = match kalman.aiding {
+        AidingMode::Velocity { sigma_mps } => (DV, sigma_mps * sigma_mps),
+        AidingMode::Position { sigma_m } => (DR, sigma_m * sigma_m),
+    };
+    let period_s = kalman.aiding_period_ns as f64 * 1e-9;
+    let (mut t, mut dwelling) = (start_s, None);
+    while t < end_s - 1e-6 {
+        let measured_at = ((t / period_s + 1e-6).floor() + 1.0) * period_s;
+        let end = platform.next_event_s(t, measured_at.min(end_s));
+        let whole = (end - t - period_s).abs() < 1e-6;
+        let standing = platform.stands(t);
+        // A whole period at rest has the same transition each time.
+        let transition = match &dwelling {
+            Some((stop, transition)) if whole && standing && *stop == platform.cursor.stop() => {
+                Transition::clone(transition)
+            }
+            _ => platform.transition(t, end - t, kalman.error_model),
+        };
+        if whole && standing {
+            dwelling = Some((platform.cursor.stop(), transition.clone()));
+        }
+        let force = Vector3::new(0.0, 0.0, -platform.earth.gravity_mps2 * (end - t));
+        believed.propagate(&transition);
+        add_process_noise(&mut believed, noise, end - t, &force);
+        errors.propagate(&transition, t, end - t, &force);
+        t = end;
+        if (t - measured_at).abs() < 1e-6 {
+            for axis in 0..3 {
+                let gain = believed.gain(first + axis, r);
+                believed.update(first + axis, r, 0.0, &mut [0.0; STATE_COUNT]);
+                errors.update(first, axis, r, &gain, t);
+            }
+        }
+        platform.reach(t);
+    }
+    believed
+}
+
+/// Carries the errors through navigation. `start_s` is the end of the calibration, where the
+/// platform's time starts.
+fn navigate(
+    mut platform: Platform<'_>,
+    errors: &mut TrueErrors,
+    start_s: f64,
+    duration_s: f64,
+    step_s: f64,
+) -> Vec<PositionError> {
+    errors.start_free(start_s);
+    let mut drift = Vec::new();
+    let (mut t, mut dwelling) = (0.0, None);
+    let mut mark_s: f64 = DRIFT_EVERY_S;
+    while t < duration_s - 1e-6 {
+        let end = platform.next_event_s(t, duration_s).min(t + step_s).min(mark_s.max(t + 1e-3));
+        let standing = platform.stands(t);
+        let whole = (end - t - step_s).abs() < 1e-6;
+        let transition = match &dwelling {
+            Some((stop, transition)) if whole && standing && *stop == platform.cursor.stop() => {
+                Transition::clone(transition)
+            }
+            _ => {
+                let mut transition = platform.transition(t, end - t, ErrorModel::Phi);
+                transition.rows[DV + 2].fill(0.0);
+                transition.rows[DR + 2].fill(0.0);
+                transition
+            }
+        };
+        if whole && standing {
+            dwelling = Some((platform.cursor.stop(), transition.clone()));
+        }
+        let force = Vector3::new(0.0, 0.0, -platform.earth.gravity_mps2 * (end - t));
+        errors.propagate(&transition, start_s + t, end - t, &force);
+        errors.hold_vertical();
+        t = end;
+        if (t - mark_s).abs() < 1e-3 || t >= duration_s - 1e-6 {
+            let (mean, covariance) = errors.moments();
+            drift.push(PositionError {
+                hours: t / 3600.0,
+                mean_m: [mean[DR], mean[DR + 1]],
+                variances_m2: [covariance.at(DR, DR), covariance.at(DR + 1, DR + 1)],
+                covariance_m2: covariance.at(DR, DR + 1),
+            });
+            mark_s += DRIFT_EVERY_S;
+        }
+        platform.reach(t);
+    }
+    drift
+}
+
+/// Returns the name of a state, one of 39, as in golden files and results.
+#[must_use]
+pub fn state_name(state: usize) -> String {
+    let axis = ["north", "east", "down"];
+    match state {
+        s if s < DV => format!("phi_{}", axis[s - PHI]),
+        s if s < DR => format!("velocity_{}", axis[s - DV]),
+        s if s < PARAMETERS => format!("position_{}", axis[s - DR]),
+        s => octant_sample::parameters::NAMES[s - PARAMETERS].to_string(),
+    }
+}

@@ -1,0 +1,12 @@
+//! Observability of a position sequence, and the predicted result, without a run.
+//!
+//! [`static_rank`](mod@static_rank) is the algebra of static positions, [`covariance`] predicts the
+//! result of one configuration, [`ensemble`] that of a scenario's draws.
+
+pub mod covariance;
+pub mod ensemble;
+mod platform;
+pub mod static_rank;
+pub mod truth;
+
+pub use static_rank::{StaticRank, static_rank};

@@ -1,0 +1,131 @@
+//! Platform of an analysis: it stands at a site and turns as planned.
+
+use nalgebra::{Matrix3, Vector3};
+use octant_calibration::config::{Config, ErrorModel};
+use octant_calibration::covariance::Transition;
+use octant_calibration::error_model::Interval;
+use octant_calibration::schedule::{Cursor, turned_rad};
+use octant_earth::ellipsoid::Ellipsoid;
+use octant_earth::frames::c_cb;
+use octant_sample::GimbalAngles;
+
+/// Sub-step of the transition while a gimbal turns, s.
+const SUB_STEP_S: f64 = 0.05;
+/// Sample time that the cursors are given, s: far below any time in a plan.
+pub(super) const SAMPLE_S: f64 = 1e-6;
+
+/// A platform that stands at a site and turns as planned.
+pub(super) struct Platform<'a> {
+    config: &'a Config,
+    c_nc: Matrix3<f64>,
+    /// Angle by which the gimbal axes deviate from a right angle, rad.
+    non_orthogonality_rad: f64,
+    pub(super) earth: Ellipsoid,
+    pub(super) cursor: Cursor,
+    from: [f64; 2],
+    to: [f64; 2],
+    departed_s: f64,
+}
+
+impl<'a> Platform<'a> {
+    /// Creates a platform whose gimbals are at `home` and, at time 0, depart for the first stop of
+    /// `cursor`, which must be planned from the same angles: a phase that doesn't begin where the
+    /// previous one ended opens with a move, whose errors from scale factors and misalignments are
+    /// carried like any others.
+    pub(super) fn new(
+        config: &'a Config,
+        c_nc: Matrix3<f64>,
+        non_orthogonality_rad: f64,
+        home: GimbalAngles,
+        cursor: Cursor,
+    ) -> Self {
+        let angles = |at: GimbalAngles| [at.azimuth_rad(), at.roll_rad()];
+        let to = angles(cursor.command().target);
+        // A cursor planned with the gimbals already there has no move.
+        let from = if cursor.arrival_s() > 0.0 { angles(home) } else { to };
+        let earth = Ellipsoid::at(config.site.latitude_rad, config.site.height_m);
+        Self { config, c_nc, non_orthogonality_rad, earth, cursor, from, to, departed_s: 0.0 }
+    }
+
+    /// Returns the commanded gimbal angles.
+    pub(super) fn target(&self) -> GimbalAngles {
+        self.cursor.command().target
+    }
+
+    /// Returns the gimbal angles at `t_s`.
+    fn gimbals(&self, t_s: f64) -> [f64; 2] {
+        core::array::from_fn(|i| {
+            let angle = self.to[i] - self.from[i];
+            self.from[i] + turned_rad(angle, t_s - self.departed_s, &self.config.turntable)
+        })
+    }
+
+    /// Returns `c_cb` with the true gimbal axes.
+    fn c_cb(&self, azimuth: f64, roll: f64) -> Matrix3<f64> {
+        if self.non_orthogonality_rad == 0.0 {
+            return c_cb(azimuth, roll);
+        }
+        let (s, c) = libm::sincos(self.non_orthogonality_rad);
+        let leant = Matrix3::new(c, 0.0, s, 0.0, 1.0, 0.0, -s, 0.0, c);
+        c_cb(0.0, roll) * leant * c_cb(azimuth, 0.0)
+    }
+
+    /// Advances the platform to `t_s`, so that it may depart. Sample time is one microsecond here,
+    /// finer than any plan.
+    pub(super) fn reach(&mut self, t_s: f64) {
+        let departs = self.cursor.departure_s();
+        if t_s >= departs - 1e-6 {
+            self.from = self.to;
+            self.departed_s = departs;
+            self.cursor.advance((t_s / SAMPLE_S) as u64);
+            let target = self.cursor.command().target;
+            self.to = [target.azimuth_rad(), target.roll_rad()];
+        }
+    }
+
+    /// Returns whether the platform stands at `t_s`, and for a while after it.
+    pub(super) fn stands(&self, t_s: f64) -> bool {
+        self.cursor.arrival_s() <= t_s + 1e-6
+    }
+
+    /// Returns the next time at which the platform starts or stops turning, or `limit_s`.
+    pub(super) fn next_event_s(&self, t_s: f64, limit_s: f64) -> f64 {
+        [self.cursor.arrival_s(), self.cursor.departure_s()]
+            .into_iter()
+            .filter(|event| *event > t_s + 1e-6)
+            .fold(limit_s, f64::min)
+    }
+
+    fn interval(&self, t_s: f64, h: f64) -> Interval {
+        let [azimuth, roll] = self.gimbals(t_s + 0.5 * h);
+        let (before, after) = (self.gimbals(t_s), self.gimbals(t_s + h));
+        let c_cb = self.c_cb(azimuth, roll);
+        let c_nb = self.c_nc * c_cb;
+        let force_n = Vector3::new(0.0, 0.0, -self.earth.gravity_mps2 * h);
+        let turned_case = Vector3::x() * (after[1] - before[1]);
+        let turned_body = Vector3::z() * (after[0] - before[0]);
+        Interval {
+            interval_s: h,
+            c_nb,
+            delta_theta: c_nb.transpose() * self.earth.earth_rate() * h
+                + c_cb.transpose() * turned_case
+                + turned_body,
+            delta_velocity: c_nb.transpose() * force_n,
+            delta_velocity_n: force_n,
+            velocity_mps: Vector3::zeros(),
+        }
+    }
+
+    /// Returns the transition over `[t_s, t_s + length_s]`, in which the platform stands or turns
+    /// throughout.
+    pub(super) fn transition(&self, t_s: f64, length_s: f64, model: ErrorModel) -> Transition {
+        let step_s = if self.stands(t_s) { 1.0 } else { SUB_STEP_S };
+        let steps = (length_s / step_s - 1e-9).ceil().max(1.0);
+        let h = length_s / steps;
+        let mut transition = Transition::identity();
+        for k in 0..steps as u32 {
+            transition.advance(model, &self.interval(t_s + f64::from(k) * h, h), &self.earth);
+        }
+        transition
+    }
+}

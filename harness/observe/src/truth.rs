@@ -1,0 +1,359 @@
+//! True errors of an ensemble, carried along beside the filter's own covariance.
+//!
+//! Everything is linear, so sources of error add up. Random sources with zero initial mean are
+//! carried by their covariance: the draws of the instrument and of its alignment, white noise, and
+//! wandering biases, which are states of their own with a covariance to the errors. Sources that
+//! are the same in every run are carried by their mean: given parameters, temperature, a mooring
+//! offset. A sway of which only the phase is drawn is carried by the responses to a sine and to a
+//! cosine, half the variance each.
+
+use nalgebra::Vector3;
+use octant_calibration::covariance::{
+    Covariance, DR, DV, MOVING, PARAMETERS, STATE_COUNT, Transition,
+};
+use octant_calibration::filter::add_process_noise;
+use octant_plant::config::Temperature;
+use octant_sample::parameters::Group;
+
+/// Errors of all states: parameters are true − estimated, the others computed − true.
+pub(super) type Errors = [f64; STATE_COUNT];
+
+/// True properties of an ensemble.
+#[derive(Clone, Debug)]
+pub struct Truth {
+    /// Covariance of the errors at the start.
+    pub covariance: Covariance,
+    /// Mean of the errors at the start.
+    pub mean: [f64; STATE_COUNT],
+    /// White noise per s: of the gyros, rad²/s, and of the accelerometers, (m/s)²/s.
+    pub noise: (f64, f64),
+    /// 1σ of the reference, m/s or m; `None`: as the filter assumes.
+    pub reference_sigma: Option<f64>,
+    /// Wandering biases.
+    pub wanders: Vec<Wander>,
+    /// Temperature and its effect.
+    pub temperature: Option<Temperature>,
+    /// Displacements of the instrument from the position that its reference gives: the same in
+    /// every run.
+    pub mooring: Vec<Swing>,
+    /// Displacements with drawn phases; given phases are ignored.
+    pub sway: Vec<Swing>,
+    /// Part of the motion that the reference doesn't see.
+    pub unseen: Unseen,
+    /// Start time of the filter, s.
+    pub start_s: f64,
+    /// Angle by which the gimbal axes deviate from a right angle, rad.
+    pub non_orthogonality_rad: f64,
+}
+
+/// Part of the motion that the reference doesn't see.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Unseen {
+    /// Nothing: the reference measures the instrument's motion.
+    Nothing,
+    /// The reference is the dock's position.
+    Position,
+    /// The reference is the dock's velocity.
+    Velocity,
+}
+
+/// Wandering biases of one sensor triad, each axis independent.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Wander {
+    /// Gyro or accelerometer biases.
+    pub group: Group,
+    /// Variance at the start.
+    pub variance: f64,
+    /// Correlation time, s; infinite: a random walk.
+    pub correlation_time_s: f64,
+    /// Variance that is added per s.
+    pub driving: f64,
+}
+
+impl Wander {
+    /// Creates a first-order Gauss-Markov process in its stationary distribution.
+    #[must_use]
+    pub fn gauss_markov(group: Group, sigma: f64, correlation_time_s: f64) -> Self {
+        let variance = sigma * sigma;
+        Self { group, variance, correlation_time_s, driving: 2.0 * variance / correlation_time_s }
+    }
+
+    /// Creates a random walk that starts at zero.
+    #[must_use]
+    pub fn random_walk(group: Group, density: f64) -> Self {
+        let driving = density * density;
+        Self { group, variance: 0.0, correlation_time_s: f64::INFINITY, driving }
+    }
+
+    /// Returns the remaining fraction of a value after `h`, its mean fraction over that time, and
+    /// the added variance.
+    fn over(&self, h: f64) -> (f64, f64, f64) {
+        let ratio = h / self.correlation_time_s;
+        if ratio < 1e-9 {
+            return (1.0, 1.0, self.driving * h);
+        }
+        let came = 0.5 * self.driving * self.correlation_time_s * -libm::expm1(-2.0 * ratio);
+        (libm::exp(-ratio), -libm::expm1(-ratio) / ratio, came)
+    }
+}
+
+/// Displacement `amplitude · sin(2π t / period + phase)` in n, m; an infinite period with a phase
+/// of π/2 is an offset.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Swing {
+    /// Amplitude, north, east, down, m.
+    pub amplitude_m: Vector3<f64>,
+    /// Period, s.
+    pub period_s: f64,
+    /// Phase at time 0, rad.
+    pub phase_rad: f64,
+}
+
+impl Swing {
+    fn omega(&self) -> f64 {
+        2.0 * core::f64::consts::PI / self.period_s
+    }
+
+    fn position(&self, t_s: f64) -> Vector3<f64> {
+        self.amplitude_m * libm::sin(self.omega() * t_s + self.phase_rad)
+    }
+
+    fn velocity(&self, t_s: f64) -> Vector3<f64> {
+        self.amplitude_m * (self.omega() * libm::cos(self.omega() * t_s + self.phase_rad))
+    }
+}
+
+/// Response of all errors to deterministic sources.
+#[derive(Clone, Debug)]
+struct Answer {
+    errors: Errors,
+    swings: Vec<Swing>,
+    temperature: Option<Temperature>,
+}
+
+impl Answer {
+    /// Starts an instrument at the position of its reference, while its true position differs.
+    fn begun(mut self, start_s: f64) -> Self {
+        for swing in &self.swings {
+            let at = swing.position(start_s);
+            (0..3).for_each(|axis| self.errors[DR + axis] -= at[axis]);
+        }
+        self
+    }
+
+    fn propagate(&mut self, transition: &Transition, t_s: f64, h: f64) {
+        let mut driven = self.errors;
+        if let Some(temperature) = &self.temperature {
+            let risen = temperature.ramp_kps * (t_s + 0.5 * h);
+            let plateau = temperature.plateau_k;
+            let change = if risen.abs() < plateau.abs() { risen } else { plateau };
+            for (group, per_k) in [
+                (Group::GyroBias, temperature.gyro_bias_per_k),
+                (Group::GyroScale, temperature.gyro_scale_per_k),
+                (Group::AccelBias, temperature.accel_bias_per_k),
+                (Group::AccelScale, temperature.accel_scale_per_k),
+            ] {
+                for (axis, per_k) in per_k.into_iter().enumerate() {
+                    driven[first_of(group) + axis] += change * per_k;
+                }
+            }
+        }
+        for (i, row) in transition.rows.iter().enumerate() {
+            self.errors[i] = row.iter().zip(&driven).map(|(a, b)| a * b).sum();
+        }
+    }
+
+    /// Updates the response; the reference is off by the motion that it does not see (`unseen`).
+    fn update(&mut self, state: usize, axis: usize, gain: &Errors, unseen: Unseen, t_s: f64) {
+        let off: f64 = (self.swings.iter())
+            .map(|swing| match unseen {
+                Unseen::Nothing => 0.0,
+                Unseen::Position => -swing.position(t_s)[axis],
+                Unseen::Velocity => -swing.velocity(t_s)[axis],
+            })
+            .sum();
+        let innovation = self.errors[state] - off;
+        for (error, gain) in self.errors.iter_mut().zip(gain) {
+            *error -= gain * innovation;
+        }
+    }
+
+    fn start_free(&mut self, t_s: f64) {
+        for axis in 0..3 {
+            let at: f64 = self.swings.iter().map(|swing| swing.position(t_s)[axis]).sum();
+            self.errors[DR + axis] = -at;
+        }
+        self.hold_vertical();
+    }
+
+    fn hold_vertical(&mut self) {
+        self.errors[DV + 2] = 0.0;
+        self.errors[DR + 2] = 0.0;
+    }
+}
+
+fn first_of(group: Group) -> usize {
+    PARAMETERS + group.range().start
+}
+
+/// Wandering bias with its covariance to the errors.
+#[derive(Clone, Debug)]
+struct Wandering {
+    process: Wander,
+    /// State on which it acts.
+    like: usize,
+    variance: f64,
+    cross: Errors,
+}
+
+/// True errors at a time.
+#[derive(Clone, Debug)]
+pub(super) struct TrueErrors {
+    noise: (f64, f64),
+    reference_variance: Option<f64>,
+    unseen: Unseen,
+    covariance: Covariance,
+    wanderings: Vec<Wandering>,
+    mean: Answer,
+    /// Responses with a variance of one half each.
+    swung: Vec<Answer>,
+}
+
+impl TrueErrors {
+    pub(super) fn new(truth: &Truth) -> Self {
+        let wandering = |process: &Wander| {
+            let process = *process;
+            (0..3).map(move |axis| Wandering {
+                process,
+                like: first_of(process.group) + axis,
+                variance: process.variance,
+                cross: [0.0; STATE_COUNT],
+            })
+        };
+        let quarter = 0.5 * core::f64::consts::PI;
+        let answer = |errors, swings| Answer { errors, swings, temperature: None };
+        let both = |swing: &Swing| {
+            let swing = *swing;
+            [0.0, quarter].map(|phase_rad| {
+                answer([0.0; STATE_COUNT], vec![Swing { phase_rad, ..swing }]).begun(truth.start_s)
+            })
+        };
+        let mean =
+            Answer { temperature: truth.temperature, ..answer(truth.mean, truth.mooring.clone()) };
+        Self {
+            noise: truth.noise,
+            reference_variance: truth.reference_sigma.map(|sigma| sigma * sigma),
+            unseen: truth.unseen,
+            covariance: truth.covariance.clone(),
+            wanderings: truth.wanders.iter().flat_map(wandering).collect(),
+            mean: mean.begun(truth.start_s),
+            swung: truth.sway.iter().flat_map(both).collect(),
+        }
+    }
+
+    /// Carries everything from `t_s` on over `h`; `force` is the specific force in n times `h`.
+    pub(super) fn propagate(
+        &mut self,
+        transition: &Transition,
+        t_s: f64,
+        h: f64,
+        force: &Vector3<f64>,
+    ) {
+        self.covariance.propagate(transition);
+        for wandering in &mut self.wanderings {
+            wandering.propagate(transition, h, &mut self.covariance);
+        }
+        add_process_noise(&mut self.covariance, self.noise, h, force);
+        for answer in self.answers() {
+            answer.propagate(transition, t_s, h);
+        }
+    }
+
+    /// Updates with a measurement of one axis, `first` being the state of the first axis, by the
+    /// filter's gain. `r` is the reference's variance that the filter assumes.
+    pub(super) fn update(&mut self, first: usize, axis: usize, r: f64, gain: &Errors, t_s: f64) {
+        let state = first + axis;
+        let r = self.reference_variance.unwrap_or(r);
+        self.covariance.update_with_gain(state, r, gain);
+        for wandering in &mut self.wanderings {
+            let measured = wandering.cross[state];
+            for (cross, gain) in wandering.cross.iter_mut().zip(gain) {
+                *cross -= gain * measured;
+            }
+        }
+        let unseen = self.unseen;
+        for answer in self.answers() {
+            answer.update(state, axis, gain, unseen, t_s);
+        }
+    }
+
+    /// Starts navigation at the position of the reference, with height and vertical velocity held.
+    pub(super) fn start_free(&mut self, t_s: f64) {
+        for state in [DR, DR + 1, DR + 2, DV + 2] {
+            self.forget(state);
+        }
+        for answer in self.answers() {
+            answer.start_free(t_s);
+        }
+    }
+
+    pub(super) fn hold_vertical(&mut self) {
+        for state in [DV + 2, DR + 2] {
+            self.forget(state);
+        }
+        for answer in self.answers() {
+            answer.hold_vertical();
+        }
+    }
+
+    fn forget(&mut self, state: usize) {
+        self.covariance.reopen(state, 0.0);
+        for wandering in &mut self.wanderings {
+            wandering.cross[state] = 0.0;
+        }
+    }
+
+    fn answers(&mut self) -> impl Iterator<Item = &mut Answer> {
+        std::iter::once(&mut self.mean).chain(&mut self.swung)
+    }
+
+    /// Returns mean and covariance of all errors.
+    pub(super) fn moments(&self) -> (Errors, Covariance) {
+        let mut covariance = self.covariance.clone();
+        for Answer { errors, .. } in &self.swung {
+            for i in 0..STATE_COUNT {
+                for j in i..STATE_COUNT {
+                    covariance.add(i, j, 0.5 * errors[i] * errors[j]);
+                }
+            }
+        }
+        (self.mean.errors, covariance)
+    }
+}
+
+impl Wandering {
+    /// Propagates `x⁺ = Φ x + γ w`; `Φ P Φᵀ` is done already.
+    fn propagate(&mut self, transition: &Transition, h: f64, covariance: &mut Covariance) {
+        let (decay, mean, came) = self.process.over(h);
+        // White noise in the bias over the step acts on the mean half a step later, which is
+        // negligible over steps that are short against the correlation time.
+        let input: [f64; MOVING] = core::array::from_fn(|i| transition.rows[i][self.like] * mean);
+        let mut carried = self.cross;
+        for (i, row) in transition.rows.iter().enumerate() {
+            carried[i] = row.iter().zip(&self.cross).map(|(a, b)| a * b).sum();
+        }
+        let input_of = |i: usize| if i < MOVING { input[i] } else { 0.0 };
+        for k in 0..MOVING {
+            for i in k..STATE_COUNT {
+                let value = carried[i] * input[k]
+                    + input_of(i) * carried[k]
+                    + input_of(i) * input[k] * self.variance;
+                covariance.add(i, k, value);
+            }
+        }
+        for (i, cross) in self.cross.iter_mut().enumerate() {
+            *cross = (carried[i] + input_of(i) * self.variance) * decay;
+        }
+        self.variance = self.variance * decay * decay + came;
+    }
+}

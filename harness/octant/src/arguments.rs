@@ -1,0 +1,51 @@
+//! Arguments that several commands share.
+
+use crate::failure::Failure;
+use crate::terminal::note;
+use clap::Args;
+use octant_scenario::{Dimension, quantity_of};
+use std::path::{Path, PathBuf};
+
+/// Arguments of every command that takes a scenario.
+#[derive(Debug, Args)]
+pub(crate) struct ScenarioArguments {
+    /// The scenario, a TOML file.
+    #[arg(value_name = "SCENARIO")]
+    pub(crate) scenario: PathBuf,
+    /// Change one key of the scenario, such as procedure.calibration.duration="12 h".
+    #[arg(long, value_name = "KEY=VALUE")]
+    pub(crate) set: Vec<String>,
+}
+
+/// Parses a time on the command line: a number of seconds, or a quantity.
+pub(crate) fn seconds(name: &str, text: &str) -> Result<f64, Failure> {
+    let number = text.trim().parse::<f64>().ok().filter(|number| number.is_finite());
+    let quantity = || quantity_of(text).ok().filter(|quantity| quantity.is(Dimension::TIME));
+    number.or_else(|| quantity().map(|quantity| quantity.si)).ok_or_else(|| {
+        Failure::input(format!("{name}: found {text:?}, expected a time such as 10 or \"10 s\""))
+    })
+}
+
+/// Reads a scenario with the changes of the command line.
+pub(crate) fn load(
+    arguments: &ScenarioArguments,
+    more: &[String],
+) -> Result<octant_scenario::Scenario, Failure> {
+    read_scenario(&arguments.scenario, &arguments.set, more, &[])
+}
+
+/// Reads a scenario with changes of its keys, and with faults triggered by hand. Warnings go to stderr.
+pub(crate) fn read_scenario(
+    path: &Path,
+    set: &[String],
+    more: &[String],
+    fires: &[String],
+) -> Result<octant_scenario::Scenario, Failure> {
+    let overrides = [set, more].concat();
+    let scenario =
+        octant_scenario::Scenario::load_fired(path, &overrides, fires).map_err(Failure::input)?;
+    for warning in scenario.warnings() {
+        note!("octant: {}: {warning}", path.display());
+    }
+    Ok(scenario)
+}

@@ -1,0 +1,384 @@
+//! `octant campaign`: many cases of scenarios, planned, run anywhere, merged.
+
+mod countersign;
+mod planned;
+mod report;
+pub(super) mod run;
+
+use crate::failure::Failure;
+use crate::terminal::{print, print_json, write};
+use clap::{Args, Subcommand, ValueEnum};
+use octant_base::control::Control;
+use octant_base::number::counted;
+use octant_campaign::case::{self, Job};
+use octant_campaign::execute::{ExecuteError, NOT_KEPT, Shard};
+use octant_campaign::merge::{self, MergeError};
+use octant_campaign::plan::{FILE_NAME, Plan, PlanError, Written};
+use octant_campaign::table::TableError;
+use octant_campaign::trace::{requirements_of, with_those_of_scenarios};
+use octant_campaign::{emit, status};
+use octant_requirements::Verdict;
+use octant_requirements::trace::{Row, Unknown};
+use planned::read;
+use std::path::{Path, PathBuf};
+
+#[derive(Debug, Args)]
+pub(super) struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Plan the cases of a campaign, and check every one.
+    Plan {
+        /// The campaign, a TOML file.
+        #[arg(value_name = "CAMPAIGN")]
+        campaign: PathBuf,
+        /// Folder for the plan and the results; by default in runs/, named after the file.
+        #[arg(long, value_name = "DIR")]
+        out: Option<PathBuf>,
+        /// Replace the plan in the folder by one that contains all of its cases; the results stay.
+        #[arg(long)]
+        extend: bool,
+    },
+    /// Run the cases that have no result yet, each in a process of its own.
+    Run(run::Arguments),
+    /// Print the progress of a campaign, and its failures.
+    Status {
+        /// Folder of the campaign.
+        #[arg(value_name = "DIR")]
+        folder: PathBuf,
+        /// Print one JSON object.
+        #[arg(long)]
+        json: bool,
+    },
+    /// Merge the parts of all shards into cases.parquet, checks.parquet and drift.parquet.
+    Merge {
+        /// Folder of the campaign.
+        #[arg(value_name = "DIR")]
+        folder: PathBuf,
+        /// Further folders with parts of the same plan, from other hosts.
+        #[arg(value_name = "OTHER")]
+        others: Vec<PathBuf>,
+    },
+    /// Trace the requirements of the campaign and of its scenarios to cases and results, and back.
+    Trace {
+        /// Folder of the campaign.
+        #[arg(value_name = "DIR")]
+        folder: PathBuf,
+        /// New folder for a StrictDoc project.
+        #[arg(long, value_name = "DIR")]
+        strictdoc: Option<PathBuf>,
+        /// Print one JSON object.
+        #[arg(long)]
+        json: bool,
+    },
+    /// Write the report, statistics, discrepancies and JUnit of the results, and the manifest of the folder.
+    Report(report::Arguments),
+    /// Sign the dispositions of a reported campaign as the second person, with the key of OCTANT_SIGNING_KEY.
+    Countersign {
+        /// Folder of the campaign.
+        #[arg(value_name = "DIR")]
+        folder: PathBuf,
+    },
+    /// Run one case again, with all the evidence of a run.
+    Case {
+        /// Folder of the campaign.
+        #[arg(value_name = "DIR")]
+        folder: PathBuf,
+        /// Id of the case.
+        #[arg(value_name = "CASE")]
+        case: String,
+        /// Folder of the run; by default in runs/, named after the case.
+        #[arg(long, value_name = "DIR")]
+        out: Option<PathBuf>,
+    },
+    /// Print the job file with which a scheduler runs a campaign; nothing is submitted.
+    Emit {
+        /// Scheduler of the job file.
+        #[arg(value_enum)]
+        scheduler: Scheduler,
+        /// Folder of the campaign, as the nodes see it.
+        #[arg(value_name = "DIR")]
+        folder: PathBuf,
+        /// Number of shards of the campaign.
+        #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000))]
+        shards: u32,
+        /// Number of parallel cases of each shard.
+        #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..))]
+        jobs: u16,
+        /// Image with the program, for Kubernetes.
+        #[arg(long, value_name = "IMAGE", default_value = "octant:latest")]
+        image: String,
+        /// Claim of the volume that holds the folder, for Kubernetes.
+        #[arg(long, value_name = "NAME", default_value = "octant")]
+        claim: String,
+    },
+    /// Process of one case, started by `run`: reads the case on standard input.
+    #[command(hide = true)]
+    One,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum Scheduler {
+    /// An array script for sbatch.
+    Slurm,
+    /// An indexed job for kubectl.
+    K8s,
+}
+
+pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
+    match &arguments.command {
+        Command::Plan { campaign, out, extend } => plan(campaign, out.as_deref(), *extend),
+        Command::Run(arguments) => run::command(arguments),
+        Command::Status { folder, json } => {
+            let status =
+                status::of(&read(folder)?, folder, Shard::WHOLE).map_err(Failure::bench)?;
+            if *json {
+                print_json(&status)?
+            } else {
+                print(&status.text())?
+            }
+            Ok(status.verdict())
+        }
+        Command::Merge { folder, others } => merge_parts(folder, others),
+        Command::Trace { folder, strictdoc, json } => trace(folder, strictdoc.as_deref(), *json),
+        Command::Report(arguments) => report::command(arguments),
+        Command::Countersign { folder } => countersign::command(folder),
+        Command::Case { folder, case, out } => again(folder, case, out.as_deref()),
+        Command::Emit { scheduler, folder, shards, jobs, image, claim } => {
+            let plan = read(folder)?;
+            let job = emit::Job { plan: &plan, folder, shards: *shards, jobs: *jobs };
+            print(&match scheduler {
+                Scheduler::Slurm => emit::slurm(&job),
+                Scheduler::K8s => emit::kubernetes(&job, image, claim),
+            })?;
+            Ok(Verdict::Pass)
+        }
+        Command::One => one(),
+    }
+}
+
+impl From<PlanError> for Failure {
+    fn from(error: PlanError) -> Self {
+        match error {
+            PlanError::File(error) => Self::input(error),
+            PlanError::Requirements(error) => Self::input(error),
+            PlanError::System { action: "create" | "create a file in" | "write", .. } => {
+                Self::bench(error).failed()
+            }
+            error => Self::input(error).failed(),
+        }
+    }
+}
+
+impl From<ExecuteError> for Failure {
+    fn from(error: ExecuteError) -> Self {
+        match error {
+            ExecuteError::Plan(error) => error.into(),
+            ExecuteError::Foreign { .. } => Self::input(error).failed(),
+            ExecuteError::NotKept(_) | ExecuteError::Result(_) => Self::bench(error),
+            ExecuteError::Ended { .. } | ExecuteError::System { .. } => Self::bench(error).failed(),
+        }
+    }
+}
+
+impl From<MergeError> for Failure {
+    fn from(error: MergeError) -> Self {
+        match error {
+            MergeError::Table(
+                TableError::System { action: "write", .. } | TableError::Write { .. },
+            )
+            | MergeError::Differs { .. } => Self::bench(error).failed(),
+            MergeError::Table(_)
+            | MergeError::Nothing { .. }
+            | MergeError::Numerics { .. }
+            | MergeError::Foreign { .. } => Self::input(error).failed(),
+        }
+    }
+}
+
+fn plan(campaign: &Path, out: Option<&Path>, extend: bool) -> Result<Verdict, Failure> {
+    let plan = Plan::of(campaign)?;
+    let stem = campaign.file_stem().map_or("campaign".into(), |stem| stem.to_string_lossy());
+    let folder = out.map_or_else(|| Path::new("runs").join(stem.as_ref()), Path::to_owned);
+    let written = plan.write(&folder, extend)?;
+    let what = match written {
+        Written::New => String::new(),
+        Written::There => ", in a plan that exists already".to_owned(),
+        Written::Extended(new) => format!(", {new} of them new"),
+    };
+    print(&format!(
+        "{}{what}\n{}\n",
+        counted(plan.cases.len(), "case", "cases"),
+        folder.join(FILE_NAME).display()
+    ))?;
+    Ok(Verdict::Pass)
+}
+
+fn merge_parts(folder: &Path, others: &[PathBuf]) -> Result<Verdict, Failure> {
+    let plan = read(folder)?;
+    let mut folders = vec![folder.to_owned()];
+    folders.extend_from_slice(others);
+    let end = merge::end(&plan, &folders)?;
+    let merged = merge::merge(&plan, &folders, folder, end)?;
+    let missing = match merged.missing {
+        0 => String::new(),
+        missing => format!(", {missing} without a result yet"),
+    };
+    print(&format!(
+        "{} of {} from {}{missing}\n",
+        merged.cases,
+        counted(end, "case", "cases"),
+        counted(merged.parts, "part", "parts")
+    ))?;
+    for (table, _) in octant_campaign::results::TABLES {
+        print(&format!("{}\n", merge::merged(folder, table).display()))?;
+    }
+    Ok(if merged.missing == 0 { Verdict::Pass } else { Verdict::Inconclusive })
+}
+
+fn trace(folder: &Path, strictdoc: Option<&Path>, json: bool) -> Result<Verdict, Failure> {
+    let plan = read(folder)?;
+    let requirements = with_those_of_scenarios(&plan, &requirements_of(&plan)?);
+    // The campaign's verdict is computed in one place: a case may fail in parts that no requirement
+    // checks.
+    let status = status::of(&plan, folder, Shard::WHOLE).map_err(Failure::bench)?;
+    let trace = octant_campaign::trace::trace(&plan, &requirements, folder, status.cases)
+        .map_err(|reason| Failure::bench(format!("failed to {reason}")))?;
+    if let Some(out) = strictdoc {
+        if out.exists() {
+            let message = format!("failed to write {}: the folder exists already", out.display());
+            return Err(Failure::input(message));
+        }
+        let files = octant_requirements::strictdoc::folder(&requirements, &trace, &plan.title)
+            .map_err(Failure::input)?;
+        for (path, text) in files {
+            let path = out.join(path);
+            let parent = path.parent().unwrap_or(out);
+            std::fs::create_dir_all(parent).map_err(|error| {
+                Failure::bench(format!("failed to create {}: {error}", parent.display()))
+            })?;
+            write(&path, text)?;
+        }
+    }
+    let verdict = status.verdict();
+    if json {
+        print_json(&Traced {
+            verdict,
+            besides: status.besides,
+            open: status.open,
+            requirements: &trace.requirements,
+            without_case: &trace.without_case,
+            without_requirement: &trace.without_requirement,
+            unknown: &trace.unknown,
+        })?;
+    } else {
+        let mut text = format!("{}: {}\n", plan.title, verdict.name());
+        if status.besides != Verdict::Pass {
+            text += &format!("apart from requirements: {}\n", status.besides.name());
+        }
+        if status.open > 0 {
+            text += &format!(
+                "{} of {} without a result yet\n",
+                status.open,
+                counted(status.cases, "case", "cases")
+            );
+        }
+        for row in &trace.requirements {
+            let verdict = row.verdict.map_or("not by a run", |verdict| verdict.name());
+            let cases = counted(row.cases.len(), "case", "cases");
+            text += &format!("{}: {verdict}, {cases}: {}\n", row.id, row.reason);
+        }
+        for (what, ids) in [
+            ("requirements without a case", &trace.without_case),
+            ("cases without a requirement", &trace.without_requirement),
+        ] {
+            if !ids.is_empty() {
+                let named = ids.iter().take(10).cloned().collect::<Vec<_>>().join(", ");
+                let more = if ids.len() > 10 {
+                    format!(" and {} more", ids.len() - 10)
+                } else {
+                    String::new()
+                };
+                text += &format!("{what}: {named}{more}\n");
+            }
+        }
+        print(&text)?;
+    }
+    Ok(verdict)
+}
+
+/// Output of `octant campaign trace --json`.
+#[derive(serde::Serialize)]
+struct Traced<'a> {
+    /// Verdict of the campaign, as in its report.
+    verdict: Verdict,
+    /// Worst verdict of its cases except for their requirements.
+    besides: Verdict,
+    /// Cases without a result.
+    open: usize,
+    requirements: &'a [Row],
+    without_case: &'a [String],
+    without_requirement: &'a [String],
+    unknown: &'a [Unknown],
+}
+
+/// Runs one case as `octant run` does.
+fn again(folder: &Path, id: &str, out: Option<&Path>) -> Result<Verdict, Failure> {
+    let plan = read(folder)?;
+    let Some(case) = plan.case(id) else {
+        let ids = plan.cases.iter().map(|case| case.id.as_str());
+        let near: Vec<&str> = ids.filter(|other| other.starts_with(id)).take(5).collect();
+        let known = if near.is_empty() {
+            String::new()
+        } else {
+            format!(", expected one such as {}", near.join(", "))
+        };
+        return Err(Failure::input(format!(
+            "failed to run case {id}: found no such case in the plan{known}"
+        )));
+    };
+    let planned = plan.planned(case)?;
+    // Checks that the scenario is the planned one.
+    planned.scenario(case)?;
+    let out = out.map_or_else(|| Path::new("runs").join(format!("case-{id}")), Path::to_owned);
+    crate::evidenced::case(&planned.file, case, &out)
+}
+
+/// Runs the process of one case.
+fn one() -> Result<Verdict, Failure> {
+    let job: Job = serde_json::from_reader(std::io::stdin().lock()).map_err(|error| {
+        Failure::input(format!(
+            "failed to read a case on standard input: {error} (octant campaign run starts this)"
+        ))
+    })?;
+    limit_memory(job.memory_mib)?;
+    let result = case::run(&job.scenario, &job.case, &Control::default())
+        .map_err(|error| Failure::bench(error).failed())?;
+    let json = result.to_json().map_err(|error| Failure::bench(error).failed())?;
+    case::keep(&job.folder, &job.case.id, json.as_bytes()).map_err(|error| {
+        let path = case::file(&job.folder, &job.case.id);
+        let message = format!("failed to write {}: {error}", path.display());
+        Failure { status: NOT_KEPT, message }
+    })?;
+    Ok(Verdict::Pass)
+}
+
+/// Limits the memory of a case: a process that needs more ends, and leaves other cases undisturbed.
+#[cfg(target_os = "linux")]
+fn limit_memory(mib: u64) -> Result<(), Failure> {
+    use rustix::process::{Resource, Rlimit, getrlimit, setrlimit};
+    let bytes = Some(mib.saturating_mul(1 << 20));
+    let most = getrlimit(Resource::As).maximum;
+    let limit = Rlimit { current: bytes.min(most.or(bytes)), maximum: most };
+    setrlimit(Resource::As, limit).map_err(|error| {
+        Failure::bench(format!("failed to limit the memory to {mib} MiB: {error}"))
+    })
+}
+
+#[cfg(not(target_os = "linux"))]
+fn limit_memory(_: u64) -> Result<(), Failure> {
+    Ok(())
+}

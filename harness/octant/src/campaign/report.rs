@@ -1,0 +1,70 @@
+//! `octant campaign report`: the page, the numbers and the evidence of a campaign.
+
+use super::planned::read;
+use crate::failure::Failure;
+use crate::signing::signing_key;
+use crate::terminal::{print, write};
+use clap::Args;
+use octant_campaign::report::{Report, ReportError, evidence};
+use octant_evidence::discrepancy::counted;
+use octant_evidence::disposition::DispositionError;
+use octant_requirements::Verdict;
+use std::path::PathBuf;
+use std::time::SystemTime;
+
+#[derive(Debug, Args)]
+pub(super) struct Arguments {
+    /// Folder of the campaign.
+    #[arg(value_name = "DIR")]
+    folder: PathBuf,
+    /// Write only the page, to this file, and leave the folder unchanged.
+    #[arg(long, value_name = "FILE")]
+    out: Option<PathBuf>,
+}
+
+pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
+    let started = SystemTime::now();
+    let folder = &arguments.folder;
+    let plan = read(folder)?;
+    // An invalid key is reported before anything is written.
+    let key = if arguments.out.is_none() { signing_key()? } else { None };
+    let mut report = Report::of(&plan, folder)?;
+    let path = match &arguments.out {
+        Some(path) => {
+            write(path, octant_campaign::page::render(&report, false))?;
+            path.clone()
+        }
+        None => {
+            evidence::write(&mut report, folder, key, started)?;
+            folder.join(evidence::PAGE)
+        }
+    };
+    let found = report.statistics.discrepancies.len();
+    let verdict = report.statistics.verdict;
+    print(&format!(
+        "{}: {}\n  {}, {} without a disposition\n{}\n",
+        plan.title,
+        verdict.name(),
+        counted(found),
+        report.open(),
+        path.display()
+    ))?;
+    Ok(verdict)
+}
+
+impl From<ReportError> for Failure {
+    fn from(error: ReportError) -> Self {
+        match error {
+            ReportError::Plan(error) => error.into(),
+            ReportError::Foreign(error) => error.into(),
+            ReportError::Form { .. } | ReportError::Dispositions(DispositionError::Form { .. }) => {
+                Self::input(error).failed()
+            }
+            ReportError::Result(_)
+            | ReportError::System { .. }
+            | ReportError::Dispositions(DispositionError::System { .. })
+            | ReportError::Format { .. }
+            | ReportError::Manifest(_) => Self::bench(error).failed(),
+        }
+    }
+}

@@ -1,0 +1,153 @@
+//! Commands of the program, and its entry point.
+
+use crate::failure::Failure;
+use crate::terminal::{note, print};
+use crate::{
+    campaign, compare, doctor, faults, fmu, nightly, observe, progress, rejudge, replay, report,
+    requirements, run, score, selftest, serve, turntable, verify, watch,
+};
+use clap::{Parser, Subcommand};
+use octant_requirements::Verdict;
+use std::ffi::OsString;
+use std::process::ExitCode;
+
+/// Test harness for the self-calibration of dual-axis rotational inertial navigation systems.
+#[derive(Debug, Parser)]
+#[command(name = "octant", version, max_term_width = 100, propagate_version = true)]
+struct Cli {
+    /// Id of the parent process that runs this case: this process ends with it, and leaves signals to it.
+    #[arg(long, value_name = "PID", hide = true)]
+    parent: Option<u32>,
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Run a scenario or a system of FMUs: calibrate, navigate, score, and write a folder of evidence.
+    Run(run::Arguments),
+    /// Compare two methods over many seeds, on the same instruments with the same noise.
+    Compare(compare::Arguments),
+    /// Run the core again on a recorded stream, and compare the outputs.
+    Replay(replay::Arguments),
+    /// Run a campaign of many cases: plan it, run it on any number of hosts, merge and report results.
+    Campaign(campaign::Arguments),
+    /// Run the nightly regression: a fault suite and campaigns, compared with the accepted baseline.
+    Nightly(nightly::Arguments),
+    /// Run known-answer tests through this program, and check its own verdicts.
+    Selftest(selftest::Arguments),
+    /// Check a file of requirements, or convert it to the format of another tool.
+    Requirements(requirements::Arguments),
+    /// Serve the core as a device that a harness drives over a port.
+    Serve(serve::Arguments),
+    /// Score a recording, without running the core.
+    Score(score::Arguments),
+    /// Predict the observability and the accuracy of a sequence, without running it.
+    Observe(observe::Arguments),
+    /// Write the report of a finished run again.
+    Report(report::Arguments),
+    /// Check that a folder of evidence is unchanged, bit for bit.
+    Verify(verify::Arguments),
+    /// Derive the verdicts of a stored folder again, and compare them with the stored ones.
+    Rejudge(rejudge::Arguments),
+    /// Watch a run: its progress, drift, parameters, faults and lateness.
+    Watch(watch::Arguments),
+    /// List and describe the kinds of faults, sweep a fault, or minimise a set of faults.
+    Faults(faults::Arguments),
+    /// Build, check and step FMUs.
+    Fmu(fmu::Arguments),
+    /// Query, move or stop a turntable by hand, or simulate one.
+    Turntable(turntable::Arguments),
+    /// Check whether this host is fit for real-time runs, and advise what to change.
+    Doctor(doctor::Arguments),
+    /// Print the JSON Schema of scenarios, for completion in editors.
+    Schema,
+    #[command(external_subcommand)]
+    Other(Vec<OsString>),
+}
+
+/// Reports an unknown command.
+fn other(words: &[OsString]) -> Failure {
+    let name = words.first().map_or("".into(), |word| word.to_string_lossy());
+    let command = <Cli as clap::CommandFactory>::command();
+    let known: Vec<&str> = command.get_subcommands().map(clap::Command::get_name).collect();
+    let known = octant_base::names::suggestion(&name, known.into_iter(), "commands");
+    Failure::input(format!("unknown command {name:?}, {known}"))
+}
+
+/// Checks whether the program accepts a command line, program first; nothing is run.
+///
+/// # Errors
+/// If it would be refused.
+pub fn parses<'a>(words: impl IntoIterator<Item = &'a str>) -> Result<(), RefusedCommand> {
+    match Cli::try_parse_from(words) {
+        Ok(Cli { command: Command::Other(words), .. }) => {
+            Err(RefusedCommand { message: other(&words).message })
+        }
+        Ok(_) => Ok(()),
+        Err(error) => Err(RefusedCommand { message: error.to_string() }),
+    }
+}
+
+/// Refusal of a command line.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct RefusedCommand {
+    message: String,
+}
+
+impl std::fmt::Display for RefusedCommand {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(&self.message)
+    }
+}
+
+impl std::error::Error for RefusedCommand {}
+
+/// Runs the program and returns its exit status.
+#[must_use]
+pub fn main() -> ExitCode {
+    octant_evidence::build::say(octant_evidence::build::Build {
+        git_commit: env!("OCTANT_GIT_COMMIT"),
+        is_git_dirty: env!("OCTANT_GIT_DIRTY") == "true",
+        rustc: env!("OCTANT_RUSTC"),
+        lock_file_sha256: env!("OCTANT_LOCK_FILE"),
+    });
+    let cli = Cli::parse();
+    if let Some(parent) = cli.parent
+        && let Err(error) = progress::interrupts::leave_to(parent)
+    {
+        note!("octant: failed to follow process {parent}: {error}");
+        return ExitCode::from(Verdict::Error.exit_code());
+    }
+    let outcome = match cli.command {
+        Command::Run(arguments) => run::command(&arguments),
+        Command::Campaign(arguments) => campaign::command(&arguments),
+        Command::Nightly(arguments) => nightly::command(&arguments),
+        Command::Selftest(arguments) => selftest::command(&arguments),
+        Command::Requirements(arguments) => requirements::command(&arguments),
+        Command::Compare(arguments) => compare::command(&arguments),
+        Command::Replay(arguments) => replay::command(&arguments),
+        Command::Serve(arguments) => serve::command(&arguments),
+        Command::Score(arguments) => score::command(&arguments),
+        Command::Observe(arguments) => observe::command(&arguments),
+        Command::Report(arguments) => report::command(&arguments),
+        Command::Verify(arguments) => verify::command(&arguments),
+        Command::Rejudge(arguments) => rejudge::command(&arguments),
+        Command::Watch(arguments) => watch::command(&arguments),
+        Command::Faults(arguments) => faults::command(&arguments),
+        Command::Doctor(arguments) => doctor::command(&arguments),
+        Command::Turntable(arguments) => turntable::command(&arguments),
+        Command::Fmu(arguments) => fmu::command(&arguments),
+        Command::Other(words) => Err(other(&words)),
+        Command::Schema => {
+            print(&format!("{:#}\n", octant_scenario::schema())).map(|()| Verdict::Pass)
+        }
+    };
+    match outcome {
+        Ok(verdict) => ExitCode::from(verdict.exit_code()),
+        Err(failure) => {
+            note!("octant: {}", failure.message);
+            ExitCode::from(failure.status)
+        }
+    }
+}

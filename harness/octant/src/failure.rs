@@ -1,0 +1,80 @@
+//! Failures of commands, with the exit status of each.
+
+use octant_requirements::Verdict;
+
+/// Reason why a command ended without a verdict.
+#[derive(Debug)]
+pub(crate) struct Failure {
+    pub(crate) status: u8,
+    pub(crate) message: String,
+}
+
+impl Failure {
+    /// Creates a failure by bad input or usage.
+    pub(crate) fn input(error: impl std::fmt::Display) -> Self {
+        Self { status: 2, message: error.to_string() }
+    }
+
+    /// Creates a failure of the bench.
+    pub(crate) fn bench(error: impl std::fmt::Display) -> Self {
+        Self { status: Verdict::Error.exit_code(), message: error.to_string() }
+    }
+}
+
+impl Failure {
+    /// Puts "failed to" before the message.
+    pub(crate) fn failed(self) -> Self {
+        Self { message: format!("failed to {}", self.message), ..self }
+    }
+}
+
+impl From<octant_run::method::MethodError> for Failure {
+    fn from(error: octant_run::method::MethodError) -> Self {
+        use octant_endpoint::OpenError;
+        use octant_link::harness::SessionError;
+        use octant_mapping::stepper::UseError;
+        use octant_run::RunError;
+        use octant_run::method::{MethodError, SetupError};
+        use octant_source::SourceError;
+        match &error {
+            MethodError::Setup(
+                SetupError::Recorder(_)
+                | SetupError::Source(
+                    SourceError::Use(UseError::Gone { .. })
+                    | SourceError::Gone { .. }
+                    | SourceError::TableStopped { .. },
+                )
+                | SetupError::Endpoint(
+                    OpenError::Use(UseError::Gone { .. })
+                    | OpenError::Live(
+                        SessionError::Port(_)
+                        | SessionError::NoAnswer { .. }
+                        | SessionError::Bye { .. }
+                        | SessionError::StartedAnew { .. },
+                    ),
+                ),
+            ) => Self::bench(error),
+            MethodError::Setup(SetupError::Source(SourceError::Table(table)))
+                if !matches!(table, octant_turntable::Error::Dialect { .. }) =>
+            {
+                Self::bench(error)
+            }
+            // A file that can't be read to its end is bad input, not a failure of the bench.
+            MethodError::Setup(_)
+            | MethodError::Run(RunError::Source(SourceError::Read { .. })) => Self::input(error),
+            MethodError::Run(_) => Self::bench(error),
+        }
+    }
+}
+
+impl From<octant_run::paired::PairedError> for Failure {
+    fn from(error: octant_run::paired::PairedError) -> Self {
+        use octant_run::paired::PairedError;
+        let message = format!("failed to {error}");
+        match error {
+            PairedError::Method(error) => Self::from(error),
+            PairedError::NoNavigation | PairedError::NotSimulated => Self::input(message),
+            PairedError::Cancelled => Self { status: Verdict::Inconclusive.exit_code(), message },
+        }
+    }
+}

@@ -1,0 +1,125 @@
+//! Renders the page of a kind of fault in Markdown, and its picture.
+
+use crate::failure::Failure;
+use crate::fault_picture::{Window, picture as draw};
+use crate::fault_words::{acts, lasts};
+use crate::side_by_side::side_by_side;
+use octant_faults::catalogue::{Acts, Kind, Lasts};
+use octant_scenario::{Scenario, fault_example, fault_parameters};
+use std::path::Path;
+
+/// Scenario of the examples: at 100 s the instrument dwells; from 115 s to 125 s it turns by 90° of
+/// azimuth to the third position.
+const STAGE: &str = r#"schema = 1
+[procedure.calibration]
+duration = "4 min"
+stops = [
+    { azimuth = "0 deg", roll = "0 deg" },
+    { azimuth = "0 deg", roll = "45 deg" },
+    { azimuth = "90 deg", roll = "45 deg" },
+    { azimuth = "90 deg", roll = "0 deg" },
+]
+"#;
+/// References; a fault may need another than the first.
+const REFERENCES: [&str; 2] = ["zero-velocity", "dock-position"];
+const SEED: u64 = 1;
+/// Length of the scenario, s; `SHOWN_MAX_S` is the longest part that is shown.
+const STAGE_S: f64 = 240.0;
+const SHOWN_MAX_S: f64 = 45.0;
+
+/// Renders the page of a kind as Markdown; its picture is the file of the same name beside it.
+pub(super) fn markdown(kind: &'static Kind) -> String {
+    let name = kind.name;
+    let mut out = format!("# {name}\n\n{}\n\n", kind.summary);
+    if has_picture(kind) {
+        out += &format!("![{name}: the example, with the fault and without it]({name}.svg)\n\n");
+    }
+    out += &format!("{}\n\n", kind.model);
+    out += &format!("Acts {}. Lasts {}.\n\n## Parameters\n\n", acts(kind.acts), lasts(kind.lasts));
+    let takes = fault_parameters(name);
+    let cell = |text: &str| text.replace('|', "\\|");
+    if kind.parameters.is_empty() {
+        out += "None.\n";
+    } else {
+        out += "| key | meaning | takes | default |\n|---|---|---|---|\n";
+    }
+    for parameter in kind.parameters {
+        let takes = takes.iter().find(|(key, _)| *key == parameter.name);
+        let takes = takes.map_or("", |(_, takes)| takes.as_str());
+        let default =
+            parameter.default.map_or_else(|| "always given".to_owned(), |d| format!("`{d}`"));
+        out += &format!(
+            "| `{}` | {} | {} | {} |\n",
+            parameter.name,
+            cell(parameter.doc),
+            cell(takes),
+            cell(&default)
+        );
+    }
+    let example = fault_example(name).unwrap_or_default();
+    out += &format!("\n## In a scenario\n\n```toml\n{example}```\n\n");
+    out += &format!(
+        "Family: {}. [How faults are written, and all kinds](../faults.md)\n",
+        kind.family.name()
+    );
+    out
+}
+
+/// Returns whether a kind has a picture: a fault of the wire alters frames, and one of the host
+/// only their timing, so there is no sample to draw.
+pub(super) fn has_picture(kind: &Kind) -> bool {
+    !matches!(kind.acts, Acts::Wire | Acts::Host)
+}
+
+/// Draws the picture of a kind: its example, simulated.
+pub(super) fn picture(kind: &'static Kind) -> Result<String, Failure> {
+    if !has_picture(kind) {
+        return Err(Failure::input(format!(
+            "found kind {}, which acts {}: expected a kind that acts on samples, to draw a picture",
+            kind.name,
+            acts(kind.acts)
+        )));
+    }
+    let example = fault_example(kind.name).unwrap_or_default();
+    for reference in REFERENCES {
+        let text = format!(
+            "{STAGE}[procedure.calibration.aiding]\nreference = \"{reference}\"\n{example}"
+        );
+        let file = format!("example of {}", kind.name);
+        let scenario = Scenario::parse(&text, &file, Path::new(""), &[]).map_err(Failure::input)?;
+        let period_s = scenario.sample_period_ns as f64 * 1e-9;
+        let steps = (STAGE_S / period_s).round() as u64;
+        let runs = side_by_side(&scenario, SEED, steps)?;
+        let onset = runs.receipts.first().and_then(|receipt| receipt.first_sample);
+        let Some(onset) = onset else { continue };
+        let duration = scenario.faults.first().and_then(|fault| fault.spec.schedule.duration);
+        let lasts_s = duration.map_or_else(|| instant_s(kind), |n| n as f64 * period_s);
+        let shown_s = (1.4 * lasts_s).clamp(10.0 * period_s, SHOWN_MAX_S);
+        let after = (shown_s / period_s).round() as u64;
+        let before = after * 3 / 10;
+        let window = Window {
+            from: onset.saturating_sub(before).max(1),
+            onset,
+            to: (onset + after).min(steps),
+        };
+        if let Some(svg) = draw(kind, &runs, window, period_s) {
+            return Ok(svg);
+        }
+    }
+    Err(Failure::bench(format!(
+        "failed to draw {}: its example changes none of the drawn quantities",
+        kind.name
+    )))
+}
+
+/// Returns the time for which an instantaneous fault is visible, s.
+fn instant_s(kind: &Kind) -> f64 {
+    debug_assert!(kind.lasts == Lasts::Instant);
+    match kind.name {
+        "shock" => 0.25,
+        "gimbal-slip" => 0.2,
+        "mooring-jerk" => 5.0,
+        "time-step" | "sequence-gap" => 0.1,
+        _ => 10.0,
+    }
+}

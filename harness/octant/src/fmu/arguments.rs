@@ -1,0 +1,87 @@
+//! Arguments of `octant fmu run`.
+
+use crate::failure::Failure;
+use clap::{Args, ValueEnum};
+use std::path::PathBuf;
+
+/// Step any FMU, with inputs from a file; or a core, with the samples of a scenario's source.
+#[derive(Debug, Args)]
+pub(super) struct Arguments {
+    /// The FMU, or the folder of an unpacked one.
+    #[arg(value_name = "FILE")]
+    pub(super) fmu: PathBuf,
+    /// Inputs: a CSV file with a column of time and one for each variable, with the unit in brackets
+    /// where it differs from the variable's: "imu.w [deg/s]".
+    #[arg(long, value_name = "FILE.csv")]
+    pub(super) input: Option<PathBuf>,
+    /// Scenario whose source gives the samples for a core: the FMU replaces the scenario's endpoint.
+    #[arg(long, value_name = "SCENARIO", conflicts_with_all = ["input", "start", "stop", "step", "output", "tolerance"])]
+    pub(super) source: Option<PathBuf>,
+    /// Set a parameter, or a constant input, before the start.
+    #[arg(long, value_name = "NAME=VALUE")]
+    pub(super) set: Vec<String>,
+    /// Start time, in s or with a unit; by default that of the FMU's default experiment, else 0.
+    #[arg(long, value_name = "TIME", allow_hyphen_values = true)]
+    pub(super) start: Option<String>,
+    /// Stop time; by default that of the default experiment, else the last row of the inputs.
+    #[arg(long, value_name = "TIME", allow_hyphen_values = true)]
+    pub(super) stop: Option<String>,
+    /// Communication step; by default that of the default experiment, else 1/500 of the time span.
+    #[arg(long, value_name = "TIME", allow_hyphen_values = true)]
+    pub(super) step: Option<String>,
+    /// Relative tolerance of the solver; by default that of the default experiment.
+    #[arg(long, value_name = "NUMBER")]
+    pub(super) tolerance: Option<f64>,
+    /// Interface type; by default co-simulation where the FMU has it.
+    #[arg(long, value_enum)]
+    pub(super) interface: Option<Interface>,
+    /// Process that runs the FMU.
+    #[arg(long, value_enum, default_value_t = Process::Own)]
+    pub(super) process: Process,
+    /// Longest wall time of a call in a process of its own; a longer call counts as hung.
+    #[arg(long, value_name = "TIME", default_value = "10 s")]
+    pub(super) time_limit: String,
+    /// File for the outputs, CSV or MCAP; with --source a recording in MCAP.
+    #[arg(long, value_name = "FILE")]
+    pub(super) out: Option<PathBuf>,
+    /// Replace an existing file.
+    #[arg(long, requires = "out")]
+    pub(super) force: bool,
+    /// Variable to record, repeatable; by default all numeric outputs.
+    #[arg(long, value_name = "NAME")]
+    pub(super) output: Vec<String>,
+    /// Print one JSON object.
+    #[arg(long)]
+    pub(super) json: bool,
+}
+
+/// Interface types.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum Interface {
+    /// Co-simulation: the FMU steps itself.
+    #[value(name = "cs", alias = "co-simulation")]
+    CoSimulation,
+    /// Model exchange: its equations are integrated here.
+    #[value(name = "me", alias = "model-exchange")]
+    ModelExchange,
+}
+
+/// Where an FMU runs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum Process {
+    /// In a process of its own: a crash or a hang is reported.
+    Own,
+    /// In this process: faster.
+    Shared,
+}
+
+/// Refuses to overwrite an existing file without `--force`.
+pub(super) fn in_the_way(arguments: &Arguments) -> Result<(), Failure> {
+    match &arguments.out {
+        Some(path) if path.exists() && !arguments.force => Err(Failure::input(format!(
+            "failed to create {}: the file exists already; --force replaces it",
+            path.display()
+        ))),
+        _ => Ok(()),
+    }
+}

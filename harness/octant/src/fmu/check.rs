@@ -1,0 +1,108 @@
+//! `octant fmu check`.
+
+use crate::failure::Failure;
+use crate::terminal::{print, print_json};
+use clap::Args;
+use octant_fmu_check::load::load;
+use octant_fmu_check::rules::Severity;
+use octant_fmu_check::{Report, check, show};
+use octant_fmu_host::archive::ArchiveError;
+use octant_fmu_host::instance::Options;
+use octant_requirements::Verdict;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+/// Check an FMU of any tool: its archive, its description, its libraries.
+///
+/// Exit status: 0 no error, 1 errors, 2 a file can't be read.
+#[derive(Debug, Args)]
+pub(super) struct Arguments {
+    /// FMUs: files, or folders of unpacked ones.
+    #[arg(value_name = "FILE", required = true)]
+    files: Vec<PathBuf>,
+    /// Print one JSON object, nothing else.
+    #[arg(long)]
+    json: bool,
+    /// Load the library for this machine and make an instance, in a process of its own. This is
+    /// the default; it runs the FMU's code.
+    #[arg(long, overrides_with = "no_load")]
+    load: bool,
+    /// Run no code of the FMU.
+    #[arg(long, overrides_with = "load")]
+    no_load: bool,
+    /// Initialize the instance with the start values, and do a first step.
+    #[arg(long, conflicts_with = "no_load")]
+    step: bool,
+    /// Longest time for loading and initializing, and for any other call, s.
+    #[arg(long, value_name = "SECONDS", default_value_t = 30.0)]
+    time_limit: f64,
+}
+
+/// Runs the command.
+pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
+    let limit = Duration::try_from_secs_f64(arguments.time_limit)
+        .ok()
+        .filter(|limit| !limit.is_zero())
+        .ok_or_else(|| {
+            let found = arguments.time_limit;
+            Failure::input(format!(
+                "--time-limit: found {found}, expected a positive number of seconds"
+            ))
+        })?;
+    let options = Options { start_limit: limit, time_limit: limit, ..Options::default() };
+    let mut results = Vec::new();
+    for file in &arguments.files {
+        results.push((file, one(file, arguments, &options)));
+    }
+    if arguments.json {
+        print_json(&json(&results))?;
+    } else {
+        for (_, result) in &results {
+            if let Ok(report) = result {
+                print(&show::text(report))?;
+            }
+        }
+    }
+    let unreadable: Vec<String> =
+        results.iter().filter_map(|(_, result)| Some(result.as_ref().err()?.to_string())).collect();
+    if !unreadable.is_empty() {
+        return Err(Failure::input(unreadable.join("\n")));
+    }
+    let errors = results
+        .iter()
+        .flat_map(|(_, result)| result)
+        .any(|report| report.count(Severity::Error) > 0);
+    Ok(if errors { Verdict::Fail } else { Verdict::Pass })
+}
+
+/// Checks one file.
+fn one(file: &Path, arguments: &Arguments, options: &Options) -> Result<Report, ArchiveError> {
+    let mut checked = check(file)?;
+    if !arguments.no_load && checked.can_be_loaded() {
+        load(&mut checked, options, arguments.step);
+    }
+    Ok(checked.report())
+}
+
+/// Collects all reports, and the number of their findings.
+fn json(results: &[(&PathBuf, Result<Report, ArchiveError>)]) -> serde_json::Value {
+    let count = |severity| -> usize {
+        results.iter().flat_map(|(_, result)| result).map(|report| report.count(severity)).sum()
+    };
+    let files: Vec<serde_json::Value> = results
+        .iter()
+        .map(|(file, result)| match result {
+            Ok(report) => serde_json::json!(report),
+            Err(error) => serde_json::json!({
+                "file": file.display().to_string(),
+                "unreadable": error.to_string(),
+            }),
+        })
+        .collect();
+    serde_json::json!({
+        "files": files,
+        "errors": count(Severity::Error),
+        "warnings": count(Severity::Warning),
+        "notes": count(Severity::Note),
+    })
+}

@@ -1,0 +1,254 @@
+//! `octant fmu run`.
+
+use super::super::progress::with_progress;
+use super::arguments::{Arguments, Interface, Process, in_the_way};
+use crate::arguments::seconds;
+use crate::failure::Failure;
+use crate::terminal::note;
+use crate::terminal::{print, print_json};
+use octant_base::control::Control;
+use octant_base::number::counted;
+use octant_cosim::single::input::{InputError, Inputs};
+use octant_cosim::single::output::{Outputs, Sink};
+use octant_cosim::single::{Finished, SimulateError, Span, simulate};
+use octant_fmu_host::OpenError;
+use octant_fmu_host::instance::{Instance, InstanceError, InterfaceKind, Options, Place};
+use octant_mapping::settings::{Settings, Starts};
+use octant_requirements::Verdict;
+use octant_scenario::{ScenarioError, setting_argument};
+use serde::Serialize;
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+
+/// Summary of a run.
+#[derive(Serialize)]
+struct Told {
+    fmu: String,
+    model: String,
+    fmi: String,
+    generation_tool: String,
+    interface: &'static str,
+    process: &'static str,
+    start_s: f64,
+    stop_s: f64,
+    step_s: f64,
+    steps: u64,
+    reached_s: f64,
+    terminated: bool,
+    interrupted: bool,
+    wall_s: f64,
+    outputs: Vec<String>,
+    left_out: Vec<String>,
+    out: Option<PathBuf>,
+}
+
+/// Runs the command.
+pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
+    if let Some(scenario) = &arguments.source {
+        return super::run_source::command(arguments, scenario);
+    }
+    let bad = |error: &dyn std::fmt::Display| Failure::input(format!("failed to {error}"));
+    in_the_way(arguments)?;
+    let mut instance = open(arguments)?;
+    let instance = instance.as_mut();
+    let description = instance.description().clone();
+    let starts = starts(arguments, instance)?;
+    let mut inputs = match &arguments.input {
+        Some(path) => Some(Inputs::read(path, &description).map_err(|error| match error {
+            // The place comes first, as in messages about scenarios.
+            InputError::Content { .. } => Failure::input(error),
+            _ => bad(&error),
+        })?),
+        None => None,
+    };
+    let outputs = Outputs::choose(&description, &arguments.output)
+        .map_err(|error| bad(&format!("record the outputs: {error}")))?;
+    let span = span(arguments, instance, inputs.as_ref())?;
+    let steps = span.steps().map_err(|error| bad(&format!("plan the steps: {error}")))?;
+    let mut sink = match &arguments.out {
+        Some(path) => Sink::file(path, &outputs, &description.model_name).map_err(|e| bad(&e))?,
+        None => Sink::None,
+    };
+    let control = Control::default();
+    let one = std::slice::from_ref(&control);
+    let (finished, wall_s) = with_progress(one, Some(steps), span.step_s, || {
+        let began = Instant::now();
+        let inputs = inputs.as_mut();
+        let finished = simulate(instance, &starts, inputs, &outputs, &span, &mut sink, &control);
+        (finished, began.elapsed().as_secs_f64())
+    });
+    // Data written before a failure is kept.
+    let written = sink.finish();
+    log(instance);
+    let finished = finished.map_err(|error| {
+        let kept = match &arguments.out {
+            Some(path) => format!("; the outputs before that are in {}", path.display()),
+            None => String::new(),
+        };
+        match error {
+            SimulateError::Instance(InstanceError::Value { .. }) => bad(&error),
+            error => {
+                Failure::bench(format!("failed to run {}: {error}{kept}", arguments.fmu.display()))
+            }
+        }
+    })?;
+    written.map_err(|error| Failure::bench(format!("failed to write the outputs: {error}")))?;
+    tell(arguments, &description, &span, &finished, wall_s, outputs)?;
+    Ok(if finished.cancelled { Verdict::Inconclusive } else { Verdict::Pass })
+}
+
+fn open(arguments: &Arguments) -> Result<Box<dyn Instance>, Failure> {
+    let options = Options {
+        interface: match arguments.interface {
+            None => InterfaceKind::Any,
+            Some(Interface::CoSimulation) => InterfaceKind::CoSimulation,
+            Some(Interface::ModelExchange) => InterfaceKind::ModelExchange,
+        },
+        place: match arguments.process {
+            Process::Own => Place::OwnProcess,
+            Process::Shared => Place::ThisProcess,
+        },
+        time_limit: Duration::from_secs_f64(
+            seconds("--time-limit", &arguments.time_limit)?.max(0.0),
+        ),
+        ..Options::default()
+    };
+    octant_fmu_host::open(&arguments.fmu, &options).map_err(|error| {
+        let message = format!("failed to open {}: {error}", arguments.fmu.display());
+        match error {
+            OpenError::Instance(InstanceError::Process { .. }) => Failure::bench(message),
+            _ => Failure::input(message),
+        }
+    })
+}
+
+/// Collects the start values of `--set`.
+fn starts(arguments: &Arguments, instance: &dyn Instance) -> Result<Starts, Failure> {
+    let mut settings = Settings::new(instance.description());
+    let mut problems = Vec::new();
+    for argument in &arguments.set {
+        let set = setting_argument(argument).and_then(|setting| {
+            let set = settings.set(&setting.name, &setting.values);
+            set.map_err(|error| setting.at.problem(error.to_string()))
+        });
+        problems.extend(set.err());
+    }
+    if !problems.is_empty() {
+        let file = arguments.fmu.display().to_string();
+        return Err(Failure::input(ScenarioError { file, problems }));
+    }
+    settings.finish().map_err(|error| Failure::input(format!("failed to set parameters: {error}")))
+}
+
+/// Determines start, end and step.
+fn span(
+    arguments: &Arguments,
+    instance: &dyn Instance,
+    inputs: Option<&Inputs>,
+) -> Result<Span, Failure> {
+    let description = instance.description();
+    let default = &description.default_experiment;
+    let given = |name: &str, text: &Option<String>| {
+        text.as_ref().map(|text| seconds(name, text)).transpose()
+    };
+    let start_s = given("--start", &arguments.start)?.or(default.start_s).unwrap_or(0.0);
+    let stop_s = given("--stop", &arguments.stop)?
+        .or(default.stop_s)
+        .or(inputs.map(|inputs| inputs.span_s().1))
+        .ok_or_else(|| {
+            Failure::input(
+                "failed to plan the steps: found no stop time in the FMU, expected --stop TIME",
+            )
+        })?;
+    let internal = || {
+        let interface = description.co_simulation.as_ref()?;
+        interface
+            .fixed_internal_step_s
+            .filter(|_| arguments.interface != Some(Interface::ModelExchange))
+    };
+    let step_s = given("--step", &arguments.step)?
+        .or(default.step_s)
+        .or_else(internal)
+        .unwrap_or((stop_s - start_s) / 500.0);
+    Ok(Span { start_s, stop_s, step_s, tolerance: arguments.tolerance.or(default.tolerance) })
+}
+
+/// Prints the messages of the FMU.
+fn log(instance: &mut dyn Instance) {
+    for message in instance.messages() {
+        note!("octant: {}: {message}", instance.name());
+    }
+}
+
+fn tell(
+    arguments: &Arguments,
+    description: &octant_fmu_host::description::Description,
+    span: &Span,
+    finished: &Finished,
+    wall_s: f64,
+    outputs: Outputs,
+) -> Result<(), Failure> {
+    let exchange = arguments.interface == Some(Interface::ModelExchange)
+        || description.co_simulation.is_none();
+    let told = Told {
+        fmu: arguments.fmu.display().to_string(),
+        model: description.model_name.clone(),
+        fmi: description.fmi_version.clone(),
+        generation_tool: description.generation_tool.clone(),
+        interface: if exchange { "model exchange" } else { "co-simulation" },
+        process: match arguments.process {
+            Process::Own => "own",
+            Process::Shared => "shared",
+        },
+        start_s: span.start_s,
+        stop_s: span.stop_s,
+        step_s: span.step_s,
+        steps: finished.steps,
+        reached_s: finished.time_s,
+        terminated: finished.terminated,
+        interrupted: finished.cancelled,
+        wall_s,
+        outputs: outputs.columns.into_iter().map(|column| column.name).collect(),
+        left_out: outputs.left_out,
+        out: arguments.out.clone(),
+    };
+    if arguments.json {
+        return print_json(&told);
+    }
+    let tool = match told.generation_tool.as_str() {
+        "" => String::new(),
+        tool => format!(", made by {tool}"),
+    };
+    let mut text = format!(
+        "{}: {}, FMI {}, {}{tool}\n{} of {} s from {} s to {} s",
+        told.fmu,
+        told.model,
+        told.fmi,
+        told.interface,
+        counted(told.steps, "step", "steps"),
+        told.step_s,
+        told.start_s,
+        told.reached_s
+    );
+    if told.steps > 0 {
+        text += &format!(
+            ", {:.3} µs per step in {} process",
+            1e6 * told.wall_s / told.steps as f64,
+            if told.process == "own" { "its own" } else { "this" }
+        );
+    }
+    text += match (told.terminated, told.interrupted) {
+        (true, _) => "; then the FMU ended the simulation\n",
+        (_, true) => "; then the run was interrupted\n",
+        _ => "\n",
+    };
+    if !told.left_out.is_empty() {
+        text += &format!("not recorded, because not numeric: {}\n", told.left_out.join(", "));
+    }
+    if let Some(out) = &told.out {
+        let rows = counted(told.steps + 1, "row", "rows");
+        let columns = counted(told.outputs.len(), "output", "outputs");
+        text += &format!("{rows} of time and {columns} in {}\n", out.display());
+    }
+    print(&text)
+}

@@ -1,0 +1,149 @@
+//! `octant fmu run --source`: a core in an FMU, with the samples of a scenario's source.
+
+use super::super::progress::with_progress;
+use super::arguments::{Arguments, Interface, Process, in_the_way};
+use crate::failure::Failure;
+use crate::terminal::{print, print_json};
+use octant_base::control::Control;
+use octant_base::number::counted;
+use octant_requirements::Verdict;
+use octant_run::method::run_as_far_as_it_goes;
+use octant_run::{Ended, Recording};
+use octant_scenario::{Method, Scenario, setting_argument};
+use serde::Serialize;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+/// Summary of a run.
+#[derive(Serialize)]
+struct Told {
+    fmu: String,
+    scenario: String,
+    samples: u64,
+    ended: &'static str,
+    refused: Option<String>,
+    nis_mean: Option<f64>,
+    stream_hash: String,
+    wall_s: f64,
+    out: Option<PathBuf>,
+}
+
+/// Runs the command.
+pub(super) fn command(arguments: &Arguments, scenario: &Path) -> Result<Verdict, Failure> {
+    let recording = match &arguments.out {
+        Some(path) if path.extension().is_none_or(|extension| extension != "mcap") => {
+            return Err(Failure::input(format!(
+                "failed to write {}: with --source the output is a recording, expected a name that \
+                 ends in .mcap",
+                path.display()
+            )));
+        }
+        Some(path) => {
+            in_the_way(arguments)?;
+            if path.exists() {
+                std::fs::remove_file(path).map_err(|error| {
+                    Failure::input(format!("failed to replace {}: {error}", path.display()))
+                })?;
+            }
+            Recording::File(path)
+        }
+        None => Recording::Hash,
+    };
+    let scenario = Scenario::load(scenario, &overrides(arguments)?).map_err(Failure::input)?;
+    let control = Control::default();
+    let sample_s = scenario.sample_period_ns as f64 * 1e-9;
+    let one = std::slice::from_ref(&control);
+    let (run, wall_s) = with_progress(one, scenario.samples(), sample_s, || {
+        let (method, seed) = (Method::Primary, scenario.seed);
+        let began = Instant::now();
+        let run = run_as_far_as_it_goes(&scenario, method, seed, recording, &control);
+        (run, began.elapsed().as_secs_f64())
+    });
+    let run = run.map_err(|error| Failure::from(error).failed())?;
+    let refused = run.calibration.as_ref().and_then(|calibration| calibration.refused.clone());
+    let told = Told {
+        fmu: arguments.fmu.display().to_string(),
+        scenario: scenario.title.clone(),
+        samples: run.recorder.epochs,
+        ended: match run.ended {
+            Ended::Done => "done",
+            Ended::Refused => "refused",
+            Ended::SourceEnded => "source ended",
+            Ended::Cancelled => "interrupted",
+            Ended::Misbehaved => "answered what no core may",
+            Ended::Broken => "broken",
+        },
+        refused,
+        nis_mean: run.calibration.as_ref().and_then(|calibration| calibration.nis_mean),
+        stream_hash: run.recorder.stream_hash.clone(),
+        wall_s,
+        out: arguments.out.clone(),
+    };
+    if arguments.json {
+        print_json(&told)?;
+    } else {
+        print(&text(&told))?;
+    }
+    if let Some(error) = run.broken {
+        return Err(Failure::bench(format!("failed to run {}: {error}", told.fmu)));
+    }
+    Ok(match run.ended {
+        Ended::Refused | Ended::Misbehaved => Verdict::Fail,
+        Ended::Cancelled => Verdict::Inconclusive,
+        _ => Verdict::Pass,
+    })
+}
+
+/// Returns the settings that make the FMU the scenario's endpoint.
+fn overrides(arguments: &Arguments) -> Result<Vec<String>, Failure> {
+    let file = std::path::absolute(&arguments.fmu).map_err(|error| {
+        Failure::input(format!("failed to find {}: {error}", arguments.fmu.display()))
+    })?;
+    let mut all = vec![format!("endpoint.uri=fmu:{}", file.display())];
+    match arguments.process {
+        Process::Own => {
+            all.push("endpoint.fmu.process=own".to_owned());
+            all.push(format!("endpoint.fmu.time_limit={}", arguments.time_limit));
+        }
+        Process::Shared => all.push("endpoint.fmu.process=shared".to_owned()),
+    }
+    match arguments.interface {
+        None => {}
+        Some(Interface::CoSimulation) => {
+            all.push("endpoint.fmu.interface=co-simulation".to_owned());
+        }
+        Some(Interface::ModelExchange) => {
+            all.push("endpoint.fmu.interface=model-exchange".to_owned());
+        }
+    }
+    for argument in &arguments.set {
+        setting_argument(argument)
+            .map_err(|problem| Failure::input(format!("--set {argument}: {}", problem.message)))?;
+        all.push(format!("endpoint.fmu.parameters.{argument}"));
+    }
+    Ok(all)
+}
+
+fn text(told: &Told) -> String {
+    let mut text = format!(
+        "{} as the core of {}: {}, {}",
+        told.fmu,
+        told.scenario,
+        counted(told.samples, "sample", "samples"),
+        told.ended
+    );
+    if let Some(reason) = &told.refused {
+        text += &format!(" ({reason})");
+    }
+    if told.samples > 0 {
+        text += &format!(", {:.3} µs per sample", 1e6 * told.wall_s / told.samples as f64);
+    }
+    if let Some(nis) = told.nis_mean {
+        text += &format!("\nNIS {nis:.3}");
+    }
+    text += &format!("\nstream hash {}\n", told.stream_hash);
+    if let Some(out) = &told.out {
+        text += &format!("{}\n", out.display());
+    }
+    text
+}

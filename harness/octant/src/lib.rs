@@ -1,0 +1,43 @@
+//! The command line: results on stdout, progress and diagnostics on stderr.
+//!
+//! Exit status: 0 pass, 1 fail, 2 bad input or usage, 3 inconclusive, 4 error (the bench failed).
+#![allow(clippy::print_stdout, reason = "results go to stdout")]
+
+mod arguments;
+mod campaign;
+mod commands;
+mod compare;
+mod doctor;
+mod evidenced;
+mod failure;
+mod fault_page;
+mod fault_picture;
+mod fault_words;
+mod faults;
+mod fmu;
+mod followed;
+mod live;
+mod minimise;
+mod nightly;
+mod observe;
+mod progress;
+mod reexecute;
+mod rejudge;
+mod replay;
+mod report;
+mod requirements;
+mod run;
+mod run_folder;
+mod run_system;
+mod score;
+mod selftest;
+mod serve;
+mod side_by_side;
+mod signing;
+mod sweep;
+mod terminal;
+mod turntable;
+mod verify;
+mod watch;
+
+pub use commands::{RefusedCommand, main, parses};

@@ -1,0 +1,421 @@
+//! `octant nightly`: runs the fault suite and campaigns, and compares them with the accepted
+//! baseline.
+
+use super::campaign::run::in_rounds;
+use super::progress::interrupts;
+use crate::failure::Failure;
+use crate::terminal::note;
+use crate::terminal::{print, write};
+use clap::{Args, Subcommand};
+use octant_campaign::case;
+use octant_campaign::execute::{Done, Event, Options, Shard, execute};
+use octant_campaign::plan::Plan;
+use octant_campaign::{merge, results, status};
+use octant_evidence::manifest::{Host, operator};
+use octant_nightly::accept::{self, Baseline, accept as accept_night};
+use octant_nightly::compare::{Limits, Side, compare};
+use octant_nightly::history::History;
+use octant_nightly::night::{self, CampaignNight, Night, Program, SCHEMA, free_name};
+use octant_nightly::render::Report;
+use octant_nightly::suite::{self, SuiteResult};
+use octant_nightly::trend;
+use octant_requirements::Verdict;
+use octant_scenario::suite::Suite;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, SystemTime};
+
+#[derive(Debug, Args)]
+#[command(args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
+pub(super) struct Arguments {
+    #[command(subcommand)]
+    command: Option<Command>,
+    /// Campaigns, TOML files.
+    #[arg(value_name = "CAMPAIGN")]
+    campaigns: Vec<PathBuf>,
+    /// Suite of scenarios with their expected outcomes, a TOML file.
+    #[arg(long, value_name = "SUITE")]
+    suite: Option<PathBuf>,
+    /// Folder of the nights, their history and the baseline.
+    #[arg(long, value_name = "DIR", required = true)]
+    history: Option<PathBuf>,
+    /// Start a history: this night is compared with no baseline, and becomes the baseline if it
+    /// passes. Without this option, a night without a baseline is inconclusive.
+    #[arg(long)]
+    first: bool,
+    /// Make this night the baseline, whatever its verdict.
+    #[arg(long)]
+    accept: bool,
+    /// Folder for copies of nightly.md, nightly.json and trend.html.
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Number of parallel cases; by default the number of processors.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    jobs: Option<u16>,
+    /// Probability of a false alarm: of reporting any change where there is none, over all measures.
+    #[arg(long, value_name = "P", default_value = "0.05", value_parser = fraction)]
+    alpha: f64,
+    /// Smallest change of a mean that counts, as a fraction of the baseline's root mean square.
+    #[arg(long, value_name = "PART", default_value = "0.01", value_parser = fraction)]
+    least: f64,
+    /// Print nightly.json on stdout, and nothing else.
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Make a finished night the baseline.
+    Accept {
+        /// Id of the night; by default the last finished one.
+        #[arg(value_name = "NIGHT")]
+        night: Option<String>,
+        /// Folder of the history.
+        #[arg(long, value_name = "DIR")]
+        history: PathBuf,
+    },
+}
+
+fn fraction(text: &str) -> Result<f64, String> {
+    let number = text.parse::<f64>().ok().filter(|number| (0.0..1.0).contains(number));
+    number.ok_or_else(|| format!("found {text:?}, expected a number of 0 or more and below 1"))
+}
+
+/// Inputs of a night.
+struct Inputs {
+    suite: Option<Suite>,
+    suite_blake3: Option<String>,
+    plans: Vec<(String, Plan)>,
+    program: PathBuf,
+    jobs: usize,
+}
+
+pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
+    if let Some(Command::Accept { night, history }) = &arguments.command {
+        return accepted(history, night.as_deref());
+    }
+    let Some(history) = &arguments.history else {
+        return Err(Failure::input("--history is missing"));
+    };
+    if arguments.campaigns.is_empty() && arguments.suite.is_none() {
+        return Err(Failure::input("found neither a campaign nor --suite, expected one or both"));
+    }
+    interrupts::watch();
+    // Inputs that can't be compared or stored are reported before anything runs.
+    let mut all = History::read(history).map_err(|error| Failure::input(error).failed())?;
+    let baseline = accept::read(history).map_err(Failure::input)?;
+    if let (true, Some(baseline)) = (arguments.first, &baseline) {
+        return Err(Failure::input(format!(
+            "found a baseline, night {}, in {}: --first is for a history without one, --accept replaces it",
+            baseline.accepted.night,
+            history.display()
+        )));
+    }
+    let inputs = inputs(arguments)?;
+    let mut night = begin(history, &inputs, &all)?;
+    let folder = night::nights(history).join(&night.id);
+    let cancel = AtomicBool::new(false);
+    if !run_all(&inputs, &mut night, &folder, &cancel)? {
+        print(&format!("night {} was interrupted: the same command resumes it\n", night.id))?;
+        return Ok(Verdict::Inconclusive);
+    }
+    night.ended = Some(humantime::format_rfc3339_seconds(SystemTime::now()).to_string());
+    let rows = accept::rows(&folder, &night).map_err(Failure::bench)?;
+    let limits = Limits { alpha: arguments.alpha, least: arguments.least };
+    let rerun = |campaign: &str, case: &str| {
+        format!("octant campaign case {} {case}", folder.join(campaign).display())
+    };
+    let against = |baseline: &Baseline| {
+        let before = Side { night: &baseline.night, rows: &baseline.rows };
+        compare(before, Side { night: &night, rows: &rows }, limits, &rerun)
+    };
+    let comparison = baseline.as_ref().map(against);
+    let before = baseline.as_ref().map(|b| &b.night);
+    let report = Report::new(&night, before, comparison, arguments.first);
+    all.put(&night, report.verdict.name(), &rows, report.comparison.as_ref());
+    all.write(history).map_err(|error| Failure::bench(error).failed())?;
+    let json = report.to_json().map_err(|error| Failure::bench(error).failed())?;
+    write(&folder.join("nightly.json"), &json)?;
+    write(&folder.join("nightly.md"), report.markdown())?;
+    // From here on the night has ended; one that was aborted before is resumed.
+    night.write(&folder).map_err(Failure::bench)?;
+    let mut name = baseline.map(|baseline| baseline.accepted.night);
+    // A first night that fails by itself doesn't become the baseline.
+    let accepts = arguments.accept || (arguments.first && report.verdict == Verdict::Pass);
+    if accepts {
+        accept_night(history, &night.id, operator()).map_err(Failure::bench)?;
+        name = Some(night.id.clone());
+    }
+    let page = trend::render(&all, name.as_deref());
+    write(&history.join("trend.html"), &page)?;
+    if let Some(out) = &arguments.out {
+        std::fs::create_dir_all(out).map_err(|error| {
+            Failure::bench(format!("failed to create {}: {error}", out.display()))
+        })?;
+        write(&out.join("nightly.json"), &json)?;
+        write(&out.join("nightly.md"), report.markdown())?;
+        write(&out.join("trend.html"), &page)?;
+    }
+    let mut text = format!("night {}: {}\n", night.id, report.verdict.name());
+    report.reasons.iter().for_each(|reason| text += &format!("  {reason}\n"));
+    if accepts {
+        text += "this night is the baseline now\n";
+    } else if name.is_none() {
+        text += &format!(
+            "octant nightly accept --history {} makes this night the baseline\n",
+            history.display()
+        );
+    }
+    text += &format!(
+        "{}\n{}\n",
+        folder.join("nightly.md").display(),
+        history.join("trend.html").display()
+    );
+    print(if arguments.json { &json } else { &text })?;
+    Ok(report.verdict)
+}
+
+fn accepted(history: &Path, night: Option<&str>) -> Result<Verdict, Failure> {
+    let nights = night::all(history).map_err(Failure::input)?;
+    let ended = nights.iter().rev().find(|night| night.ended.is_some());
+    let id = match (night, ended) {
+        (Some(id), _) if nights.iter().any(|night| night.id == id) => id.to_owned(),
+        (Some(id), _) => {
+            let known = nights.iter().map(|night| night.id.as_str());
+            let near = octant_base::names::suggestion(id, known, "nights");
+            return Err(Failure::input(format!("unknown night {id:?}, {near}")));
+        }
+        (None, Some(night)) => night.id.clone(),
+        (None, None) => {
+            let message = format!("found no finished night in {}", history.display());
+            return Err(Failure::input(message));
+        }
+    };
+    let accepted = accept_night(history, &id, operator()).map_err(Failure::input)?;
+    if let Ok(all) = History::read(history) {
+        write(&history.join("trend.html"), trend::render(&all, Some(&accepted.night)))?;
+    }
+    print(&format!("night {} is the baseline\n", accepted.night))?;
+    Ok(Verdict::Pass)
+}
+
+fn inputs(arguments: &Arguments) -> Result<Inputs, Failure> {
+    let mut plans: Vec<(String, Plan)> = Vec::new();
+    for path in &arguments.campaigns {
+        let plan = Plan::of(path)?;
+        let stem = path.file_stem().map_or("campaign".into(), |stem| stem.to_string_lossy());
+        if plans.iter().any(|(name, _)| *name == stem) || stem == "suite" {
+            let message = format!(
+                "{}: found the campaign name {stem:?}, which is taken, expected another file name",
+                path.display()
+            );
+            return Err(Failure::input(message));
+        }
+        plans.push((stem.into_owned(), plan));
+    }
+    let suite = arguments.suite.as_deref().map(Suite::load).transpose().map_err(Failure::input)?;
+    let suite_blake3 = suite.as_ref().map(suite::hash).transpose().map_err(Failure::input)?;
+    let program = std::env::current_exe()
+        .map_err(|error| Failure::bench(format!("failed to find this program: {error}")))?;
+    let processors = || std::thread::available_parallelism().map_or(1, usize::from);
+    let jobs = arguments.jobs.map_or_else(processors, usize::from);
+    Ok(Inputs { suite, suite_blake3, plans, program, jobs })
+}
+
+/// Returns the night that was aborted, if it was begun by this program with these inputs; else a
+/// new one.
+fn begin(history: &Path, inputs: &Inputs, all: &History) -> Result<Night, Failure> {
+    let program = Program::of(&inputs.program).map_err(Failure::bench)?;
+    let ids: Vec<(&str, &str)> =
+        inputs.plans.iter().map(|(name, plan)| (name.as_str(), plan.id.as_str())).collect();
+    let nights = night::all(history).map_err(Failure::input)?;
+    let open = nights.into_iter().rev().find(|night| {
+        night.ended.is_none()
+            && night.program.sha256 == program.sha256
+            && night.suite_blake3 == inputs.suite_blake3
+            && night.campaigns.len() == ids.len()
+            && night
+                .campaigns
+                .iter()
+                .zip(&ids)
+                .all(|(c, (name, plan))| c.name == *name && c.plan == *plan)
+    });
+    if let Some(night) = open {
+        note!("octant: resuming night {}", night.id);
+        return Ok(night);
+    }
+    let now = SystemTime::now();
+    let known: Vec<String> =
+        all.nights().iter().filter_map(|night| night.get("night").cloned()).collect();
+    let campaigns = inputs.plans.iter().map(|(name, plan)| CampaignNight {
+        name: name.clone(),
+        title: plan.title.clone(),
+        plan: plan.id.clone(),
+        verdict: None,
+        requirements: Default::default(),
+        differing: Vec::new(),
+    });
+    let night = Night {
+        schema: SCHEMA,
+        id: free_name(history, now, &known),
+        started: humantime::format_rfc3339_seconds(now).to_string(),
+        ended: None,
+        program,
+        host: Host::this(),
+        suite_blake3: inputs.suite_blake3.clone(),
+        suite: Vec::new(),
+        campaigns: campaigns.collect(),
+    };
+    // The folder appears with its complete content.
+    let folder = night::nights(history).join(&night.id);
+    let new = night::nights(history).join(format!(".{}.new", night.id));
+    let failed = |action: &str, path: &Path, error: std::io::Error| {
+        Failure::bench(format!("failed to {action} {}: {error}", path.display()))
+    };
+    remove_begun(history)?;
+    std::fs::create_dir_all(&new).map_err(|error| failed("create", &new, error))?;
+    for (name, plan) in &inputs.plans {
+        plan.write(&new.join(name), false)?;
+    }
+    night.write(&new).map_err(Failure::bench)?;
+    std::fs::rename(&new, &folder).map_err(|error| failed("create", &folder, error))?;
+    Ok(night)
+}
+
+/// Removes a folder that a kill may have left.
+fn remove(folder: &Path) -> Result<(), Failure> {
+    match std::fs::remove_dir_all(folder) {
+        Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
+            Err(Failure::bench(format!("failed to remove {}: {error}", folder.display())))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Removes the folders of nights that were killed before they got their names.
+fn remove_begun(history: &Path) -> Result<(), Failure> {
+    let entries = std::fs::read_dir(night::nights(history)).into_iter().flatten().flatten();
+    let names =
+        entries.map(|entry| (entry.file_name().to_string_lossy().into_owned(), entry.path()));
+    names
+        .filter(|(name, _)| name.starts_with('.') && name.ends_with(".new"))
+        .try_for_each(|(_, path)| remove(&path))
+}
+
+/// Runs everything without a result; returns whether all have one now.
+fn run_all(
+    inputs: &Inputs,
+    night: &mut Night,
+    folder: &Path,
+    cancel: &AtomicBool,
+) -> Result<bool, Failure> {
+    let over = AtomicBool::new(false);
+    std::thread::scope(|scope| {
+        scope.spawn(|| {
+            while !over.load(Ordering::Relaxed) {
+                std::thread::sleep(Duration::from_millis(20));
+                if interrupts::seen() {
+                    cancel.store(true, Ordering::Relaxed);
+                }
+            }
+        });
+        let whole = run_parts(inputs, night, folder, cancel);
+        over.store(true, Ordering::Relaxed);
+        whole
+    })
+}
+
+fn run_parts(
+    inputs: &Inputs,
+    night: &mut Night,
+    folder: &Path,
+    cancel: &AtomicBool,
+) -> Result<bool, Failure> {
+    if let Some(suite) = &inputs.suite {
+        let tell = |result: &SuiteResult| {
+            if let Some(problem) = &result.problem {
+                note!("suite: {}: {problem}", result.name);
+            }
+        };
+        let into = folder.join("suite");
+        let found = suite::run(suite, &into, &inputs.program, inputs.jobs, cancel, &tell);
+        let Some(found) = found.map_err(Failure::bench)? else { return Ok(false) };
+        night.suite = found;
+    }
+    for (name, plan) in &inputs.plans {
+        let into = folder.join(name);
+        let tell = |event: &Event| {
+            if let Event::Done(Done { index, verdict, reason, .. }) = event
+                && *verdict > Verdict::Inconclusive
+            {
+                let case = plan.cases.get(*index).map_or("", |case| case.id.as_str());
+                let reason = reason.as_deref().unwrap_or("");
+                note!("{name}: case {case}: {}: {reason}", verdict.name());
+            }
+        };
+        let mut options = Options {
+            folder: &into,
+            program: &inputs.program,
+            jobs: inputs.jobs,
+            shard: Shard::WHOLE,
+            end: plan.cases.len(),
+            again: false,
+            cancel,
+        };
+        if in_rounds(plan, &mut options, &tell)?.left > 0 || cancel.load(Ordering::Relaxed) {
+            return Ok(false);
+        }
+        let found = conclude(plan, &into, &inputs.program, cancel)?;
+        if let Some(campaign) = night.campaigns.iter_mut().find(|c| c.name == *name) {
+            campaign.verdict = Some(found.verdict());
+            campaign.requirements =
+                found.requirements.iter().map(|(id, r)| (id.clone(), r.verdict)).collect();
+            campaign.differing = found.differing;
+        }
+    }
+    Ok(!cancel.load(Ordering::Relaxed))
+}
+
+/// Writes the tables of a campaign, and runs its first case a second time: non-determinism is
+/// detected in the night in which it begins.
+fn conclude(
+    plan: &Plan,
+    folder: &Path,
+    program: &Path,
+    cancel: &AtomicBool,
+) -> Result<status::Status, Failure> {
+    let failed = |error: octant_campaign::table::TableError| Failure::bench(error).failed();
+    let end = match &plan.stop {
+        Some(rule) => {
+            status::decide(plan, folder, rule).map_err(Failure::bench)?.end(plan.cases.len())
+        }
+        None => plan.cases.len(),
+    };
+    results::tables(plan, folder, 0..end, |table| merge::part(folder, Shard::WHOLE, table))
+        .map_err(failed)?;
+    merge::merge(plan, &[folder.to_owned()], folder, end)?;
+    let mut found = status::of(plan, folder, Shard::WHOLE).map_err(Failure::bench)?;
+    // In the folder of the nights, so that the remains of a kill are found.
+    let name = folder.file_name().unwrap_or_default().to_string_lossy();
+    let again = folder.with_file_name(format!(".{name}.again"));
+    remove(&again)?;
+    let options = Options {
+        folder: &again,
+        program,
+        jobs: 1,
+        shard: Shard::WHOLE,
+        end: 1,
+        again: false,
+        cancel,
+    };
+    execute(plan, &options, &|_| {})?;
+    if let Some(first) = plan.cases.first() {
+        let read = |folder: &Path| std::fs::read(case::file(folder, &first.id)).ok();
+        let (once, twice) = (read(folder), read(&again));
+        if twice.is_some() && once != twice && !found.differing.contains(&first.id) {
+            found.differing.push(first.id.clone());
+        }
+    }
+    remove(&again)?;
+    Ok(found)
+}

@@ -1,0 +1,173 @@
+//! `octant observe --ensemble`: predicted result of a scenario's draws, and the comparison with its
+//! cases.
+
+use crate::arguments::{ScenarioArguments, load};
+use crate::failure::Failure;
+use crate::terminal::{print, print_json};
+use octant_base::number::{counted, significant};
+use octant_campaign::against::{Against, Comparison, Selection, against};
+use octant_campaign::plan::{FILE_NAME, Plan};
+use octant_observe::ensemble::{Ensemble, ensemble};
+use octant_requirements::Verdict;
+use octant_scenario::{Method, Scenario};
+use std::fmt::Write as _;
+use std::path::Path;
+
+/// Number of rows of a drift that are shown.
+const DRIFT_ROWS: usize = 12;
+
+pub(super) fn command(
+    arguments: &ScenarioArguments,
+    folder: Option<&Path>,
+    json: bool,
+) -> Result<Verdict, Failure> {
+    let scenario = load(arguments, &[])?;
+    match folder {
+        None => predict(&scenario, json),
+        Some(folder) => hold(arguments, folder, json),
+    }
+}
+
+fn predict(scenario: &Scenario, json: bool) -> Result<Verdict, Failure> {
+    let methods = std::iter::once(Method::Primary)
+        .chain(scenario.baseline.as_ref().map(|_| Method::Baseline));
+    let ensembles = methods
+        .map(|method| ensemble(scenario, method))
+        .collect::<Result<Vec<_>, _>>()
+        .map_err(|error| Failure::input(format!("failed to {error}")))?;
+    if json {
+        print_json(&ensembles)?;
+    } else {
+        for ensemble in &ensembles {
+            print(&text(ensemble))?;
+        }
+    }
+    Ok(Verdict::Pass)
+}
+
+fn hold(arguments: &ScenarioArguments, folder: &Path, json: bool) -> Result<Verdict, Failure> {
+    let plan = Plan::read(&folder.join(FILE_NAME))?;
+    let bytes = std::fs::read(&arguments.scenario).map_err(|error| {
+        Failure::input(format!("failed to read {}: {error}", arguments.scenario.display()))
+    })?;
+    let blake3 = blake3::hash(&bytes).to_hex().to_string();
+    if !plan.scenarios.iter().any(|planned| planned.blake3 == blake3) {
+        let names: Vec<String> =
+            plan.scenarios.iter().map(|planned| planned.file.display().to_string()).collect();
+        return Err(Failure::input(format!(
+            "failed to compare with {}: found {}, expected one of its scenarios: {}",
+            folder.display(),
+            arguments.scenario.display(),
+            names.join(", ")
+        )));
+    }
+    let set = (!arguments.set.is_empty()).then_some(arguments.set.as_slice());
+    let found = against(&plan, folder, &Selection { blake3: Some(&blake3), set })
+        .map_err(|reason| Failure::input(format!("failed to {reason}")))?;
+    if json {
+        print_json(&found)?;
+    } else {
+        for comparison in &found.compared {
+            print(&compared(comparison))?;
+        }
+        for left_out in &found.left_out {
+            print(&format!("left out: {left_out}\n"))?;
+        }
+    }
+    Ok(verdict(&found))
+}
+
+/// Returns the verdict of the comparison; inconclusive if nothing was compared.
+fn verdict(found: &Against) -> Verdict {
+    let of = |comparison: &Comparison| match comparison.stands {
+        Some(true) => Verdict::Pass,
+        Some(false) => Verdict::Fail,
+        None => Verdict::Inconclusive,
+    };
+    let least = if found.compared.is_empty() { Verdict::Inconclusive } else { Verdict::Pass };
+    found.compared.iter().map(of).fold(least, Verdict::worst)
+}
+
+fn text(ensemble: &Ensemble) -> String {
+    let figure = |value: f64| significant(value, 4);
+    let mut out = format!("{}, as an ensemble\n", ensemble.method);
+    let _ = writeln!(
+        out,
+        "  {:24} {:>12} {:>12} {:>12} {:>12}  unit",
+        "1σ after the calibration", "before", "believed", "achieved", "mean"
+    );
+    for state in &ensemble.states {
+        let _ = writeln!(
+            out,
+            "  {:24} {:>12} {:>12} {:>12} {:>12}  {}",
+            state.name,
+            figure(state.prior),
+            state.believed.map_or("-".to_owned(), figure),
+            figure(state.sigma),
+            figure(state.mean),
+            state.unit
+        );
+    }
+    if !ensemble.drift.is_empty() {
+        let _ = writeln!(
+            out,
+            "  drift of the ensemble: percentiles 5 %, 50 % and 95 % of the runs\n  {:>6} {:>29} {:>29} {:>19}",
+            "hours", "latitude, arcmin", "longitude, arcmin", "50, 95 %, nmi"
+        );
+        let every = (ensemble.drift.len() / DRIFT_ROWS).max(1);
+        for row in ensemble.drift.iter().skip(every - 1).step_by(every) {
+            let [latitude, longitude] = [row.latitude_arcmin, row.longitude_arcmin];
+            let _ = writeln!(
+                out,
+                "  {:>6.1} {:>9.4} {:>9.4} {:>9.4} {:>9.4} {:>9.4} {:>9.4} {:>9.4} {:>9.4}",
+                row.hours,
+                latitude.p5,
+                latitude.p50,
+                latitude.p95,
+                longitude.p5,
+                longitude.p50,
+                longitude.p95,
+                row.radial_nmi.p50,
+                row.radial_nmi.p95
+            );
+        }
+    }
+    let _ = writeln!(out, "  not modelled:");
+    for what in &ensemble.not_modelled {
+        let _ = writeln!(out, "    {what}");
+    }
+    out
+}
+
+fn compared(comparison: &Comparison) -> String {
+    let figure = |value: f64| significant(value, 4);
+    let mut out = format!("{}, {}", comparison.scenario, comparison.method);
+    if !comparison.set.is_empty() {
+        let _ = write!(out, ", {}", comparison.set.join(", "));
+    }
+    let _ = writeln!(out, ": {}", counted(comparison.runs, "run", "runs"));
+    for words in &comparison.words {
+        let _ = writeln!(out, "  {words}");
+    }
+    let _ = writeln!(
+        out,
+        "  {:24} {:>12} {:>12} {:>25} {:>7}  unit",
+        "σ", "predicted", "simulated", "within", "ratio"
+    );
+    let rows = comparison.states.iter().chain(&comparison.drift);
+    for row in rows {
+        let mark = if row.agrees { "" } else { "  differs" };
+        let _ = writeln!(
+            out,
+            "  {:24} {:>12} {:>12} {:>12} {:>12} {:>7}  {}{mark}",
+            row.name,
+            figure(row.predicted_sigma),
+            figure(row.simulated_sigma.value),
+            figure(row.simulated_sigma.low),
+            figure(row.simulated_sigma.high),
+            row.ratio.map_or("-".to_owned(), |ratio| format!("{ratio:.3}")),
+            row.unit
+        );
+    }
+    out
+}

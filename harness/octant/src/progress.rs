@@ -1,0 +1,101 @@
+//! Progress on a terminal: simulated time, speed and time left. Silent elsewhere.
+
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use octant_base::control::Control;
+use std::sync::atomic::Ordering;
+use std::time::{Duration, Instant};
+
+/// Shows the progress of some runs while `work` does them, and passes Ctrl-C on.
+///
+/// `epochs` is the total that the controls will count, `sample_s` the length of one.
+pub(super) fn with_progress<T>(
+    controls: &[Control],
+    epochs: Option<u64>,
+    sample_s: f64,
+    work: impl FnOnce() -> T,
+) -> T {
+    interrupts::watch();
+    let done = std::sync::atomic::AtomicBool::new(false);
+    std::thread::scope(|scope| {
+        scope.spawn(|| show(controls, epochs, sample_s, &done));
+        let result = work();
+        done.store(true, Ordering::Relaxed);
+        result
+    })
+}
+
+fn show(
+    controls: &[Control],
+    epochs: Option<u64>,
+    sample_s: f64,
+    done: &std::sync::atomic::AtomicBool,
+) {
+    let bar = ProgressBar::with_draw_target(epochs, ProgressDrawTarget::stderr_with_hz(10));
+    if let Ok(style) = ProgressStyle::with_template("{wide_bar} {percent:>3} %  {msg}") {
+        bar.set_style(style);
+    }
+    let started = Instant::now();
+    let mut stopped = false;
+    while !done.load(Ordering::Relaxed) {
+        std::thread::sleep(Duration::from_millis(20));
+        if interrupts::seen() {
+            for control in controls {
+                control.cancel.store(true, Ordering::Relaxed);
+            }
+            // A table is stopped at once, before the run notices the interrupt.
+            if !std::mem::replace(&mut stopped, true) {
+                octant_turntable::stop_all("the run was interrupted");
+            }
+        }
+        let passed: u64 = controls.iter().map(|c| c.epochs.load(Ordering::Relaxed)).sum();
+        let wall_s = started.elapsed().as_secs_f64();
+        let simulated_s = passed as f64 * sample_s;
+        let left = match epochs {
+            Some(epochs) if passed > 0 => {
+                let left_s = wall_s * (epochs as f64 / passed as f64 - 1.0).max(0.0);
+                format!(", {left_s:.0} s left")
+            }
+            _ => String::new(),
+        };
+        bar.set_position(passed);
+        bar.set_message(format!(
+            "{:.1} h simulated, {:.0} times real time{left}",
+            simulated_s / 3600.0,
+            simulated_s / wall_s.max(1e-3)
+        ));
+    }
+    bar.finish_and_clear();
+}
+
+/// Handles Ctrl-C: the first one ends the run in order, the second one at once.
+pub(super) mod interrupts {
+    use octant_campaign::process;
+    use std::sync::Once;
+    use std::sync::atomic::{AtomicBool, Ordering};
+
+    static SEEN: AtomicBool = AtomicBool::new(false);
+    static WATCHING: Once = Once::new();
+
+    /// Leaves interrupts to the process that started this one: a signal ends this one at once,
+    /// which tells the other that there is no result.
+    pub(crate) fn leave_to(parent: u32) -> std::io::Result<()> {
+        WATCHING.call_once(|| {});
+        process::end_with(parent)
+    }
+
+    pub(crate) fn watch() {
+        WATCHING.call_once(|| {
+            // If no handler can be set, Ctrl-C ends the program at once; the recording survives.
+            let _ = ctrlc::set_handler(|| {
+                if SEEN.swap(true, Ordering::Relaxed) {
+                    octant_turntable::stop_all("the program was interrupted");
+                    std::process::exit(i32::from(octant_requirements::Verdict::Error.exit_code()));
+                }
+            });
+        });
+    }
+
+    pub(crate) fn seen() -> bool {
+        SEEN.load(Ordering::Relaxed)
+    }
+}

@@ -1,0 +1,165 @@
+//! `octant replay`: runs the core again on a recorded stream.
+
+use crate::failure::Failure;
+use crate::terminal::{print, print_json};
+use clap::Args;
+use octant_base::number::counted;
+use octant_endpoint::{Endpoint, InProcess};
+use octant_recorder::StreamHash;
+use octant_requirements::Verdict;
+use octant_run::unit;
+use octant_sample::parameters::PARAMETER_COUNT;
+use octant_sample::parameters::ParameterEstimate;
+use octant_sample::{GimbalCommand, Output};
+use octant_scenario::Scenario;
+use octant_source::configure::configurations;
+use octant_source::{Epoch, Replay, Source};
+use serde::Serialize;
+use std::path::PathBuf;
+
+#[derive(Debug, Args)]
+pub(super) struct Arguments {
+    /// A full-rate recording of a run; or, with --scenario, the file that the scenario's source
+    /// section describes.
+    #[arg(value_name = "RECORDING")]
+    recording: PathBuf,
+    /// Run this scenario on the recorded samples instead of the one inside the recording.
+    #[arg(long, value_name = "SCENARIO")]
+    scenario: Option<PathBuf>,
+    /// Change one key of that scenario.
+    #[arg(long, value_name = "KEY=VALUE", requires = "scenario")]
+    set: Vec<String>,
+    /// Folder of the run with --scenario.
+    #[arg(long, value_name = "DIR", requires = "scenario")]
+    out: Option<PathBuf>,
+    /// Print one JSON object.
+    #[arg(long)]
+    json: bool,
+}
+
+/// Comparison of a replay with the recording.
+#[derive(Serialize)]
+struct Comparison {
+    samples: u64,
+    stream_hash: String,
+    outputs_equal: bool,
+    /// True if the parameters with their σ are equal at every sample at which either side has new
+    /// ones.
+    parameters_equal: bool,
+    first_difference_sample: Option<u64>,
+    truncated: bool,
+}
+
+pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
+    if let Some(scenario) = &arguments.scenario {
+        return crate::evidenced::on_recording(
+            scenario,
+            &arguments.recording,
+            &arguments.set,
+            arguments.out.as_deref(),
+            arguments.json,
+        );
+    }
+    let path = &arguments.recording;
+    let (scenario, method, seed) = super::score::scenario_of(path)?;
+    let scenario: Scenario = scenario;
+    let bad = |error: &dyn std::fmt::Display| Failure::input(format!("failed to {error}"));
+    let (_, core, _) = configurations(&scenario, method, seed).map_err(|e| bad(&e))?;
+    // If the recording's core was an FMU, that FMU is used again; a device's answers are compared
+    // with the core in this process.
+    let device = matches!(scenario.endpoint, octant_scenario::Endpoint::Live(_));
+    let elsewhere = (!device).then(|| octant_endpoint::open(&scenario, &core)).transpose();
+    let mut endpoint: Box<dyn Endpoint> = match elsewhere.map_err(|e| bad(&e))?.flatten() {
+        Some(endpoint) => endpoint,
+        None => Box::new(InProcess::new(&core).map_err(|e| bad(&format!("set up the core: {e}")))?),
+    };
+    let mut source = Replay::open(path, None).map_err(|e| bad(&e))?;
+    let (mut hash, mut samples, mut revision) = (StreamHash::new(), 0u64, 0);
+    let (mut first_difference_sample, mut parameters_equal) = (None, true);
+    let mut outputs_equal = true;
+    let (mut epoch, mut output) = (Epoch::default(), Output::default());
+    while source.next(&GimbalCommand::default(), &mut epoch).map_err(|e| bad(&e))? {
+        for event in &source.recorded().events {
+            if let Some(event) = unit::of(event).map_err(|e| bad(&e))? {
+                unit::happen(&event, &mut endpoint).map_err(|e| bad(&e))?;
+            }
+        }
+        endpoint.step(&epoch, &mut output).map_err(|e| bad(&e))?;
+        samples += 1;
+        hash.epoch(&epoch.sample, epoch.aiding.as_ref(), &output);
+        let announced = output.parameters_revision != revision;
+        if announced {
+            revision = output.parameters_revision;
+            hash.parameters(&endpoint.parameters());
+        }
+        let recorded = source.recorded();
+        let equal = match &recorded.parameters {
+            Some(estimate) => announced && same_parameters(estimate, &endpoint.parameters()),
+            // A file that ends in the middle may have lost the parameters of its last sample.
+            None => !announced || source.truncated(),
+        };
+        if !equal {
+            parameters_equal = false;
+            first_difference_sample.get_or_insert(output.sequence);
+        }
+        if let Some(recorded) = &recorded.output
+            && !same(recorded, &output)
+        {
+            first_difference_sample.get_or_insert(output.sequence);
+            outputs_equal = false;
+        }
+    }
+    let comparison = Comparison {
+        samples,
+        stream_hash: hash.hex(),
+        outputs_equal,
+        parameters_equal,
+        first_difference_sample,
+        truncated: source.truncated(),
+    };
+    if arguments.json {
+        print_json(&comparison)?;
+    } else {
+        let equal = match comparison.first_difference_sample {
+            None if samples == 0 => "nothing to compare".to_owned(),
+            None => "every output and every parameter is equal to the recorded one, bit for bit"
+                .to_owned(),
+            Some(sample) => {
+                let what = match (comparison.outputs_equal, comparison.parameters_equal) {
+                    (false, false) => "outputs and parameters",
+                    (true, false) => "parameters",
+                    _ => "outputs",
+                };
+                format!("{what} differ from the recorded ones from sample {sample} on")
+            }
+        };
+        let cut = if comparison.truncated { " (the recording is truncated)" } else { "" };
+        let count = match samples {
+            0 => "no samples".to_owned(),
+            some => counted(some, "sample", "samples"),
+        };
+        print(&format!("{count}{cut}: {equal}\nstream hash {}\n", comparison.stream_hash))?;
+    }
+    let equal = comparison.outputs_equal && comparison.parameters_equal;
+    Ok(match (equal, comparison.truncated || samples == 0) {
+        (false, _) => Verdict::Fail,
+        (true, true) => Verdict::Inconclusive,
+        (true, false) => Verdict::Pass,
+    })
+}
+
+/// Compares all bits, NaN included.
+fn same_parameters(a: &ParameterEstimate, b: &ParameterEstimate) -> bool {
+    let bits = |values: &[f64; PARAMETER_COUNT]| values.map(f64::to_bits);
+    bits(&a.parameters.to_array()) == bits(&b.parameters.to_array())
+        && bits(&a.sigma) == bits(&b.sigma)
+}
+
+/// Compares all bits, NaN included.
+fn same(a: &octant_sample::Output, b: &octant_sample::Output) -> bool {
+    use octant_sample::canonical::{OUTPUT_BYTES, output};
+    let (mut left, mut right) = ([0; OUTPUT_BYTES], [0; OUTPUT_BYTES]);
+    output(a, &mut left);
+    output(b, &mut right);
+    left == right
+}

@@ -1,0 +1,177 @@
+//! `octant report`: renders the report of a finished run again.
+
+use crate::failure::Failure;
+use crate::terminal::note;
+use crate::terminal::{print, write};
+use clap::Args;
+use octant_campaign::keep;
+use octant_evidence::discrepancy::counted;
+use octant_evidence::disposition::Dispositions;
+use octant_evidence::inside::SUMMARY;
+use octant_evidence::manifest::{FILE_NAME as MANIFEST, shell_line};
+use octant_evidence::{Manifest, ManifestError, discrepancy};
+use octant_faults::rule::UnitEvent;
+use octant_recorder::Event;
+use octant_recorder::reader::{Epochs, Recording};
+use octant_report::{Provenance, ReportData};
+use octant_requirements::Verdict;
+use octant_run::done::Plan;
+use octant_run::{Watcher, unit};
+use octant_sample::Parameters;
+use octant_sample::parameters::{Group, NAMES};
+use octant_scenario::Scenario;
+use octant_score::numerics::differs;
+use octant_score::rederive;
+use octant_score::summary::Summary;
+use octant_source::Epoch;
+use std::path::{Path, PathBuf};
+
+#[derive(Debug, Args)]
+pub(super) struct Arguments {
+    /// Folder of a run.
+    #[arg(value_name = "RUN")]
+    run: PathBuf,
+    /// File for the report; by default report.html in the current folder, because the manifest of
+    /// the run covers the files in its folder.
+    #[arg(long, value_name = "FILE", default_value = "report.html")]
+    out: PathBuf,
+    /// File with the dispositions of the run's discrepancies. New discrepancies are added at its end;
+    /// existing entries and the run's own files don't change.
+    #[arg(long, value_name = "FILE")]
+    dispositions: Option<PathBuf>,
+}
+
+pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
+    if !arguments.run.join(MANIFEST).exists() {
+        let run = arguments.run.display();
+        return Err(Failure::input(format!(
+            "found no {MANIFEST} in {run}, expected the folder of a run"
+        )));
+    }
+    // Only files that the manifest confirms are shown: the summary, the scenario and the recording
+    // must be those of the run.
+    let manifest = Manifest::read(&arguments.run)
+        .map_err(|error| Failure::input(format!("failed to {error}")))?;
+    let failed = |error: ManifestError| Failure::input(error).failed();
+    let path = arguments.run.join(SUMMARY);
+    let bytes = manifest.read_file(&arguments.run, SUMMARY).map_err(failed)?;
+    let wrong =
+        |reason: String| Failure::input(format!("failed to read {}: {reason}", path.display()));
+    let text = String::from_utf8(bytes).map_err(|_| wrong("it isn't UTF-8 text".to_owned()))?;
+    let summary =
+        Summary::from_json(&text).map_err(|error| Failure::input(format!("failed to {error}")))?;
+    let found = rederive::contradictions(&summary);
+    if !found.is_empty() {
+        return Err(wrong(format!("it contradicts itself: {}", found.join("; "))));
+    }
+    if let Some(told) = differs(summary.numerics) {
+        note!("octant: {}: {told}; octant rejudge derives the verdict again", path.display());
+    }
+    for name in ["scenario.toml", "recording.mcap"] {
+        manifest.check_file(&arguments.run, name).map_err(failed)?;
+    }
+    let scenario_path = arguments.run.join("scenario.toml");
+    let scenario = Scenario::load(&scenario_path, &[]).map_err(Failure::input)?;
+    let dispositions = match &arguments.dispositions {
+        None => Dispositions::default(),
+        Some(path) => disposed(&summary, path, &arguments.run)?,
+    };
+    let (watcher, _) = watch(&arguments.run.join("recording.mcap"), &scenario)?;
+    let data = ReportData {
+        truth: truth(&summary),
+        facts: octant_run::assemble::facts(&scenario),
+        events: watcher.events(),
+        convergence: watcher.convergence,
+        nis: watcher.nis,
+        gimbals: watcher.gimbals,
+        provenance: provenance(&manifest),
+        dispositions,
+        summary,
+    };
+    let html = octant_report::run::render(&data);
+    if let Some(path) = &arguments.dispositions {
+        // Without any discrepancy there is nothing to write.
+        if !data.dispositions.text.is_empty() {
+            keep(path, data.dispositions.text.as_bytes()).map_err(|error| {
+                Failure::bench(format!("failed to write {}: {error}", path.display()))
+            })?;
+        }
+        let found = discrepancy::of_run(&data.summary);
+        let open = data.dispositions.open(&found).count();
+        print(&format!("{}, {open} without a disposition\n", counted(found.len())))?;
+    }
+    write(&arguments.out, html)?;
+    print(&format!("{}\n", arguments.out.display()))?;
+    Ok(Verdict::Pass)
+}
+
+/// Reads the dispositions of a run's discrepancies, and adds an entry for each that had none.
+fn disposed(summary: &Summary, path: &Path, run: &Path) -> Result<Dispositions, Failure> {
+    let found = discrepancy::of_run(summary);
+    let said =
+        Dispositions::read(path).map_err(|error| Failure::input(format!("failed to {error}")))?;
+    if found.is_empty() && said.text.is_empty() {
+        return Ok(said);
+    }
+    let [run, file] = [run, path].map(|path| path.display().to_string());
+    let again = shell_line(&["octant".into(), "report".into(), run, "--dispositions".into(), file]);
+    said.with(&found, path, "this run", &again)
+        .map_err(|error| Failure::input(format!("failed to {error}")))
+}
+
+/// Feeds a recording to a watcher; returns it with the recording's last event.
+pub(super) fn watch(path: &Path, scenario: &Scenario) -> Result<(Watcher, Option<Event>), Failure> {
+    let bad = |error: &dyn std::fmt::Display| {
+        Failure::input(format!("failed to read {}: {error}", path.display()))
+    };
+    let recording = Recording::open(path).map_err(|error| bad(&error))?;
+    let mut epochs = Epochs::new(recording);
+    // No comparison with a plan: a decimated recording doesn't contain all of the work.
+    let mut watcher = Watcher::new(Plan::lasting(scenario));
+    let mut last = None;
+    while let Some(epoch) = epochs.next_epoch().map_err(|error| bad(&error))? {
+        let Some(output) = &epoch.output else { continue };
+        last = Some(*output);
+        for event in &epoch.events {
+            if unit::of(event).ok().flatten().is_some_and(|event| event != UnitEvent::PowerOff) {
+                watcher.restarted();
+            }
+        }
+        let wanted = match epoch.sample {
+            Some(sample) => {
+                let sent = Epoch { sample, aiding: epoch.aiding };
+                watcher.answer(&sent, true, output)
+            }
+            None => watcher.epoch(output),
+        };
+        if let Some(estimate) = &epoch.parameters {
+            watcher.parameters(output, estimate);
+        }
+        if let (true, Some(truth)) = (wanted, &epoch.truth) {
+            watcher.truth(output, truth);
+        }
+    }
+    let concluded = epochs.last_event().and_then(octant_run::concluded::estimate);
+    if let (Some(output), Some(estimate)) = (last, concluded) {
+        watcher.parameters(&output, &estimate);
+    }
+    if epochs.recording().truncated() {
+        note!("octant: {} is truncated; the part before that is used", path.display());
+    }
+    Ok((watcher, epochs.last_event().cloned()))
+}
+
+/// Reads the true parameters from a summary.
+fn truth(summary: &Summary) -> Option<Parameters> {
+    let calibration = summary.calibration.as_ref()?;
+    let mut all = [0.0; NAMES.len()];
+    for (i, name) in NAMES.iter().enumerate() {
+        all[i] = calibration.parameters.get(*name)?.r#true? * Group::of(i).si_per_unit();
+    }
+    Some(Parameters::from_array(&all))
+}
+
+/// Reads the provenance of a run from its manifest.
+pub(super) fn provenance(manifest: &Manifest) -> Provenance {
+    Provenance { entries: manifest.entries(), rerun: manifest.rerun.clone() }
+}

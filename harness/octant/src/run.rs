@@ -1,0 +1,131 @@
+//! `octant run`.
+
+use super::evidenced::{self, Request};
+use super::run_folder::{free_name, in_the_way};
+use crate::arguments::ScenarioArguments;
+use crate::failure::Failure;
+use clap::Args;
+use octant_evidence::{Existing, RunFolder};
+use octant_requirements::Verdict;
+use std::path::PathBuf;
+
+#[derive(Debug, Args)]
+pub(super) struct Arguments {
+    #[command(flatten)]
+    scenario: ScenarioArguments,
+    /// Folder of the run; by default a new one in ./runs.
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Replace the folder if it holds a run already.
+    #[arg(long, requires = "out")]
+    force: bool,
+    /// Seed of all random draws, instead of the scenario's.
+    #[arg(long, value_name = "N")]
+    seed: Option<u64>,
+    /// Source of the samples, instead of the scenario's source.uri.
+    #[arg(long, value_name = "URI")]
+    source: Option<String>,
+    /// Endpoint of the core, instead of the scenario's endpoint.uri.
+    #[arg(long, value_name = "URI")]
+    endpoint: Option<String>,
+    /// Fire a fault whose trigger is manual, such as spike-1="5050 s".
+    #[arg(long, value_name = "ID=TIME")]
+    fire: Vec<String>,
+    /// Inject only these of the scenario's faults; --only-faults= injects none.
+    #[arg(long, value_name = "ID,ID", value_delimiter = ',', require_equals = true, num_args = 0..)]
+    only_faults: Option<Vec<String>>,
+    /// Make a run without requirements inconclusive: for pipelines, which must not pass after the list
+    /// of requirements was emptied.
+    #[arg(long)]
+    require: bool,
+    /// Run in real time: every sample is sent at its own time, as with realtime.pace = "clock".
+    #[arg(long)]
+    realtime: bool,
+    /// Skip the twin run without faults, with which a run with faults is compared.
+    #[arg(long)]
+    no_twin: bool,
+    /// Serve the run to Foxglove while it runs; by default to this host only.
+    #[arg(
+        long,
+        value_name = "ADDRESS",
+        num_args = 0..=1,
+        require_equals = true,
+        default_missing_value = super::live::DEFAULT_ADDRESS
+    )]
+    live: Option<String>,
+    /// Print summary.json on stdout, and nothing else.
+    #[arg(long)]
+    json: bool,
+    #[command(flatten)]
+    system: super::run_system::SystemArguments,
+}
+
+pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
+    if octant_cosim::ssp::package::is_system(&arguments.scenario.scenario) {
+        return system(arguments);
+    }
+    if let Some(option) = arguments.system.first_given() {
+        return Err(Failure::input(format!(
+            "{option} is for systems of FMUs, and {} is a scenario",
+            arguments.scenario.scenario.display()
+        )));
+    }
+    evidenced::run(&arguments.request())
+}
+
+impl Arguments {
+    fn request(&self) -> Request {
+        Request {
+            scenario: self.scenario.scenario.clone(),
+            set: self.scenario.set.clone(),
+            out: self.out.clone(),
+            force: self.force,
+            seed: self.seed,
+            source: self.source.clone(),
+            endpoint: self.endpoint.clone(),
+            fire: self.fire.clone(),
+            only_faults: self.only_faults.clone(),
+            planned_faults: false,
+            require: self.require,
+            realtime: self.realtime,
+            no_twin: self.no_twin,
+            live: self.live.clone(),
+            json: self.json,
+        }
+    }
+}
+
+/// Runs a system of FMUs.
+fn system(arguments: &Arguments) -> Result<Verdict, Failure> {
+    let path = &arguments.scenario.scenario;
+    let given = [
+        ("--source", arguments.source.is_some()),
+        ("--endpoint", arguments.endpoint.is_some()),
+        ("--realtime", arguments.realtime),
+        ("--no-twin", arguments.no_twin),
+        ("--only-faults", arguments.only_faults.is_some()),
+        ("--live", arguments.live.is_some()),
+    ];
+    if let Some((option, _)) = given.into_iter().find(|(_, given)| *given) {
+        return Err(Failure::input(format!(
+            "{option} is for scenarios, and {} is a system of FMUs",
+            path.display()
+        )));
+    }
+    let out = arguments.out.clone().unwrap_or_else(|| free_name(path));
+    let existing = if arguments.force { Existing::Replace } else { Existing::Refuse };
+    super::run_system::command(
+        &super::run_system::Shared {
+            path,
+            set: &arguments.scenario.set,
+            fire: &arguments.fire,
+            seed: arguments.seed,
+            json: arguments.json,
+        },
+        &arguments.system,
+        || {
+            RunFolder::create(&out, existing)
+                .map_err(|error| Failure::input(format!("failed to {}", in_the_way(&error))))
+        },
+    )
+}

@@ -1,0 +1,236 @@
+//! `octant run` of a system of FMUs: an `.ssp`, an `.ssd`, or a folder with one.
+
+use super::progress::with_progress;
+use crate::failure::Failure;
+use crate::terminal::note;
+use crate::terminal::{print, write};
+use clap::Args;
+use octant_base::control::Control;
+use octant_cosim::experiment::Said;
+use octant_cosim::order::Order;
+use octant_cosim::run::{PrepareError, Prepared, Request};
+use octant_cosim::summary::{Ended, FmuResult};
+use octant_evidence::{FmuFacts, Manifest, RunFacts, RunFolder};
+use octant_fmu_host::instance::Place;
+use octant_requirements::Verdict;
+use octant_scenario::quantity::{Dimension, parse};
+use octant_score::junit::junit_of;
+use std::path::{Path, PathBuf};
+use std::time::SystemTime;
+
+/// Options for systems of FMUs alone.
+#[derive(Debug, Default, Args)]
+#[command(next_help_heading = "Options for a system of FMUs (FILE.ssp, FILE.ssd, or a folder)")]
+pub(super) struct SystemArguments {
+    /// Faults on connections, a TOML file, instead of those in the system.
+    #[arg(long, value_name = "FILE")]
+    faults: Option<PathBuf>,
+    /// Order of the FMUs: jacobi, or gauss-seidel=plant,calibrator.
+    #[arg(long, value_name = "ORDER")]
+    order: Option<Order>,
+    /// Communication step, such as "5 ms".
+    #[arg(long, value_name = "TIME")]
+    step: Option<String>,
+    /// Time at which the run starts.
+    #[arg(long, value_name = "TIME", allow_hyphen_values = true)]
+    start: Option<String>,
+    /// Time at which the run ends.
+    #[arg(long, value_name = "TIME")]
+    stop: Option<String>,
+    /// Record every Nth step; by default N gives 20 000 rows.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
+    every: Option<u64>,
+    /// Also record into values.csv.
+    #[arg(long)]
+    csv: bool,
+    /// Run the FMUs in this process: faster, but a crash of an FMU ends this program too.
+    #[arg(long)]
+    in_process: bool,
+}
+
+impl SystemArguments {
+    /// Returns the first option that was given.
+    pub(super) fn first_given(&self) -> Option<&'static str> {
+        let given = [
+            ("--faults", self.faults.is_some()),
+            ("--order", self.order.is_some()),
+            ("--step", self.step.is_some()),
+            ("--start", self.start.is_some()),
+            ("--stop", self.stop.is_some()),
+            ("--every", self.every.is_some()),
+            ("--csv", self.csv),
+            ("--in-process", self.in_process),
+        ];
+        given.into_iter().find(|(_, given)| *given).map(|(option, _)| option)
+    }
+
+    fn said(&self) -> Result<Said, Failure> {
+        Ok(Said {
+            start_s: time("--start", self.start.as_deref())?,
+            stop_s: time("--stop", self.stop.as_deref())?,
+            step_s: time("--step", self.step.as_deref())?,
+        })
+    }
+}
+
+fn time(option: &str, text: Option<&str>) -> Result<Option<f64>, Failure> {
+    let Some(text) = text else { return Ok(None) };
+    match parse(text) {
+        Ok(quantity) if quantity.is(Dimension::TIME) => Ok(Some(quantity.si)),
+        _ => Err(Failure::input(format!(
+            "{option}: found {text:?}, expected a time such as \"10 min\""
+        ))),
+    }
+}
+
+/// Options shared with runs of scenarios.
+pub(super) struct Shared<'a> {
+    pub(super) path: &'a Path,
+    pub(super) set: &'a [String],
+    pub(super) fire: &'a [String],
+    pub(super) seed: Option<u64>,
+    pub(super) json: bool,
+}
+
+impl From<PrepareError> for Failure {
+    fn from(error: PrepareError) -> Self {
+        let message = format!("failed to run the system: {error}");
+        if error.is_bench() { Self::bench(message) } else { Self::input(message) }
+    }
+}
+
+/// Runs the system; `folder` makes the folder of the run.
+pub(super) fn command(
+    shared: &Shared<'_>,
+    arguments: &SystemArguments,
+    folder: impl FnOnce() -> Result<RunFolder, Failure>,
+) -> Result<Verdict, Failure> {
+    let key = crate::signing::signing_key()?;
+    let place = if arguments.in_process { Place::ThisProcess } else { Place::OwnProcess };
+    let prepared = Prepared::new(Request {
+        path: shared.path.to_owned(),
+        said: arguments.said()?,
+        order: arguments.order.clone(),
+        seed: shared.seed,
+        faults: arguments.faults.clone(),
+        fires: shared.fire.to_vec(),
+        set: shared.set.to_vec(),
+        place,
+        every: arguments.every,
+    })?;
+    for warning in prepared.warnings() {
+        note!("octant: {warning}");
+    }
+    let texts =
+        prepared.texts().map_err(|error| Failure::bench(format!("failed to read {error}")))?;
+    let folder = folder()?;
+    let started = SystemTime::now();
+    let (recording, table) =
+        (folder.path().join("recording.mcap"), folder.path().join("values.csv"));
+    let mut paths: Vec<&Path> = vec![&recording];
+    if arguments.csv {
+        paths.push(&table);
+    }
+    let (steps, step_s, seed) = (prepared.steps(), prepared.step_s(), prepared.seed());
+    let control = Control::default();
+    let ran = with_progress(std::slice::from_ref(&control), Some(steps), step_s, || {
+        prepared.run(&paths, &control)
+    });
+    let results = match ran {
+        Ok(results) => results,
+        Err(error) => {
+            // No step was made, so there is no evidence to keep.
+            let path = folder.path().to_owned();
+            drop(folder);
+            let _ = std::fs::remove_dir_all(path);
+            return Err(error.into());
+        }
+    };
+    let summary = &results.summary;
+    for (name, text) in texts {
+        write(&folder.path().join(name), text)?;
+    }
+    let json = summary
+        .to_json()
+        .map_err(|error| Failure::bench(format!("failed to write the summary: {error}")))?;
+    write(&folder.path().join("summary.json"), &json)?;
+    let xml =
+        junit_of(&summary.system, seed, &[], &summary.faults, (summary.verdict, &summary.reasons))
+            .map_err(|error| Failure::bench(format!("failed to write junit.xml: {error}")))?;
+    write(&folder.path().join("junit.xml"), xml)?;
+    if !results.messages.is_empty() {
+        let lines = results.messages.iter().map(|(fmu, text)| format!("{fmu} {text}\n"));
+        write(&folder.path().join("messages.txt"), lines.collect::<String>())?;
+    }
+    let facts = RunFacts {
+        seed: Some(seed),
+        command_line: rerun(shared, arguments, seed),
+        fmus: summary.fmus.iter().map(|fmu| facts(fmu, arguments)).collect(),
+        key,
+        ..RunFacts::between(started, SystemTime::now())
+    };
+    Manifest::write(folder.path(), &facts)
+        .map_err(|error| Failure::bench(format!("failed to {error}")))?;
+    let place = if matches!(summary.ended, Ended::Interrupted { .. }) {
+        // An unfinished run keeps the name of a partial folder.
+        folder.path().to_owned()
+    } else {
+        folder.finish().map_err(|error| Failure::bench(format!("failed to {error}")))?
+    };
+    if let Ended::Failed { reason, .. } = &summary.ended {
+        // With --json stdout is for programs, and the folder of a failed job may be gone.
+        note!("octant: {reason}");
+        note!("octant: the run broke off; the recorded part is in {}", place.display());
+    }
+    if shared.json {
+        print(&json)?;
+    } else {
+        print(&summary.text())?;
+        print(&format!("{}\n", place.display()))?;
+    }
+    Ok(summary.verdict)
+}
+
+/// Collects the manifest's facts about an FMU.
+fn facts(fmu: &FmuResult, arguments: &SystemArguments) -> FmuFacts {
+    FmuFacts {
+        role: fmu.name.clone(),
+        file: fmu.source.clone(),
+        sha256: fmu.sha256.clone(),
+        model: fmu.model.clone(),
+        token: fmu.token.clone(),
+        fmi: fmu.fmi.clone(),
+        generation_tool: fmu.generation_tool.clone(),
+        process: if arguments.in_process { "shared" } else { "own" }.to_owned(),
+        only_once: false,
+    }
+}
+
+/// Returns the command line that makes the run again, with the seed that was used.
+fn rerun(shared: &Shared<'_>, arguments: &SystemArguments, seed: u64) -> Vec<String> {
+    let mut line = vec!["octant".to_owned(), "run".to_owned(), shared.path.display().to_string()];
+    let mut add = |option: &str, value: Option<String>| {
+        if let Some(value) = value {
+            line.extend([option.to_owned(), value]);
+        }
+    };
+    for set in shared.set {
+        add("--set", Some(set.clone()));
+    }
+    for fire in shared.fire {
+        add("--fire", Some(fire.clone()));
+    }
+    add("--faults", arguments.faults.as_ref().map(|path| path.display().to_string()));
+    add("--order", arguments.order.as_ref().map(ToString::to_string));
+    add("--step", arguments.step.clone());
+    add("--start", arguments.start.clone());
+    add("--stop", arguments.stop.clone());
+    add("--every", arguments.every.map(|every| every.to_string()));
+    add("--seed", Some(seed.to_string()));
+    for (option, given) in [("--csv", arguments.csv), ("--in-process", arguments.in_process)] {
+        if given {
+            line.push(option.to_owned());
+        }
+    }
+    line
+}

@@ -1,0 +1,157 @@
+//! `octant score`: scoring alone, from a recording that has truth and outputs.
+
+use crate::failure::Failure;
+use crate::terminal::{print, print_json};
+use clap::Args;
+use octant_recorder::reader::Recording;
+use octant_requirements::Verdict;
+use octant_run::method::planned_of;
+use octant_scenario::resolve::{Draws, Seeded};
+use octant_scenario::{Method, Scenario};
+use octant_score::parameters::{nees, score, worst_normalized_error};
+use octant_score::summary::{HeightChannel, Navigation, ParameterScore};
+use serde::Serialize;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+#[derive(Debug, Args)]
+pub(super) struct Arguments {
+    /// The recording, an MCAP file of a run.
+    #[arg(value_name = "RECORDING")]
+    recording: PathBuf,
+    /// Print one JSON object.
+    #[arg(long)]
+    json: bool,
+}
+
+/// Scores of a recording.
+#[derive(Serialize)]
+struct Scores {
+    scenario: String,
+    method: String,
+    nis_mean: Option<f64>,
+    nees: BTreeMap<String, f64>,
+    worst_normalized_error: Option<f64>,
+    parameters: BTreeMap<String, ParameterScore>,
+    navigation: Option<Navigation>,
+    /// First rule that the unit's answers broke; the scores cover the time before it.
+    misbehaved: Option<String>,
+}
+
+/// Returns whether the instrument of a recording had the errors that its scenario draws.
+fn true_parameters(path: &Path, scenario: &Scenario) -> Result<bool, Failure> {
+    let recording = Recording::open(path)
+        .map_err(|error| Failure::input(format!("failed to read {}: {error}", path.display())))?;
+    // Recordings from before FMUs don't state it.
+    let said = recording.info().run.get("true_parameters").map(|text| text == "true");
+    Ok(said.unwrap_or(scenario.source == octant_scenario::Source::Plant))
+}
+
+/// Returns the scenario inside a recording.
+pub(super) fn scenario_of(path: &Path) -> Result<(Scenario, Method, u64), Failure> {
+    let recording = Recording::open(path)
+        .map_err(|error| Failure::input(format!("failed to read {}: {error}", path.display())))?;
+    let info = recording.info();
+    let name = format!("scenario.toml in {}", path.display());
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let scenario = Scenario::parse(&info.scenario, &name, folder, &[]).map_err(Failure::input)?;
+    let method = match info.run.get("method").map(String::as_str) {
+        Some("baseline") => Method::Baseline,
+        _ => Method::Primary,
+    };
+    let seed = info.run.get("seed").and_then(|seed| seed.parse().ok()).unwrap_or(scenario.seed);
+    Ok((scenario, method, seed))
+}
+
+pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
+    let path = &arguments.recording;
+    let (scenario, method, seed) = scenario_of(path)?;
+    let (watcher, last_event) = super::report::watch(path, &scenario)?;
+    let navigation = match watcher.drift() {
+        Some(drift) => Some(
+            drift
+                .finish(HeightChannel::Held)
+                .map_err(|error| Failure::input(format!("failed to {error}")))?,
+        ),
+        None => None,
+    };
+    let draws = Draws::of(&scenario, &Seeded(seed));
+    let truth = true_parameters(path, &scenario)?.then_some(draws.parameters);
+    let parameters = watcher
+        .last_parameters
+        .map(|estimate| score(truth.as_ref(), &estimate.parameters, &estimate.sigma))
+        .unwrap_or_default();
+    let plan = match method {
+        Method::Primary => scenario.calibration.as_ref(),
+        Method::Baseline => scenario.baseline.as_ref(),
+    };
+    let planned = plan.map(planned_of).unwrap_or_default();
+    let scores = Scores {
+        scenario: scenario.title.clone(),
+        method: octant_run::method::label(&scenario, method),
+        nis_mean: watcher.health.nis_mean(),
+        nees: nees(&parameters),
+        worst_normalized_error: worst_normalized_error(&parameters, &planned),
+        parameters,
+        navigation,
+        misbehaved: watcher.misbehaved.as_ref().map(ToString::to_string),
+    };
+    if scores.navigation.is_none() && scores.parameters.is_empty() && scores.misbehaved.is_none() {
+        if let Some(event) = last_event.filter(|event| event.kind == "refused") {
+            let reason = event.detail.get("reason").and_then(|r| r.as_str()).unwrap_or("no reason");
+            return Err(Failure::input(format!(
+                "failed to score {}: its calibration was refused: {reason}",
+                path.display()
+            )));
+        }
+        return Err(Failure::input(format!(
+            "failed to score {}: it has neither parameters nor a navigation with truth",
+            path.display()
+        )));
+    }
+    if arguments.json {
+        print_json(&scores)?;
+    } else {
+        print(&text(&scores))?;
+    }
+    Ok(if scores.misbehaved.is_some() { Verdict::Fail } else { Verdict::Pass })
+}
+
+fn text(scores: &Scores) -> String {
+    use std::fmt::Write as _;
+    let mut out = format!("{}: {}\n", scores.scenario, scores.method);
+    if let Some(misbehaved) = &scores.misbehaved {
+        let _ = writeln!(out, "  {misbehaved}; the scores below cover the time before that");
+    }
+    if let Some(nis) = scores.nis_mean {
+        let _ = writeln!(out, "  NIS {nis:.3} (expected 3)");
+    }
+    for (group, nees) in &scores.nees {
+        let _ = writeln!(out, "  {group:20} squared error / variance {nees:.2} (expected 1)");
+    }
+    if scores.parameters.values().all(|p| p.r#true.is_none()) {
+        out += &octant_run::assemble::parameter_lines(&scores.parameters);
+    }
+    if let Some(navigation) = &scores.navigation {
+        let (lat, lon) = (&navigation.latitude_error_arcmin, &navigation.longitude_error_arcmin);
+        let radial = &navigation.radial_error_nmi;
+        let _ = writeln!(
+            out,
+            "  navigation {} h, height held",
+            octant_base::number::plain(navigation.duration_h, 4)
+        );
+        for (name, error) in [("latitude", lat), ("longitude", lon)] {
+            let _ = writeln!(
+                out,
+                "    {name:10} max {:.3}, rms {:.3}, final {:+.3} arcmin",
+                error.max, error.rms, error.r#final
+            );
+        }
+        let _ = writeln!(
+            out,
+            "    radial     max {:.3}, rms {:.3} nmi, {:.4} nmi/h",
+            radial.max, radial.rms, radial.rate_per_h
+        );
+    }
+    out
+}

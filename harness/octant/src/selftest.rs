@@ -1,0 +1,107 @@
+//! `octant selftest`: runs known-answer tests through this program itself.
+
+use super::progress::interrupts;
+use crate::failure::Failure;
+use crate::terminal::note;
+use crate::terminal::print;
+use clap::Args;
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use octant_campaign::plan;
+use octant_requirements::Verdict;
+use octant_selftest::judge::Judged;
+use octant_selftest::record::{CaseRecord, FILE_NAME, Record, write};
+use octant_selftest::{answers, cases, run};
+use std::path::PathBuf;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, SystemTime};
+
+#[derive(Debug, Args)]
+pub(super) struct Arguments {
+    /// Write selftest.json to this file.
+    #[arg(long, value_name = "FILE")]
+    out: Option<PathBuf>,
+    /// Write selftest.json into the folder of this campaign, as a part of its evidence.
+    #[arg(long = "for", value_name = "DIR")]
+    campaign: Option<PathBuf>,
+    /// Run only the known answers: the numbers of every part against independent arithmetic.
+    #[arg(long)]
+    answers: bool,
+    /// Number of parallel cases; by default the number of processors.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    jobs: Option<u16>,
+    /// Print selftest.json on stdout, and nothing else.
+    #[arg(long)]
+    json: bool,
+}
+
+pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
+    let of_campaign = match &arguments.campaign {
+        Some(folder) if folder.join(plan::FILE_NAME).exists() => Some(folder.join(FILE_NAME)),
+        Some(folder) => {
+            return Err(Failure::input(format!(
+                "--for: found no {} in {}, expected the folder of a campaign",
+                plan::FILE_NAME,
+                folder.display()
+            )));
+        }
+        None => None,
+    };
+    let program = std::env::current_exe()
+        .map_err(|error| Failure::bench(format!("failed to find this program: {error}")))?;
+    let started = SystemTime::now();
+    let cases = if arguments.answers { answers::with_runs() } else { cases() };
+    let processors = || std::thread::available_parallelism().map_or(1, usize::from);
+    let jobs = arguments.jobs.map_or_else(processors, usize::from);
+    let bar = ProgressBar::with_draw_target(
+        Some(cases.len() as u64),
+        ProgressDrawTarget::stderr_with_hz(5),
+    );
+    if let Ok(style) = ProgressStyle::with_template("{wide_bar} {pos} of {len} cases, {msg}") {
+        bar.set_style(style);
+    }
+    interrupts::watch();
+    let (cancel, over) = (AtomicBool::new(false), AtomicBool::new(false));
+    let done = std::thread::scope(|scope| {
+        scope.spawn(|| {
+            while !over.load(Ordering::Relaxed) {
+                std::thread::sleep(Duration::from_millis(20));
+                if interrupts::seen() {
+                    cancel.store(true, Ordering::Relaxed);
+                }
+            }
+        });
+        let tell = |case: &CaseRecord| {
+            bar.inc(1);
+            bar.set_message(case.id);
+            if case.verdict == Judged::Alarm {
+                let line = format!("ALARM: {}: {}", case.id, case.found);
+                if bar.is_hidden() { note!("{line}") } else { bar.println(line) }
+            }
+        };
+        let done = run(&program, &cases, jobs, &cancel, &tell);
+        over.store(true, Ordering::Relaxed);
+        done
+    });
+    bar.finish_and_clear();
+    let failed = |reason: &dyn std::fmt::Display| Failure::bench(reason).failed();
+    let record = Record::new(&program, started, cases.len(), done.map_err(|error| failed(&error))?);
+    let record = record.map_err(|error| failed(&error))?;
+    let json = record.to_json().map_err(|error| failed(&format!("write the result: {error}")))?;
+    for path in arguments.out.iter().chain(&of_campaign) {
+        write(path, &json).map_err(|error| failed(&error))?;
+    }
+    print(&if arguments.json { json } else { record.text() })?;
+    conclude(&record)
+}
+
+/// Returns the verdict of the exit status; a status that isn't a verdict's becomes a failure with a
+/// message.
+fn conclude(record: &Record) -> Result<Verdict, Failure> {
+    let verdict = Verdict::ALL.into_iter().find(|v| v.exit_code() == record.exit_code());
+    verdict.ok_or_else(|| Failure {
+        status: record.exit_code(),
+        message:
+            "ALARM: a case that must not pass has passed: a pass of this program can't be trusted"
+                .to_owned(),
+    })
+}

@@ -1,0 +1,144 @@
+//! Runs a short scenario with a fault and without it, epoch by epoch, as data for a picture of the
+//! fault.
+
+use octant_base::control::Control;
+use octant_endpoint::{Endpoint, EndpointError, InProcess, Tells};
+use octant_faults::Receipt;
+use octant_recorder::Recorder;
+use octant_run::done::Plan;
+use octant_run::drive::drive;
+use octant_run::faulted::drive_faulted;
+use octant_run::method::{MethodError, SetupError, faulted};
+use octant_run::watch::Watcher;
+use octant_sample::disturbance::Disturbed;
+use octant_sample::parameters::ParameterEstimate;
+use octant_sample::{GimbalCommand, Output, Parameters, Truth};
+use octant_scenario::{Method, Scenario};
+use octant_source::configure::configurations;
+use octant_source::{Epoch, PlantSource, Source, SourceError};
+use std::cell::RefCell;
+use std::rc::Rc;
+
+/// Events in one step of the source.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Step {
+    /// Set point of the turntable.
+    pub command: GimbalCommand,
+    /// Epochs that reached the core.
+    pub delivered: Vec<Epoch>,
+    /// Last answer of the core; `None` where no epoch reached it.
+    pub output: Option<Output>,
+}
+
+/// Both runs, step by step from the start.
+#[derive(Clone, Debug)]
+pub(crate) struct SideBySide {
+    /// Steps without the faults.
+    pub clean: Vec<Step>,
+    /// Steps with the faults.
+    pub faulted: Vec<Step>,
+    /// Receipts of the faults.
+    pub receipts: Vec<Receipt>,
+}
+
+/// Runs the first steps of a scenario with its faults and without.
+///
+/// # Errors
+/// If a run can't be set up, or breaks off.
+pub(crate) fn side_by_side(
+    scenario: &Scenario,
+    seed: u64,
+    steps: u64,
+) -> Result<SideBySide, MethodError> {
+    let (clean, _) = watched(&scenario.without_faults(), seed, steps)?;
+    let (faulted, receipts) = watched(scenario, seed, steps)?;
+    Ok(SideBySide { clean, faulted, receipts })
+}
+
+type Steps = Rc<RefCell<Vec<Step>>>;
+
+fn watched(
+    scenario: &Scenario,
+    seed: u64,
+    steps: u64,
+) -> Result<(Vec<Step>, Vec<Receipt>), MethodError> {
+    let (plant, core, _) =
+        configurations(scenario, Method::Primary, seed).map_err(SetupError::from)?;
+    let seen = Steps::default();
+    let source = PlantSource::new(&plant, steps).map_err(SetupError::Plant)?;
+    let mut source = WatchedSource { source, seen: Rc::clone(&seen) };
+    let endpoint = InProcess::new(&core).map_err(SetupError::Core)?;
+    let mut endpoint = WatchedEndpoint { endpoint, seen: Rc::clone(&seen) };
+    let plan = Plan::of(scenario, Method::Primary, &core, Tells::ALL, None);
+    let (mut recorder, mut watcher) = (Recorder::none(), Watcher::new(plan));
+    let control = Control::default();
+    let receipts = match faulted(scenario, seed)? {
+        None => {
+            drive(&mut source, &mut endpoint, &mut recorder, &mut watcher, &control)?;
+            Vec::new()
+        }
+        Some(mut faulted) => {
+            let (recorder, watcher) = (&mut recorder, &mut watcher);
+            drive_faulted(&mut source, &mut faulted, &mut endpoint, recorder, watcher, &control)?;
+            faulted.station.receipts()
+        }
+    };
+    Ok((seen.take(), receipts))
+}
+
+/// Notes every step of the source.
+struct WatchedSource {
+    source: PlantSource,
+    seen: Steps,
+}
+
+impl Source for WatchedSource {
+    fn next(&mut self, command: &GimbalCommand, epoch: &mut Epoch) -> Result<bool, SourceError> {
+        let more = self.source.next(command, epoch)?;
+        if more {
+            self.seen.borrow_mut().push(Step { command: *command, ..Step::default() });
+        }
+        Ok(more)
+    }
+
+    fn truth(&self) -> Option<Truth> {
+        self.source.truth()
+    }
+
+    fn samples_total(&self) -> Option<u64> {
+        self.source.samples_total()
+    }
+
+    fn disturbed(&mut self) -> Option<&mut dyn Disturbed> {
+        self.source.disturbed()
+    }
+}
+
+/// Notes every epoch that reaches the core.
+struct WatchedEndpoint {
+    endpoint: InProcess,
+    seen: Steps,
+}
+
+impl Endpoint for WatchedEndpoint {
+    fn step(&mut self, epoch: &Epoch, output: &mut Output) -> Result<(), EndpointError> {
+        self.endpoint.step(epoch, output)?;
+        if let Some(step) = self.seen.borrow_mut().last_mut() {
+            step.delivered.push(*epoch);
+            step.output = Some(*output);
+        }
+        Ok(())
+    }
+
+    fn uri(&self) -> String {
+        self.endpoint.uri()
+    }
+
+    fn restart(&mut self, offset: Option<&Parameters>) -> Result<(), EndpointError> {
+        self.endpoint.restart(offset)
+    }
+
+    fn parameters(&self) -> ParameterEstimate {
+        self.endpoint.parameters()
+    }
+}

@@ -1,0 +1,11 @@
+//! Parts that the tests share.
+
+pub mod allocations;
+pub mod epochs;
+pub mod foreign;
+pub mod instrument;
+pub mod program;
+#[cfg(target_os = "linux")]
+pub mod running;
+#[cfg(unix)]
+pub mod table;

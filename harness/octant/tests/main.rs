@@ -1,0 +1,79 @@
+//! Integration tests of the harness: one program, with a module for each subject.
+// `pub` in a test program is visible nowhere else, and `pub(crate)` everywhere adds nothing.
+#![allow(unreachable_pub)]
+#![allow(clippy::unwrap_used, clippy::print_stdout, clippy::float_cmp)]
+
+mod common;
+
+mod architecture;
+mod campaign;
+mod campaign_report;
+#[cfg(unix)]
+mod can_source;
+mod chain;
+mod compare_refused;
+mod core_arbitrary;
+mod core_behaviour;
+mod core_consistency;
+mod core_faults;
+mod core_hardened;
+mod core_spikes;
+mod covariance_golden;
+mod document_links;
+mod ensemble_against;
+mod ensemble_prediction;
+mod ensembles;
+mod equipment;
+mod faults_any;
+mod faults_host;
+mod faults_run;
+mod faults_scenario;
+mod faults_suite;
+mod faults_tools;
+mod fmu_bits;
+mod fmu_build;
+#[cfg(all(target_os = "linux", target_arch = "x86_64"))]
+mod fmu_check;
+mod fmu_config;
+mod fmu_exchange;
+mod fmu_instance;
+mod fmu_plant;
+#[cfg(target_os = "linux")]
+mod fmu_process;
+#[cfg(target_os = "linux")]
+mod fmu_source;
+mod formats;
+mod fuzz_corpus;
+#[cfg(target_os = "linux")]
+mod hostile;
+#[cfg(unix)]
+mod live;
+mod master;
+mod nightly;
+mod qualification;
+mod real_recording;
+mod realtime;
+mod recording;
+#[cfg(unix)]
+mod recording_killed;
+mod recording_other_readers;
+mod rejudge;
+mod replay;
+mod report;
+mod scenario_errors;
+mod scenario_files;
+mod scenario_schema;
+mod score;
+mod selftest;
+mod state_core;
+mod system;
+mod system_foreign;
+mod text_source;
+mod trace_verdicts;
+#[cfg(unix)]
+mod turntable;
+#[cfg(unix)]
+mod turntable_panic;
+mod verdict;
+mod verdict_algebra;
+mod watch;

@@ -1,0 +1,288 @@
+//! `octant run` of systems of foreign FMUs, as a user runs it: mixed kinds, crashes, refusals,
+//! files that aren't systems.
+
+use crate::common::foreign;
+use crate::common::program::octant;
+use serde_json::Value;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::process::Output;
+
+const HEAD: &str = r#"<SystemStructureDescription version="1.0" name="foreign"
+    xmlns="http://ssp-standard.org/SSP1/SystemStructureDescription"
+    xmlns:ssc="http://ssp-standard.org/SSP1/SystemStructureCommon"
+    xmlns:ssv="http://ssp-standard.org/SSP1/SystemStructureParameterValues">"#;
+
+/// Makes a folder with a system of these elements and connections.
+fn system(fmus: &[&str], elements: &str, connections: &str, more: &str) -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::create_dir(folder.path().join("resources")).unwrap();
+    for fmu in fmus {
+        let to = folder.path().join("resources").join(format!("{fmu}.fmu"));
+        std::fs::copy(foreign::fmu(fmu), to).unwrap();
+    }
+    let text = format!(
+        "{HEAD}<System name=\"s\"><Elements>{elements}</Elements><Connections>{connections}\
+         </Connections></System>{more}</SystemStructureDescription>"
+    );
+    std::fs::write(folder.path().join("SystemStructure.ssd"), text).unwrap();
+    folder
+}
+
+fn component(name: &str, fmu: &str, connectors: &[(&str, &str)], set: &[(&str, &str)]) -> String {
+    let connectors: String = connectors
+        .iter()
+        .map(|(name, kind)| format!("<Connector name=\"{name}\" kind=\"{kind}\"/>"))
+        .collect();
+    let set: String = set
+        .iter()
+        .map(|(name, value)| format!("<ssv:Parameter name=\"{name}\">{value}</ssv:Parameter>"))
+        .collect();
+    format!(
+        "<Component name=\"{name}\" source=\"resources/{fmu}.fmu\"><Connectors>{connectors}\
+         </Connectors><ParameterBindings><ParameterBinding><ParameterValues>\
+         <ssv:ParameterSet version=\"1.0\" name=\"p\"><ssv:Parameters>{set}</ssv:Parameters>\
+         </ssv:ParameterSet></ParameterValues></ParameterBinding></ParameterBindings></Component>"
+    )
+}
+
+fn connection(from: &str, to: &str) -> String {
+    let ((a, y), (b, u)) = (from.split_once('.').unwrap(), to.split_once('.').unwrap());
+    format!(
+        "<Connection startElement=\"{a}\" startConnector=\"{y}\" endElement=\"{b}\" \
+         endConnector=\"{u}\"/>"
+    )
+}
+
+fn run(system: &Path, out: &Path, more: &[&str]) -> Output {
+    let mut arguments = vec!["run", system.to_str().unwrap(), "--out", out.to_str().unwrap()];
+    arguments.extend(more);
+    octant(&arguments)
+}
+
+fn error(output: &Output) -> String {
+    String::from_utf8(output.stderr.clone()).unwrap()
+}
+
+fn summary(folder: &Path) -> Value {
+    serde_json::from_slice(&std::fs::read(folder.join("summary.json")).unwrap()).unwrap()
+}
+
+/// Reads the rows of `values.csv`: names and numbers.
+fn rows(folder: &Path) -> (Vec<String>, Vec<Vec<f64>>) {
+    let mut reader = csv::Reader::from_path(folder.join("values.csv")).unwrap();
+    let names = reader.headers().unwrap().iter().map(str::to_owned).collect();
+    let rows = reader
+        .records()
+        .map(|row| row.unwrap().iter().map(|number| number.parse().unwrap()).collect())
+        .collect();
+    (names, rows)
+}
+
+/// Makes a ball in model exchange, whose velocity an integrator integrates again.
+fn ball() -> tempfile::TempDir {
+    let elements = component("ball", "ball_fmi3", &[("v", "output")], &[])
+        + &component(
+            "sum",
+            "gain_fmi2",
+            &[("u", "input"), ("y", "output")],
+            &[("gain", "<ssv:Real value=\"1\"/>"), ("label", "<ssv:String value=\"ssp\"/>")],
+        );
+    system(&["ball_fmi3", "gain_fmi2"], &elements, &connection("ball.v", "sum.u"), "")
+}
+
+#[test]
+fn model_exchange_and_co_simulation_run_together() {
+    let folder = ball();
+    let out = folder.path().join("run");
+    let ran = run(folder.path(), &out, &["--stop", "0.4 s", "--csv"]);
+    assert_eq!(ran.status.code(), Some(0), "{}", error(&ran));
+    let (names, rows) = rows(&out);
+    let at = |name: &str| names.iter().position(|known| known == name).unwrap();
+    let (time, v, y) = (at("time"), at("ball.v"), at("sum.y"));
+    assert_eq!(rows.len(), 41);
+    let mut sum = 0.0;
+    for (n, row) in rows.iter().enumerate() {
+        // The ball falls freely until √(2/9.81) s.
+        assert!((row[v] + 9.81 * row[time]).abs() < 1e-6, "row {n}: {row:?}");
+        // The integrator has received the velocities of the earlier points.
+        assert!((row[y] - sum).abs() < 1e-6, "row {n}: {} {sum}", row[y]);
+        sum += 0.01 * row[v];
+    }
+    let summary = summary(&out);
+    assert_eq!(summary["fmus"][0]["interface"], "model-exchange");
+    assert_eq!(summary["steps"], 40);
+    // The same bytes in this process and in others.
+    let here = folder.path().join("here");
+    let ran = run(folder.path(), &here, &["--stop", "0.4 s", "--csv", "--in-process"]);
+    assert_eq!(ran.status.code(), Some(0), "{}", error(&ran));
+    for file in ["summary.json", "values.csv", "recording.mcap"] {
+        let (a, b) = (std::fs::read(out.join(file)), std::fs::read(here.join(file)));
+        assert!(a.unwrap() == b.unwrap(), "{file} differs");
+    }
+}
+
+/// Makes an integrator beside an FMU that causes trouble in its step from 0.5 s on.
+fn trouble(what: &str) -> tempfile::TempDir {
+    let number = |number: &str| format!("<ssv:Integer value=\"{number}\"/>");
+    let elements = component("sum", "gain_fmi2", &[("u", "input"), ("y", "output")], &[])
+        + &component(
+            "trouble",
+            "trouble_fmi2",
+            &[("u", "input"), ("y", "output")],
+            &[
+                ("from", "<ssv:Real value=\"0.5\"/>"),
+                ("place", &number("4")),
+                ("trouble", &number(what)),
+            ],
+        );
+    let connections = connection("sum.y", "trouble.u");
+    system(&["gain_fmi2", "trouble_fmi2"], &elements, &connections, "")
+}
+
+#[test]
+fn a_crash_ends_the_run_with_an_error_and_a_complete_recording() {
+    let folder = trouble("1");
+    let out = folder.path().join("run");
+    let ran = run(folder.path(), &out, &["--csv"]);
+    assert_eq!(ran.status.code(), Some(4), "{}", error(&ran));
+    let summary = summary(&out);
+    assert_eq!(
+        (&summary["verdict"], &summary["ended"]["how"]),
+        (&"error".into(), &"failed".into())
+    );
+    let reason = summary["reasons"][0].as_str().unwrap();
+    assert!(reason.starts_with("trouble failed at 0.5 s: "), "{reason}");
+    assert!(reason.contains("SIGSEGV") && reason.contains("fmi2DoStep"), "{reason}");
+    // The earlier rows are there, and readable.
+    let (_, rows) = rows(&out);
+    assert_eq!(rows.len(), 51);
+    assert!((rows[50][0] - 0.5).abs() < 1e-12);
+    let bytes = std::fs::read(out.join("recording.mcap")).unwrap();
+    let messages = mcap::MessageStream::new(&bytes).unwrap();
+    let rows = messages.filter(|m| m.as_ref().unwrap().channel.topic == "/fmu/outputs");
+    assert_eq!(rows.count(), 51);
+    assert!(out.join("manifest.json").is_file());
+}
+
+#[test]
+fn who_discards_for_good_is_told_with_its_words() {
+    let folder = trouble("7");
+    let out = folder.path().join("run");
+    let ran = run(folder.path(), &out, &["--json"]);
+    assert_eq!(ran.status.code(), Some(4), "{}", error(&ran));
+    let summary: Value = serde_json::from_slice(&ran.stdout).unwrap();
+    let reason = summary["reasons"][0].as_str().unwrap();
+    assert!(reason.starts_with("trouble discarded the step from 0.5 s to 0.5"), "{reason}");
+    assert!(reason.contains("half of it at most"), "{reason}");
+    assert!(error(&ran).contains(&format!("octant: {reason}\n")), "{}", error(&ran));
+    assert!(summary["rejected"].as_u64().unwrap() >= 1, "{summary}");
+}
+
+fn packed(entries: &[(&str, &[u8])]) -> (tempfile::TempDir, PathBuf) {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("system.ssp");
+    let mut archive = zip::ZipWriter::new(std::io::Cursor::new(Vec::new()));
+    for (name, bytes) in entries {
+        archive.start_file(*name, zip::write::SimpleFileOptions::default()).unwrap();
+        archive.write_all(bytes).unwrap();
+    }
+    std::fs::write(&path, archive.finish().unwrap().into_inner()).unwrap();
+    (folder, path)
+}
+
+#[test]
+fn a_packed_system_is_run_and_what_is_none_is_refused() {
+    let unpacked = ball();
+    let read = |name: &str| std::fs::read(unpacked.path().join(name)).unwrap();
+    let structure = read("SystemStructure.ssd");
+    let (a, b) = (read("resources/ball_fmi3.fmu"), read("resources/gain_fmi2.fmu"));
+    let fmus: [(&str, &[u8]); 2] =
+        [("resources/ball_fmi3.fmu", &a), ("resources/gain_fmi2.fmu", &b)];
+    let whole = [("SystemStructure.ssd", &structure[..]), fmus[0], fmus[1]];
+    let (folder, path) = packed(&whole);
+    let ran = run(&path, &folder.path().join("run"), &["--stop", "0.1 s"]);
+    assert_eq!(ran.status.code(), Some(0), "{}", error(&ran));
+    let text = String::from_utf8(ran.stdout).unwrap();
+    assert!(text.starts_with("foreign: none\n"), "{text}");
+    assert!(text.contains("ball and sum, jacobi, 10 steps of 0.01 s to 0.1 s"), "{text}");
+
+    let refused = |entries: &[(&str, &[u8])], expected: &str| {
+        let (folder, path) = packed(entries);
+        let ran = run(&path, &folder.path().join("run"), &[]);
+        assert_eq!(ran.status.code(), Some(2), "{}", error(&ran));
+        assert!(error(&ran).contains(expected), "{}", error(&ran));
+        let left: Vec<_> = std::fs::read_dir(folder.path()).unwrap().collect();
+        assert_eq!(left.len(), 1, "no folder of a run is left");
+    };
+    refused(&fmus, "failed to find SystemStructure.ssd in it");
+    refused(&[whole[0], fmus[0]], "there is no such file in");
+    refused(&[("../evil", b"x"), whole[0]], "system.ssp: entry \"../evil\"");
+    refused(&[("SystemStructure.ssd", b"<x/>")], "SystemStructure.ssd:1: x: found <x>");
+    refused(
+        &[whole[0], (fmus[0].0, b"no archive"), fmus[1]],
+        "SystemStructure.ssd:4: Component \"ball\": failed to",
+    );
+    let unpacked = unpacked.path();
+    for (more, expected) in [
+        (&["--source", "plant"][..], "--source is for scenarios"),
+        (&["--order", "gauss-seidel=ball"], "the order leaves out sum"),
+        (&["--step", "7 ms", "--stop", "1 s"], "expected a whole number"),
+        (&["--step", "fast"], "--step: found \"fast\", expected a time"),
+        (&["--set", "ball.h=3 kg"], "--set ball.h=3 kg"),
+        (&["--faults", "/nowhere.toml"], "failed to read /nowhere.toml"),
+        (&["--fire", "x=1 s"], "--fire x=1 s: the scenario has no faults"),
+    ] {
+        // Without a stop, the missing stop would be refused instead.
+        let stop: &[&str] = if more.contains(&"--stop") { &[] } else { &["--stop", "1 s"] };
+        let ran = run(unpacked, &unpacked.join("run"), &[more, stop].concat());
+        assert_eq!(ran.status.code(), Some(2), "{more:?}: {}", error(&ran));
+        assert!(error(&ran).contains(expected), "{more:?}: {}", error(&ran));
+    }
+    let scenario =
+        Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fixtures/scenarios/quick.toml");
+    let ran = run(&scenario, &unpacked.join("run"), &["--order", "jacobi"]);
+    assert_eq!(ran.status.code(), Some(2));
+    assert!(error(&ran).contains("--order is for systems of FMUs"), "{}", error(&ran));
+}
+
+#[test]
+fn the_annotation_says_step_order_and_faults() {
+    let unpacked = ball();
+    let file = unpacked.path().join("SystemStructure.ssd");
+    let text = std::fs::read_to_string(&file).unwrap();
+    let with = |faults: &str| {
+        let annotation = format!(
+            "<Annotations><ssc:Annotation type=\"octant.co-simulation\">\
+             <CoSimulation xmlns=\"urn:octant:co-simulation:1\" step=\"20 ms\" \
+             order=\"gauss-seidel=ball,sum\"><Faults><![CDATA[\n{faults}]]></Faults>\
+             </CoSimulation></ssc:Annotation></Annotations></SystemStructureDescription>"
+        );
+        std::fs::write(&file, text.replace("</SystemStructureDescription>", &annotation)).unwrap();
+    };
+    with(
+        "schema = 1\n[[faults]]\nid = \"x\"\nkind = \"stuck\"\nconnection = \"sum.u\"\nvalue = \"2 cm/s\"\ntrigger = { at = \"0.1 s\" }\n",
+    );
+    let out = unpacked.path().join("run");
+    let ran = run(unpacked.path(), &out, &["--stop", "0.2 s"]);
+    assert_eq!(ran.status.code(), Some(0), "{}", error(&ran));
+    let summary = summary(&out);
+    assert_eq!(summary["order"], "gauss-seidel=ball,sum");
+    assert_eq!((&summary["step_s"], &summary["steps"]), (&0.02.into(), &10.into()));
+    assert_eq!(
+        (&summary["faults"][0]["first_sample"], &summary["faults"][0]["samples_altered"]),
+        (&6.into(), &5.into())
+    );
+    assert!(std::fs::read_to_string(out.join("faults.toml")).unwrap().starts_with("schema = 1"));
+    // A problem has the line of the structure.
+    with("schema = 1\n[[faults]]\nid = \"x\"\nkind = \"stuk\"\n");
+    let ran = run(unpacked.path(), &out, &["--stop", "0.2 s"]);
+    assert_eq!(ran.status.code(), Some(2));
+    let line = std::fs::read_to_string(&file).unwrap();
+    let line = line.lines().position(|line| line.contains("stuk")).unwrap() + 1;
+    assert!(
+        error(&ran).contains(&format!("SystemStructure.ssd:{line}:8: faults[0].kind")),
+        "{}",
+        error(&ran)
+    );
+}

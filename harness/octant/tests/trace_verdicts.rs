@@ -1,0 +1,182 @@
+//! The trace of a campaign shows every requirement that its cases check, and its exit status is
+//! that of every other command that reports the verdict.
+
+use crate::campaign_report::bench::{Bench, CAMPAIGN, SCENARIO, TEMPLATE, check};
+use octant_campaign::case;
+use octant_campaign::plan::{Case, Plan};
+use serde_json::{Value, json};
+use std::path::{Path, PathBuf};
+
+type Change = fn(usize, &Case, &mut Value);
+
+/// Makes two by two cases.
+fn small(change: Change) -> (Bench, Plan, PathBuf) {
+    Bench::filled(&CAMPAIGN.replace("replicates = 40", "replicates = 2"), change)
+}
+
+/// Runs a command on the campaign; returns its exit status and its output.
+fn says(bench: &Bench, arguments: &[&str]) -> (i32, String) {
+    let output = bench.octant(arguments);
+    let said =
+        String::from_utf8(output.stdout).unwrap() + &String::from_utf8(output.stderr).unwrap();
+    (output.status.code().unwrap(), said)
+}
+
+/// Checks that all commands that report the verdict have the same exit status; returns the trace as
+/// JSON.
+#[track_caller]
+fn agree(bench: &Bench, expected: i32, name: &str) -> Value {
+    let before = case_files(&bench.at("out"));
+    for command in [
+        &["campaign", "status", "out"][..],
+        &["campaign", "trace", "out"],
+        &["campaign", "report", "out"],
+        // All results are there: the command reports their verdict, and runs nothing.
+        &["campaign", "run", "out"],
+    ] {
+        if command[1] == "run" && expected == 3 && before.len() < 4 {
+            continue;
+        }
+        let (status, said) = says(bench, command);
+        assert_eq!(status, expected, "{command:?}: {said}");
+        assert!(said.contains(&format!(": {name}\n")), "{command:?}: {said}");
+    }
+    assert_eq!(case_files(&bench.at("out")), before, "no case has run");
+    let (_, said) = says(bench, &["campaign", "trace", "out", "--json"]);
+    let traced: Value = serde_json::from_str(&said).unwrap();
+    assert_eq!(traced["verdict"], name);
+    traced
+}
+
+fn case_files(out: &Path) -> Vec<PathBuf> {
+    let mut all = Vec::new();
+    for folder in std::fs::read_dir(out.join("cases")).unwrap() {
+        all.extend(
+            std::fs::read_dir(folder.unwrap().path()).unwrap().map(|file| file.unwrap().path()),
+        );
+    }
+    all.sort();
+    all
+}
+
+/// Returns the verdict of a requirement in a trace.
+fn verdict_of<'a>(traced: &'a Value, id: &str) -> &'a Value {
+    let rows = traced["requirements"].as_array().unwrap();
+    &rows.iter().find(|row| row["id"] == id).unwrap_or_else(|| panic!("{id} isn't there"))["verdict"]
+}
+
+/// Lowers the ensemble's requirement so that two draws can show it.
+fn modest(bench: &Bench) {
+    let path = bench.at("requirements.toml");
+    let text = std::fs::read_to_string(&path).unwrap();
+    let modest = text.replace("\"80 %\"", "\"20 %\"").replace("\"90 %\"", "\"80 %\"");
+    assert_ne!(text, modest);
+    std::fs::write(path, modest).unwrap();
+}
+
+fn modest_and_filled(change: Change) -> (Bench, Plan, PathBuf) {
+    let bench = Bench::new(&CAMPAIGN.replace("replicates = 40", "replicates = 2"));
+    modest(&bench);
+    bench.fill(change)
+}
+
+#[test]
+fn a_pass_is_a_pass_everywhere() {
+    let (bench, ..) = modest_and_filled(|_, _, _| {});
+    let traced = agree(&bench, 0, "pass");
+    assert_eq!(verdict_of(&traced, "CAL-1"), "pass");
+    assert_eq!(verdict_of(&traced, "NAV-1"), "pass");
+    assert_eq!(verdict_of(&traced, "DOC-1"), &Value::Null);
+}
+
+#[test]
+fn a_failing_requirement_of_a_scenario_is_in_the_trace_and_fails_everywhere() {
+    let (bench, ..) = modest_and_filled(|index, _, result| {
+        if index == 0 {
+            check(result, "CAL-1", 99.0, 50.0);
+        }
+    });
+    let traced = agree(&bench, 1, "fail");
+    assert_eq!(verdict_of(&traced, "CAL-1"), "fail");
+    assert_eq!(verdict_of(&traced, "NAV-1"), "pass");
+}
+
+#[test]
+fn an_ensemble_that_shows_too_little_is_inconclusive_everywhere() {
+    let (bench, ..) = small(|_, _, _| {});
+    let traced = agree(&bench, 3, "inconclusive");
+    assert_eq!(verdict_of(&traced, "NAV-1"), "inconclusive");
+    assert_eq!(verdict_of(&traced, "CAL-1"), "pass");
+}
+
+#[test]
+fn a_case_without_a_result_is_inconclusive_everywhere() {
+    let (bench, plan, out) = modest_and_filled(|_, _, _| {});
+    std::fs::remove_file(case::file(&out, &plan.cases[1].id)).unwrap();
+    let traced = agree(&bench, 3, "inconclusive");
+    assert_eq!(traced["open"], 1);
+    assert_eq!(verdict_of(&traced, "CAL-1"), "inconclusive");
+}
+
+#[test]
+fn a_case_that_ended_as_an_error_is_one_everywhere() {
+    let (bench, ..) = modest_and_filled(|index, _, result| {
+        if index == 2 {
+            *result = json!({"schema": 1, "case": result["case"], "case_blake3": result["case_blake3"],
+                             "verdict": "error", "error": "it crashed", "summary": null});
+        }
+    });
+    let traced = agree(&bench, 4, "error");
+    assert_eq!(verdict_of(&traced, "CAL-1"), "error");
+}
+
+/// A problem outside of all requirements: a fault that never fired, in a case that meets all of
+/// them.
+#[test]
+fn what_is_wrong_beside_all_requirements_is_told_everywhere() {
+    let (bench, ..) = modest_and_filled(|index, _, result| {
+        if index == 1 {
+            let mut receipt = TEMPLATE["summary"]["faults"][0].clone();
+            receipt["fired"] = false.into();
+            result["summary"]["faults"] = json!([receipt]);
+            result["summary"]["verdict"] = "inconclusive".into();
+            result["verdict"] = "inconclusive".into();
+        }
+    });
+    let traced = agree(&bench, 3, "inconclusive");
+    assert_eq!(traced["besides"], "inconclusive");
+    let (_, said) = says(&bench, &["campaign", "trace", "out"]);
+    assert!(said.contains("apart from requirements: inconclusive"), "{said}");
+}
+
+/// A campaign that names no file of requirements checks those of its scenarios.
+#[test]
+fn requirements_of_scenarios_alone_are_traced() {
+    let campaign = CAMPAIGN
+        .replace("replicates = 40", "replicates = 2")
+        .replace("requirements = \"requirements.toml\"\n", "");
+    let alone: Change = |index, _, result| {
+        let checks = result["summary"]["requirements"].as_array_mut().unwrap();
+        checks.retain(|check| check["id"] == "CAL-1");
+        if index == 0 {
+            check(result, "CAL-1", 99.0, 50.0);
+        }
+    };
+    let (bench, ..) = Bench::new(&campaign).fill(alone);
+    let traced = agree(&bench, 1, "fail");
+    assert_eq!(traced["requirements"].as_array().unwrap().len(), 1);
+    assert_eq!(verdict_of(&traced, "CAL-1"), "fail");
+
+    // If the scenarios have no requirements, nothing is shown.
+    let bench = Bench::new(&campaign);
+    let nothing = SCENARIO.split("[[requirements]]").next().unwrap();
+    std::fs::write(bench.at("short.toml"), nothing).unwrap();
+    let (bench, ..) = bench.fill(|_, _, result| {
+        result["summary"]["requirements"] = json!([]);
+        result["summary"]["verdict"] = "none".into();
+        // In a campaign, a case that checks nothing shows nothing.
+        result["verdict"] = "inconclusive".into();
+    });
+    let traced = agree(&bench, 3, "inconclusive");
+    assert_eq!(traced["requirements"], json!([]));
+}

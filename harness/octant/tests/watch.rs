@@ -1,0 +1,416 @@
+//! Watching: a growing recording, a run in another process, and the picture on the terminal.
+
+use crate::common::epochs::{push, record, stream};
+use crate::common::program::{ended, octant_in, program};
+use octant_evidence::{Existing, RunFolder};
+use octant_recorder::reader::{Item, Recording};
+use octant_recorder::{Event, Policy, Recorder, RecorderOptions, Samples};
+use octant_watch::dashboard::{self, Page};
+use octant_watch::follow::{Follow, Stage};
+use octant_watch::place::Place;
+use octant_watch::plain;
+use octant_watch::tail::{Reached, Tail, TailError};
+use ratatui::Terminal;
+use ratatui::backend::TestBackend;
+use serde_json::{Value, json};
+use std::collections::BTreeMap;
+use std::io::{self, Read, Write};
+use std::path::Path;
+use std::process::{Child, Stdio};
+
+fn full() -> RecorderOptions {
+    RecorderOptions {
+        policy: Policy { samples: Samples::Full, ..Policy::default() },
+        scenario: "schema = 1\ntitle = \"a stream\"\n".into(),
+        ..RecorderOptions::default()
+    }
+}
+
+/// Returns all messages of a complete file.
+fn items(bytes: &[u8]) -> Vec<(u64, Item)> {
+    let mut recording = Recording::new(bytes).unwrap();
+    std::iter::from_fn(|| recording.next_item().unwrap()).collect()
+}
+
+/// Compares to the last bit: NaN equals NaN.
+#[track_caller]
+fn same(found: &[(u64, Item)], expected: &[(u64, Item)]) {
+    assert_eq!(found.len(), expected.len());
+    for (found, expected) in found.iter().zip(expected) {
+        assert_eq!(format!("{found:?}"), format!("{expected:?}"));
+    }
+}
+
+/// File of which a part is written.
+struct Prefix<'a> {
+    bytes: &'a [u8],
+    written: usize,
+    read: usize,
+}
+
+impl Read for Prefix<'_> {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        let n = buffer.len().min(self.written - self.read);
+        buffer[..n].copy_from_slice(&self.bytes[self.read..self.read + n]);
+        self.read += n;
+        Ok(n)
+    }
+}
+
+#[test]
+fn a_file_that_grows_by_single_bytes_gives_every_message_once() {
+    // Noise doesn't compress: several chunks.
+    let (bytes, _) = record(&stream(6000), &full());
+    let expected = items(&bytes);
+    let mut recording = Recording::growing(Prefix { bytes: &bytes, written: 0, read: 0 });
+    let mut found = Vec::new();
+    let mut grew = 0;
+    for written in 0..=bytes.len() {
+        recording.source().written = written;
+        let before = found.len();
+        while let Some(item) = recording.next_item().unwrap() {
+            found.push(item);
+        }
+        grew += usize::from(found.len() > before);
+        assert!(!recording.truncated());
+        assert_eq!(recording.ended(), written == bytes.len(), "after {written} bytes");
+    }
+    assert!(grew >= 2, "the messages came {grew} times");
+    same(&found, &expected);
+}
+
+#[test]
+fn every_prefix_of_a_file_gives_a_prefix_of_its_messages() {
+    let (bytes, _) = record(&stream(6000), &full());
+    let expected = items(&bytes);
+    let mut lengths = Vec::new();
+    for written in (0..bytes.len()).step_by(4999).chain([8, 9, bytes.len() - 1, bytes.len()]) {
+        let mut recording = Recording::growing(Prefix { bytes: &bytes, written, read: 0 });
+        let found: Vec<_> = std::iter::from_fn(|| recording.next_item().unwrap()).collect();
+        same(&found, &expected[..found.len()]);
+        lengths.push(found.len());
+        // The rest comes when it is there.
+        recording.source().written = bytes.len();
+        let rest: Vec<_> = std::iter::from_fn(|| recording.next_item().unwrap()).collect();
+        same(&rest, &expected[found.len()..]);
+        assert!(recording.ended());
+    }
+    lengths.dedup();
+    assert!(lengths.len() > 2, "{lengths:?}");
+}
+
+#[test]
+fn a_file_is_followed_through_its_writing_and_its_new_name() {
+    let (bytes, _) = record(&stream(6000), &full());
+    let expected = items(&bytes);
+    let here = tempfile::tempdir().unwrap();
+    let path = here.path().join("run");
+    let folder = RunFolder::create(&path, Existing::Refuse).unwrap();
+    let mut tail = Tail::new(Place::of(&path).unwrap());
+    let mut found = Vec::new();
+    let mut look = |tail: &mut Tail, most| {
+        tail.look(most, |info, time_ns, item| {
+            assert_eq!(info.version, 1);
+            found.push((time_ns, item));
+        })
+        .unwrap()
+    };
+    assert_eq!(look(&mut tail, 10), Reached::Present, "there is no file yet");
+    let writer = std::thread::spawn(move || {
+        let mut file = std::fs::File::create(folder.path().join("recording.mcap")).unwrap();
+        let mut left = &bytes[..];
+        // Pieces that end within magic, heads, chunks and the summary.
+        for size in [1, 6, 2, 100, 7, 1021, 3].into_iter().cycle() {
+            let (piece, rest) = left.split_at(left.len().min(size));
+            file.write_all(piece).unwrap();
+            left = rest;
+            if left.is_empty() {
+                break;
+            }
+        }
+        drop(file);
+        std::fs::write(folder.path().join("manifest.json"), "{}").unwrap();
+        folder.finish().unwrap();
+    });
+    // A limit that can end a poll in the middle of a chunk.
+    while look(&mut tail, 777) != Reached::End {}
+    writer.join().unwrap();
+    same(&found, &expected);
+    // The end stays the end.
+    assert_eq!(tail.look(10, |_, _, _| panic!("a message after the end")).unwrap(), Reached::End);
+}
+
+#[test]
+fn another_file_in_its_place_is_told_and_so_is_damage() {
+    let (bytes, _) = record(&stream(6000), &full());
+    let here = tempfile::tempdir().unwrap();
+    let path = here.path().join("recording.mcap");
+    std::fs::write(&path, &bytes[..bytes.len() / 2]).unwrap();
+    let mut tail = Tail::new(Place::of(&path).unwrap());
+    assert_eq!(tail.look(usize::MAX, |_, _, _| {}).unwrap(), Reached::Present);
+    std::fs::write(&path, &bytes[..100]).unwrap();
+    let error = tail.look(10, |_, _, _| {}).unwrap_err();
+    assert!(matches!(error, TailError::Replaced { found: 100, .. }), "{error}");
+
+    let mut damaged = bytes.clone();
+    let at = bytes.len() / 3;
+    damaged[at..at + 100].fill(0);
+    std::fs::write(&path, &damaged).unwrap();
+    let mut tail = Tail::new(Place::of(&path).unwrap());
+    let error = tail.look(usize::MAX, |_, _, _| {}).unwrap_err().to_string();
+    assert!(error.contains("damaged after byte"), "{error}");
+
+    std::fs::write(&path, "no recording at all").unwrap();
+    let mut tail = Tail::new(Place::of(&path).unwrap());
+    let error = tail.look(10, |_, _, _| {}).unwrap_err().to_string();
+    assert!(error.contains("not an MCAP file"), "{error}");
+}
+
+const SCENARIO: &str = "schema = 1\ntitle = \"a known state\"\nseed = 7\n[realtime]\n\
+    pace = \"clock\"\n[procedure.alignment]\nmethod = \"given\"\n\
+    [procedure.navigation]\nduration = \"40 s\"\n\
+    [[faults]]\nid = \"spike-1\"\nkind = \"spike\"\nchannels = \"gyro x\"\n\
+    amplitude = \"1000 deg/h\"\ntrigger = { at = \"5 s\" }\nduration = \"20 samples\"\n\
+    [[faults]]\nid = \"late-1\"\nkind = \"late-delivery\"\ndelay = \"3 samples\"\n\
+    trigger = { at = \"30 s\" }\nduration = \"20 samples\"\n";
+
+fn event(kind: &str, detail: Value) -> Event {
+    Event { kind: kind.to_owned(), detail }
+}
+
+/// Records 20 s of the test stream with an active fault and a report of the time keeping, not yet
+/// ended.
+fn known(folder: &RunFolder) -> Recorder {
+    let options = RecorderOptions {
+        scenario: SCENARIO.to_owned(),
+        metadata: BTreeMap::from([("seed".to_owned(), "7".to_owned())]),
+        ..RecorderOptions::default()
+    };
+    let path = folder.path().join("recording.mcap");
+    let mut recorder = Recorder::to_file(&path, &options).unwrap();
+    for (k, step) in stream(4000).iter().enumerate() {
+        push(&mut recorder, step).unwrap();
+        if k == 3000 {
+            let fault = json!({ "id": "spike-1", "kind": "spike", "begins": true, "sample": 3001 });
+            recorder.event(event("fault", fault));
+            let pace =
+                json!({ "frames": 3000, "latest_us": 54.25, "overruns": 2, "late_answers": 1 });
+            recorder.event(event("pace", pace));
+        }
+    }
+    recorder
+}
+
+fn screen(follow: &Follow, page: Page, width: u16, height: u16) -> String {
+    let mut terminal = Terminal::new(TestBackend::new(width, height)).unwrap();
+    terminal.draw(|frame| dashboard::draw(frame, follow, page)).unwrap();
+    terminal.backend().to_string()
+}
+
+#[track_caller]
+fn shows(text: &str, parts: &[&str]) {
+    for part in parts {
+        assert!(text.contains(part), "{part:?} is missing in\n{text}");
+    }
+}
+
+#[test]
+fn the_dashboard_shows_a_known_state() {
+    let here = tempfile::tempdir().unwrap();
+    let folder = RunFolder::create(&here.path().join("known"), Existing::Refuse).unwrap();
+    // The recording is complete, so that all of it is in the file; the run isn't.
+    known(&folder).finish().unwrap();
+    let mut follow = Follow::new(Place::of(folder.path()).unwrap());
+    while follow.look(|_, _, _| {}).unwrap() {}
+    assert_eq!(follow.stage, Stage::Recorded, "its writer holds the lock, and has no verdict yet");
+    let state = &follow.state;
+    assert_eq!(state.time_ns, 20_000_000_000);
+    assert_eq!(state.about.unread, None);
+
+    let output = state.output.unwrap();
+    let latitude_arcmin = (output.navigation.latitude_rad - 0.53).to_degrees() * 60.0;
+    assert!((state.drift.unwrap().latitude_arcmin - latitude_arcmin).abs() < 1e-9);
+    // The parameters on the screen are those of the file, in display units.
+    let (_, estimate) = state.parameters.as_ref().unwrap();
+    let bias_degph = estimate.parameters.gyro_bias[0].to_degrees() * 3600.0;
+    assert!(bias_degph.abs() > 1e-6);
+
+    let text = screen(&follow, Page::Overview, 100, 35);
+    shows(
+        &text,
+        &[
+            "a known state",
+            "20.0 s of 40.0 s, 50.0 %",
+            "recorded, and not judged yet",
+            "navigating, stop 5",
+            "azimuth 0.00°, roll 0.00°",
+            "latitude",
+            "largest, navigating",
+            "nmi",
+            "Parameters ±1σ",
+            "gyro bias",
+            "deg/h/g",
+            "arcsec",
+            "Faults: 1 of 2 fired",
+            "spike-1 (spike) acts since 15.0 s",
+            "late-1 (late-delivery) armed, at 30 s",
+            "late      54.2 µs",
+            "overruns  2 above 1.00 ms",
+            "q leave",
+        ],
+    );
+    shows(&screen(&follow, Page::Log, 100, 35), &["mode navigating", "spike-1 (spike) sets in"]);
+    shows(&screen(&follow, Page::Curves, 100, 35), &["latitude", "NIS", "lateness"]);
+    shows(&plain::page(&follow), &["gyro_bias_x", "± ", "spike-1", "50.0 %", "54.2 µs late"]);
+    shows(&plain::line(&follow), &["20.0 s", "50.0 %", "1 of 2 faults fired, spike-1 acts"]);
+    // No terminal is too small.
+    for (width, height) in [(1, 1), (20, 5), (40, 12), (300, 3)] {
+        for page in [Page::Overview, Page::Curves, Page::Log] {
+            screen(&follow, page, width, height);
+        }
+    }
+}
+
+#[test]
+fn a_run_that_was_killed_is_told_from_one_that_goes_on() {
+    let here = tempfile::tempdir().unwrap();
+    let folder = RunFolder::create(&here.path().join("killed"), Existing::Refuse).unwrap();
+    let mut recorder = known(&folder);
+    recorder.hand_over().unwrap();
+    let mut follow = Follow::new(Place::of(folder.path()).unwrap());
+    while follow.state.about.title.is_empty() {
+        follow.look(|_, _, _| {}).unwrap();
+    }
+    assert_eq!(follow.stage, Stage::Running);
+    recorder.finish().unwrap();
+    // State after a kill: a file without its end, and a lock that no process holds.
+    let path = folder.path().join("recording.mcap");
+    let bytes = std::fs::read(&path).unwrap();
+    std::fs::write(&path, &bytes[..bytes.len() - 1]).unwrap();
+    drop(folder);
+    let mut follow = Follow::new(Place::of(&here.path().join("killed")).unwrap());
+    for _ in 0..2 {
+        while follow.look(|_, _, _| {}).unwrap() {}
+    }
+    assert_eq!(follow.stage, Stage::BrokenOff);
+    assert_eq!(follow.state.time_ns, 20_000_000_000, "what it left is shown");
+    let (text, error) = ended(octant_in(here.path(), &["watch", "killed.partial", "--plain"]), 4);
+    shows(&text, &["20.0 s"]);
+    shows(&error, &["nobody writes it any more"]);
+}
+
+const SECONDS: &str = "schema = 1\ntitle = \"by the clock\"\n[procedure.alignment]\n\
+    method = \"given\"\n[procedure.navigation]\nduration = \"3 s\"\n\
+    [realtime]\noverrun = \"10 s\"\n[[faults]]\nid = \"spike-1\"\nkind = \"spike\"\n\
+    channels = \"gyro x\"\namplitude = \"1000 deg/h\"\ntrigger = { at = \"0.5 s\" }\n\
+    duration = \"20 samples\"\n";
+
+fn stream_hash(run: &Path) -> String {
+    let bytes = std::fs::read(run.join("summary.json")).unwrap();
+    let summary: Value = serde_json::from_slice(&bytes).unwrap();
+    summary["stream_hash"].as_str().unwrap().to_owned()
+}
+
+/// Waits until a run in another process has a recording.
+fn wait_for(path: &Path, child: &mut Child) {
+    while !path.is_file() {
+        assert!(child.try_wait().unwrap().is_none(), "the run ended before it was recorded");
+        std::thread::sleep(std::time::Duration::from_millis(5));
+    }
+}
+
+#[test]
+fn a_run_in_another_process_is_watched_to_its_verdict_and_does_not_notice() {
+    let folder = tempfile::tempdir().unwrap();
+    let here = folder.path();
+    std::fs::write(here.join("s.toml"), SECONDS).unwrap();
+    let alone = ["run", "s.toml", "--out", "runs/alone", "--realtime"];
+    ended(octant_in(here, &alone), 0);
+
+    let mut run = program(&["run", "s.toml", "--out", "runs/watched", "--realtime"])
+        .current_dir(here)
+        .stdout(Stdio::null())
+        .spawn()
+        .unwrap();
+    wait_for(&here.join("runs/watched.partial/recording.mcap"), &mut run);
+    // The file exists before it has content.
+    let page = loop {
+        let output = octant_in(here, &["watch", "--once"]);
+        if !String::from_utf8_lossy(&output.stderr).contains("nothing is recorded yet") {
+            break ended(output, 0).0;
+        }
+        std::thread::sleep(std::time::Duration::from_millis(20));
+    };
+    // The newest run in progress is the only one.
+    let watch = |arguments: &[&str]| {
+        program(arguments)
+            .current_dir(here)
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap()
+    };
+    let newest = watch(&["watch", "--plain"]);
+    let named = watch(&["watch", "runs/watched"]);
+    let mut leaves = watch(&["watch", "runs/watched.partial", "--plain"]);
+    shows(&page, &["by the clock", "spike-1"]);
+    leaves.kill().unwrap();
+    leaves.wait().unwrap();
+    assert!(run.wait().unwrap().success());
+    for watch in [newest, named] {
+        let output = watch.wait_with_output().unwrap();
+        let text = String::from_utf8(output.stdout).unwrap();
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        shows(&text, &["by the clock: none", "100.0 %", "1 of 1 faults fired", "overruns"]);
+    }
+    let watched = here.join("runs/watched");
+    assert_eq!(stream_hash(&watched), stream_hash(&here.join("runs/alone")));
+    // After the run.
+    let (text, _) = ended(octant_in(here, &["watch", "runs/watched"]), 0);
+    shows(&text, &["by the clock: none", "100.0 %"]);
+    shows(
+        &ended(octant_in(here, &["watch", "--once", "runs/watched"]), 0).0,
+        &["ended: none", "100.0 %"],
+    );
+    // The time keeping is reported once a second.
+    let bytes = std::fs::read(watched.join("recording.mcap")).unwrap();
+    let paces = items(&bytes).into_iter().filter_map(|(time_ns, item)| match item {
+        Item::Event(event) if event.kind == "pace" => {
+            Some((time_ns, event.detail["frames"].clone()))
+        }
+        _ => None,
+    });
+    let frames: Vec<Value> = paces.map(|(_, frames)| frames).collect();
+    assert_eq!(frames, [200, 400, 600]);
+}
+
+#[test]
+fn what_cannot_be_watched_is_said_in_words() {
+    let folder = tempfile::tempdir().unwrap();
+    let here = folder.path();
+    let (_, error) = ended(octant_in(here, &["watch"]), 2);
+    shows(&error, &["no folder *.partial", "octant watch runs/NAME"]);
+    let (_, error) = ended(octant_in(here, &["watch", "nothing"]), 2);
+    shows(&error, &["neither", "nothing.partial"]);
+    std::fs::create_dir(here.join("empty")).unwrap();
+    let (_, error) = ended(octant_in(here, &["watch", "empty"]), 2);
+    shows(&error, &["recording.mcap is missing"]);
+    std::fs::write(here.join("text.mcap"), "no recording").unwrap();
+    let (_, error) = ended(octant_in(here, &["watch", "--once", "text.mcap"]), 2);
+    shows(&error, &["not an MCAP file"]);
+}
+
+#[cfg(not(feature = "foxglove"))]
+#[test]
+fn a_program_without_the_server_says_how_to_build_one() {
+    let folder = tempfile::tempdir().unwrap();
+    let here = folder.path();
+    std::fs::write(here.join("s.toml"), SECONDS).unwrap();
+    let (_, error) = ended(octant_in(here, &["run", "s.toml", "--live"]), 2);
+    shows(&error, &["--live", "--features octant/foxglove"]);
+    assert!(!here.join("runs").exists(), "nothing was written");
+    let (bytes, _) = record(&stream(200), &full());
+    std::fs::write(here.join("a.mcap"), bytes).unwrap();
+    let (_, error) = ended(octant_in(here, &["watch", "a.mcap", "--foxglove"]), 2);
+    shows(&error, &["--foxglove", "--features octant/foxglove"]);
+}

@@ -1,0 +1,88 @@
+//! Hashes and counts of the epochs so far.
+
+use super::Frame;
+use super::altered;
+use super::block::Block;
+use super::stream_hash::StreamHash;
+use super::summary::RecorderSummary;
+
+/// Hashes and counts of the epochs so far.
+#[derive(Debug)]
+pub(super) struct Digest {
+    pub(super) hash: StreamHash,
+    /// True if the source's stream is compared with the core's.
+    pub(super) compares: bool,
+    pub(super) streams: Option<altered::Streams>,
+    pub(super) summary: RecorderSummary,
+}
+
+impl Digest {
+    pub(super) fn new() -> Self {
+        Self {
+            hash: StreamHash::new(),
+            compares: true,
+            streams: None,
+            summary: RecorderSummary::default(),
+        }
+    }
+
+    /// Takes a frame in which the core received the source's epoch.
+    #[inline]
+    pub(super) fn epoch(&mut self, frame: &Frame<'_>) {
+        let (sample, aiding) = (&frame.faulted.sample, frame.faulted.aiding.as_ref());
+        self.hash.epoch(sample, aiding, frame.output);
+        if let Some(streams) = &mut self.streams {
+            streams.unaltered(sample, aiding);
+        }
+        self.summary.epochs += 1;
+        self.summary.aiding += u64::from(aiding.is_some());
+    }
+
+    /// Takes the contents of a block, and empties it.
+    #[inline]
+    pub(super) fn take_up(&mut self, block: &mut Block) {
+        if !block.is_empty() {
+            self.take(block);
+            block.clear();
+        }
+    }
+
+    #[inline(never)]
+    pub(super) fn take(&mut self, block: &Block) {
+        hash_block(&mut self.hash, block);
+        if self.compares {
+            altered::take(&mut self.streams, block);
+        }
+        let summary = &mut self.summary;
+        summary.epochs += (block.len() - block.lost.len()) as u64;
+        summary.aiding += block.aiding.len() as u64;
+        summary.altered += (block.altered.len() + block.added.len()) as u64;
+    }
+
+    pub(super) fn finish(mut self) -> RecorderSummary {
+        RecorderSummary {
+            stream_hash: self.hash.hex(),
+            altered_streams: self.streams.map(altered::Streams::finish),
+            ..self.summary
+        }
+    }
+}
+
+fn hash_block(hash: &mut StreamHash, block: &Block) {
+    let mut aiding = block.aiding.iter().peekable();
+    let mut parameters = block.parameters.iter().peekable();
+    let mut lost = block.lost.iter().peekable();
+    for position in 0..=block.len() as u32 {
+        while let Some((_, estimate)) = parameters.next_if(|(at, _)| *at == position) {
+            hash.parameters(estimate);
+        }
+        if lost.next_if(|at| **at == position).is_some() {
+            continue;
+        }
+        let index = position as usize;
+        if let (Some(sample), Some(output)) = (block.samples.get(index), block.outputs.get(index)) {
+            let aiding = aiding.next_if(|(at, _)| *at == position).map(|(_, aiding)| aiding);
+            hash.epoch(sample, aiding, output);
+        }
+    }
+}

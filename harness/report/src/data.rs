@@ -1,0 +1,85 @@
+//! Content of the report of one run.
+
+use octant_evidence::disposition::Dispositions;
+use octant_sample::Parameters;
+use octant_sample::parameters::PARAMETER_COUNT;
+use octant_score::summary::Summary;
+
+/// Content of the report. Missing parts are left out of the page, or reported as missing.
+#[derive(Clone, Debug)]
+pub struct ReportData {
+    /// The summary of the run.
+    pub summary: Summary,
+    /// Setting of the run, in pairs of name and value: site, motion, instrument.
+    pub facts: Vec<(String, String)>,
+    /// True parameters, SI, for the convergence of the errors; `None` where they aren't known.
+    pub truth: Option<Parameters>,
+    /// Convergence of the parameters during the calibration; any rate, 100 to 1000 points look
+    /// best.
+    pub convergence: Vec<ParameterPoint>,
+    /// Normalized innovation squared of every measurement.
+    pub nis: Vec<NisPoint>,
+    /// Gimbal angles of the whole run; any rate that shows the moves.
+    pub gimbals: Vec<GimbalPoint>,
+    /// Health events, in order of time.
+    pub events: Vec<HealthEvent>,
+    /// Dispositions of the discrepancies.
+    pub dispositions: Dispositions,
+    /// Provenance of the numbers.
+    pub provenance: Provenance,
+}
+
+/// Parameters and σ at one time of the calibration.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ParameterPoint {
+    /// Hours since the start of the calibration.
+    pub hours: f64,
+    /// Estimates.
+    pub estimate: Parameters,
+    /// 1σ, SI, in the order of [`octant_sample::parameters::NAMES`].
+    pub sigma: [f64; PARAMETER_COUNT],
+}
+
+/// Normalized innovation squared of one measurement of three axes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NisPoint {
+    /// Hours since the start of the calibration.
+    pub hours: f64,
+    /// NIS.
+    pub nis: f64,
+}
+
+/// Gimbal angles at one time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GimbalPoint {
+    /// Hours since the start of the run.
+    pub hours: f64,
+    /// Inner gimbal, deg.
+    pub azimuth_deg: f64,
+    /// Outer gimbal, deg.
+    pub roll_deg: f64,
+    /// True while the gimbals move.
+    pub moving: bool,
+}
+
+/// Health event that the core reported.
+#[derive(Clone, Debug, PartialEq)]
+pub struct HealthEvent {
+    /// Hours since the start of the run.
+    pub hours: f64,
+    /// Duration of the event's cause, s.
+    pub duration_s: f64,
+    /// Name of the event.
+    pub name: String,
+    /// Meaning in this run.
+    pub detail: String,
+}
+
+/// Provenance of the numbers.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Provenance {
+    /// Pairs of name and value: versions, hashes, host.
+    pub entries: Vec<(String, String)>,
+    /// Command that makes the run again.
+    pub rerun: String,
+}

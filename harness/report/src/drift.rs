@@ -1,0 +1,192 @@
+//! Navigation of a run: errors over time, scores beside their analytic references.
+
+use super::chart::{Band, Chart, Line, Role};
+use maud::{Markup, html};
+use octant_base::number;
+use octant_score::reference::{Reference, VerticalDrift};
+use octant_score::summary::{Navigation, Summary};
+
+/// Lists the navigations of a summary with their names.
+fn navigations(summary: &Summary) -> Vec<(&str, Role, &Navigation)> {
+    let mut all = Vec::new();
+    if let Some(n) = &summary.navigation {
+        all.push((summary.method.as_str(), Role::Primary, n));
+    }
+    if let Some(baseline) = &summary.baseline
+        && let Some(n) = &baseline.navigation
+    {
+        all.push((baseline.label.as_str(), Role::Baseline, n));
+    }
+    all
+}
+
+pub(super) fn drift(summary: &Summary) -> Markup {
+    let all = navigations(summary);
+    if all.is_empty() {
+        return html! {};
+    }
+    let chart = |name: &str, column: usize| {
+        let title = format!("{name} error");
+        let mut chart = Chart::new(&title, "hours of navigation", &format!("{title}, arcmin"));
+        if let Some(r) = &summary.reference {
+            if let Some(floor) = &r.random_walk {
+                let points = floor.sigma.iter().map(|p| {
+                    let s = if column == 1 { p.latitude_arcmin } else { p.longitude_arcmin };
+                    [p.hours, -s, s]
+                });
+                chart.bands.push(Band {
+                    label: "±1σ of random walk alone".to_owned(),
+                    role: Role::Reference,
+                    points: points.collect(),
+                });
+            }
+            if column == 1 {
+                let minutes = number::fixed(r.schuler_period_min, 1);
+                chart.bracket =
+                    Some((r.schuler_period_min / 60.0, format!("Schuler period {minutes} min")));
+            }
+        }
+        // The method under test is drawn last, on top.
+        for (label, role, n) in all.iter().rev() {
+            chart.lines.push(Line {
+                label: (*label).to_owned(),
+                role: *role,
+                points: n.series_hours.iter().map(|p| [p[0], p[column]]).collect(),
+            });
+        }
+        chart.render()
+    };
+    html! {
+        h2 { "Navigation" }
+        p.hint { "Errors are navigation minus truth. The band is what the noise of the sensors would \
+            leave with exact parameters and exact initial attitude: on average no calibration gets below it." }
+        (chart("Latitude", 1))
+        (chart("Longitude", 2))
+        (drift_table(summary, &all))
+    }
+}
+
+/// One row of the drift table: quantity, unit, value of each method, reference, description of the
+/// reference.
+struct DriftRow<'a> {
+    name: &'a str,
+    values: Vec<Option<f64>>,
+    reference: Option<f64>,
+    about: &'a str,
+}
+
+fn drift_table(summary: &Summary, all: &[(&str, Role, &Navigation)]) -> Markup {
+    let reference = summary.reference.as_ref();
+    let floor = reference.and_then(|r| r.random_walk.as_ref());
+    let walk = "random walk alone, expected";
+    let row = |name, value: &dyn Fn(&Navigation) -> Option<f64>, reference, about| DriftRow {
+        name,
+        values: all.iter().map(|(_, _, n)| value(n)).collect(),
+        reference,
+        about,
+    };
+    let rows = [
+        row("Latitude error, largest, arcmin", &|n| Some(n.latitude_error_arcmin.max), None, ""),
+        row(
+            "Latitude error, rms, arcmin",
+            &|n| Some(n.latitude_error_arcmin.rms),
+            floor.map(|f| f.latitude_rms_arcmin),
+            walk,
+        ),
+        row(
+            "Latitude error, final, arcmin",
+            &|n| Some(n.latitude_error_arcmin.r#final),
+            floor.map(|f| f.latitude_final_arcmin),
+            "1σ of random walk alone",
+        ),
+        row(
+            "Latitude slope, arcmin/day",
+            &|n| n.latitude_error_arcmin.slope_per_day,
+            Some(0.0),
+            "no constant drift moves latitude for long",
+        ),
+        row("Longitude error, largest, arcmin", &|n| Some(n.longitude_error_arcmin.max), None, ""),
+        row(
+            "Longitude error, rms, arcmin",
+            &|n| Some(n.longitude_error_arcmin.rms),
+            floor.map(|f| f.longitude_rms_arcmin),
+            walk,
+        ),
+        row(
+            "Longitude error, final, arcmin",
+            &|n| Some(n.longitude_error_arcmin.r#final),
+            floor.map(|f| f.longitude_final_arcmin),
+            "1σ of random walk alone",
+        ),
+        row(
+            "Longitude slope, arcmin/day",
+            &|n| n.longitude_error_arcmin.slope_per_day,
+            reference.and_then(|r| r.residual_g_zz).map(|d| d.longitude_arcmin_per_day),
+            "from the error of the estimated g_zz",
+        ),
+        row("Radial error, largest, nmi", &|n| Some(n.radial_error_nmi.max), None, ""),
+        row(
+            "Radial error, time-RMS, nmi",
+            &|n| Some(n.radial_error_nmi.rms),
+            floor.map(|f| f.radial_rms_nmi),
+            walk,
+        ),
+        row("Radial error rate, nmi/h", &|n| Some(n.radial_error_nmi.rate_per_h), None, ""),
+    ];
+    html! {
+        h3 { "Drift scores beside what physics says" }
+        table {
+            thead { tr {
+                th { "Score" }
+                @for (label, role, _) in all {
+                    th.n { span class=(if *role == Role::Primary { "primary-text" } else { "baseline-text" }) { (label) } }
+                }
+                th.n { "Reference" } th style="padding-left:14px" { "The reference is" }
+            } }
+            tbody {
+                @for row in &rows {
+                    tr {
+                        td { (row.name) }
+                        @for value in &row.values { td.n { (number::optional(*value, 3)) } }
+                        td.n { (number::optional(row.reference, 3)) }
+                        td.reason style="padding-left:14px" { @if row.reference.is_some() { (row.about) } }
+                    }
+                }
+            }
+        }
+        @if let Some(window) = all[0].2.slope_window.as_ref() {
+            p.hint { "Slopes are by regression together with the Schuler oscillation"
+                @if window.of == "sidereal days" { " and the daily one" }
+                ", over " (window.periods) " " (window.of) " (" (number::fixed(window.hours, 2)) " h). "
+                "Rate: regression of radial error on time through the origin." }
+        }
+        @if let Some(r) = reference { (closed_forms(r)) }
+    }
+}
+
+fn closed_forms(r: &Reference) -> Markup {
+    let drift = |label: &str, d: Option<VerticalDrift>| {
+        html! { @if let Some(d) = d {
+            tr {
+                td { (label) }
+                td.n { (number::significant(d.g_zz_deg_per_h_per_g, 3)) }
+                td.n { (number::fixed(d.longitude_arcmin_per_day, 3)) }
+                td.n { (number::fixed(d.latitude_bound_arcmin, 3)) }
+            }
+        } }
+    };
+    html! {
+        table {
+            thead { tr {
+                th { "What a vertical drift from g_zz does at this site" } th.n { "g_zz, deg/h/g" }
+                th.n { "longitude, arcmin/day" } th.n { "latitude at most, arcmin" }
+            } }
+            tbody {
+                (drift("5e-4 deg/h/g, not compensated", Some(r.table_g_zz)))
+                (drift("true g_zz of this run, not compensated", r.true_g_zz))
+                (drift("left by this method", r.residual_g_zz))
+                (drift("left by the baseline", r.baseline_residual_g_zz))
+            }
+        }
+    }
+}

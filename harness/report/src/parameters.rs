@@ -1,0 +1,128 @@
+//! Compares every parameter with truth: a table whose last column is the plot.
+
+use maud::{Markup, html};
+use octant_base::number;
+use octant_sample::parameters::{Group, NAMES};
+use octant_score::summary::{Calibration, ParameterScore};
+
+/// Width of the strip in σ on each side.
+const STRIP_SIGMA: f64 = 5.0;
+
+/// Returns the title of a group.
+pub(super) fn title(group: Group) -> &'static str {
+    match group {
+        Group::GyroBias => "Gyro bias",
+        Group::GyroScale => "Gyro scale factor",
+        Group::GyroMisalignment => "Gyro misalignment",
+        Group::GDependent => "g-dependent gyro bias",
+        Group::AccelBias => "Accelerometer bias",
+        Group::AccelScale => "Accelerometer scale factor",
+        Group::AccelMisalignment => "Accelerometer misalignment",
+    }
+}
+
+/// Renders the table of all parameters of a method, with the errors of the baseline in the strip.
+pub(super) fn table(calibration: &Calibration, baseline: Option<&Calibration>) -> Markup {
+    html! {
+        table.parameters {
+            thead { tr {
+                th { "Parameter" }
+                th.n { "True" } th.n { "Estimate" } th.n { "Error" } th.n { "σ" } th.n { "Error / σ" }
+                th.strip { (scale()) }
+            } }
+            tbody {
+                @for group in Group::ALL {
+                    (group_rows(group, calibration, baseline))
+                }
+            }
+        }
+    }
+}
+
+fn group_rows(group: Group, calibration: &Calibration, baseline: Option<&Calibration>) -> Markup {
+    let names = &NAMES[group.range()];
+    let scores: Vec<_> = names.iter().filter_map(|n| calibration.parameters.get(*n)).collect();
+    // Two digits of the smallest σ, the same for the whole group, so that the columns line up.
+    let smallest = scores.iter().filter_map(|s| s.sigma).reduce(f64::min);
+    let largest = scores.iter().map(|s| s.estimate.abs()).fold(0.0, f64::max);
+    let decimals =
+        number::decimals_for(smallest.unwrap_or(largest), if smallest.is_some() { 2 } else { 4 });
+    html! {
+        tr.group { td colspan="7" {
+            (title(group)) " " span.soft { (group.unit()) }
+            @if let Some(nees) = calibration.nees.get(group.name()) {
+                span.soft { " · mean (error/σ)² " (number::fixed(*nees, 2)) }
+            }
+        } }
+        @for name in names {
+            @if let Some(score) = calibration.parameters.get(*name) {
+                (row(name, score, baseline.and_then(|b| b.parameters.get(*name)), decimals))
+            }
+        }
+    }
+}
+
+fn row(
+    name: &str,
+    score: &ParameterScore,
+    baseline: Option<&ParameterScore>,
+    decimals: usize,
+) -> Markup {
+    let beyond = score.normalized.is_some_and(|n| n.abs() > 3.0);
+    html! {
+        tr {
+            td.mono { (name) }
+            td.n { (number::optional(score.r#true, decimals)) }
+            td.n { (number::fixed(score.estimate, decimals)) }
+            td.n { (number::optional(score.error, decimals)) }
+            td.n { @if score.sigma.is_some() { (number::optional(score.sigma, decimals)) } @else { "not estimated" } }
+            td class=(if beyond { "n over" } else { "n" }) { (number::optional(score.normalized, 2)) }
+            td.strip { (strip(score.normalized, baseline.and_then(|b| b.normalized))) }
+        }
+    }
+}
+
+/// Returns the place of a value in σ on a strip of 200 px, clamped to its ends.
+fn place(normalized: f64) -> f64 {
+    libm::round((100.0 + 100.0 * normalized.clamp(-STRIP_SIGMA, STRIP_SIGMA) / STRIP_SIGMA) * 10.0)
+        / 10.0
+}
+
+fn strip(primary: Option<f64>, baseline: Option<f64>) -> Markup {
+    let (one, three) = (place(1.0) - place(-1.0), place(3.0) - place(-3.0));
+    html! {
+        svg viewBox="0 0 200 16" aria-hidden="true" {
+            rect.sigma3 x=(place(-3.0)) y="2" width=(three) height="12" {}
+            rect.sigma1 x=(place(-1.0)) y="2" width=(one) height="12" {}
+            path.centre d="M100 0V16" {}
+            @if let Some(n) = baseline { (dot(n, "baseline", 3.2)) }
+            @if let Some(n) = primary { (dot(n, "primary", 3.8)) }
+        }
+    }
+}
+
+/// Draws a dot, or a pointer at the end of the strip if the value lies beyond.
+fn dot(normalized: f64, role: &str, radius: f64) -> Markup {
+    let x = place(normalized);
+    html! {
+        @if normalized > STRIP_SIGMA {
+            path class={ "dot " (role) } d="M193 3L200 8L193 13Z" {}
+        } @else if STRIP_SIGMA > -normalized {
+            circle class={ "dot " (role) } cx=(x) cy="8" r=(radius) {}
+        } @else {
+            path class={ "dot " (role) } d="M7 3L0 8L7 13Z" {}
+        }
+    }
+}
+
+fn scale() -> Markup {
+    html! {
+        svg viewBox="0 0 200 16" aria-hidden="true" {
+            @for n in [-3, -1, 0, 1, 3] {
+                text class="tick x" x=(place(f64::from(n))) y="13" {
+                    @if n == 0 { "0" } @else { (number::fixed(f64::from(n), 0)) "σ" }
+                }
+            }
+        }
+    }
+}

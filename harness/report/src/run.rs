@@ -1,0 +1,372 @@
+//! `report.html` of one run, for the reader who assesses it.
+
+pub use super::data::{GimbalPoint, HealthEvent, NisPoint, ParameterPoint, Provenance, ReportData};
+
+use super::calibration::calibration;
+use super::chart::{Chart, Line, Role};
+use super::counterfactual::counterfactual;
+use super::drift::drift;
+use super::pacing::pacing;
+use super::page::{badge, page};
+use maud::{Markup, html};
+use octant_base::number;
+use octant_evidence::discrepancy;
+use octant_requirements::Verdict;
+use octant_score::summary::{Calibration, HeightChannel, Summary};
+use octant_score::work::duration;
+
+/// Renders the report as one HTML file.
+#[must_use]
+pub fn render(data: &ReportData) -> String {
+    let summary = &data.summary;
+    let body = html! {
+        (header(data))
+        (figures(summary))
+        (requirements(summary))
+        (planned_and_done(summary))
+        (faults(summary))
+        (counterfactual(summary))
+        (drift(summary))
+        (calibration(data))
+        (gimbals(data))
+        (events(data))
+        (pacing(summary))
+        (discrepancies(data))
+        (provenance(data))
+    };
+    page(&format!("{}: {}", summary.scenario, summary.verdict.name()), &body)
+}
+
+fn header(data: &ReportData) -> Markup {
+    let summary = &data.summary;
+    html! {
+        header {
+            div.top {
+                div {
+                    div.eyebrow { "Self-calibration run" }
+                    h1 { (summary.scenario) }
+                    p.lead { (what_was_done(summary)) }
+                }
+                (badge(summary.verdict))
+            }
+            @if !summary.reasons.is_empty() {
+                ul.reasons { @for reason in &summary.reasons { li { (reason) } } }
+            }
+            dl.facts {
+                div { dt { "Method" } dd { (summary.method) } }
+                @if let Some(baseline) = &summary.baseline {
+                    div { dt { "Compared with" } dd { (baseline.label) } }
+                }
+                div { dt { "Seed" } dd { (summary.seed) } }
+                @for (name, value) in &data.facts { div { dt { (name) } dd { (value) } } }
+            }
+        }
+    }
+}
+
+/// Renders the discrepancies; empty for a run that passes.
+fn discrepancies(data: &ReportData) -> Markup {
+    let all = discrepancy::of_run(&data.summary);
+    if all.is_empty() && data.dispositions.entries.is_empty() {
+        return html! {};
+    }
+    let hint = "What is said of them stands in a file of its own, beside the run: octant report RUN \
+        --dispositions FILE makes it, people fill it in. It changes no verdict.";
+    html! {
+        h2 { "Discrepancies" }
+        (super::discrepancies::table(&all, &data.dispositions, hint, &|_| html! {}))
+    }
+}
+
+/// Describes the run and its result in two sentences.
+#[must_use]
+pub fn what_was_done(summary: &Summary) -> String {
+    let first = match (&summary.calibration, &summary.navigation) {
+        (Some(c), Some(n)) => format!(
+            "The instrument was calibrated for {} h through the {} positions and then navigated \
+             free inertial for {} h with the height {}.",
+            number::plain(c.duration_h, 4),
+            c.positions,
+            number::plain(n.duration_h, 4),
+            height(n.height),
+        ),
+        (Some(c), None) => format!(
+            "The instrument was calibrated for {} h through the {} positions.",
+            number::plain(c.duration_h, 4),
+            c.positions
+        ),
+        (None, Some(n)) => format!(
+            "The instrument navigated free inertial for {} h with the height {}, without a \
+             calibration before it.",
+            number::plain(n.duration_h, 4),
+            height(n.height),
+        ),
+        (None, None) => "The run gave neither a calibration nor a navigation.".to_owned(),
+    };
+    let second = match (&summary.navigation, &summary.calibration) {
+        (Some(n), _) => format!(
+            " Its largest errors were {}′ in latitude and {}′ in longitude{}.",
+            number::significant(n.latitude_error_arcmin.max, 3),
+            number::significant(n.longitude_error_arcmin.max, 3),
+            summary.baseline.as_ref().and_then(|b| b.navigation.as_ref().map(|m| (b, m))).map_or(
+                String::new(),
+                |(b, m)| format!(
+                    ", against {}′ and {}′ for {} on the same instrument with the same noise",
+                    number::significant(m.latitude_error_arcmin.max, 3),
+                    number::significant(m.longitude_error_arcmin.max, 3),
+                    b.label
+                )
+            )
+        ),
+        (None, Some(Calibration { worst_normalized_error: Some(worst), .. })) => {
+            format!(" The worst parameter is {} σ from truth.", number::fixed(*worst, 1))
+        }
+        _ => String::new(),
+    };
+    first + &second
+}
+
+const fn height(channel: HeightChannel) -> &'static str {
+    match channel {
+        HeightChannel::Held => "held",
+        HeightChannel::Damped => "damped",
+        HeightChannel::Free => "free",
+    }
+}
+
+fn figures(summary: &Summary) -> Markup {
+    let baseline = summary.baseline.as_ref();
+    let label = baseline.map_or("", |b| b.label.as_str());
+    let other_navigation = baseline.and_then(|b| b.navigation.as_ref());
+    let other_calibration = baseline.and_then(|b| b.calibration.as_ref());
+    let figure = |name: &str, unit: &str, value: f64, digits: i32, other: Option<f64>| {
+        html! {
+            div.figure {
+                div.name { (name) }
+                div.value { (number::significant(value, digits)) span.unit { (unit) } }
+                @if let Some(other) = other {
+                    div.other { (label) ": " (number::significant(other, digits)) }
+                }
+            }
+        }
+    };
+    html! {
+        div.figures {
+            @if let Some(n) = &summary.navigation {
+                (figure("Latitude error, largest", "arcmin", n.latitude_error_arcmin.max, 3,
+                    other_navigation.map(|o| o.latitude_error_arcmin.max)))
+                (figure("Longitude error, largest", "arcmin", n.longitude_error_arcmin.max, 3,
+                    other_navigation.map(|o| o.longitude_error_arcmin.max)))
+                (figure("Radial error rate", "nmi/h", n.radial_error_nmi.rate_per_h, 2,
+                    other_navigation.map(|o| o.radial_error_nmi.rate_per_h)))
+            }
+            @if let Some(c) = &summary.calibration {
+                @if let Some(nis) = c.nis_mean {
+                    (figure("Mean NIS, 3 expected", "", nis, 3, other_calibration.and_then(|o| o.nis_mean)))
+                }
+                @if let Some(worst) = c.worst_normalized_error {
+                    (figure("Worst parameter error", "σ", worst, 2,
+                        other_calibration.and_then(|o| o.worst_normalized_error)))
+                }
+            }
+        }
+    }
+}
+
+/// Renders the planned and the completed work.
+fn planned_and_done(summary: &Summary) -> Markup {
+    let (Some(planned), Some(done)) = (&summary.planned, &summary.done) else { return html! {} };
+    let count = |value: Option<u64>| value.map(|v| v.to_string());
+    let time = |value: Option<f64>| value.map(duration);
+    let rows = [
+        ("Stops of the calibration", count(planned.stops), count(done.stops)),
+        ("Calibration", time(planned.calibration_s), time(done.calibration_s)),
+        ("References for it", count(planned.references), count(done.references)),
+        ("Navigation", time(planned.navigation_s), time(done.navigation_s)),
+    ];
+    let none = || "–".to_owned();
+    html! {
+        h3 { "Planned and done" }
+        table {
+            thead { tr { th { "" } th.n { "Planned" } th.n { "Done" } } }
+            tbody {
+                @for (what, planned, done) in rows {
+                    @if planned.is_some() || done.is_some() {
+                        tr {
+                            td { (what) }
+                            td.n { (planned.unwrap_or_else(none)) }
+                            td.n { (done.unwrap_or_else(none)) }
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+fn requirements(summary: &Summary) -> Markup {
+    html! {
+        h2 { "Requirements" }
+        @if let Some(decided) = &summary.decision {
+            p.hint { (decided.text) "." }
+        }
+        @if summary.requirements.is_empty() {
+            p.empty { "No requirement was checked: the run shows what happened, and asks nothing of it." }
+        } @else {
+            table {
+                thead { tr {
+                    th { "Requirement" } th { "Measure" } th.n { "Limit" } th.n { "Value" }
+                    th.n { "Margin" } th.n { "Verdict" }
+                } }
+                tbody {
+                    @for r in &summary.requirements {
+                        tr {
+                            td { strong { (r.id) } }
+                            td { span.mono { (r.measure) }
+                                @if let Some(reason) = &r.reason { div.reason { (reason) } } }
+                            td.n { (sign(r.comparison.sign())) " " (number::plain(r.limit, 4))
+                                @if let Some(u) = r.uncertainty { " ± " (number::plain(u, 3)) } }
+                            td.n { (r.value.map_or_else(|| "–".to_owned(), |v| number::significant(v, 4))) }
+                            td.n { (r.margin.map_or_else(|| "–".to_owned(), |v| number::significant(v, 3))) }
+                            td.n { (badge(r.verdict)) }
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Renders the receipts of the faults; empty if none was injected.
+fn faults(summary: &Summary) -> Markup {
+    if summary.faults.is_empty() {
+        return html! {};
+    }
+    let number = |value: Option<u64>| value.map_or_else(|| "–".to_owned(), |v| v.to_string());
+    let sum = |sum: &Option<String>| sum.clone().unwrap_or_else(|| "–".to_owned());
+    let verdict = |fired: bool| if fired { Verdict::Pass } else { Verdict::Inconclusive };
+    html! {
+        h2 { "Faults" }
+        p.hint { "What each fault altered, found by comparing samples before and after it. The \
+            checksums (CRC-32) are over the altered samples, as they were and as they became." }
+        table {
+            thead { tr {
+                th { "Fault" } th { "Kind" } th.n { "Firings" } th.n { "First sample" }
+                th.n { "Last sample" } th.n { "Altered" } th.n { "Clean" } th.n { "Faulted" }
+                th.n { "Fired" }
+            } }
+            tbody {
+                @for f in &summary.faults {
+                    tr {
+                        td { strong { (f.id) } }
+                        td { span.mono { (f.kind) } }
+                        td.n { (f.firings) }
+                        td.n { (number(f.first_sample)) }
+                        td.n { (number(f.last_sample)) }
+                        td.n { (f.samples_altered) }
+                        td.n { span.mono { (sum(&f.clean_crc32)) } }
+                        td.n { span.mono { (sum(&f.faulted_crc32)) } }
+                        td.n { (badge(verdict(f.fired))) }
+                    }
+                }
+            }
+        }
+    }
+}
+
+fn sign(sign: &str) -> &str {
+    match sign {
+        "<=" => "≤",
+        ">=" => "≥",
+        other => other,
+    }
+}
+
+fn gimbals(data: &ReportData) -> Markup {
+    if data.gimbals.len() < 2 {
+        return html! {};
+    }
+    let mut chart = Chart::new("Gimbal angles", "hours of the run", "Gimbal angles, deg");
+    chart.height = 200.0;
+    let angle = |f: &dyn Fn(&GimbalPoint) -> f64| {
+        data.gimbals.iter().map(|p| [p.hours, f(p)]).collect::<Vec<_>>()
+    };
+    chart.y_step = {
+        let all = data.gimbals.iter().flat_map(|p| [p.azimuth_deg, p.roll_deg]);
+        let (low, high) = all.fold((0.0f64, 0.0f64), |(l, h), a| (l.min(a), h.max(a)));
+        Some(if high - low > 500.0 { 180.0 } else { 90.0 })
+    };
+    chart.lines.push(Line {
+        label: "azimuth (inner)".to_owned(),
+        role: Role::Primary,
+        points: angle(&|p| p.azimuth_deg),
+    });
+    chart.lines.push(Line {
+        label: "roll (outer)".to_owned(),
+        role: Role::Second,
+        points: angle(&|p| p.roll_deg),
+    });
+    let steps = || data.gimbals.windows(2);
+    let moves = steps().filter(|w| !w[0].moving && w[1].moving).count();
+    let moving_h: f64 = steps().filter(|w| w[1].moving).map(|w| w[1].hours - w[0].hours).sum();
+    let still =
+        1.0 - moving_h / (data.gimbals[data.gimbals.len() - 1].hours - data.gimbals[0].hours);
+    html! {
+        h2 { "Gimbals" }
+        p.hint { (moves) " moves; the gimbals stood still "
+            (number::fixed(100.0 * still, 1))
+            " % of the time shown." }
+        (chart.render())
+    }
+}
+
+fn events(data: &ReportData) -> Markup {
+    const SHOWN: usize = 40;
+    html! {
+        h2 { "Health" }
+        @if data.events.is_empty() {
+            p { "The core reported nothing: no rejected measurement, no recovery, no gap, no stuck sensor." }
+        } @else {
+            table {
+                thead { tr { th.n style="padding-left:0" { "Time, h" } th.n { "Duration, s" }
+                    th style="padding-left:14px" { "Event" } th { "Detail" } } }
+                tbody { @for event in data.events.iter().take(SHOWN) {
+                    tr {
+                        td.n { (number::fixed(event.hours, 4)) }
+                        td.n { (number::significant(event.duration_s, 3)) }
+                        td style="padding-left:14px" { (event.name) }
+                        td { (event.detail) }
+                    }
+                } }
+            }
+            @if data.events.len() > SHOWN {
+                p.hint { (data.events.len() - SHOWN) " more are in the recording." }
+            }
+        }
+    }
+}
+
+fn provenance(data: &ReportData) -> Markup {
+    let summary = &data.summary;
+    html! {
+        h2 { "Provenance" }
+        table {
+            tbody {
+                tr { td { "octant" } td.mono { (summary.octant) } }
+                tr { td { "stream hash" } td.mono { (summary.stream_hash) } }
+                @if let Some(b) = &summary.baseline {
+                    tr { td { "stream hash, " (b.label) } td.mono { (b.stream_hash) } }
+                }
+                @if let Some(s) = &summary.altered_streams {
+                    tr { td { "source, from sample " (s.first_sample) " on" } td.mono { (s.clean_blake3) } }
+                    tr { td { "core's input, from there on" } td.mono { (s.faulted_blake3) } }
+                }
+                @for (name, value) in &data.provenance.entries { tr { td { (name) } td.mono { (value) } } }
+            }
+        }
+        @if !data.provenance.rerun.is_empty() {
+            p.hint { "The same run again:" }
+            code.rerun { (data.provenance.rerun) }
+        }
+    }
+}

@@ -1,0 +1,52 @@
+//! Columns of the object types: the attributes of all requirements.
+
+use super::{FOREIGN_ID, NAME, TEXT};
+use crate::fields::{ALL, own_fields};
+use crate::requirement::{Kind, Requirements};
+
+/// A column of every object type.
+pub(super) struct Column {
+    pub(super) name: String,
+    pub(super) kind: Kind,
+    /// True for a text that isn't one line of plain ASCII. StrictDoc reads and writes strings with
+    /// escapes of its own, which would change such texts; it leaves XHTML unchanged.
+    pub(super) formatted: bool,
+}
+
+pub(super) fn columns(requirements: &Requirements) -> Vec<Column> {
+    let all = &requirements.requirements;
+    let plain = |text: &str| text.chars().all(|c| (' '..='~').contains(&c) && c != '\\');
+    let column = |name: &str, kind: Kind, values: &[String]| {
+        let formatted = kind == Kind::Text && !values.iter().all(|text| plain(text));
+        Column { name: name.to_owned(), kind, formatted }
+    };
+    let mut columns = vec![
+        Column { name: FOREIGN_ID.to_owned(), kind: Kind::Text, formatted: false },
+        column(NAME, Kind::Text, &all.iter().filter_map(|r| r.title.clone()).collect::<Vec<_>>()),
+        Column { name: TEXT.to_owned(), kind: Kind::Text, formatted: true },
+    ];
+    for field in ALL {
+        let values: Vec<String> = all
+            .iter()
+            .flat_map(own_fields)
+            .filter(|(name, _)| *name == field)
+            .map(|(_, value)| value)
+            .collect();
+        columns.push(column(field, Kind::Text, &values));
+    }
+    for name in requirements.attribute_names() {
+        let values: Vec<String> = all
+            .iter()
+            .flat_map(|r| &r.attributes)
+            .filter(|a| a.name == name)
+            .map(|a| a.values.join("\n\n"))
+            .collect();
+        let new = column(name, requirements.kind(name), &values);
+        // A field of Octant can be an attribute of a requirement whose own key is missing.
+        match columns.iter_mut().find(|c| c.name == name) {
+            Some(column) => column.formatted |= new.formatted,
+            None => columns.push(new),
+        }
+    }
+    columns
+}

@@ -1,0 +1,356 @@
+//! Assembles summary, report and verdict from the methods of a run.
+
+use super::findings::findings;
+use super::method::MethodRun;
+use super::twin::difference;
+use octant_base::number;
+use octant_earth::units::{DEG, DEG_PER_SQRT_HOUR, MICRO_G};
+use octant_evidence::disposition::Dispositions;
+use octant_report::counterfactual::in_words;
+use octant_report::{Provenance, ReportData};
+use octant_requirements::Verdict;
+use octant_requirements::decision::{Against, Rule};
+use octant_requirements::equipment::Day;
+use octant_sample::parameters::NAMES;
+use octant_scenario::{Endpoint, Motion, Scenario, Source};
+use octant_score::equipment;
+use octant_score::judge::{Finding, judge_by};
+use octant_score::numerics::NUMERICS;
+use octant_score::reference::{ReferenceInput, reference};
+use octant_score::summary::{
+    AlteredStreams, Baseline, FaultResult, ParameterScore, SCHEMA, Summary,
+};
+use octant_turntable::Axis;
+use std::collections::BTreeMap;
+
+/// A run of one or two methods, scored and judged.
+#[derive(Debug)]
+pub struct Run {
+    /// Content of `summary.json`.
+    pub summary: Summary,
+    /// Content of the report; the caller fills in its provenance.
+    pub report: ReportData,
+}
+
+/// Settings of a run beside its scenario that affect its verdict.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Choice {
+    /// True if the scenario must have requirements.
+    pub require: bool,
+    /// Faults of the scenario that were left out.
+    pub left_out: Vec<String>,
+    /// Day on which the run ended, to which certificates are compared; not used if the scenario has
+    /// no equipment.
+    pub day: Option<Day>,
+}
+
+impl Choice {
+    /// Returns the findings of these settings, for a run with or without requirements.
+    fn findings(&self, requires: bool) -> Vec<Finding> {
+        let mut findings = Vec::new();
+        if self.require && !requires {
+            findings.push(Finding::of_run(
+                "the scenario requires nothing, and --require wants it to".to_owned(),
+            ));
+        }
+        if requires && !self.left_out.is_empty() {
+            // Limits apply with the faults; a run without them is no evidence for the limits.
+            findings.push(Finding::of_run(format!(
+                "--only-faults left out {} of the scenario's faults, with which its requirements are to be \
+                 kept: {}",
+                self.left_out.len(),
+                self.left_out.join(", ")
+            )));
+        }
+        findings
+    }
+}
+
+/// Assembles the methods of a run: summary, verdict, report.
+///
+/// # Errors
+/// If the summary can't be written as JSON.
+pub fn assemble(
+    scenario: &Scenario,
+    seed: u64,
+    primary: MethodRun,
+    baseline: Option<MethodRun>,
+) -> Result<Run, serde_json::Error> {
+    assemble_with(scenario, seed, primary, baseline, &Choice::default())
+}
+
+/// Assembles as [`assemble`], with settings beside the scenario.
+///
+/// # Errors
+/// If the summary can't be written as JSON.
+pub fn assemble_with(
+    scenario: &Scenario,
+    seed: u64,
+    mut primary: MethodRun,
+    baseline: Option<MethodRun>,
+    choice: &Choice,
+) -> Result<Run, serde_json::Error> {
+    let g_zz = |run: &MethodRun| {
+        run.watcher.last_parameters.map(|estimate| estimate.parameters.g_dependent[8])
+    };
+    let references = reference(&ReferenceInput {
+        latitude_rad: scenario.site.latitude_rad,
+        height_m: scenario.site.height_m,
+        angle_random_walk: scenario.imu.angle_random_walk,
+        velocity_random_walk: scenario.imu.velocity_random_walk,
+        calibration_s: scenario.calibration.as_ref().map(|c| c.duration_s),
+        navigation_s: scenario.navigation.as_ref().and_then(|n| n.duration_s),
+        true_g_zz: primary.truth.map(|truth| truth.g_dependent[8]),
+        estimated_g_zz: g_zz(&primary),
+        baseline_estimated_g_zz: baseline.as_ref().and_then(g_zz),
+    });
+    let mut findings = findings(scenario, &primary, baseline.as_ref());
+    findings.extend(equipment::findings(&scenario.equipment, choice.day.as_ref()));
+    findings.extend(choice.findings(!scenario.requirements.is_empty()));
+    let (planned, done) = primary.watcher.work();
+    let against = Against {
+        simulated: match &scenario.source {
+            Source::Plant | Source::Fmu(_) => true,
+            // An octant recording that contains truth comes from a simulation.
+            Source::Replay { mapping: None, .. } => primary.navigation.is_some(),
+            Source::Replay { .. } | Source::Text(_) | Source::Live(_) => false,
+        },
+        latitude_rad: scenario.site.latitude_rad,
+        height_m: scenario.site.height_m,
+        navigation_s: done.navigation_s.unwrap_or_default(),
+    };
+    let counterfactual = difference(scenario, &primary);
+    let baseline_counterfactual = baseline.as_ref().and_then(|run| difference(scenario, run));
+    let mut summary = Summary {
+        schema: SCHEMA,
+        octant: env!("CARGO_PKG_VERSION").to_owned(),
+        numerics: Some(NUMERICS),
+        scenario: scenario.title.clone(),
+        seed,
+        verdict: Verdict::Pass,
+        reasons: Vec::new(),
+        requirements: Vec::new(),
+        findings: Vec::new(),
+        decision: Some(scenario.decision.decided(&against)),
+        planned: Some(planned),
+        done: Some(done),
+        faults: primary.receipts.iter().map(FaultResult::from).collect(),
+        altered_streams: primary.recorder.altered_streams.as_ref().map(AlteredStreams::from),
+        method: primary.label.clone(),
+        calibration: primary.calibration.take(),
+        navigation: primary.navigation.take(),
+        baseline: baseline.map(|run| Baseline {
+            planned: Some(run.watcher.work().0),
+            done: Some(run.watcher.work().1),
+            label: run.label,
+            calibration: run.calibration,
+            navigation: run.navigation,
+            counterfactual: baseline_counterfactual,
+            stream_hash: run.recorder.stream_hash,
+            faults: run.receipts.iter().map(FaultResult::from).collect(),
+        }),
+        reference: Some(references),
+        counterfactual,
+        pacing: primary.kept.as_ref().map(|kept| kept.pacing.clone()),
+        stream_hash: primary.recorder.stream_hash.clone(),
+    };
+    let requirements: Vec<_> = scenario.requirements.iter().map(|r| r.check.clone()).collect();
+    judge_by(&mut summary, &requirements, &findings, |measure| {
+        if scenario.decision.rule() == Rule::SimpleAcceptance {
+            return Ok(0.0);
+        }
+        scenario.decision.uncertainty(measure, &against)
+    })?;
+    let report = ReportData {
+        summary: summary.clone(),
+        facts: facts(scenario),
+        truth: primary.truth,
+        events: primary.watcher.events(),
+        convergence: primary.watcher.convergence,
+        nis: primary.watcher.nis,
+        gimbals: primary.watcher.gimbals,
+        dispositions: Dispositions::default(),
+        provenance: Provenance::default(),
+    };
+    Ok(Run { summary, report })
+}
+
+/// Lists the setting of a run for the head of the report.
+#[must_use]
+pub fn facts(scenario: &Scenario) -> Vec<(String, String)> {
+    let imu = &scenario.imu;
+    let mut facts = vec![
+        (
+            "site".to_owned(),
+            format!(
+                "{:.4}° latitude, {:.4}° longitude, {:.1} m",
+                scenario.site.latitude_rad / DEG,
+                scenario.site.longitude_rad / DEG,
+                scenario.site.height_m
+            ),
+        ),
+        (
+            "motion".to_owned(),
+            match &scenario.motion {
+                Motion::Static(_) => "static".to_owned(),
+                Motion::Dockside(_) => "on a moored ship".to_owned(),
+            },
+        ),
+        (
+            "sample rate".to_owned(),
+            format!("{} Hz", number::plain(1e9 / scenario.sample_period_ns as f64, 6)),
+        ),
+        (
+            "gyro random walk".to_owned(),
+            format!("{:.5} deg/√h", imu.angle_random_walk / DEG_PER_SQRT_HOUR),
+        ),
+        (
+            "accelerometer noise".to_owned(),
+            format!("{:.2} µg/√Hz", imu.velocity_random_walk / MICRO_G),
+        ),
+    ];
+    match &scenario.source {
+        Source::Plant => {}
+        Source::Replay { .. } | Source::Text(_) => {
+            facts.push(("source".to_owned(), "recorded samples, no truth".to_owned()));
+        }
+        Source::Fmu(fmu) if fmu.is_motion() => {
+            facts.push(("motion of the case".to_owned(), format!("FMU {}", fmu.file.0)));
+        }
+        Source::Live(instrument) => facts.push((
+            "source".to_owned(),
+            format!("instrument at {}, {}, no truth", instrument.uri, instrument.speaks.name()),
+        )),
+        Source::Fmu(fmu) => facts.push(("source".to_owned(), format!("FMU {}", fmu.file.0))),
+    }
+    if let Some(drive) = &scenario.drive {
+        let range = |axis: Axis| {
+            let limits = drive.settings.limits.of(axis);
+            let degrees = |angle_rad: f64| number::plain(angle_rad.to_degrees(), 6);
+            format!("{axis} {} to {}°", degrees(limits.least_rad), degrees(limits.most_rad))
+        };
+        facts.push((
+            "turntable".to_owned(),
+            format!(
+                "{}, {}, {}, {}",
+                drive.port,
+                drive.dialect.0,
+                range(Axis::Azimuth),
+                range(Axis::Roll)
+            ),
+        ));
+    }
+    match &scenario.endpoint {
+        Endpoint::InProcess => {}
+        Endpoint::Fmu(fmu) => facts.push(("core".to_owned(), format!("FMU {}", fmu.file.0))),
+        Endpoint::Live(live) => {
+            facts.push(("core".to_owned(), format!("device at {}, in lock-step", live.uri)));
+        }
+    }
+    facts
+}
+
+/// Renders the text for the terminal at the end of a run.
+#[must_use]
+pub fn text(summary: &Summary) -> String {
+    use std::fmt::Write as _;
+    let mut out = String::new();
+    let mut line = |text: String| {
+        // Writing to a String can't fail.
+        let _ = writeln!(out, "{text}");
+    };
+    line(format!("{}: {}", summary.scenario, summary.verdict.name()));
+    for reason in &summary.reasons {
+        line(format!("  {reason}"));
+    }
+    for met in summary.requirements.iter().filter(|r| r.verdict == Verdict::Pass) {
+        line(format!("  {}", met.sentence()));
+    }
+    for fault in &summary.faults {
+        line(format!("  {}", fault.sentence()));
+    }
+    let methods = std::iter::once((&summary.method, &summary.calibration, &summary.navigation))
+        .chain(summary.baseline.iter().map(|b| (&b.label, &b.calibration, &b.navigation)));
+    for (label, calibration, navigation) in methods {
+        line(format!("{label}, seed {}", summary.seed));
+        if let Some(calibration) = calibration {
+            let nis = calibration.nis_mean.map_or("-".to_owned(), |nis| format!("{nis:.3}"));
+            let worst = calibration
+                .worst_normalized_error
+                .map_or(String::new(), |worst| format!(", worst parameter {worst:.1} σ off"));
+            line(format!(
+                "  calibration {} h: NIS {nis}{worst}",
+                number::plain(calibration.duration_h, 4)
+            ));
+            if let Some(reason) = &calibration.refused {
+                line(format!("  refused: {reason}"));
+            }
+        }
+        if let Some(n) = navigation {
+            let error = |e: &octant_score::summary::ErrorScore| {
+                let slope =
+                    e.slope_per_day.map_or(String::new(), |s| format!(", {s:+.3} arcmin/day"));
+                format!("max {:.3}, rms {:.3} arcmin{slope}", e.max, e.rms)
+            };
+            line(format!("  navigation {} h", number::plain(n.duration_h, 4)));
+            line(format!("    latitude  {}", error(&n.latitude_error_arcmin)));
+            line(format!("    longitude {}", error(&n.longitude_error_arcmin)));
+            line(format!(
+                "    radial    max {:.3}, rms {:.3} nmi, {:.4} nmi/h",
+                n.radial_error_nmi.max, n.radial_error_nmi.rms, n.radial_error_nmi.rate_per_h
+            ));
+        }
+    }
+    let differences = std::iter::once((&summary.method, &summary.counterfactual))
+        .chain(summary.baseline.iter().map(|b| (&b.label, &b.counterfactual)));
+    for (label, difference) in differences {
+        let Some(difference) = difference else { continue };
+        line(format!("against the twin without faults, {label}"));
+        line(format!("  {}", in_words(difference)));
+        for fault in &difference.faults {
+            let noticed = match (&fault.noticed_by, fault.delay_s) {
+                (Some(by), Some(delay_s)) => format!("noticed as {by} after {delay_s:.3} s"),
+                _ => "not noticed".to_owned(),
+            };
+            line(format!("  {}: {noticed}", fault.id));
+        }
+    }
+    out
+}
+
+/// Renders the parameters as a table, for methods without truth. Empty for a refused least-squares
+/// calibration, whose numbers never came about.
+#[must_use]
+pub fn parameter_text(summary: &Summary) -> String {
+    match &summary.calibration {
+        Some(c) if c.refused.is_none() || c.estimator == "kalman" => parameter_lines(&c.parameters),
+        _ => String::new(),
+    }
+}
+
+/// Renders estimates with their σ, one per line, then the names of those that were not estimated.
+#[must_use]
+pub fn parameter_lines(parameters: &BTreeMap<String, ParameterScore>) -> String {
+    use std::fmt::Write as _;
+    let (mut out, mut left) = (String::new(), Vec::new());
+    for name in NAMES {
+        let Some(p) = parameters.get(name) else { continue };
+        let Some(sigma) = p.sigma else {
+            left.push(name);
+            continue;
+        };
+        // As many decimals as the σ, so that both can be compared.
+        let decimals = number::decimals_for(sigma, 3);
+        let _ = writeln!(
+            out,
+            "  {name:24} {:>16} ± {} {}",
+            number::fixed(p.estimate, decimals),
+            number::fixed(sigma, decimals),
+            p.unit
+        );
+    }
+    if !left.is_empty() {
+        let _ = writeln!(out, "  not estimated: {}", left.join(" "));
+    }
+    out
+}

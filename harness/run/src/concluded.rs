@@ -1,0 +1,70 @@
+//! Stores the parameters of a calibration that ended with the stream, as an event of the recording.
+//!
+//! Messages on `/parameters` belong to an output, and an output to a sample. After the last sample
+//! there is none.
+
+use octant_recorder::Event;
+use octant_sample::Parameters;
+use octant_sample::parameters::NAMES;
+use octant_sample::parameters::ParameterEstimate;
+use serde_json::{Map, Value};
+
+/// Kind of the event.
+const KIND: &str = "calibration";
+
+/// Builds the event: `parameters` and `sigma` by name, SI, and their `revision`; σ is null where a
+/// parameter isn't estimated.
+#[must_use]
+pub fn event(estimate: &ParameterEstimate) -> Event {
+    let by_name = |values: &[f64]| -> Map<String, Value> {
+        NAMES
+            .iter()
+            .zip(values)
+            .map(|(name, value)| ((*name).to_owned(), (*value).into()))
+            .collect()
+    };
+    Event {
+        kind: KIND.to_owned(),
+        detail: serde_json::json!({
+            "parameters": by_name(&estimate.parameters.to_array()),
+            "sigma": by_name(&estimate.sigma),
+            "revision": estimate.revision,
+        }),
+    }
+}
+
+/// Reads the parameters of such an event; `None` for another one, or an incomplete one.
+#[must_use]
+pub fn estimate(event: &Event) -> Option<ParameterEstimate> {
+    if event.kind != KIND {
+        return None;
+    }
+    let (mut parameters, mut sigma) = ([0.0; NAMES.len()], [f64::NAN; NAMES.len()]);
+    for (i, name) in NAMES.iter().enumerate() {
+        parameters[i] = event.detail.get("parameters")?.get(name)?.as_f64()?;
+        sigma[i] = event.detail.get("sigma")?.get(name)?.as_f64().unwrap_or(f64::NAN);
+    }
+    let revision = event.detail.get("revision")?.as_u64()?.try_into().ok()?;
+    Some(ParameterEstimate { revision, parameters: Parameters::from_array(&parameters), sigma })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_recorded_is_read_again() {
+        let values: [f64; NAMES.len()] = std::array::from_fn(|i| 0.1 + i as f64 * 1e-7);
+        let mut sigma = values.map(|v| v / 3.0);
+        sigma[7] = f64::NAN;
+        let parameters = Parameters::from_array(&values);
+        let event = event(&ParameterEstimate { revision: 3, parameters, sigma });
+        let json = serde_json::to_string(&event).unwrap();
+        let found = estimate(&serde_json::from_str(&json).unwrap()).unwrap();
+        assert_eq!(found.parameters, parameters);
+        assert_eq!(found.sigma.map(f64::to_bits), sigma.map(f64::to_bits));
+        assert_eq!(found.revision, 3);
+        let other = Event { kind: "refused".to_owned(), detail: event.detail };
+        assert!(estimate(&other).is_none());
+    }
+}

@@ -1,0 +1,235 @@
+//! Checks that a unit's answers follow its input: a constant solution, a NIS or parameters that
+//! never change, and errors of exactly zero are neither navigation nor calibration.
+//!
+//! Sensors have noise, so a solution computed from them changes with every sample. A finding here
+//! proves nothing against a unit; it shows that the run is no evidence.
+
+use octant_endpoint::Tells;
+use octant_sample::{Mode, Output};
+
+/// Time for which a navigation solution may stay the same, ns: units that update once a second are
+/// common, once a minute none.
+const STANDING_NS: u64 = 60_000_000_000;
+/// Number of solutions, one a second, with which a new one is compared.
+const REMEMBERED: usize = 64;
+/// Minimum number of NIS values for the statement that all are equal.
+const NIS_LEAST: u64 = 8;
+
+/// Watches one run, without allocating memory.
+#[derive(Clone, Debug)]
+pub struct Follow {
+    /// Bits of the navigation solution at the last answer, by part, with the time since which each
+    /// stays the same.
+    parts: [Standing; 3],
+    /// Longest time for which a part stayed the same, ns, with its start.
+    longest: [(u64, u64); 3],
+    /// Hashes of solutions of the last minute.
+    remembered: [u64; REMEMBERED],
+    seconds: u64,
+    repeated: u64,
+    next_ns: u64,
+    began_ns: Option<u64>,
+    last_ns: u64,
+    nis: Option<u64>,
+    nis_count: u64,
+    nis_alike: bool,
+    told: [bool; 3],
+}
+
+/// Bits of a part of the solution, and the time since which they stay the same.
+#[derive(Clone, Copy, Debug, Default)]
+struct Standing {
+    bits: u64,
+    since_ns: u64,
+}
+
+/// Names of the parts.
+const PARTS: [&str; 3] = ["position", "velocity", "attitude"];
+
+impl Follow {
+    /// Creates a watch of a unit that reports these quantities; `None`: its solution isn't checked.
+    #[must_use]
+    pub fn new(tells: Option<Tells>) -> Self {
+        Self {
+            told: tells
+                .map_or([false; 3], |tells| [tells.position, tells.velocity, tells.attitude]),
+            parts: [Standing::default(); 3],
+            longest: [(0, 0); 3],
+            remembered: [0; REMEMBERED],
+            seconds: 0,
+            repeated: 0,
+            next_ns: 0,
+            began_ns: None,
+            last_ns: 0,
+            nis: None,
+            nis_count: 0,
+            nis_alike: true,
+        }
+    }
+
+    /// Checks an answer, with the time of its sample, ns.
+    #[inline]
+    pub fn epoch(&mut self, now_ns: u64, output: &Output) {
+        if !output.nis.is_nan() {
+            self.nis(output.nis);
+        }
+        if output.mode != Mode::Navigating {
+            self.began_ns = None;
+            return;
+        }
+        self.last_ns = now_ns;
+        let n = &output.navigation;
+        let bits = [mix(&[n.latitude_rad, n.longitude_rad]), mix(&n.velocity_mps), mix(&n.q_nb)];
+        if self.began_ns.is_none() {
+            self.began_ns = Some(now_ns);
+            self.parts = bits.map(|bits| Standing { bits, since_ns: now_ns });
+            self.next_ns = now_ns;
+        }
+        for i in 0..PARTS.len() {
+            let part = &mut self.parts[i];
+            let standing_ns = now_ns.saturating_sub(part.since_ns);
+            if part.bits != bits[i] {
+                *part = Standing { bits: bits[i], since_ns: now_ns };
+            } else if standing_ns > self.longest[i].0 {
+                self.longest[i] = (standing_ns, part.since_ns);
+            }
+        }
+        if now_ns >= self.next_ns {
+            self.next_ns = now_ns + 1_000_000_000;
+            self.second(bits[0] ^ bits[1].rotate_left(21) ^ bits[2].rotate_left(42));
+        }
+    }
+
+    /// Compares the solution of a second with those of the last minute.
+    fn second(&mut self, hash: u64) {
+        let there = self.remembered.len().min(self.seconds as usize);
+        self.repeated += u64::from(self.remembered[..there].contains(&hash));
+        self.remembered[self.seconds as usize % REMEMBERED] = hash;
+        self.seconds += 1;
+    }
+
+    #[inline]
+    fn nis(&mut self, nis: f64) {
+        let bits = nis.to_bits();
+        self.nis_alike &= *self.nis.get_or_insert(bits) == bits;
+        self.nis_count += 1;
+    }
+
+    /// Describes the answers that don't follow, in plain words.
+    #[must_use]
+    pub fn reasons(&self) -> Vec<String> {
+        let mut reasons = Vec::new();
+        let navigated_ns = self.began_ns.map_or(0, |began| self.last_ns.saturating_sub(began));
+        // In a short navigation half of its length is enough.
+        let standing_ns = STANDING_NS.min((navigated_ns / 2).max(1_000_000_000));
+        for (i, part) in PARTS.into_iter().enumerate() {
+            let (longest_ns, since_ns) = self.longest[i];
+            if self.told[i] && longest_ns >= standing_ns {
+                reasons.push(format!(
+                    "the {part} of the navigation doesn't follow the samples: not a bit of it changed \
+                     for {:.3} s from {:.3} s on",
+                    longest_ns as f64 * 1e-9,
+                    since_ns as f64 * 1e-9
+                ));
+            }
+        }
+        if reasons.is_empty()
+            && self.told.contains(&true)
+            && self.seconds >= 8
+            && self.repeated * 2 > self.seconds
+        {
+            reasons.push(format!(
+                "the navigation doesn't follow the samples: {} of {} solutions, one a second, are \
+                 repetitions of those before",
+                self.repeated, self.seconds
+            ));
+        }
+        if self.nis_count >= NIS_LEAST && self.nis_alike {
+            reasons.push(format!(
+                "the NIS doesn't follow the samples: all {} are {}",
+                self.nis_count,
+                self.nis.map_or(f64::NAN, f64::from_bits)
+            ));
+        }
+        reasons
+    }
+}
+
+/// Mixes the bits of some numbers into one word: equal numbers give equal words.
+#[inline]
+fn mix(values: &[f64]) -> u64 {
+    values.iter().fold(0, |word: u64, value| {
+        (word.rotate_left(23) ^ value.to_bits()).wrapping_mul(0x9e37_79b9_7f4a_7c15)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use octant_sample::Navigation;
+
+    /// Watches 300 s of navigation at 10 Hz; `number` gives the solution of each sample.
+    fn watch(number: impl Fn(u64) -> [f64; 3]) -> Vec<String> {
+        let mut follow = Follow::new(Some(Tells::ALL));
+        for k in 1..=3000 {
+            let [position, velocity, attitude] = number(k);
+            let output = Output {
+                mode: Mode::Navigating,
+                navigation: Navigation {
+                    latitude_rad: position,
+                    velocity_mps: [velocity, 0.0, 0.0],
+                    q_nb: [attitude, 0.0, 0.0, 0.0],
+                    ..Navigation::default()
+                },
+                nis: f64::NAN,
+                ..Output::default()
+            };
+            follow.epoch(k * 100_000_000, &output);
+        }
+        follow.reasons()
+    }
+
+    #[test]
+    fn a_solution_that_changes_follows_also_slowly() {
+        assert!(watch(|k| [k as f64; 3]).is_empty());
+        // Updated once a second, and parts of it once a second.
+        assert!(watch(|k| [(k / 10) as f64; 3]).is_empty());
+        assert!(watch(|k| [k as f64, (k / 10) as f64, (k / 10) as f64]).is_empty());
+        // Back and forth, as on a ship, and never to the same bits.
+        assert!(watch(|k| [(k as f64 * 0.37).sin(), (k as f64).cos(), k as f64]).is_empty());
+    }
+
+    #[test]
+    fn a_part_that_stands_still_is_found() {
+        let all = watch(|_| [0.5; 3]);
+        assert_eq!(all.len(), 3, "{all:?}");
+        let position = watch(|k| [0.5, k as f64, k as f64]);
+        assert_eq!(position.len(), 1);
+        assert!(position[0].starts_with("the position of the navigation doesn't follow"));
+        assert!(position[0].ends_with("for 299.900 s from 0.100 s on"), "{position:?}");
+        // Constant from the middle on.
+        let half = watch(|k| [k.min(1500) as f64, k as f64, k as f64]);
+        assert!(half[0].contains("150.000 s from 150.000 s on"), "{half:?}");
+    }
+
+    #[test]
+    fn a_solution_that_goes_in_a_circle_is_found() {
+        let circle = watch(|k| [((k / 10) % 5) as f64; 3]);
+        assert_eq!(circle.len(), 1);
+        assert!(circle[0].contains("are repetitions"), "{circle:?}");
+    }
+
+    #[test]
+    fn nis_that_are_all_alike_are_found() {
+        let with = |nis: &dyn Fn(u64) -> f64| {
+            let mut follow = Follow::new(Some(Tells::ALL));
+            for k in 0..20 {
+                follow.epoch(k, &Output { nis: nis(k), ..Output::default() });
+            }
+            follow.reasons()
+        };
+        assert!(with(&|_| f64::NAN).is_empty());
+        assert!(with(&|k| k as f64).is_empty());
+        assert_eq!(with(&|_| 0.0), ["the NIS doesn't follow the samples: all 20 are 0"]);
+    }
+}

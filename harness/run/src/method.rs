@@ -1,0 +1,463 @@
+//! Runs one method of a scenario, from its configuration to its scores.
+
+pub use super::error::{MethodError, SetupError, core_problem};
+pub use super::recording::Recording;
+
+use super::concluded;
+use super::done::Plan;
+use super::drive::{Ended, RunError, drive};
+use super::faulted::{Faulted, drive_faulted};
+use super::host::Host;
+use super::realtime::{Kept, Line, drive_by_clock};
+use super::watch::Watcher;
+use crate::passes::{PassError, in_passes};
+use octant_base::control::Control;
+use octant_calibration::config as core;
+use octant_calibration::table::CalibrationTable;
+use octant_endpoint::{Conclusion, Endpoint, EndpointError, InProcess, Tells};
+use octant_faults::Receipt;
+use octant_recorder::{
+    Event, Policy, Recorder, RecorderError, RecorderOptions, RecorderSummary, Samples, Trouble,
+};
+use octant_sample::parameters::ParameterEstimate;
+use octant_sample::parameters::{Group, NAMES};
+use octant_sample::{Mode, Output, Parameters};
+use octant_scenario::resolve::Draws;
+use octant_scenario::{self as scenario, Method, Realtime, Scenario};
+use octant_score::parameters::{nees, score, worst_normalized_error};
+use octant_score::summary::{Calibration, HeightChannel, Navigation};
+use octant_score::trace::Trace;
+use octant_source::configure::configurations;
+use octant_source::{PlantSource, Source, SourceError};
+use std::sync::Arc;
+use std::sync::atomic::Ordering;
+
+/// Result of one method.
+#[derive(Debug)]
+pub struct MethodRun {
+    /// Name of the method, as in "eight positions with G".
+    pub label: String,
+    /// End of the loop.
+    pub ended: Ended,
+    /// Result of the calibration.
+    pub calibration: Option<Calibration>,
+    /// Result of the navigation.
+    pub navigation: Option<Navigation>,
+    /// Summary of the recorder.
+    pub recorder: RecorderSummary,
+    /// Observations of the run.
+    pub watcher: Watcher,
+    /// True parameters, where the source knows them.
+    pub truth: Option<Parameters>,
+    /// The calibration table, where the calibration was accepted.
+    pub table: Option<CalibrationTable>,
+    /// Receipts of the faults, in the order of the scenario.
+    pub receipts: Vec<Receipt>,
+    /// Twin run: the same run without its faults.
+    pub twin: Option<Arc<MethodRun>>,
+    /// Failure in the middle that ended the run.
+    pub broken: Option<RunError>,
+    /// Time keeping of a run by the clock.
+    pub kept: Option<Kept>,
+    /// Device and traffic of a run over a wire; as in the recording.
+    pub link: Option<serde_json::Value>,
+    /// Clocks and counts of a real instrument and its table; as in the recording.
+    pub bench: Option<serde_json::Value>,
+    /// Description of the point where the source ended in the middle of something.
+    pub cut_short: Option<String>,
+}
+
+/// Returns the name of a method.
+#[must_use]
+pub fn label(scenario: &Scenario, method: Method) -> String {
+    let calibration = match method {
+        Method::Primary => scenario.calibration.as_ref(),
+        Method::Baseline => scenario.baseline.as_ref(),
+    };
+    let Some(calibration) = calibration else { return "navigation alone".to_owned() };
+    let estimator = match &calibration.estimator {
+        core::Estimator::Kalman(_) => {
+            let g = octant_sample::parameters::Group::GDependent;
+            if calibration.estimates(g) { "with G states" } else { "without G states" }
+        }
+        core::Estimator::LeastSquares(_) => "by least squares",
+        core::Estimator::ExternalTurntable(_) => "on an external turntable",
+    };
+    if calibration.name == "own stops" {
+        format!("own stops {estimator}")
+    } else {
+        format!("{} positions {estimator}", calibration.name)
+    }
+}
+
+/// The configuration of the core of a method, as a run has it.
+///
+/// # Errors
+/// If it can't be made.
+pub fn core_of(
+    scenario: &Scenario,
+    method: Method,
+    seed: u64,
+) -> Result<core::Config, MethodError> {
+    let (plant, mut core, _) = configurations(scenario, method, seed).map_err(SetupError::from)?;
+    if scenario.source.is_recorded() {
+        settle(scenario, &plant, &mut core)?;
+    }
+    Ok(core)
+}
+
+/// Runs one method of a scenario with a seed.
+///
+/// # Errors
+/// If it can't be set up, or source, endpoint or recorder fail.
+pub fn run_method(
+    scenario: &Scenario,
+    method: Method,
+    seed: u64,
+    recording: Recording<'_>,
+    control: &Control,
+) -> Result<MethodRun, MethodError> {
+    let mut run = run_as_far_as_it_goes(scenario, method, seed, recording, control)?;
+    match run.broken.take() {
+        None => Ok(run),
+        Some(error) => Err(error.into()),
+    }
+}
+
+/// Runs as [`run_method`]. If source, endpoint or the disk of the recording go away in the middle,
+/// the run ends there, states the failure, and its recording is complete up to that point.
+///
+/// # Errors
+/// If it can't be set up, a file can't be read to its end, or the recorder fails otherwise.
+pub fn run_as_far_as_it_goes(
+    scenario: &Scenario,
+    method: Method,
+    seed: u64,
+    recording: Recording<'_>,
+    control: &Control,
+) -> Result<MethodRun, MethodError> {
+    let (plant, mut core, draws) =
+        configurations(scenario, method, seed).map_err(SetupError::from)?;
+    if scenario.source.is_recorded() {
+        settle(scenario, &plant, &mut core)?;
+    }
+    let trouble = Trouble::default();
+    let mut faulted = faulted(scenario, seed)?;
+    if let Some(faulted) = &mut faulted {
+        // Set up before the session with a device begins: from then on the device waits for its
+        // first sample.
+        faulted.host = Host::new(scenario, &recording, &trouble)?;
+    }
+    let opened = octant_source::open(scenario, &plant).map_err(SetupError::Source)?;
+    let elsewhere = octant_endpoint::open(scenario, &core).map_err(SetupError::from)?;
+    let true_parameters = opened.as_ref().is_none_or(|source| source.has_true_parameters());
+    let options = RecorderOptions {
+        trouble,
+        ..recorder_options(scenario, seed, &draws, method, true_parameters)
+    };
+    let mut recorder = match recording {
+        Recording::File(path) => Recorder::to_file(path, &options).map_err(SetupError::Recorder)?,
+        Recording::Hash => Recorder::hash_only(&options),
+        Recording::HashAlone => Recorder::stream_hash_only(&options),
+        Recording::None => Recorder::none(),
+    };
+    let tells = elsewhere.as_ref().map_or(Tells::ALL, |endpoint| endpoint.tells());
+    let recorded = opened.as_ref().and_then(|source| source.samples_planned());
+    let plan = Plan::of(scenario, method, &core, tells, recorded);
+    let mut watcher = Watcher::new(plan);
+    let compared = match recording {
+        Recording::HashAlone => false,
+        Recording::Hash => true,
+        Recording::File(_) | Recording::None => !scenario.faults.is_empty(),
+    };
+    watcher.trace = compared.then(Trace::new);
+    let samples = scenario.samples().unwrap_or(u64::MAX);
+    let realtime =
+        scenario.realtime.by_clock.then_some((&scenario.realtime, scenario.sample_period_ns));
+    let closed = match (opened, elsewhere) {
+        // Statically dispatched: this loop processes ten million samples a second.
+        (None, None) => {
+            let mut source = PlantSource::new(&plant, samples).map_err(SetupError::Plant)?;
+            let mut endpoint = InProcess::new(&core).map_err(SetupError::Core)?;
+            let faulted = faulted.as_mut();
+            let line = Line { source: &mut source, faulted, endpoint: &mut endpoint };
+            to_the_end(realtime, line, &mut recorder, &mut watcher, control)?
+        }
+        (opened, elsewhere) => {
+            let mut source: Box<dyn Source> = match opened {
+                Some(source) => source,
+                None => Box::new(PlantSource::new(&plant, samples).map_err(SetupError::Plant)?),
+            };
+            let mut endpoint: Box<dyn Endpoint> = match elsewhere {
+                Some(endpoint) => endpoint,
+                None => Box::new(InProcess::new(&core).map_err(SetupError::Core)?),
+            };
+            let faulted = faulted.as_mut();
+            let line = Line { source: &mut source, faulted, endpoint: &mut endpoint };
+            to_the_end(realtime, line, &mut recorder, &mut watcher, control)?
+        }
+    };
+    let receipts = faulted.map_or_else(Vec::new, |faulted| faulted.station.receipts());
+    let truth = true_parameters.then_some(draws.parameters);
+    let run = finish(scenario, method, closed, recorder, watcher, truth)?;
+    Ok(MethodRun { receipts, ..run })
+}
+
+/// State at the end of a loop.
+struct Closed {
+    ended: Ended,
+    broken: Option<RunError>,
+    /// Answer to the end of the source.
+    last: Option<Output>,
+    conclusion: Conclusion,
+    estimate: ParameterEstimate,
+    kept: Option<Kept>,
+    link: Option<serde_json::Value>,
+    bench: Option<serde_json::Value>,
+    cut_short: Option<String>,
+}
+
+/// Drives to the end or a failure, and asks the core for its conclusion.
+fn to_the_end<S: Source, E: Endpoint>(
+    realtime: Option<(&Realtime, u64)>,
+    line: Line<'_, S, E>,
+    recorder: &mut Recorder,
+    watcher: &mut Watcher,
+    control: &Control,
+) -> Result<Closed, RunError> {
+    let Line { source, faulted, endpoint } = line;
+    let mut kept = None;
+    let driven = match (realtime, faulted) {
+        (None, None) => drive(source, endpoint, recorder, watcher, control),
+        (None, Some(faulted)) => {
+            drive_faulted(source, faulted, endpoint, recorder, watcher, control)
+        }
+        (Some((settings, period_ns)), faulted) => {
+            let line = Line { source, faulted, endpoint: &mut *endpoint };
+            let (driven, time) =
+                drive_by_clock(settings, period_ns, line, recorder, watcher, control);
+            kept = Some(time);
+            driven
+        }
+    };
+    // Moving equipment is stopped first.
+    let broken = driven.as_ref().err().map(ToString::to_string);
+    let (bench, stopped) = source.conclude(broken.as_deref());
+    let driven = match stopped {
+        None => driven,
+        Some(error) => driven.and(Err(error.into())),
+    };
+    let cut_short = source.cut_short();
+    if let Some(detail) = &bench {
+        recorder.event(Event { kind: "bench".to_owned(), detail: detail.clone() });
+    }
+    let driven = driven.and_then(|ended| match ended {
+        Ended::SourceEnded => Ok((ended, endpoint.end_of_stream()?)),
+        _ => Ok((ended, None)),
+    });
+    if let Err(RunError::Endpoint(EndpointError::Misbehaved(misbehaviour))) = &driven {
+        watcher.misbehaved.get_or_insert_with(|| misbehaviour.clone());
+    }
+    let (ended, last, broken) = match driven {
+        // Errors that came while the run was being stopped after a misbehaviour aren't its cause.
+        _ if watcher.misbehaved.is_some() => (Ended::Misbehaved, None, None),
+        Ok((ended, last)) => (ended, last, None),
+        // An interrupt stopped the moving equipment without waiting for the run.
+        Err(error) if error.is_gone() && control.cancel.load(Ordering::Relaxed) => {
+            (Ended::Cancelled, None, None)
+        }
+        Err(error) if error.is_gone() => {
+            recorder.event(Event {
+                kind: "error".to_owned(),
+                detail: serde_json::json!({ "reason": error.to_string() }),
+            });
+            (Ended::Broken, None, Some(error))
+        }
+        Err(error) => return Err(error),
+    };
+    let mut conclusion = endpoint.conclusion();
+    let link = conclusion.events.iter().find(|event| event.kind == "link");
+    let link = link.map(|event| event.detail.clone());
+    conclusion.events.drain(..).for_each(|event| recorder.event(event));
+    let estimate = endpoint.parameters();
+    Ok(Closed { ended, broken, last, conclusion, estimate, kept, link, bench, cut_short })
+}
+
+/// Builds the station of a scenario, with a host without targets; `None` without faults.
+pub fn faulted(scenario: &Scenario, seed: u64) -> Result<Option<Faulted>, SetupError> {
+    let station = scenario
+        .station(seed)
+        .map_err(|(id, error)| SetupError::Fault { id, reason: error.to_string() })?;
+    let mut fires: Vec<(u64, String)> = (scenario.faults.iter())
+        .flat_map(|fault| fault.fires.iter().map(|at| (*at, fault.spec.id.clone())))
+        .collect();
+    fires.sort_unstable();
+    Ok(station.map(|station| Faulted { station, fires, host: Host::default() }))
+}
+
+/// Iterates a least-squares calibration on recorded samples. Least squares linearises about its
+/// initial parameters, and a real instrument's errors can be large: the samples are passed
+/// repeatedly until the parameters settle, and the recorded run is one more pass.
+fn settle(
+    scenario: &Scenario,
+    plant: &octant_plant::config::Config,
+    core: &mut core::Config,
+) -> Result<(), MethodError> {
+    let least_squares = core
+        .calibration
+        .as_ref()
+        .is_some_and(|c| matches!(c.estimator, core::Estimator::LeastSquares(_)));
+    if !least_squares {
+        return Ok(());
+    }
+    let open = || match octant_source::open(scenario, plant)? {
+        Some(source) => Ok(source),
+        None => Err(SourceError::Read {
+            path: "source.uri".to_owned(),
+            reason: "a file is expected here".to_owned(),
+        }),
+    };
+    let passes = in_passes(core, open).map_err(|error| match error {
+        PassError::Config(error) => MethodError::Setup(SetupError::Core(error)),
+        PassError::Source(error) => MethodError::Run(RunError::Source(error)),
+    })?;
+    if passes.core.table().is_some() {
+        core.initial_parameters = *passes.core.parameters();
+    }
+    Ok(())
+}
+
+/// Returns the recorder's options of a method, from the scenario.
+fn recorder_options(
+    scenario: &Scenario,
+    seed: u64,
+    draws: &Draws,
+    method: Method,
+    true_parameters: bool,
+) -> RecorderOptions {
+    let record = &scenario.record;
+    let method = match method {
+        Method::Primary => "primary",
+        Method::Baseline => "baseline",
+    };
+    RecorderOptions {
+        policy: Policy {
+            samples: if record.full_samples { Samples::Full } else { Samples::Decimated },
+            period_ns: record.every_samples * scenario.sample_period_ns,
+            parameters_period_ns: record.parameters_period_ns,
+        },
+        scenario: scenario.to_resolved_toml(seed, draws),
+        metadata: [
+            ("method", method.to_owned()),
+            ("seed", seed.to_string()),
+            ("true_parameters", true_parameters.to_string()),
+        ]
+        .map(|(key, value)| (key.to_owned(), value))
+        .into(),
+        ..RecorderOptions::default()
+    }
+}
+
+/// Scores the observations and closes the recording.
+fn finish(
+    scenario: &Scenario,
+    method: Method,
+    closed: Closed,
+    mut recorder: Recorder,
+    mut watcher: Watcher,
+    truth: Option<Parameters>,
+) -> Result<MethodRun, MethodError> {
+    let Closed { ended, broken, last, conclusion, estimate, kept, link, bench, cut_short } = closed;
+    if let Some(output) = last {
+        watcher.last_parameters = Some(estimate);
+        // No sample belongs to this output: the recording stores the parameters as an event.
+        if output.mode != watcher.last_mode && output.mode != Mode::Refused {
+            recorder.event(concluded::event(&estimate));
+            watcher.parameters(&output, &estimate);
+        }
+        watcher.epoch(&output);
+    }
+    let refused = match conclusion.refused {
+        None if watcher.last_mode == Mode::Refused => Some("the core doesn't say why".to_owned()),
+        refused => refused,
+    };
+    if let Some(reason) = &refused {
+        recorder.event(Event {
+            kind: "refused".to_owned(),
+            detail: serde_json::json!({ "reason": reason }),
+        });
+    }
+    let (_, done) = watcher.work();
+    let calibration = match method {
+        Method::Primary => scenario.calibration.as_ref(),
+        Method::Baseline => scenario.baseline.as_ref(),
+    }
+    .map(|plan| {
+        let parameters = score(truth.as_ref(), &estimate.parameters, &estimate.sigma);
+        let mut health = watcher.health.counts().clone();
+        health.measurements = conclusion.measurements.unwrap_or(health.measurements);
+        let nis_mean = conclusion.nis_mean.or(watcher.health.nis_mean());
+        Calibration {
+            positions: plan.name.clone(),
+            estimator: estimator_name(&plan.estimator).to_owned(),
+            duration_h: done.calibration_s.unwrap_or(plan.duration_s) / 3600.0,
+            nis_mean: nis_mean.filter(|nis| nis.is_finite()),
+            nees: nees(&parameters),
+            worst_normalized_error: worst_normalized_error(&parameters, &planned_of(plan)),
+            parameters,
+            refused: refused.clone(),
+            health,
+        }
+    });
+    let navigation = match watcher.drift() {
+        Some(drift) => Some(drift.finish(HeightChannel::Held).map_err(RunError::from)?),
+        None => None,
+    };
+    let table = conclusion.table;
+    let (recorder, broken) = match recorder.finish() {
+        Ok(summary) => (summary, broken),
+        // The end of the recording found no space: the file is readable up to there, as after any
+        // other end.
+        Err(error @ RecorderError::Write { .. }) => {
+            (RecorderSummary::default(), broken.or(Some(error.into())))
+        }
+        Err(error) => return Err(RunError::from(error).into()),
+    };
+    let ended = if broken.is_some() { Ended::Broken } else { ended };
+    Ok(MethodRun {
+        label: label(scenario, method),
+        ended,
+        calibration,
+        navigation,
+        recorder,
+        watcher,
+        truth,
+        table,
+        receipts: Vec::new(),
+        twin: None,
+        broken,
+        kept,
+        link,
+        bench,
+        cut_short,
+    })
+}
+
+/// Lists the parameters that a calibration is to estimate, where the plan names them.
+#[must_use]
+pub fn planned_of(plan: &scenario::Calibration) -> Vec<&'static str> {
+    match &plan.estimator {
+        core::Estimator::Kalman(_) => {
+            (0..NAMES.len()).filter(|i| plan.estimates(Group::of(*i))).map(|i| NAMES[i]).collect()
+        }
+        core::Estimator::LeastSquares(_) | core::Estimator::ExternalTurntable(_) => Vec::new(),
+    }
+}
+
+fn estimator_name(estimator: &core::Estimator) -> &'static str {
+    match estimator {
+        core::Estimator::Kalman(_) => "kalman",
+        core::Estimator::LeastSquares(_) => "least-squares",
+        core::Estimator::ExternalTurntable(_) => "external-turntable",
+    }
+}

@@ -1,0 +1,144 @@
+//! The smallest set of faults that still breaks a run: delta debugging (Zeller and Hildebrandt,
+//! "Simplifying and isolating failure-inducing input", IEEE TSE 28, 2002), on faults.
+//!
+//! The result is 1-minimal: without any one of its faults the run no longer fails in that way.
+//! Everything is deterministic, and no set is run twice.
+
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// Result of a set of faults.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Outcome {
+    /// The run still fails.
+    Breaks,
+    /// The run doesn't fail.
+    Holds,
+    /// The set can't be run: a fault waits for one that is not in the set.
+    Impossible,
+}
+
+/// One step of the search.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Step {
+    /// Numbers of the faults in the set, from 0, in the order of the scenario.
+    pub faults: Vec<usize>,
+    /// Result of the run with this set.
+    pub outcome: Outcome,
+}
+
+/// Shrinks the set of faults 0 to `count`. `test` runs a set. `None` if the whole set doesn't fail,
+/// or the empty one does: then no fault is responsible.
+///
+/// # Errors
+/// Errors of `test`.
+pub fn minimise<E>(
+    count: usize,
+    mut test: impl FnMut(&[usize]) -> Result<Outcome, E>,
+) -> Result<(Option<Vec<usize>>, Vec<Step>), E> {
+    let mut known: BTreeMap<Vec<usize>, Outcome> = BTreeMap::new();
+    let mut trail = Vec::new();
+    let mut breaks = |set: &[usize]| -> Result<bool, E> {
+        if let Some(outcome) = known.get(set) {
+            return Ok(*outcome == Outcome::Breaks);
+        }
+        let outcome = test(set)?;
+        known.insert(set.to_vec(), outcome);
+        trail.push(Step { faults: set.to_vec(), outcome });
+        Ok(outcome == Outcome::Breaks)
+    };
+    let mut set: Vec<usize> = (0..count).collect();
+    if !breaks(&set)? || breaks(&[])? {
+        return Ok((None, trail));
+    }
+    let mut parts = 2;
+    while set.len() >= 2 {
+        let size = set.len().div_ceil(parts);
+        let chunks: Vec<Vec<usize>> = set.chunks(size).map(<[usize]>::to_vec).collect();
+        let rest_of = |chunk: &Vec<usize>| -> Vec<usize> {
+            set.iter().copied().filter(|fault| !chunk.contains(fault)).collect()
+        };
+        let mut smaller = None;
+        for chunk in &chunks {
+            if breaks(chunk)? {
+                smaller = Some((chunk.clone(), 2));
+                break;
+            }
+        }
+        if smaller.is_none() && chunks.len() > 2 {
+            for chunk in &chunks {
+                let rest = rest_of(chunk);
+                if breaks(&rest)? {
+                    smaller = Some((rest, (chunks.len() - 1).max(2)));
+                    break;
+                }
+            }
+        }
+        match smaller {
+            Some((found, finer)) => (set, parts) = (found, finer),
+            None if parts >= set.len() => break,
+            None => parts = (2 * parts).min(set.len()),
+        }
+    }
+    Ok((Some(set), trail))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Minimises with a run that fails if all of `needed` are in the set.
+    fn minimal(count: usize, needed: &[usize]) -> (Option<Vec<usize>>, Vec<Step>) {
+        minimise(count, |set| {
+            Ok::<_, ()>(if needed.iter().all(|fault| set.contains(fault)) {
+                Outcome::Breaks
+            } else {
+                Outcome::Holds
+            })
+        })
+        .unwrap()
+    }
+
+    #[test]
+    fn it_finds_what_is_needed_and_nothing_else() {
+        for needed in [vec![0], vec![7], vec![2, 5], vec![0, 7], vec![1, 3, 6], (0..8).collect()] {
+            let (found, trail) = minimal(8, &needed);
+            assert_eq!(found, Some(needed));
+            let mut tried: Vec<_> = trail.iter().map(|step| &step.faults).collect();
+            tried.sort();
+            tried.dedup();
+            assert_eq!(tried.len(), trail.len(), "a set was run twice");
+        }
+    }
+
+    #[test]
+    fn a_set_that_holds_or_breaks_without_faults_has_no_culprit() {
+        assert_eq!(minimal(4, &[9]).0, None);
+        assert_eq!(minimal(4, &[]).0, None);
+    }
+
+    #[test]
+    fn any_one_fault_is_enough_where_each_breaks_alone() {
+        let (found, _) = minimise(5, |set| {
+            Ok::<_, ()>(if set.is_empty() { Outcome::Holds } else { Outcome::Breaks })
+        })
+        .unwrap();
+        assert_eq!(found, Some(vec![0]));
+    }
+
+    #[test]
+    fn a_fault_that_waits_for_another_stays_with_it() {
+        // Fault 3 makes the run fail, and can't be run without fault 1.
+        let (found, trail) = minimise(6, |set| {
+            Ok::<_, ()>(match (set.contains(&1), set.contains(&3)) {
+                (true, true) => Outcome::Breaks,
+                (false, true) => Outcome::Impossible,
+                _ => Outcome::Holds,
+            })
+        })
+        .unwrap();
+        assert_eq!(found, Some(vec![1, 3]));
+        assert!(trail.iter().any(|step| step.outcome == Outcome::Impossible));
+    }
+}

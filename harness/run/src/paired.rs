@@ -1,0 +1,135 @@
+//! Runs two methods over many seeds, on the same instruments with the same noise.
+
+use super::drive::Ended;
+use super::method::{MethodError, Recording, label, run_method};
+use octant_base::control::Control;
+use octant_base::pool::{in_order, processors};
+use octant_scenario::{Method, Scenario};
+use octant_score::compare::{Comparison, Maxima, PairedRun, compare};
+use octant_score::floor::Floor;
+use std::sync::atomic::Ordering;
+
+/// Members of the ensemble from which the floor of the random walk is computed.
+const FLOOR_MEMBERS: u32 = 400;
+/// Marks at which methods are compared, h.
+const MARKS_H: [f64; 2] = [24.0, 72.0];
+
+/// A method of a scenario.
+#[derive(Clone, Debug)]
+pub struct Side {
+    /// The scenario.
+    pub scenario: Scenario,
+    /// Method of that scenario.
+    pub method: Method,
+}
+
+/// Reasons why two methods could not be compared.
+#[derive(Debug, thiserror::Error)]
+pub enum PairedError {
+    /// A run gave no result.
+    #[error(transparent)]
+    Method(#[from] MethodError),
+    /// No navigation, or too short a one.
+    #[error("compare: both methods need a navigation of at least 24 h ([procedure.navigation])")]
+    NoNavigation,
+    /// Seeds have no effect on samples that are not simulated.
+    #[error("compare: seeds need source.uri = \"plant\", or a ship under it")]
+    NotSimulated,
+    /// Interrupted on request.
+    #[error("compare: interrupted")]
+    Cancelled,
+}
+
+/// Runs every seed with both sides on all processors, and compares. The order of the runs has no
+/// effect on the result.
+///
+/// `controls` has one entry for each run: two per seed.
+///
+/// # Errors
+/// If a run gives no result.
+pub fn paired(
+    first: &Side,
+    second: &Side,
+    seeds: &[u64],
+    controls: &[Control],
+) -> Result<Comparison, PairedError> {
+    let scenario = &second.scenario;
+    if [first, second].iter().any(|s| !s.scenario.source.has_plant()) {
+        return Err(PairedError::NotSimulated);
+    }
+    // Reported before hours of simulation, not after.
+    if [first, second].iter().any(|side| navigated_h(&side.scenario) < MARKS_H[0]) {
+        return Err(PairedError::NoNavigation);
+    }
+    let results = ensemble([first, second], seeds, controls)?;
+    let runs: Vec<PairedRun> = seeds
+        .iter()
+        .zip(results.chunks_exact(2))
+        .map(|(seed, pair)| PairedRun {
+            seed: *seed,
+            first: pair[0].maxima,
+            second: pair[1].maxima,
+            first_refused: pair[0].refused.clone(),
+            second_refused: pair[1].refused.clone(),
+        })
+        .collect();
+    let floor = Floor::new(
+        scenario.site.latitude_rad,
+        scenario.site.height_m,
+        scenario.imu.angle_random_walk,
+        scenario.imu.velocity_random_walk,
+    )
+    .maxima(&MARKS_H, FLOOR_MEMBERS, scenario.seed);
+    let [a, b] = [first, second].map(|side| label(&side.scenario, side.method));
+    let (a, b) = if a == b { (format!("{a} (first)"), format!("{b} (second)")) } else { (a, b) };
+    let comparison = compare(&scenario.title, &a, &b, &runs, &floor);
+    // Refusals of every seed are a result too.
+    if comparison.cells.is_empty() && comparison.refusals.is_none() {
+        return Err(PairedError::NoNavigation);
+    }
+    Ok(comparison)
+}
+
+/// Returns the length of the navigation, h; 0 without one.
+fn navigated_h(scenario: &Scenario) -> f64 {
+    let Some(plan) = &scenario.navigation else { return 0.0 };
+    plan.duration_s.map_or(f64::INFINITY, |duration_s| duration_s / 3600.0)
+}
+
+fn ensemble(
+    sides: [&Side; 2],
+    seeds: &[u64],
+    controls: &[Control],
+) -> Result<Vec<One>, PairedError> {
+    // Without one of them nothing can be concluded: the first failure ends the others.
+    let work = |task: usize| {
+        let control = controls.get(task).ok_or(PairedError::Cancelled)?;
+        one(sides[task % 2], seeds[task / 2], control).map(Some)
+    };
+    let maxima = in_order(processors(), 2 * seeds.len(), || false, work)?;
+    Ok(maxima.into_iter().flatten().collect())
+}
+
+/// Result of one method with one seed.
+#[derive(Clone, Debug)]
+struct One {
+    maxima: Maxima,
+    refused: Option<String>,
+}
+
+fn one(side: &Side, seed: u64, control: &Control) -> Result<One, PairedError> {
+    if control.cancel.load(Ordering::Relaxed) {
+        return Err(PairedError::Cancelled);
+    }
+    let run = run_method(&side.scenario, side.method, seed, Recording::None, control)?;
+    control.epochs.store(side.scenario.samples().unwrap_or_default(), Ordering::Relaxed);
+    if run.ended == Ended::Cancelled {
+        return Err(PairedError::Cancelled);
+    }
+    match (&run.navigation, run.calibration.and_then(|c| c.refused)) {
+        // A refused calibration is a result: it has no errors, and counts as refused.
+        (_, Some(reason)) => Ok(One { maxima: Maxima::default(), refused: Some(reason) }),
+        (Some(navigation), None) => Ok(One { maxima: Maxima::of(navigation), refused: None }),
+        (None, None) => Err(PairedError::NoNavigation),
+    }
+}

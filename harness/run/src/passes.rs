@@ -1,0 +1,115 @@
+//! Passes a calibration several times over the same samples.
+//!
+//! Least squares linearises about its initial parameters. If errors are large (MEMS: percents),
+//! each pass starts from the result of the previous one, until the parameters settle.
+
+use octant_calibration::state_machine::ConfigError;
+use octant_calibration::{Config, Core};
+use octant_sample::{GimbalCommand, Mode};
+use octant_source::{Epoch, Source, SourceError};
+
+/// Maximum number of passes.
+pub const PASSES_MAX: u32 = 10;
+
+/// A parameter has settled when a pass changes it by no more than this much of its σ.
+const SETTLED_SIGMA: f64 = 0.1;
+
+/// Result of the passes.
+#[derive(Clone, Debug)]
+pub struct Passes {
+    /// The core after its last pass: table, or refusal.
+    pub core: Core,
+    /// Number of passes.
+    pub passes: u32,
+    /// True if the last pass changed no parameter by more than a tenth of its σ. Otherwise it was
+    /// refused, or [`PASSES_MAX`] were not enough.
+    pub settled: bool,
+}
+
+/// Reasons why passes could not be made.
+#[derive(Debug, thiserror::Error)]
+pub enum PassError {
+    /// The configuration contradicts itself.
+    #[error(transparent)]
+    Config(#[from] ConfigError),
+    /// The source failed.
+    #[error(transparent)]
+    Source(#[from] SourceError),
+}
+
+/// Calibrates in passes. `open` opens the source again for each; the first one starts from
+/// `config.initial_parameters`.
+///
+/// # Errors
+/// If the configuration contradicts itself or the source fails. A refused calibration is no error:
+/// see [`Core::refusal`].
+pub fn in_passes<S: Source>(
+    config: &Config,
+    mut open: impl FnMut() -> Result<S, SourceError>,
+) -> Result<Passes, PassError> {
+    let mut config = config.clone();
+    let mut passes = 0;
+    loop {
+        passes += 1;
+        let core = pass(&config, &mut open()?)?;
+        let settled = core.table().is_some() && settled(&config, &core);
+        if settled || core.table().is_none() || passes == PASSES_MAX {
+            return Ok(Passes { core, passes, settled });
+        }
+        config.initial_parameters = *core.parameters();
+    }
+}
+
+/// Makes one pass: until the calibration is over, or the source.
+fn pass(config: &Config, source: &mut impl Source) -> Result<Core, PassError> {
+    let mut core = Core::new(config)?;
+    let mut command = GimbalCommand::default();
+    let mut epoch = Epoch::default();
+    while source.next(&command, &mut epoch)? {
+        let output = core.step(&epoch.sample, epoch.aiding.as_ref());
+        command = output.gimbal_command;
+        if !matches!(output.mode, Mode::Aligning | Mode::Calibrating) {
+            return Ok(core);
+        }
+    }
+    core.end_of_stream();
+    Ok(core)
+}
+
+/// Returns whether a pass changed no parameter significantly. A parameter that isn't estimated has
+/// no σ, and doesn't change.
+fn settled(before: &Config, core: &Core) -> bool {
+    let (before, after) = (before.initial_parameters.to_array(), core.parameters().to_array());
+    let moved = |((before, after), sigma): ((f64, f64), f64)| {
+        (after - before).abs() > SETTLED_SIGMA * sigma
+    };
+    !before.into_iter().zip(after).zip(*core.sigma()).any(moved)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use octant_earth::Vector3;
+    use octant_scenario::resolve::{Draws, Seeded};
+    use octant_scenario::{Method, Scenario};
+    use octant_source::PlantSource;
+
+    #[test]
+    fn a_source_that_ends_early_concludes_the_calibration() {
+        let text = "schema = 1\n[procedure.calibration]\nduration = \"4 h\"\n";
+        let scenario = Scenario::parse(text, "f", std::path::Path::new(""), &[]).unwrap();
+        let draws = Draws::of(&scenario, &Seeded(1));
+        let (q_nb, velocity) = (scenario.mean_attitude(), Vector3::zeros());
+        let config = scenario.core(Method::Primary, &draws, &q_nb, &velocity).unwrap();
+        // Twelfth part of the calibration's time.
+        let samples = scenario.calibration_samples() / 12;
+        let mut source = PlantSource::new(&scenario.plant(1, &draws), samples).unwrap();
+        let mut core = pass(&config, &mut source).unwrap();
+        assert_eq!(core.refusal(), None);
+        let table = core.table().cloned().unwrap();
+        assert_eq!(table.provenance.ended_ns, samples * scenario.sample_period_ns);
+        assert!(table.quality.used > 1000, "{:?}", table.quality);
+        let before = core.end_of_stream();
+        assert_eq!((before.mode, core.table()), (Mode::Done, Some(&table)), "harmless again");
+    }
+}

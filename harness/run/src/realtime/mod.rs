@@ -1,0 +1,146 @@
+//! A run against the clock: sample k leaves at the start of the run plus k periods.
+//!
+//! `frames` is the real-time thread: it waits for the frame, steps source, faults and endpoint, and
+//! puts the results into a ring (`entry`). It allocates nothing and touches no file. `keep` runs on
+//! a second thread, which takes the entries out, records and watches. If the ring is full an entry
+//! is dropped and counted, and the run is inconclusive.
+//!
+//! The clock has no effect on computed values: an endpoint that answers in time gives the bits of a
+//! run in simulated time.
+
+mod entry;
+mod frames;
+mod keep;
+mod kept;
+
+pub use kept::Kept;
+
+use super::drive::{Ended, RunError};
+use super::faulted::Faulted;
+use super::watch::Watcher;
+use octant_base::control::Control;
+use octant_endpoint::{Endpoint, RemoteClock};
+use octant_realtime::lateness::Figures;
+use octant_realtime::pace::FrameClock;
+use octant_realtime::schedule;
+use octant_recorder::Recorder;
+use octant_scenario::Realtime;
+use octant_score::summary::{DeviceClock, Lateness, Pacing};
+use octant_source::Source;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// Capacity of the ring: at 1 kHz the recorder may stall for eight seconds.
+const ENTRIES: usize = 8192;
+
+/// Parts of a run that the frames go through.
+#[derive(Debug)]
+pub struct Line<'a, S: ?Sized, E: ?Sized> {
+    /// Source of samples.
+    pub source: &'a mut S,
+    /// Faults.
+    pub faulted: Option<&'a mut Faulted>,
+    /// Endpoint with the core.
+    pub endpoint: &'a mut E,
+}
+
+/// Drives as [`drive`](super::drive()) and [`drive_faulted`](super::drive_faulted) do, but by the
+/// clock, on the calling thread, which has the granted real-time settings until the run has ended.
+/// Time keeping is returned whatever the end was.
+pub fn drive_by_clock<S, E>(
+    settings: &Realtime,
+    period_ns: u64,
+    line: Line<'_, S, E>,
+    recorder: &mut Recorder,
+    watcher: &mut Watcher,
+    control: &Control,
+) -> (Result<Ended, RunError>, Kept)
+where
+    S: Source + ?Sized,
+    E: Endpoint + ?Sized,
+{
+    let (producer, consumer) = rtrb::RingBuffer::new(ENTRIES);
+    let names: Vec<(String, String)> = line.faulted.as_ref().map_or_else(Vec::new, |faulted| {
+        faulted.station.names().map(|(id, kind)| (id.to_owned(), kind.to_owned())).collect()
+    });
+    let stop = AtomicBool::new(false);
+    let (ended, kept, time) = std::thread::scope(|scope| {
+        let stop = &stop;
+        let keeper = scope.spawn(|| {
+            let kept = keep::keep(consumer, &names, recorder, watcher, stop);
+            stop.store(true, Ordering::Relaxed);
+            kept
+        });
+        let granted = schedule::apply(&schedule::Wish {
+            priority: settings.priority,
+            lock_memory: settings.lock_memory,
+            cpu: settings.cpu,
+        });
+        let clock = clock(settings, period_ns, granted.is_realtime());
+        let limits = (settings.silence_ns, settings.overruns);
+        let mut frames = frames::Frames::new(clock, period_ns, limits, producer, stop);
+        let Line { source, mut faulted, endpoint } = line;
+        let ended = frames.run(source, faulted.as_deref_mut(), endpoint, control);
+        // Dropping the frames closes their end of the ring: the keeper takes the remaining entries,
+        // and ends.
+        let found = frames.found();
+        schedule::release(&granted);
+        let kept = keeper.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic));
+        let last = faulted.map_or_else(Vec::new, |faulted| faulted.last_words());
+        let time = Kept { pacing: pacing(settings, &found, endpoint.remote_clock()), granted };
+        (ended, kept.map(|()| last), time)
+    });
+    let ended = match kept {
+        Ok(last) => {
+            last.into_iter().for_each(|event| recorder.event(event));
+            ended
+        }
+        Err(error) => Err(error.into()),
+    };
+    recorder.event(keep::event(&time));
+    (ended, time)
+}
+
+/// Builds the figures of a run for its summary.
+fn pacing(settings: &Realtime, found: &frames::Found, clock: Option<RemoteClock>) -> Pacing {
+    let report = found.clock.report();
+    let of = |figures: Figures| Lateness {
+        p50: figures.p50_us,
+        p99: figures.p99_us,
+        p999: figures.p999_us,
+        max: figures.max_us,
+    };
+    Pacing {
+        frames: report.frames,
+        period_us: report.period_us,
+        lateness_us: of(report.lateness),
+        lateness_histogram_ns: (found.clock.lateness().rows().iter())
+            .map(|(edge_ns, count)| [*edge_ns, *count])
+            .collect(),
+        overrun_us: settings.overrun_ns as f64 / 1e3,
+        overruns: report.overruns,
+        overruns_in_a_row: report.longest_row_of_overruns,
+        first_overrun: report.first_overrun,
+        slack_p1_us: report.slack_p1_us,
+        answer_us: of(found.answers.figures()),
+        late_answers: found.late_answers,
+        missed_answers: found.missed_answers,
+        not_sent: found.not_sent,
+        device_clock: clock.map(|clock| DeviceClock {
+            offset_us: clock.offset_ns / 1e3,
+            bound_us: clock.bound_ns / 1e3,
+            skew_ppm: clock.skew.map(|skew| skew * 1e6),
+            exchanges: clock.exchanges,
+        }),
+        dropped_records: found.dropped,
+    }
+}
+
+/// Creates the clock that paces the frames.
+fn clock(settings: &Realtime, period_ns: u64, is_realtime: bool) -> FrameClock {
+    FrameClock::start(octant_realtime::pace::Pacing {
+        period_ns,
+        // Spinning without a real-time priority is worse than sleeping.
+        spin_ns: if is_realtime { settings.spin_ns } else { 0 },
+        overrun_ns: settings.overrun_ns,
+    })
+}

@@ -1,0 +1,122 @@
+//! Events of the unit under test in the recording: a replay applies them again.
+
+use octant_endpoint::{Endpoint, EndpointError};
+use octant_faults::rule::UnitEvent;
+use octant_recorder::Event;
+use octant_sample::Parameters;
+use octant_sample::parameters::NAMES;
+use serde_json::{Map, Value, json};
+
+/// Kind of the event.
+const KIND: &str = "unit";
+
+/// Builds the event that happened before the unit got the sample of this number.
+#[must_use]
+pub fn event(event: &UnitEvent, sample: u64) -> Event {
+    let (action, offset) = match event {
+        UnitEvent::Restart => ("restart", None),
+        UnitEvent::PowerOff => ("power-off", None),
+        UnitEvent::PowerOn => ("power-on", None),
+        UnitEvent::RestartWith { offset } => ("restart-with", Some(offset)),
+    };
+    let mut detail = json!({ "action": action, "sample": sample });
+    if let Some(offset) = offset {
+        let by_name: Map<String, Value> = NAMES
+            .iter()
+            .zip(offset.to_array())
+            .map(|(name, value)| ((*name).to_owned(), value.into()))
+            .collect();
+        detail["offset"] = by_name.into();
+    }
+    Event { kind: KIND.to_owned(), detail }
+}
+
+/// Reason why a unit's event can't be read: a fragment that fits after "failed to …".
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum UnitEventError {
+    /// The offset of a parameter is missing.
+    #[error("do what happened to the unit again: no {expected} in it")]
+    Offset {
+        /// Name of the parameter.
+        expected: &'static str,
+    },
+    /// The action isn't known.
+    #[error(
+        "do what happened to the unit again: found {found:?}, expected restart, restart-with, \
+         power-off or power-on"
+    )]
+    Action {
+        /// Action found.
+        found: String,
+    },
+}
+
+/// Reads the unit's event; `None` for another event.
+///
+/// # Errors
+/// If it can't be read.
+pub fn of(event: &Event) -> Result<Option<UnitEvent>, UnitEventError> {
+    if event.kind != KIND {
+        return Ok(None);
+    }
+    let action = event.detail.get("action").and_then(Value::as_str).unwrap_or_default();
+    Ok(Some(match action {
+        "restart" => UnitEvent::Restart,
+        "power-off" => UnitEvent::PowerOff,
+        "power-on" => UnitEvent::PowerOn,
+        "restart-with" => {
+            let mut offset = [0.0; NAMES.len()];
+            for (value, name) in offset.iter_mut().zip(NAMES) {
+                *value = event
+                    .detail
+                    .get("offset")
+                    .and_then(|offset| offset.get(name)?.as_f64())
+                    .ok_or(UnitEventError::Offset { expected: name })?;
+            }
+            UnitEvent::RestartWith { offset: Parameters::from_array(&offset) }
+        }
+        other => {
+            return Err(UnitEventError::Action { found: other.to_owned() });
+        }
+    }))
+}
+
+/// Applies the event to an endpoint. A power-off needs no action: no epoch reaches the unit, and it
+/// restarts when power comes back.
+///
+/// # Errors
+/// If the endpoint can't.
+pub fn happen<E: Endpoint + ?Sized>(
+    event: &UnitEvent,
+    endpoint: &mut E,
+) -> Result<(), EndpointError> {
+    match event {
+        UnitEvent::PowerOff => Ok(()),
+        UnitEvent::PowerOn | UnitEvent::Restart => endpoint.restart(None),
+        UnitEvent::RestartWith { offset } => endpoint.restart(Some(offset)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_recorded_is_read_again() {
+        let offset = Parameters::from_array(&std::array::from_fn(|i| 0.1 + i as f64 * 1e-7));
+        for happened in [
+            UnitEvent::Restart,
+            UnitEvent::PowerOff,
+            UnitEvent::PowerOn,
+            UnitEvent::RestartWith { offset },
+        ] {
+            let json = serde_json::to_string(&event(&happened, 7)).unwrap();
+            let read: Event = serde_json::from_str(&json).unwrap();
+            assert_eq!(of(&read).unwrap(), Some(happened));
+        }
+        let other = Event { kind: "mode".to_owned(), detail: Value::Null };
+        assert_eq!(of(&other).unwrap(), None);
+        let unknown = Event { kind: KIND.to_owned(), detail: json!({ "action": "melt" }) };
+        assert!(of(&unknown).unwrap_err().to_string().contains("melt"));
+    }
+}

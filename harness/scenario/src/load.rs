@@ -1,0 +1,82 @@
+//! Loads scenarios: parses a file, applies arguments, checks, adds defaults, reads.
+
+use super::arguments::{fire, override_set};
+use super::complete::complete;
+use super::error::{Place, ScenarioError};
+use super::model::Scenario;
+use super::{derive, document, keys, read};
+use std::path::Path;
+
+impl Scenario {
+    /// Reads and checks a scenario file, with `--set` arguments `KEY=VALUE` applied.
+    ///
+    /// # Errors
+    /// If the file can't be read, isn't TOML, or is not a scenario: every problem with its place.
+    pub fn load(path: &Path, overrides: &[String]) -> Result<Self, ScenarioError> {
+        Self::load_fired(path, overrides, &[])
+    }
+
+    /// Loads as [`Scenario::load`] does, with `--fire` arguments `ID=TIME` applied: times at which
+    /// faults with a manual trigger begin.
+    ///
+    /// # Errors
+    /// As [`Scenario::load`], and if an argument names no fault with a manual trigger.
+    pub fn load_fired(
+        path: &Path,
+        overrides: &[String],
+        fires: &[String],
+    ) -> Result<Self, ScenarioError> {
+        let file = path.display().to_string();
+        let text = ScenarioError::text_of(path)?;
+        let folder = path.parent().unwrap_or(Path::new(""));
+        Self::parse_fired(&text, &file, folder, overrides, fires)
+    }
+
+    /// Checks a scenario's text. `file` names it in errors, `folder` is where relative file names
+    /// start.
+    ///
+    /// # Errors
+    /// If it isn't TOML or not a scenario: every problem with its place.
+    pub fn parse(
+        text: &str,
+        file: &str,
+        folder: &Path,
+        overrides: &[String],
+    ) -> Result<Self, ScenarioError> {
+        Self::parse_fired(text, file, folder, overrides, &[])
+    }
+
+    fn parse_fired(
+        text: &str,
+        file: &str,
+        folder: &Path,
+        overrides: &[String],
+        fires: &[String],
+    ) -> Result<Self, ScenarioError> {
+        let with_file = |problems| ScenarioError { file: file.to_owned(), problems };
+        let mut document = document::parse(text).map_err(with_file)?;
+        let mut problems = Vec::new();
+        for argument in overrides {
+            if let Err(problem) = override_set(&mut document, argument) {
+                problems.push(problem);
+            }
+        }
+        for argument in fires {
+            if let Err(problem) = fire(&mut document, argument) {
+                problems.push(problem);
+            }
+        }
+        derive::derive(&mut document);
+        let start = Place::File { line: 1, column: 1 };
+        complete(&mut document, &keys::SCENARIO, "", &start, &mut problems);
+        if problems.is_empty() {
+            problems = derive::refuse_without_effect(&document);
+        }
+        if !problems.is_empty() {
+            return Err(with_file(problems));
+        }
+        let scenario =
+            read::scenario(document, folder).map_err(|problem| with_file(vec![problem]))?;
+        Ok(Self { file: file.to_owned(), ..scenario })
+    }
+}

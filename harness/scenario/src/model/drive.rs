@@ -1,0 +1,55 @@
+//! A real table that is moved by the core's set points.
+
+use super::file_name::FileName;
+use octant_turntable::{Dialect, Error, Plan, Settings};
+use std::path::Path;
+use std::time::Duration;
+
+/// A real table that is moved by the core's set points.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Drive {
+    /// Port.
+    pub port: String,
+    /// Dialect, by its built-in name or its file: see [`Drive::plan`].
+    pub dialect: FileName,
+    /// Limits, time limits and watchdog.
+    pub settings: Settings,
+    /// Interval between two looks at the table.
+    pub look: Duration,
+    /// Longest time from a sample to the nearest look.
+    pub oldest: Duration,
+    /// Silence after which the guard stops the table; `None`: no guard.
+    pub guard: Option<Duration>,
+    /// True if both axes first find their reference.
+    pub home: bool,
+    /// Longest time for homing and the move to zero.
+    pub start: Duration,
+    /// Largest angle from zero at which a gimbal may rest at the start, rad.
+    pub tolerance_rad: f64,
+}
+
+impl Drive {
+    /// Makes the plan for the table, with the dialect read from its file.
+    ///
+    /// # Errors
+    /// If the file can't be read, or has no table of patterns.
+    pub fn plan(&self, folder: &Path) -> Result<Plan, Error> {
+        let file = match self.dialect.0.as_str() {
+            Dialect::BUILT_IN => Dialect::BUILT_IN.into(),
+            _ => self.dialect.path(folder).map_err(|error| Error::Dialect {
+                place: "turntable.drive.dialect".to_owned(),
+                what: error.to_string(),
+            })?,
+        };
+        Ok(Plan {
+            port: self.port.clone(),
+            dialect: Dialect::load(&file)?,
+            settings: self.settings,
+            period: self.look,
+            guard: self.guard,
+            home: self.home,
+            start: self.start,
+            tolerance_rad: self.tolerance_rad,
+        })
+    }
+}

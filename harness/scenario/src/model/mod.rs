@@ -1,0 +1,26 @@
+//! Types of a scenario, in SI. They know no reader.
+
+mod drive;
+mod endpoint;
+mod fault;
+mod file_name;
+mod fmu;
+mod instrument;
+mod motion;
+mod port;
+mod procedure;
+mod scenario;
+mod source;
+
+pub use drive::Drive;
+pub use endpoint::{Endpoint, Live};
+pub use fault::Fault;
+pub use file_name::{FileName, FileNameError};
+pub use fmu::{Fmu, InterfaceChoice, Mapped, Process};
+pub use instrument::{Instrument, Messages, Speaks};
+pub use motion::{Component, Dockside, Motion, ShipSpectrum};
+pub(crate) use motion::{MOTIONS, case_attitude};
+pub use port::{Code, Made, Port, Set, Setting, Written};
+pub use procedure::{Alignment, Calibration, Method};
+pub use scenario::{Distribution, Realtime, Record, Requirement, Scenario, UnknownFault};
+pub use source::Source;

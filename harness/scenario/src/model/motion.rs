@@ -1,0 +1,57 @@
+//! Motion of the case.
+
+use octant_earth::{UnitQuaternion, frames};
+use octant_plant::config as plant;
+
+/// The six motions of a ship, in the order of [`Dockside::components`].
+pub(crate) const MOTIONS: [&str; 6] = ["roll", "pitch", "yaw", "surge", "sway", "heave"];
+
+/// Motion of the case; phases that aren't given are drawn.
+#[allow(clippy::large_enum_variant, reason = "one of it in a scenario")]
+#[derive(Clone, Debug, PartialEq)]
+pub enum Motion {
+    /// No motion relative to the ground.
+    Static(plant::CaseAttitude),
+    /// Motion of a moored ship.
+    Dockside(Dockside),
+}
+
+/// Components of a moored ship's motion.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Dockside {
+    /// Mean attitude.
+    pub mean: plant::CaseAttitude,
+    /// Roll, pitch, yaw (rad), surge, sway, heave (m).
+    pub components: [Vec<Component>; 6],
+    /// Sinusoids of a spectrum, drawn, in addition.
+    pub spectrum: Option<ShipSpectrum>,
+    /// Offset from the dock's reference, north, east, down, m.
+    pub mooring_offset_m: [f64; 3],
+}
+
+/// One sinusoid.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Component {
+    /// Amplitude, rad or m.
+    pub amplitude: f64,
+    /// Period, s.
+    pub period_s: f64,
+    /// Phase at time 0, rad; `None`: drawn.
+    pub phase_rad: Option<f64>,
+}
+
+/// Motions with the shape of a wave spectrum, see [`octant_plant::sea`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ShipSpectrum {
+    /// Period of the peak, s.
+    pub peak_period_s: f64,
+    /// Standard deviation of roll, pitch, yaw (rad), surge, sway, heave (m); 0: no contribution.
+    pub sigma: [f64; 6],
+    /// Number of sinusoids of each motion.
+    pub components: usize,
+}
+
+/// Attitude of the case, `q_nc`.
+pub(crate) fn case_attitude(mean: &plant::CaseAttitude) -> UnitQuaternion<f64> {
+    frames::quaternion_from_matrix(&frames::c_nc(mean.heading_rad, mean.pitch_rad, mean.roll_rad))
+}

@@ -1,0 +1,63 @@
+//! Procedure of the core: alignment and the methods of calibration.
+
+use octant_calibration::config as core;
+use octant_sample::parameters::Group;
+
+/// One of the two methods of a scenario.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Method {
+    /// The calibration of `[procedure.calibration]`.
+    Primary,
+    /// The calibration of `[baseline]`.
+    Baseline,
+}
+
+/// Alignment of the core, which gives its initial attitude.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Alignment {
+    /// The attitude is given with an error.
+    Given {
+        /// 1σ of the tilt about north and east, rad.
+        tilt_rad: f64,
+        /// 1σ of the azimuth, rad.
+        azimuth_rad: f64,
+        /// 1σ of each velocity, m/s.
+        velocity_mps: f64,
+        /// Attitude error, if it isn't drawn, rad.
+        attitude_error_rad: Option<[f64; 3]>,
+        /// Velocity error, if it isn't drawn, m/s.
+        velocity_error_mps: Option<[f64; 3]>,
+    },
+    /// The core finds the attitude itself.
+    Coarse {
+        /// Averaging time, s.
+        duration_s: f64,
+    },
+}
+
+/// One method of calibration.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Calibration {
+    /// Name of the sequence, or `own stops`.
+    pub name: String,
+    /// Stops.
+    pub sequence: octant_calibration::sequence::Sequence,
+    /// Total duration, s.
+    pub duration_s: f64,
+    /// Dwell at a stop of weight 1 that fills the duration, s.
+    pub dwell_s: f64,
+    /// Estimator of the parameters. The external turntable's survey of the base is exact.
+    pub estimator: core::Estimator,
+}
+
+impl Calibration {
+    /// True if the filter estimates a group of parameters; always true for other estimators, which have
+    /// no such choice.
+    #[must_use]
+    pub fn estimates(&self, group: Group) -> bool {
+        match &self.estimator {
+            core::Estimator::Kalman(kalman) => kalman.estimated[group as usize],
+            core::Estimator::LeastSquares(_) | core::Estimator::ExternalTurntable(_) => true,
+        }
+    }
+}

@@ -1,0 +1,195 @@
+//! Reader of a completed document: a table with its path and place.
+
+use crate::document::{Node, Table, Value, join, number};
+use crate::error::{Place, Problem};
+use crate::quantity;
+
+/// A table of the completed document with its path and place. The check guarantees the kinds of its
+/// values; an accessor that meets anything else still reports a problem.
+#[derive(Clone)]
+pub struct Reader<'a> {
+    table: &'a Table,
+    pub(super) path: String,
+    pub(super) place: Place,
+}
+
+impl<'a> Reader<'a> {
+    /// Makes a reader for the table of a whole file.
+    pub fn root(table: &'a Table) -> Self {
+        Self { table, path: String::new(), place: Place::File { line: 1, column: 1 } }
+    }
+
+    /// Makes a reader for a table with its dotted path and place.
+    pub fn new(table: &'a Table, path: &str, place: &Place) -> Self {
+        Self { table, path: path.to_owned(), place: place.clone() }
+    }
+
+    /// Makes a problem of a key, or of the table if the key is omitted.
+    pub fn problem(&self, key: &str, message: impl Into<String>) -> Problem {
+        let place = match self.table.get(key) {
+            Some(Node { place: Place::Default, .. }) | None => &self.place,
+            Some(node) => &node.place,
+        };
+        Problem { place: place.clone(), path: join(&self.path, key), message: message.into() }
+    }
+
+    /// Value of a key.
+    pub fn node(&self, key: &str) -> Option<&'a Node> {
+        self.table.get(key)
+    }
+
+    /// Dotted path of a key.
+    pub fn join(&self, key: &str) -> String {
+        join(&self.path, key)
+    }
+
+    /// True if the scenario itself gives the key, without its default.
+    pub fn given(&self, key: &str) -> bool {
+        self.table.get(key).is_some_and(|node| node.place != Place::Default)
+    }
+
+    /// Key that was written first.
+    pub fn first_key(&self) -> &'a str {
+        let given = |entry: &&crate::document::Entry| entry.node.place != Place::Default;
+        self.table.entries.iter().find(given).map_or("", |entry| &entry.key)
+    }
+
+    fn missing(&self, key: &str) -> Problem {
+        self.problem(key, "missing")
+    }
+
+    /// Table under a key.
+    ///
+    /// # Errors
+    /// If it is missing.
+    pub fn table(&self, key: &str) -> Result<Reader<'a>, Problem> {
+        self.optional_table(key).ok_or_else(|| self.missing(key))
+    }
+
+    /// Table under a key, if it is given.
+    pub fn optional_table(&self, key: &str) -> Option<Reader<'a>> {
+        let Some(Node { value: Value::Table(table), place }) = self.node(key) else { return None };
+        let place = if *place == Place::Default { &self.place } else { place };
+        Some(Reader::new(table, &join(&self.path, key), place))
+    }
+
+    /// Tables of an array.
+    pub fn tables(&self, key: &str) -> Vec<Reader<'a>> {
+        let Some(Node { value: Value::Array(entries), .. }) = self.node(key) else {
+            return Vec::new();
+        };
+        let path = join(&self.path, key);
+        entries
+            .iter()
+            .enumerate()
+            .filter_map(|(index, node)| match &node.value {
+                Value::Table(table) => {
+                    Some(Reader::new(table, &format!("{path}[{index}]"), &node.place))
+                }
+                _ => None,
+            })
+            .collect()
+    }
+
+    /// Text under a key, if it is given.
+    pub fn optional_text(&self, key: &str) -> Option<&'a str> {
+        match &self.node(key)?.value {
+            Value::Text(text) => Some(text),
+            _ => None,
+        }
+    }
+
+    /// Text under a key.
+    ///
+    /// # Errors
+    /// If it is missing.
+    pub fn text(&self, key: &str) -> Result<&'a str, Problem> {
+        self.optional_text(key).ok_or_else(|| self.missing(key))
+    }
+
+    /// Texts of an array.
+    pub fn texts(&self, key: &str) -> Vec<&'a str> {
+        let Some(Node { value: Value::Array(entries), .. }) = self.node(key) else {
+            return Vec::new();
+        };
+        let text = |node: &'a Node| match &node.value {
+            Value::Text(text) => Some(text.as_str()),
+            _ => None,
+        };
+        entries.iter().filter_map(text).collect()
+    }
+
+    /// Boolean under a key.
+    ///
+    /// # Errors
+    /// If it is missing.
+    pub fn boolean(&self, key: &str) -> Result<bool, Problem> {
+        match self.node(key) {
+            Some(Node { value: Value::Boolean(value), .. }) => Ok(*value),
+            _ => Err(self.missing(key)),
+        }
+    }
+
+    /// Whole number under a key.
+    ///
+    /// # Errors
+    /// If it is missing, or too large for its type.
+    pub fn integer<T: TryFrom<i64>>(&self, key: &str) -> Result<T, Problem> {
+        match self.node(key) {
+            Some(Node { value: Value::Integer(value), .. }) => {
+                T::try_from(*value).map_err(|_| self.problem(key, format!("{value} is too large")))
+            }
+            _ => Err(self.missing(key)),
+        }
+    }
+
+    /// Plain number under a key.
+    ///
+    /// # Errors
+    /// If it is missing.
+    pub fn number(&self, key: &str) -> Result<f64, Problem> {
+        self.node(key).and_then(|node| number(&node.value)).ok_or_else(|| self.missing(key))
+    }
+
+    /// Plain numbers of an array of known length.
+    ///
+    /// # Errors
+    /// If there are more or fewer.
+    pub fn numbers<const N: usize>(&self, key: &str) -> Result<[f64; N], Problem> {
+        let Some(Node { value: Value::Array(entries), .. }) = self.node(key) else {
+            return Err(self.missing(key));
+        };
+        let all: Vec<f64> = entries.iter().filter_map(|node| number(&node.value)).collect();
+        all.try_into().map_err(|_| self.missing(key))
+    }
+
+    /// Quantity under a key in SI, if it is given.
+    pub fn optional_si(&self, key: &str) -> Option<f64> {
+        quantity::parse(self.optional_text(key)?).ok().map(|quantity| quantity.si)
+    }
+
+    /// Quantity under a key in SI.
+    pub fn si(&self, key: &str) -> Result<f64, Problem> {
+        self.optional_si(key).ok_or_else(|| self.missing(key))
+    }
+
+    /// Quantities of an array in SI, if it is given.
+    pub fn optional_si_vec(&self, key: &str) -> Option<Vec<f64>> {
+        self.node(key)?;
+        let texts = self.texts(key);
+        texts.iter().map(|text| quantity::parse(text).ok().map(|quantity| quantity.si)).collect()
+    }
+
+    /// Quantities of an array of known length in SI, if it is given.
+    pub fn optional_si_array<const N: usize>(&self, key: &str) -> Option<[f64; N]> {
+        self.optional_si_vec(key)?.try_into().ok()
+    }
+
+    /// Quantities of an array of known length in SI.
+    ///
+    /// # Errors
+    /// If it is missing.
+    pub fn si_array<const N: usize>(&self, key: &str) -> Result<[f64; N], Problem> {
+        self.optional_si_array(key).ok_or_else(|| self.missing(key))
+    }
+}

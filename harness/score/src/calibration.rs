@@ -1,0 +1,83 @@
+//! Results of a calibration.
+
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// Calibration of one method.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Calibration {
+    /// Name of the position sequence.
+    pub positions: String,
+    /// Name of the estimator.
+    pub estimator: String,
+    /// Duration, h.
+    pub duration_h: f64,
+    /// Every parameter by its name.
+    pub parameters: BTreeMap<String, ParameterScore>,
+    /// Mean normalized innovation squared; expected: 3 for three axes.
+    pub nis_mean: Option<f64>,
+    /// Normalized estimation error squared by group, divided by the size of the group; expected: 1.
+    /// Groups that were not estimated are left out.
+    pub nees: BTreeMap<String, f64>,
+    /// Largest |error| / σ over all estimated parameters.
+    pub worst_normalized_error: Option<f64>,
+    /// Reason for which the core refused its own calibration; null if it didn't.
+    pub refused: Option<String>,
+    /// Counts of the core's reports.
+    pub health: HealthCounts,
+}
+
+/// One parameter, in its unit.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ParameterScore {
+    /// True value; null if it is unknown.
+    pub r#true: Option<f64>,
+    /// Estimate.
+    pub estimate: f64,
+    /// 1σ; null if the parameter was not estimated.
+    pub sigma: Option<f64>,
+    /// Estimate minus truth.
+    pub error: Option<f64>,
+    /// Error divided by σ.
+    pub normalized: Option<f64>,
+    /// Unit of all values except `normalized`.
+    pub unit: String,
+}
+
+/// Counts of the core's reports, in epochs unless stated otherwise.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct HealthCounts {
+    /// Measurements offered to the filter.
+    pub measurements: u64,
+    /// Measurements rejected by the innovation gate.
+    pub rejected: u64,
+    /// Recoveries of the filter.
+    pub recoveries: u64,
+    /// Epochs with identical counts of a gyro.
+    pub gyro_stuck: u64,
+    /// Epochs with identical counts of an accelerometer.
+    pub accelerometer_stuck: u64,
+    /// Epochs with samples missing before them.
+    pub gaps: u64,
+    /// Samples that did not advance, not used.
+    pub out_of_order: u64,
+    /// Samples with saturated or invalid counts.
+    pub inertial_invalid: u64,
+    /// Epochs in which the encoders did not show the commanded position.
+    pub gimbal_disagrees: u64,
+    /// Epochs in which due aiding did not come.
+    pub aiding_lost: u64,
+    /// Epochs in which innovations contradicted the tuning.
+    pub inconsistent: u64,
+    /// Epochs with numbers that are not finite, which were not used.
+    pub numeric: u64,
+    /// Epochs in which increments jumped more than any motion can; not used.
+    pub jumps: u64,
+    /// Epochs in which gyros and encoders did not show the same turn.
+    pub gimbal_slips: u64,
+    /// Epochs in which a parameter was found to drift.
+    pub drifting: u64,
+    /// Epochs whose aiding had another stamp than its sample; not used.
+    pub aiding_stale: u64,
+}

@@ -1,0 +1,92 @@
+//! Results of navigation.
+
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// Treatment of the vertical channel during free navigation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum HeightChannel {
+    /// The height is held at its known value.
+    Held,
+    /// The height is damped towards a reference.
+    Damped,
+    /// The height is free: it diverges, and the horizontal channels with it.
+    Free,
+}
+
+/// Navigation of one method.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Navigation {
+    /// Duration, h.
+    pub duration_h: f64,
+    /// Treatment of the vertical channel.
+    pub height: HeightChannel,
+    /// Latitude error, arcmin.
+    pub latitude_error_arcmin: ErrorScore,
+    /// Longitude error, arcmin.
+    pub longitude_error_arcmin: ErrorScore,
+    /// Horizontal distance from the true position, nmi.
+    pub radial_error_nmi: RadialScore,
+    /// Window of the slopes; null for runs shorter than a Schuler period.
+    pub slope_window: Option<SlopeWindow>,
+    /// Scores at 24 h and 72 h, for runs that got there, with the keys "24h" and "72h".
+    pub marks: BTreeMap<String, Mark>,
+    /// Rows of time (h), latitude error, longitude error (arcmin): at most 2002, including every
+    /// extreme.
+    pub series_hours: Vec<[f64; 3]>,
+}
+
+/// Score of one error.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ErrorScore {
+    /// Largest magnitude.
+    pub max: f64,
+    /// √(1/T ∫ x² dt).
+    pub rms: f64,
+    /// Last value, with its sign.
+    pub r#final: f64,
+    /// Secular slope per day; null for runs shorter than a Schuler period.
+    pub slope_per_day: Option<f64>,
+}
+
+/// Score of the radial error.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct RadialScore {
+    /// Largest value.
+    pub max: f64,
+    /// √(1/T ∫ r² dt): time-RMS, as marine systems state it.
+    pub rms: f64,
+    /// Last value.
+    pub r#final: f64,
+    /// Regression of radial error on time through the origin, per hour.
+    pub rate_per_h: f64,
+}
+
+/// Window of secular slopes.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SlopeWindow {
+    /// "schuler periods" or "sidereal days".
+    pub of: String,
+    /// Number of periods.
+    pub periods: u32,
+    /// Total length, h.
+    pub hours: f64,
+}
+
+/// Errors at a mark, and the largest errors up to it.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Mark {
+    /// Latitude error at the mark, arcmin.
+    pub latitude_arcmin: f64,
+    /// Longitude error at the mark, arcmin.
+    pub longitude_arcmin: f64,
+    /// Radial error at the mark, nmi.
+    pub radial_nmi: f64,
+    /// Largest latitude error up to the mark, arcmin.
+    pub latitude_max_arcmin: f64,
+    /// Largest longitude error up to the mark, arcmin.
+    pub longitude_max_arcmin: f64,
+    /// Largest radial error up to the mark, nmi.
+    pub radial_max_nmi: f64,
+}

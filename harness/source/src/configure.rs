@@ -1,0 +1,52 @@
+//! Configurations of plant and core: from the scenario, the seed's draws, and the source's own truth.
+
+use super::SourceError;
+use nalgebra::{Quaternion, UnitQuaternion, Vector3};
+use octant_calibration::config as core;
+use octant_plant::{Plant, config as plant};
+use octant_scenario::resolve::{Draws, Seeded};
+use octant_scenario::{Method, Scenario, Source as SourceKind};
+
+/// Why a method of a scenario has no configuration.
+#[derive(Debug, thiserror::Error)]
+pub enum ConfigurationError {
+    /// The plant's configuration contradicts itself.
+    #[error("set up the plant: {0}")]
+    Plant(#[from] octant_plant::ConfigError),
+    /// A source that knows the truth at the start could not be asked for it.
+    #[error(transparent)]
+    Source(#[from] SourceError),
+    /// The scenario has no second method.
+    #[error("run the baseline: the scenario has no [baseline]")]
+    NoBaseline,
+}
+
+/// Configurations of plant and core of one method of a scenario.
+///
+/// # Errors
+/// If they contradict themselves.
+pub fn configurations(
+    scenario: &Scenario,
+    method: Method,
+    seed: u64,
+) -> Result<(plant::Config, core::Config, Draws), ConfigurationError> {
+    let draws = Draws::of(scenario, &Seeded(seed));
+    let plant = scenario.plant(seed, &draws);
+    // On a ship the attitude at the start depends on the phases that were drawn, or on the ship.
+    let truth = match &scenario.source {
+        SourceKind::Plant => Some(Plant::new(&plant)?.truth()),
+        SourceKind::Fmu(fmu) => crate::fmu::truth_at_start(scenario, fmu, &plant)?,
+        SourceKind::Replay { .. } | SourceKind::Text(_) | SourceKind::Live(_) => None,
+    };
+    let (q_nb, velocity) = match truth {
+        Some(truth) => {
+            let [w, x, y, z] = truth.q_nb;
+            let q_nb = UnitQuaternion::new_unchecked(Quaternion::new(w, x, y, z));
+            (q_nb, Vector3::from(truth.velocity_mps))
+        }
+        None => (scenario.mean_attitude(), Vector3::zeros()),
+    };
+    let core =
+        scenario.core(method, &draws, &q_nb, &velocity).ok_or(ConfigurationError::NoBaseline)?;
+    Ok((plant, core, draws))
+}

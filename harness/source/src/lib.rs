@@ -1,0 +1,174 @@
+//! Sources of samples: the plant, a recording, a file of a real instrument, or the instrument
+//! itself.
+
+pub mod configure;
+mod counting;
+mod fields;
+mod fmu;
+mod foreign;
+mod from_scenario;
+mod live;
+mod plant;
+mod replay;
+mod rows;
+mod text;
+
+pub use from_scenario::open;
+pub use live::LiveSource;
+pub use plant::PlantSource;
+pub use replay::Replay;
+pub use text::TextSource;
+
+use octant_plant::Truth;
+pub use octant_sample::Epoch;
+use octant_sample::GimbalCommand;
+use octant_sample::disturbance::Disturbed;
+
+/// A source of epochs.
+pub trait Source {
+    /// Writes the next epoch into `epoch`. Returns `false` when the source has ended; `epoch` is
+    /// then unchanged. The epoch is filled in place because copying a sample that has just been
+    /// written stalls on its stores.
+    ///
+    /// `command` is the gimbal command of the core's last output, computed from sample k. A source
+    /// that turns gimbals lets it act from the end of the interval that this call delivers
+    /// (k + 1); one that replays ignores it.
+    ///
+    /// # Errors
+    /// If the source is broken: file truncated, device gone.
+    fn next(&mut self, command: &GimbalCommand, epoch: &mut Epoch) -> Result<bool, SourceError>;
+
+    /// Returns the truth at the stamp of the last epoch, where the source knows it. This costs more
+    /// than a sample: ask for it only when it is recorded.
+    fn truth(&self) -> Option<Truth>;
+
+    /// Total number of samples that the source will deliver, where it is known.
+    fn samples_total(&self) -> Option<u64>;
+
+    /// Number of samples that were planned, where the source knows it apart from the samples that
+    /// it has: a recording of an aborted run has fewer.
+    fn samples_planned(&self) -> Option<u64> {
+        self.samples_total()
+    }
+
+    /// Describes, in plain words, how the data stops in the middle of something; `None` for a
+    /// complete source. Known only at the end.
+    fn cut_short(&self) -> Option<String> {
+        None
+    }
+
+    /// Returns the plant, where the source is one that faults can disturb.
+    fn disturbed(&mut self) -> Option<&mut dyn Disturbed> {
+        None
+    }
+
+    /// True for a source that delivers in real time and moves equipment that can cause harm: a
+    /// request to stop takes effect at once, without waiting for the end of the run.
+    fn is_live(&self) -> bool {
+        false
+    }
+
+    /// Ends the run; `broken` is the reason where the run was aborted. Stops everything that moves.
+    /// Returns figures for the report, if there are any, and an error if the equipment was stopped
+    /// by another cause or doesn't stop as it should: by then every stop command was sent.
+    fn conclude(
+        &mut self,
+        broken: Option<&str>,
+    ) -> (Option<serde_json::Value>, Option<SourceError>) {
+        let _ = broken;
+        (None, None)
+    }
+
+    /// True if the instrument has the errors that the scenario gives or draws.
+    fn has_true_parameters(&self) -> bool {
+        false
+    }
+}
+
+impl<S: Source + ?Sized> Source for Box<S> {
+    fn next(&mut self, command: &GimbalCommand, epoch: &mut Epoch) -> Result<bool, SourceError> {
+        (**self).next(command, epoch)
+    }
+
+    fn truth(&self) -> Option<Truth> {
+        (**self).truth()
+    }
+
+    fn samples_total(&self) -> Option<u64> {
+        (**self).samples_total()
+    }
+
+    fn samples_planned(&self) -> Option<u64> {
+        (**self).samples_planned()
+    }
+
+    fn cut_short(&self) -> Option<String> {
+        (**self).cut_short()
+    }
+
+    fn disturbed(&mut self) -> Option<&mut dyn Disturbed> {
+        (**self).disturbed()
+    }
+
+    fn is_live(&self) -> bool {
+        (**self).is_live()
+    }
+
+    fn conclude(
+        &mut self,
+        broken: Option<&str>,
+    ) -> (Option<serde_json::Value>, Option<SourceError>) {
+        (**self).conclude(broken)
+    }
+
+    fn has_true_parameters(&self) -> bool {
+        (**self).has_true_parameters()
+    }
+}
+
+/// Reasons why a source could not go on.
+#[derive(Debug, thiserror::Error)]
+pub enum SourceError {
+    /// A file could not be read.
+    #[error("read {path}: {reason}")]
+    Read {
+        /// The file.
+        path: String,
+        /// Found and expected content, with line or offset.
+        reason: String,
+    },
+    /// A file name could not be expanded.
+    #[error(transparent)]
+    FileName(octant_scenario::FileNameError),
+    /// The table can't be driven as the scenario asks.
+    #[error("turn the table: {0}")]
+    Table(octant_turntable::Error),
+    /// The table was stopped, or doesn't obey its commands: the run is over.
+    #[error("turntable {port}: {reason}")]
+    TableStopped {
+        /// Port of the table.
+        port: String,
+        /// Person or cause that stopped the table.
+        reason: String,
+    },
+    /// An FMU could not be used as a source.
+    #[error(transparent)]
+    Use(#[from] octant_mapping::stepper::UseError),
+    /// The FMU failed, or its process is gone.
+    #[error("source {uri} is gone: {reason}")]
+    Gone {
+        /// URI of the source.
+        uri: String,
+        /// Description of the failure.
+        reason: String,
+    },
+}
+
+/// Returns the period of a nominal rate, rounded to a nanosecond.
+fn nominal_period_ns(rate_hz: f64) -> Result<u64, String> {
+    if rate_hz.is_finite() && (1e-3..=1e8).contains(&rate_hz) {
+        Ok((1e9 / rate_hz).round() as u64)
+    } else {
+        Err(format!("nominal rate is {rate_hz} Hz, expected 0.001 to 1e8 Hz"))
+    }
+}

@@ -1,0 +1,110 @@
+//! Relates the instrument's clock to the host's.
+
+use octant_instruments::align::Alignment;
+use serde_json::json;
+use std::time::{Duration, Instant, SystemTime};
+
+/// Host time at which the alignment starts, ns: an hour above zero, so that slightly earlier events
+/// have a time too.
+const BASE_NS: u64 = 3_600_000_000_000;
+
+/// Estimates when, on the host's clock, a reading was made.
+#[derive(Debug)]
+pub(super) struct Clock {
+    base: Instant,
+    utc: SystemTime,
+    alignment: Alignment,
+}
+
+impl Clock {
+    pub(super) fn new() -> Self {
+        Self { base: Instant::now(), utc: SystemTime::now(), alignment: Alignment::new() }
+    }
+
+    /// Returns when the interval of a reading ended: from its stamp by the estimated clock
+    /// relation, with the least delay of the line; without a stamp, the time of arrival.
+    pub(super) fn when(&mut self, stamp_ns: Option<u64>, came: Instant) -> Instant {
+        let Some(stamp_ns) = stamp_ns else { return came };
+        let since = came.saturating_duration_since(self.base).as_nanos();
+        self.alignment
+            .add(stamp_ns, BASE_NS.saturating_add(u64::try_from(since).unwrap_or(u64::MAX)));
+        let Some(estimate) = self.alignment.estimate() else { return came };
+        let since_ns = estimate.host_ns(stamp_ns) - BASE_NS as f64;
+        if !since_ns.is_finite() {
+            return came;
+        }
+        let since = Duration::from_secs_f64((since_ns.abs() * 1e-9).min(1e9));
+        let when = if since_ns < 0.0 {
+            self.base.checked_sub(since)
+        } else {
+            self.base.checked_add(since)
+        };
+        // A reading can't be made after it arrived.
+        when.map_or(came, |when| when.min(came))
+    }
+
+    /// Describes the clock relation in words and figures; `None` without stamps.
+    pub(super) fn told(&self) -> Option<(String, serde_json::Value)> {
+        let estimate = self.alignment.estimate()?;
+        let since_ns = estimate.offset_ns - BASE_NS as f64;
+        let since = Duration::from_secs_f64((since_ns.abs() * 1e-9).min(1e9));
+        let first =
+            if since_ns < 0.0 { self.utc.checked_sub(since) } else { self.utc.checked_add(since) };
+        let first = first.map(|at| humantime::format_rfc3339_nanos(at).to_string());
+        let skew =
+            estimate.skew.map_or("unknown".to_owned(), |skew| format!("{:+.3} ppm", skew * 1e6));
+        let words = format!(
+            "host faster by {skew} over {:.1} s; readings arrived {:.3} ms after the earliest, \
+             1σ {:.3} ms",
+            estimate.span_s,
+            estimate.late_mean_ns * 1e-6,
+            estimate.late_sigma_ns * 1e-6,
+        );
+        let figures = json!({
+            "first_stamp_ns": estimate.origin_ns,
+            "first_stamp_utc": first,
+            "skew_ppm": estimate.skew.map(|skew| skew * 1e6),
+            "span_s": estimate.span_s,
+            "late_mean_us": estimate.late_mean_ns * 1e-3,
+            "late_sigma_us": estimate.late_sigma_ns * 1e-3,
+            "stamps": estimate.readings,
+            "stamps_behind": estimate.behind,
+        });
+        Some((words, figures))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The clock of this instrument is slow by 100 ppm. One reading in four comes without delay,
+    /// the others come 2 ms later; each must be dated as if it had come without delay.
+    #[test]
+    fn a_reading_that_came_late_was_made_when_it_was_made() {
+        let mut clock = Clock::new();
+        let mut worst = Duration::ZERO;
+        for number in 0..2000u64 {
+            let true_at = clock.base + Duration::from_nanos(7_000_000 + number * 5_000_500);
+            let late = Duration::from_millis(if number % 4 == 0 { 0 } else { 2 });
+            let when = clock.when(Some(90_000 + number * 5_000_000), true_at + late);
+            if number > 100 {
+                worst = worst.max(when.max(true_at) - when.min(true_at));
+            }
+        }
+        assert!(worst < Duration::from_micros(1), "{worst:?}");
+        let (words, figures) = clock.told().unwrap();
+        assert!((figures["skew_ppm"].as_f64().unwrap() - 100.0).abs() < 0.01, "{figures}");
+        assert!((figures["late_mean_us"].as_f64().unwrap() - 1500.0).abs() < 1.0, "{figures}");
+        assert_eq!(figures["first_stamp_ns"], 90_000);
+        assert!(words.starts_with("host faster by +100.0"), "{words}");
+    }
+
+    #[test]
+    fn without_a_stamp_it_is_when_it_came() {
+        let mut clock = Clock::new();
+        let came = clock.base + Duration::from_millis(3);
+        assert_eq!(clock.when(None, came), came);
+        assert!(clock.told().is_none());
+    }
+}

@@ -1,0 +1,284 @@
+//! A real instrument on a port, and the real table under it.
+//!
+//! A sample is delivered when its reading has come: the run goes as fast as the instrument. Damaged
+//! frames are skipped, a gap stays a gap, and a silence ends the run. A driven table follows the
+//! core's gimbal command; its angles are put into samples whose instrument has no valid angles of
+//! its own.
+
+mod clock;
+mod feed;
+mod table;
+
+use self::clock::Clock;
+use self::feed::Feed;
+use self::table::Table;
+use super::{Epoch, Source, SourceError};
+use octant_instruments::{Sampler, Settings, Unusable};
+use octant_plant::Truth;
+use octant_sample::{GimbalCommand, Status};
+use octant_scenario::{Instrument, Scenario, Speaks};
+use serde_json::json;
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+/// Longest wait in one poll of the port.
+const WAIT: Duration = Duration::from_millis(50);
+
+/// An instrument on a port.
+#[derive(Debug)]
+pub struct LiveSource {
+    feed: Feed,
+    instrument: Instrument,
+    sampler: Sampler,
+    clock: Clock,
+    table: Option<Table>,
+    total: u64,
+    delivered: u64,
+}
+
+impl LiveSource {
+    /// Opens the port of a scenario's instrument, and takes over its table if there is one.
+    ///
+    /// # Errors
+    /// If a port can't be opened, or the table doesn't obey its commands.
+    pub fn of(scenario: &Scenario, instrument: &Instrument) -> Result<Self, SourceError> {
+        let (period_ns, samples) = (scenario.sample_period_ns, scenario.samples());
+        let mut source = Self::open(instrument, &scenario.folder, period_ns, samples)?;
+        if let Some(drive) = &scenario.drive {
+            source.table = Some(Table::start(drive, &scenario.folder)?);
+            source.forget()?;
+        }
+        Ok(source)
+    }
+
+    /// Checks that the files of a scenario can be used; opens nothing and moves nothing.
+    ///
+    /// # Errors
+    /// If a file can't be read or isn't valid.
+    pub fn check(scenario: &Scenario, instrument: &Instrument) -> Result<(), SourceError> {
+        if let Speaks::Can(messages) = &instrument.speaks {
+            feed::gatherer(messages, &scenario.folder)?;
+        }
+        match &scenario.drive {
+            Some(drive) => drive.plan(&scenario.folder).map(drop).map_err(SourceError::Table),
+            None => Ok(()),
+        }
+    }
+
+    /// Opens the port of an instrument that will be asked for `samples` samples. Its file names are
+    /// relative to `folder`.
+    ///
+    /// # Errors
+    /// If the port can't be opened, or a file can't be used.
+    pub fn open(
+        instrument: &Instrument,
+        folder: &Path,
+        sample_period_ns: u64,
+        samples: Option<u64>,
+    ) -> Result<Self, SourceError> {
+        let feed = Feed::open(instrument, folder)?;
+        let settings = Settings { axes: instrument.axes, period_ns: sample_period_ns };
+        Ok(Self {
+            feed,
+            instrument: instrument.clone(),
+            sampler: Sampler::new(settings),
+            clock: Clock::new(),
+            table: None,
+            total: samples.unwrap_or(u64::MAX),
+            delivered: 0,
+        })
+    }
+
+    /// Returns the address at which the instrument reaches the port.
+    #[must_use]
+    pub fn reached_at(&self) -> String {
+        self.feed.reached_at().unwrap_or_else(|| self.instrument.uri.to_string())
+    }
+
+    /// Discards data that came before the run: the run begins with the data that comes from now on.
+    fn forget(&mut self) -> Result<(), SourceError> {
+        let until = Instant::now() + WAIT;
+        while Instant::now() < until {
+            while self.feed.reading().is_some() {}
+            let came = self.feed.receive(Duration::ZERO);
+            if !came.map_err(|reason| self.gone(reason))? {
+                break;
+            }
+        }
+        while self.feed.reading().is_some() {}
+        Ok(())
+    }
+
+    fn gone(&self, reason: String) -> SourceError {
+        SourceError::Gone { uri: self.instrument.uri.to_string(), reason }
+    }
+
+    fn silent(&self) -> SourceError {
+        self.gone(format!(
+            "no reading for {} s; {}",
+            self.instrument.silence_s,
+            self.feed.said(self.instrument.speaks.name())
+        ))
+    }
+}
+
+impl Source for LiveSource {
+    fn next(&mut self, command: &GimbalCommand, epoch: &mut Epoch) -> Result<bool, SourceError> {
+        if self.delivered == self.total {
+            return Ok(false);
+        }
+        if let Some(table) = &mut self.table {
+            table.command(command)?;
+        }
+        let until = Instant::now() + Duration::from_secs_f64(self.instrument.silence_s);
+        loop {
+            while let Some((mut reading, came)) = self.feed.reading() {
+                let stamp_ns = reading.stamp.map(|stamp| stamp.ns);
+                let when = self.clock.when(stamp_ns, came);
+                let has_own =
+                    reading.gimbal.is_some() && !reading.status.contains(Status::GIMBAL_INVALID);
+                if !has_own && let Some(table) = &mut self.table {
+                    reading.gimbal = table.angles(when);
+                    reading.status.set(Status::GIMBAL_INVALID, reading.gimbal.is_none());
+                }
+                match self.sampler.sample(&reading, None) {
+                    Ok(sample) => {
+                        self.feed.hold_peer();
+                        self.delivered += 1;
+                        (epoch.sample, epoch.aiding) = (sample, None);
+                        return Ok(true);
+                    }
+                    Err(Unusable::Behind) => {}
+                    Err(unusable) => return Err(self.gone(unusable.to_string())),
+                }
+            }
+            if let Some(table) = &self.table {
+                table.check()?;
+            }
+            if Instant::now() >= until {
+                return Err(self.silent());
+            }
+            let came = self.feed.receive(WAIT);
+            came.map_err(|reason| self.gone(reason))?;
+        }
+    }
+
+    fn truth(&self) -> Option<Truth> {
+        None
+    }
+
+    fn samples_total(&self) -> Option<u64> {
+        (self.total < u64::MAX).then_some(self.total)
+    }
+
+    fn is_live(&self) -> bool {
+        true
+    }
+
+    fn conclude(
+        &mut self,
+        broken: Option<&str>,
+    ) -> (Option<serde_json::Value>, Option<SourceError>) {
+        let table = self.table.take();
+        let told = table.as_ref().map(Table::told);
+        // The table is stopped before anything else is done.
+        let ended = table.and_then(|table| table.end(broken).err());
+        let counters = self.sampler.counters();
+        let protocol = self.instrument.speaks.name();
+        let mut bench = json!({
+            "instrument": format!("{}, {protocol}", self.instrument.uri),
+            "readings": {
+                "samples": counters.samples,
+                "missing": counters.missing,
+                "behind": counters.behind,
+                "irregular": counters.irregular,
+            },
+        });
+        if let Some((words, figures)) = self.clock.told() {
+            bench["instrument's clock"] = words.into();
+            bench["clock"] = figures;
+        }
+        if let Some(told) = told {
+            bench["turntable"] = told.table.into();
+            bench["table's angles"] = told.angles.into();
+            bench["table"] = told.figures;
+        }
+        (Some(bench), ended)
+    }
+}
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use octant_instruments::{AnyEncoder, Axes, Protocol, Reading};
+    use octant_sample::{DeviceTime, GimbalAngles, Sample, Status};
+    use std::net::UdpSocket;
+
+    const PERIOD_NS: u64 = 5_000_000;
+
+    fn sample(number: u64) -> Sample {
+        let k = number as i32;
+        Sample {
+            sequence: number,
+            device_time: DeviceTime { ns: number * PERIOD_NS },
+            delta_theta: [17_000 + k, -k, 3],
+            delta_velocity: [k, 40 - k, -52_600_000],
+            gimbal: GimbalAngles { azimuth: 5, roll: -k },
+            status: Status::empty(),
+        }
+    }
+
+    fn source(protocol: Protocol, samples: u64) -> (LiveSource, UdpSocket) {
+        let uri = "udp:127.0.0.1:0".parse().unwrap();
+        let speaks = Speaks::Bytes(protocol);
+        let instrument = Instrument { uri, speaks, axes: Axes::SAME, silence_s: 0.3 };
+        let source =
+            LiveSource::open(&instrument, Path::new(""), PERIOD_NS, Some(samples)).unwrap();
+        let address = source.reached_at();
+        let socket = UdpSocket::bind("127.0.0.1:0").unwrap();
+        socket.connect(address.strip_prefix("udp:").unwrap()).unwrap();
+        (source, socket)
+    }
+
+    #[test]
+    fn samples_of_our_own_wire_arrive_to_the_last_bit() {
+        let (mut source, socket) = source(Protocol::Octant, 20);
+        let mut encoder = AnyEncoder::new(Protocol::Octant);
+        for number in 1..=20 {
+            let frame = encoder.encode(&Reading::of_sample(&sample(number))).unwrap();
+            socket.send(frame).unwrap();
+            // Garbage between two frames.
+            socket.send(&[0xA5; 40]).unwrap();
+        }
+        let mut epoch = Epoch::default();
+        for number in 1..=20 {
+            assert!(source.next(&GimbalCommand::default(), &mut epoch).unwrap());
+            assert_eq!((epoch.sample, epoch.aiding), (sample(number), None));
+        }
+        assert!(!source.next(&GimbalCommand::default(), &mut epoch).unwrap());
+    }
+
+    #[test]
+    fn a_gap_stays_one_and_a_silence_ends_it() {
+        let (mut source, socket) = source(Protocol::VectorNav, 1000);
+        let mut encoder = AnyEncoder::new(Protocol::VectorNav);
+        for number in [1, 2, 5] {
+            let reading =
+                Reading { interval_s: Some(0.005), ..Reading::of_sample(&sample(number)) };
+            socket.send(encoder.encode(&reading).unwrap()).unwrap();
+        }
+        let mut epoch = Epoch::default();
+        for number in [1, 2, 5] {
+            assert!(source.next(&GimbalCommand::default(), &mut epoch).unwrap());
+            assert_eq!(epoch.sample.sequence, number);
+            assert_eq!(epoch.sample.device_time.ns, number * PERIOD_NS);
+            assert_eq!(epoch.sample.status, Status::GIMBAL_INVALID);
+        }
+        socket.send(b"no frame at all").unwrap();
+        let error = source.next(&GimbalCommand::default(), &mut epoch).unwrap_err().to_string();
+        assert_eq!(
+            error,
+            "source udp:127.0.0.1:0 is gone: no reading for 0.3 s; received so far: 165 bytes, 3 \
+             readings, 0 other frames of protocol vectornav, 0 frames with a wrong checksum"
+        );
+    }
+}

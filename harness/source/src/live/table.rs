@@ -1,0 +1,180 @@
+//! The table under the instrument.
+
+use crate::SourceError;
+use octant_base::number::counted;
+use octant_sample::{GimbalAngles, GimbalCommand};
+use octant_scenario::Drive;
+use octant_turntable::{Axis, Following};
+use serde_json::json;
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+/// Table that follows the core's gimbal command.
+#[derive(Debug)]
+pub(super) struct Table {
+    following: Following,
+    drive: Drive,
+    /// Name of the table's dialect.
+    language: String,
+    ages: Ages,
+}
+
+/// Ages of the angles that samples were given.
+#[derive(Clone, Copy, Debug, Default)]
+struct Ages {
+    given: u64,
+    /// Number of samples without angles: the nearest reading of the table was too far away in time.
+    without: u64,
+    sum: Duration,
+    largest: Duration,
+    /// Half of the longest time from query to reply.
+    within: Duration,
+}
+
+/// Summary of the table at the end of a run.
+pub(super) struct Told {
+    pub(super) table: String,
+    pub(super) angles: String,
+    pub(super) figures: serde_json::Value,
+}
+
+impl Table {
+    /// Takes over the table and moves it to the start position of a run.
+    pub(super) fn start(drive: &Drive, folder: &Path) -> Result<Self, SourceError> {
+        let plan = drive.plan(folder).map_err(SourceError::Table)?;
+        let program = std::env::current_exe().map_err(|error| {
+            let reason = format!("failed to find this program: {error}");
+            SourceError::Table(octant_turntable::Error::Guard { reason })
+        })?;
+        let mut guard = octant_base::child::command(program);
+        guard.args(["turntable", "guard"]);
+        let following = Following::start(&plan, &mut guard).map_err(SourceError::Table)?;
+        let language = plan.dialect.name().to_owned();
+        Ok(Self { following, drive: drive.clone(), language, ages: Ages::default() })
+    }
+
+    fn stopped(&self, reason: String) -> SourceError {
+        SourceError::TableStopped { port: self.drive.port.clone(), reason }
+    }
+
+    /// Fails if the table was stopped.
+    pub(super) fn check(&self) -> Result<(), SourceError> {
+        if !self.following.is_stopped() {
+            return Ok(());
+        }
+        Err(self.stopped(
+            self.following.stopped().unwrap_or_else(|| "the table was stopped".to_owned()),
+        ))
+    }
+
+    /// Commands the table to the core's gimbal target.
+    pub(super) fn command(&mut self, command: &GimbalCommand) -> Result<(), SourceError> {
+        self.check()?;
+        self.following.command(command);
+        Ok(())
+    }
+
+    /// Returns the gimbal angles at a time, if a reading of the table is near enough.
+    pub(super) fn angles(&mut self, when: Instant) -> Option<GimbalAngles> {
+        self.following.take_looks();
+        let place = |axis| {
+            let place = self.following.at(axis, when)?;
+            (place.age <= self.drive.oldest).then_some(place)
+        };
+        let ages = &mut self.ages;
+        let (Some(azimuth), Some(roll)) = (place(Axis::Azimuth), place(Axis::Roll)) else {
+            ages.without += 1;
+            return None;
+        };
+        let age = azimuth.age.max(roll.age);
+        ages.given += 1;
+        ages.sum += age;
+        ages.largest = ages.largest.max(age);
+        ages.within = ages.within.max(azimuth.within).max(roll.within);
+        Some(GimbalAngles::from_rad(azimuth.angle_rad, roll.angle_rad))
+    }
+
+    /// Summarises the table's run.
+    pub(super) fn told(&self) -> Told {
+        let (drive, ages) = (&self.drive, &self.ages);
+        let axis = |axis: Axis| {
+            let limits = drive.settings.limits.of(axis);
+            json!({
+                "least_deg": limits.least_rad.to_degrees(),
+                "greatest_deg": limits.most_rad.to_degrees(),
+                "rate_degps": limits.rate_radps.to_degrees(),
+                "acceleration_degps2": limits.acceleration_radps2.to_degrees(),
+            })
+        };
+        let went = self.following.told();
+        let seconds = |time: Option<Duration>| time.map(|time| time.as_secs_f64());
+        let ms = |time: Duration| time.as_secs_f64() * 1e3;
+        let mean_ms = ms(ages.sum) / ages.given.max(1) as f64;
+        let stopped = self.following.stopped();
+        let figures = json!({
+            "port": drive.port,
+            "dialect": self.language,
+            "azimuth": axis(Axis::Azimuth),
+            "roll": axis(Axis::Roll),
+            "watchdog_s": seconds(drive.settings.watchdog),
+            "guard_s": seconds(drive.guard),
+            "looks": went.looks,
+            "commands": went.commands,
+            "stopped": stopped,
+            "angles": {
+                "samples": ages.given,
+                "samples_without": ages.without,
+                "age_mean_ms": mean_ms,
+                "age_max_ms": ms(ages.largest),
+                "time_within_ms": ms(ages.within),
+            },
+        });
+        let range = |axis: Axis| {
+            let limits = drive.settings.limits.of(axis);
+            let (least, most) = (limits.least_rad.to_degrees(), limits.most_rad.to_degrees());
+            format!("{axis} {least:.4} to {most:.4}°")
+        };
+        let how = stopped.map_or_else(String::new, |why| format!("; stopped: {why}"));
+        let angles = if ages.given + ages.without == 0 {
+            "measured by the instrument".to_owned()
+        } else {
+            format!(
+                "in {}, {} without; {mean_ms:.1} ms from the nearest look, {:.1} ms at most; times of \
+                 looks within {:.1} ms",
+                counted(ages.given, "sample", "samples"),
+                ages.without,
+                ms(ages.largest),
+                ms(ages.within),
+            )
+        };
+        Told {
+            table: format!(
+                "{}, {}, {}, {}; {}{how}",
+                drive.port,
+                self.language,
+                range(Axis::Azimuth),
+                range(Axis::Roll),
+                counted(went.commands, "set point", "set points")
+            ),
+            angles,
+            figures,
+        }
+    }
+
+    /// Ends the run: the table is braked, immediately where the run was aborted.
+    pub(super) fn end(self, broken: Option<&str>) -> Result<(), SourceError> {
+        if let Some(why) = broken {
+            self.following.trip(why);
+        }
+        let (port, following) = (self.drive.port, self.following);
+        // A stop that came with the last sample is reported too.
+        let stopped = if broken.is_none() { following.stopped() } else { None };
+        let ended = following.finish().map_err(|error| error.to_string());
+        match (stopped, ended) {
+            (Some(reason), _) | (None, Err(reason)) => {
+                Err(SourceError::TableStopped { port, reason })
+            }
+            (None, Ok(())) => Ok(()),
+        }
+    }
+}

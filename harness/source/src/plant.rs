@@ -1,0 +1,89 @@
+//! The plant as a source.
+
+use super::{Epoch, Source, SourceError};
+use octant_plant::config::Config;
+use octant_plant::{ConfigError, Plant, Truth};
+use octant_sample::GimbalCommand;
+use octant_sample::disturbance::Disturbed;
+
+/// The simulated instrument, for a fixed number of samples.
+#[derive(Clone, Debug)]
+pub struct PlantSource {
+    plant: Plant,
+    total: u64,
+    left: u64,
+}
+
+impl PlantSource {
+    /// Creates a plant at time 0 that delivers `samples` samples.
+    ///
+    /// # Errors
+    /// If a field of the configuration is out of its range.
+    pub fn new(config: &Config, samples: u64) -> Result<Self, ConfigError> {
+        Ok(Self { plant: Plant::new(config)?, total: samples, left: samples })
+    }
+
+    /// Returns the plant.
+    #[must_use]
+    pub fn plant(&self) -> &Plant {
+        &self.plant
+    }
+}
+
+impl Source for PlantSource {
+    #[inline]
+    fn next(&mut self, command: &GimbalCommand, epoch: &mut Epoch) -> Result<bool, SourceError> {
+        if self.left == 0 {
+            return Ok(false);
+        }
+        self.left -= 1;
+        self.plant.step_into(command, &mut epoch.sample, &mut epoch.aiding);
+        Ok(true)
+    }
+
+    /// Returns truth at the stamp of the last epoch; before the first epoch, at time 0.
+    fn truth(&self) -> Option<Truth> {
+        Some(self.plant.truth())
+    }
+
+    fn samples_total(&self) -> Option<u64> {
+        Some(self.total)
+    }
+
+    fn disturbed(&mut self) -> Option<&mut dyn Disturbed> {
+        Some(&mut self.plant)
+    }
+
+    fn has_true_parameters(&self) -> bool {
+        true
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use octant_scenario::Scenario;
+    use octant_scenario::resolve::{Draws, Seeded};
+
+    #[test]
+    fn it_is_the_plant_and_it_ends() {
+        let text = "schema = 1\n[procedure.calibration]\n";
+        let scenario = Scenario::parse(text, "f", std::path::Path::new(""), &[]).unwrap();
+        let config = scenario.plant(3, &Draws::of(&scenario, &Seeded(3)));
+        let mut source = PlantSource::new(&config, 450).unwrap();
+        let mut plant = Plant::new(&config).unwrap();
+        assert_eq!(source.samples_total(), Some(450));
+        let command = GimbalCommand::default();
+        let mut epoch = Epoch::default();
+        for _ in 0..450 {
+            let step = plant.step(&command);
+            assert!(source.next(&command, &mut epoch).unwrap());
+            assert_eq!(epoch, Epoch { sample: step.sample, aiding: step.aiding });
+        }
+        assert_eq!(source.truth(), Some(plant.truth()));
+        let last = epoch;
+        assert!(!source.next(&command, &mut epoch).unwrap());
+        assert_eq!(epoch, last);
+        assert_eq!(source.truth(), Some(plant.truth()));
+    }
+}

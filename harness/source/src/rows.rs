@@ -1,0 +1,184 @@
+//! Reads rows of a delimited text file and keeps the position for error messages.
+
+use super::SourceError;
+use csv::StringRecord;
+use octant_base::number::counted;
+use octant_scenario::recorded::{Column, Delimiter};
+use std::fs::File;
+use std::io::{BufRead, BufReader, Read};
+use std::path::Path;
+
+/// Maximum length of a line: a file of another kind may have no line ends and must not fill the
+/// memory.
+const LINE_BYTES_MAX: u64 = 64 * 1024;
+
+/// Reads row by row; skips empty lines and comments.
+pub(super) struct Rows {
+    path: String,
+    file: BufReader<File>,
+    delimiter: Delimiter,
+    comment: String,
+    text: String,
+    line: u64,
+    fields: StringRecord,
+    header: Option<StringRecord>,
+}
+
+impl Rows {
+    /// Opens a file and skips its first `skip_lines` lines. With `header` the next row names the
+    /// columns.
+    pub(super) fn open(
+        path: &Path,
+        delimiter: Delimiter,
+        comment: &str,
+        skip_lines: usize,
+        header: bool,
+    ) -> Result<Self, SourceError> {
+        let name = path.display().to_string();
+        let file = File::open(path)
+            .map_err(|error| SourceError::Read { path: name.clone(), reason: error.to_string() })?;
+        let mut rows = Self {
+            path: name,
+            file: BufReader::with_capacity(1 << 16, file),
+            delimiter,
+            comment: comment.into(),
+            text: String::new(),
+            line: 0,
+            fields: StringRecord::new(),
+            header: None,
+        };
+        for _ in 0..skip_lines {
+            if !rows.read_line()? {
+                let lines = counted(skip_lines, "line", "lines");
+                return Err(rows.error(format!("the file ends within the {lines} to skip")));
+            }
+        }
+        if header {
+            if !rows.advance()? {
+                return Err(rows
+                    .error("the file ends, expected a line with the names of the columns".into()));
+            }
+            rows.header = Some(rows.fields.clone());
+        }
+        Ok(rows)
+    }
+
+    pub(super) fn path(&self) -> &str {
+        &self.path
+    }
+
+    /// Number of the current line, from 1.
+    pub(super) fn line(&self) -> u64 {
+        self.line
+    }
+
+    /// Advances to the next row; `false` at the end of the file.
+    pub(super) fn advance(&mut self) -> Result<bool, SourceError> {
+        loop {
+            if !self.read_line()? {
+                return Ok(false);
+            }
+            let line = match self.delimiter {
+                Delimiter::Blanks => self.text.trim(),
+                // Only line ends are trimmed: a tab may be the delimiter, and the first field may
+                // be empty.
+                Delimiter::Character(_) => self.text.trim_end_matches(['\r', '\n']),
+            };
+            if line.is_empty() || (!self.comment.is_empty() && line.starts_with(&self.comment)) {
+                continue;
+            }
+            self.fields.clear();
+            match self.delimiter {
+                Delimiter::Blanks => self.fields.extend(line.split_ascii_whitespace()),
+                Delimiter::Character(delimiter) if !line.contains('"') => {
+                    self.fields.extend(line.split(char::from(delimiter)).map(str::trim));
+                }
+                Delimiter::Character(delimiter) => {
+                    // Quotes are rare in data; the csv crate implements their rules.
+                    let read = csv::ReaderBuilder::new()
+                        .delimiter(delimiter)
+                        .has_headers(false)
+                        .flexible(true)
+                        .trim(csv::Trim::All)
+                        .from_reader(line.as_bytes())
+                        .read_record(&mut self.fields);
+                    if let Err(error) = read {
+                        return Err(self.error(error.to_string()));
+                    }
+                }
+            }
+            return Ok(true);
+        }
+    }
+
+    /// Returns the index of a column, from 0.
+    pub(super) fn column(&self, column: &Column) -> Result<usize, SourceError> {
+        match column {
+            Column::Number(0) => Err(self.error("found column 0, expected a number from 1".into())),
+            Column::Number(number) => Ok(number - 1),
+            Column::Name(name) => {
+                let header = self.header.iter().flatten();
+                header.clone().position(|found| found == name).ok_or_else(|| {
+                    let names: Vec<&str> = header.collect();
+                    self.error(format!("no column {name:?}, found {}", names.join(", ")))
+                })
+            }
+        }
+    }
+
+    /// Returns the text of a field of this row.
+    pub(super) fn field(&self, index: usize) -> Result<&str, SourceError> {
+        self.fields.get(index).ok_or_else(|| {
+            self.error(format!(
+                "found {}, expected {} or more",
+                counted(self.fields.len(), "column", "columns"),
+                index + 1
+            ))
+        })
+    }
+
+    /// Returns a field as a finite number.
+    pub(super) fn number(&self, index: usize) -> Result<f64, SourceError> {
+        let text = self.field(index)?;
+        match text.parse::<f64>() {
+            Ok(value) if value.is_finite() => Ok(value),
+            _ => Err(self.column_error(index, format!("found {text:?}, expected a finite number"))),
+        }
+    }
+
+    pub(super) fn column_error(&self, index: usize, reason: String) -> SourceError {
+        self.error(format!("column {}: {reason}", index + 1))
+    }
+
+    pub(super) fn error(&self, reason: String) -> SourceError {
+        SourceError::Read {
+            path: self.path.clone(),
+            reason: format!("line {}: {reason}", self.line),
+        }
+    }
+
+    fn read_line(&mut self) -> Result<bool, SourceError> {
+        self.text.clear();
+        let read = (&mut self.file).take(LINE_BYTES_MAX).read_line(&mut self.text);
+        match read {
+            Ok(0) => Ok(false),
+            Ok(n) => {
+                self.line += 1;
+                if n as u64 == LINE_BYTES_MAX && !self.text.ends_with('\n') {
+                    return Err(self.error(format!("longer than {LINE_BYTES_MAX} bytes")));
+                }
+                if self.line == 1 {
+                    // A byte order mark is not part of the first field.
+                    if let Some(rest) = self.text.strip_prefix('\u{feff}') {
+                        self.text = rest.to_owned();
+                    }
+                }
+                Ok(true)
+            }
+            Err(error) => {
+                self.line += 1;
+                Err(self.error(error.to_string()))
+            }
+        }
+    }
+}

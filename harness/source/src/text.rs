@@ -1,0 +1,265 @@
+//! Delimited text of a real instrument as a source.
+
+use super::counting::{Counting, Measured};
+use super::rows::Rows;
+use super::{Epoch, Source, SourceError, nominal_period_ns};
+use octant_base::number::counted;
+use octant_plant::Truth;
+use octant_sample::GimbalCommand;
+use octant_scenario::recorded::{Axis, Column, TextFiles, TextMapping, TimeUnit};
+use std::path::Path;
+
+/// Streams delimited text.
+///
+/// The increment of an interval is its rate times the time since the previous stamp (the nominal
+/// period for the first sample); the remainder after rounding to counts is carried. A value that
+/// does not fit a count saturates, is flagged in the sample, and is counted.
+pub struct TextSource {
+    first: File,
+    /// File of the accelerometers, where it is a second one.
+    second: Option<File>,
+    period_ns: u64,
+    counting: Counting,
+    rows: u64,
+}
+
+/// One file with the columns that are read from it.
+struct File {
+    rows: Rows,
+    time: Option<(usize, TimeUnit)>,
+    gyro: Option<[Resolved; 3]>,
+    accel: Option<[Resolved; 3]>,
+    gimbal: Option<[Resolved; 2]>,
+}
+
+/// Axis whose column was found.
+#[derive(Clone, Copy)]
+struct Resolved {
+    index: usize,
+    offset: f64,
+    scale: f64,
+}
+
+impl TextSource {
+    /// Opens the files of a mapping.
+    ///
+    /// # Errors
+    /// If a file can't be read or has not the columns named.
+    pub fn open(mapping: &TextMapping) -> Result<Self, SourceError> {
+        let (path, second) = match &mapping.files {
+            TextFiles::One(path) => (path, None),
+            TextFiles::Split { gyro, accelerometer } => (gyro, Some(accelerometer)),
+        };
+        let fail = |reason| SourceError::Read { path: path.display().to_string(), reason };
+        let period_ns = nominal_period_ns(mapping.nominal_rate_hz).map_err(fail)?;
+        let counting = Counting::new(mapping.quantity, period_ns, mapping.split).map_err(fail)?;
+        Ok(Self {
+            first: File::open(path, mapping, true, second.is_none())?,
+            second: second.map(|path| File::open(path, mapping, false, true)).transpose()?,
+            period_ns,
+            counting,
+            rows: 0,
+        })
+    }
+
+    /// Number of samples so far in which at least one count saturated.
+    #[must_use]
+    pub fn saturated(&self) -> u64 {
+        self.counting.saturated()
+    }
+
+    fn advance(&mut self) -> Result<Option<Epoch>, SourceError> {
+        loop {
+            if let Some(sample) = self.counting.next() {
+                return Ok(Some(Epoch { sample, aiding: None }));
+            }
+            if !self.read_row()? {
+                return Ok(None);
+            }
+        }
+    }
+
+    /// Passes the next row to the counting; `false` at the end.
+    fn read_row(&mut self) -> Result<bool, SourceError> {
+        let more = self.first.rows.advance()?;
+        if let Some(second) = &mut self.second {
+            let more_there = second.rows.advance()?;
+            if more != more_there {
+                let (ended, other) =
+                    if more { (second, &self.first) } else { (&mut self.first, &*second) };
+                return Err(ended.rows.error(format!(
+                    "the file ends after {}, and {} goes on: expected the same stamps in both",
+                    counted(self.rows, "row", "rows"),
+                    other.rows.path()
+                )));
+            }
+        }
+        if !more {
+            return Ok(false);
+        }
+        self.rows += 1;
+        let time_ns = match self.first.time_ns()? {
+            Some(time_ns) => time_ns,
+            None => self.rows.saturating_mul(self.period_ns),
+        };
+        if let Some(second) = &self.second
+            && let Some(there) = second.time_ns()?.filter(|there| *there != time_ns)
+        {
+            return Err(second.rows.error(format!(
+                "stamp {there} ns, expected {time_ns} ns as in {} line {}",
+                self.first.rows.path(),
+                self.first.rows.line()
+            )));
+        }
+        let accel = match (&self.second, self.first.accel) {
+            (Some(second), _) => second.values(second.accel)?,
+            (None, accel) => self.first.values(accel)?,
+        };
+        let row = Measured {
+            time_ns,
+            gyro: self.first.values(self.first.gyro)?,
+            accel,
+            gimbal_rad: match self.first.gimbal {
+                Some(gimbal) => Some(self.first.values(Some(gimbal))?),
+                None => None,
+            },
+        };
+        self.counting.begin(row).map_err(|reason| self.first.rows.error(reason))?;
+        Ok(true)
+    }
+}
+
+impl Source for TextSource {
+    fn next(&mut self, _command: &GimbalCommand, epoch: &mut Epoch) -> Result<bool, SourceError> {
+        Ok(epoch.take(self.advance()?))
+    }
+
+    fn truth(&self) -> Option<Truth> {
+        None
+    }
+
+    fn samples_total(&self) -> Option<u64> {
+        None
+    }
+}
+
+impl File {
+    fn open(
+        path: &Path,
+        mapping: &TextMapping,
+        gyro: bool,
+        accel: bool,
+    ) -> Result<Self, SourceError> {
+        let axes = mapping.gyro.iter().chain(&mapping.accelerometer);
+        let gimbal = mapping.gimbal.iter().flat_map(|gimbal| [&gimbal.azimuth, &gimbal.roll]);
+        let time = mapping.time.iter().map(|time| &time.column);
+        let named = axes
+            .chain(gimbal)
+            .map(|axis| &axis.column)
+            .chain(time)
+            .any(|column| matches!(column, Column::Name(_)));
+        let rows =
+            Rows::open(path, mapping.delimiter, &mapping.comment, mapping.skip_lines, named)?;
+        let axis = |axis: &Axis| -> Result<Resolved, SourceError> {
+            Ok(Resolved {
+                index: rows.column(&axis.column)?,
+                offset: axis.offset,
+                scale: axis.scale,
+            })
+        };
+        let three = |axes: &[Axis; 3]| -> Result<[Resolved; 3], SourceError> {
+            Ok([axis(&axes[0])?, axis(&axes[1])?, axis(&axes[2])?])
+        };
+        let time = match &mapping.time {
+            Some(time) => Some((rows.column(&time.column)?, time.unit)),
+            None => None,
+        };
+        let gimbal = match &mapping.gimbal {
+            Some(gimbal) if gyro => Some([axis(&gimbal.azimuth)?, axis(&gimbal.roll)?]),
+            _ => None,
+        };
+        let gyro = if gyro { Some(three(&mapping.gyro)?) } else { None };
+        let accel = if accel { Some(three(&mapping.accelerometer)?) } else { None };
+        Ok(Self { rows, time, gyro, accel, gimbal })
+    }
+
+    fn time_ns(&self) -> Result<Option<u64>, SourceError> {
+        let Some((index, unit)) = self.time else { return Ok(None) };
+        let text = self.rows.field(index)?;
+        match decimal_ns(text, unit) {
+            Some(time_ns) => Ok(Some(time_ns)),
+            None => Err(self
+                .rows
+                .column_error(index, format!("found {text:?}, expected a time from 0 to 2^64 ns"))),
+        }
+    }
+
+    /// Returns the values of the axes in SI units; zeros if there are no axes.
+    fn values<const N: usize>(&self, axes: Option<[Resolved; N]>) -> Result<[f64; N], SourceError> {
+        let mut values = [0.0; N];
+        if let Some(axes) = axes {
+            for (value, axis) in values.iter_mut().zip(&axes) {
+                *value = (self.rows.number(axis.index)? - axis.offset) * axis.scale;
+            }
+        }
+        Ok(values)
+    }
+}
+
+/// Converts a decimal number to nanoseconds: exact if it has no digits beyond a nanosecond, else
+/// rounded half up. Avoids f64, which holds a present-day epoch only to 200 ns.
+fn decimal_ns(text: &str, unit: TimeUnit) -> Option<u64> {
+    let text = text.strip_prefix('+').unwrap_or(text);
+    let (mantissa, exponent) = match text.split_once(['e', 'E']) {
+        Some((mantissa, exponent)) => (mantissa, exponent.parse::<i32>().ok()?),
+        None => (text, 0),
+    };
+    let (whole, fraction) = mantissa.split_once('.').unwrap_or((mantissa, ""));
+    if whole.is_empty() && fraction.is_empty() {
+        return None;
+    }
+    let mut digits: u128 = 0;
+    for byte in whole.bytes().chain(fraction.bytes()) {
+        let digit = byte.is_ascii_digit().then(|| u128::from(byte - b'0'))?;
+        digits = digits.checked_mul(10)?.checked_add(digit)?;
+    }
+    let shift = exponent
+        .checked_add(unit.nanosecond_exponent())?
+        .checked_sub(i32::try_from(fraction.len()).ok()?)?;
+    let ns = if shift >= 0 {
+        if digits == 0 {
+            0
+        } else {
+            digits.checked_mul(10u128.checked_pow(shift.unsigned_abs())?)?
+        }
+    } else {
+        match 10u128.checked_pow(shift.unsigned_abs()) {
+            Some(power) => (digits + power / 2) / power,
+            None => 0,
+        }
+    };
+    u64::try_from(ns).ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn times_are_read_to_the_nanosecond() {
+        let ns = |text| decimal_ns(text, TimeUnit::Second);
+        assert_eq!(ns("2.9840000e-02"), Some(29_840_000));
+        assert_eq!(ns("1767225600.123456789"), Some(1_767_225_600_123_456_789));
+        assert_eq!(ns("0.0000000005"), Some(1));
+        assert_eq!(ns(".5"), Some(500_000_000));
+        assert_eq!(ns("3."), Some(3_000_000_000));
+        assert_eq!(ns("+1e1"), Some(10_000_000_000));
+        assert_eq!(ns("0e99"), Some(0));
+        assert_eq!(ns("1e-99"), Some(0));
+        assert_eq!(decimal_ns("10.5", TimeUnit::Millisecond), Some(10_500_000));
+        assert_eq!(decimal_ns("7", TimeUnit::Nanosecond), Some(7));
+        for wrong in ["", ".", "-1", "nan", "1e99", "1e", "1.2.3", "0x10", "1e99999999999"] {
+            assert_eq!(ns(wrong), None, "{wrong}");
+        }
+    }
+}

@@ -1,5 +1,0 @@
-//! The `octant` program. Everything it does is in the library; this is its front door.
-
-fn main() -> std::process::ExitCode {
-    octant::cli::main()
-}

@@ -1,0 +1,125 @@
+//! Description of a run, from the head of its recording.
+
+use octant_base::number::plain;
+use octant_faults::trigger::{Schedule, Trigger};
+use octant_recorder::reader::Info;
+use octant_sample::Parameters;
+use octant_scenario::resolve::{Draws, Seeded};
+use octant_scenario::{Method, Scenario};
+use std::path::Path;
+
+/// Fault that is armed.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Armed {
+    /// Id in the scenario.
+    pub id: String,
+    /// Kind.
+    pub kind: String,
+    /// Condition that it waits for, as text.
+    pub when: String,
+}
+
+/// Description of a run.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct About {
+    /// Title of the scenario.
+    pub title: String,
+    /// Name of the method.
+    pub method: String,
+    /// Seed of every draw.
+    pub seed: u64,
+    /// Length of the whole procedure, ns; `None` where it lasts until the source ends.
+    pub length_ns: Option<u64>,
+    /// Stops of the calibration, over all passes.
+    pub stops: usize,
+    /// True if the run goes by the clock.
+    pub by_clock: bool,
+    /// Lateness from which a sample is an overrun, µs, in a run by the clock.
+    pub overrun_us: Option<f64>,
+    /// Faults that are armed, in order.
+    pub faults: Vec<Armed>,
+    /// True parameters of the instrument, where they are known.
+    pub truth: Option<Parameters>,
+    /// Reason why nothing of the above is known.
+    pub unread: Option<String>,
+}
+
+impl About {
+    /// Reads the scenario in a recording in a folder. If it can't be read, the rest of the run can
+    /// still be watched.
+    #[must_use]
+    pub fn of(info: &Info, folder: &Path) -> Self {
+        let scenario = match Scenario::parse(&info.scenario, "scenario.toml", folder, &[]) {
+            Ok(scenario) => scenario,
+            Err(error) => return Self { unread: Some(error.to_string()), ..Self::default() },
+        };
+        let is_baseline = info.run.get("method").is_some_and(|method| method == "baseline");
+        let (method, calibration) = if is_baseline {
+            (Method::Baseline, &scenario.baseline)
+        } else {
+            (Method::Primary, &scenario.calibration)
+        };
+        let seed = info.run.get("seed").and_then(|seed| seed.parse().ok()).unwrap_or(scenario.seed);
+        let has_truth = info.run.get("true_parameters").is_some_and(|text| text == "true");
+        Self {
+            title: scenario.title.clone(),
+            method: octant_run::method::label(&scenario, method),
+            seed,
+            length_ns: scenario.samples().map(|n| n.saturating_mul(scenario.sample_period_ns)),
+            stops: calibration
+                .as_ref()
+                .map_or(0, |c| c.sequence.stops().len() * c.sequence.passes() as usize),
+            by_clock: scenario.realtime.by_clock,
+            overrun_us: (scenario.realtime.by_clock)
+                .then(|| scenario.realtime.overrun_ns as f64 / 1e3),
+            faults: (scenario.faults.iter())
+                .map(|fault| Armed {
+                    id: fault.spec.id.clone(),
+                    kind: fault.spec.kind.name.to_owned(),
+                    when: when(&fault.spec.schedule, &fault.fires, scenario.sample_period_ns),
+                })
+                .collect(),
+            truth: has_truth.then(|| Draws::of(&scenario, &Seeded(seed)).parameters),
+            unread: None,
+        }
+    }
+}
+
+/// Describes the condition that a fault waits for.
+fn when(schedule: &Schedule, fires: &[u64], period_ns: u64) -> String {
+    // A fault that sets in at time t first alters the interval that begins there.
+    let at = |epoch: u64| time(epoch.saturating_sub(1), period_ns);
+    let after = |delay: u64| match delay {
+        0 => String::new(),
+        delay => format!(", {} later", time(delay, period_ns)),
+    };
+    match &schedule.trigger {
+        Trigger::Epoch(epoch) => format!("at {}", at(*epoch)),
+        Trigger::Position { stop, mode, delay } => {
+            format!("at stop {} while {}{}", stop + 1, mode.name(), after(*delay))
+        }
+        Trigger::Move { stop, mode, delay } => {
+            format!("on the way to stop {} while {}{}", stop + 1, mode.name(), after(*delay))
+        }
+        Trigger::Mode { mode, delay } => format!("once {}{}", mode.name(), after(*delay)),
+        Trigger::Condition { delay, .. } => format!("on a condition{}", after(*delay)),
+        Trigger::Periodic { first, period, .. } => {
+            format!("every {} from {}", time(*period, period_ns), at(*first))
+        }
+        Trigger::Poisson { first, mean, .. } => {
+            let mean = time(*mean as u64, period_ns);
+            format!("at random, {mean} apart, from {}", at(*first))
+        }
+        Trigger::After { fault, delay } => format!("after {fault}{}", after(*delay)),
+        Trigger::Manual if fires.is_empty() => "by hand, and nobody fires it".to_owned(),
+        Trigger::Manual => {
+            let times: Vec<String> = fires.iter().map(|epoch| at(*epoch)).collect();
+            format!("by hand at {}", times.join(", "))
+        }
+        Trigger::Outside { delay } => format!("on a condition{}", after(*delay)),
+    }
+}
+
+fn time(epochs: u64, period_ns: u64) -> String {
+    format!("{} s", plain(epochs as f64 * period_ns as f64 * 1e-9, 9))
+}

@@ -1,0 +1,204 @@
+//! Serves a run over Foxglove's WebSocket protocol.
+//!
+//! Messages carry run time. A late subscriber gets the earlier messages in a thinned form, so that
+//! a plot begins at the start of the run. A slow client loses messages, and never delays anything.
+
+use super::follow::Follow;
+use super::published::{Channel, faults, messages};
+use super::tail::TailError;
+use foxglove::websocket::{Capability, ChannelView, Client, ServerListener};
+use foxglove::{
+    ChannelBuilder, Context, FoxgloveError, PartialMetadata, RawChannel, Schema, SinkId,
+    WebSocketServer, WebSocketServerHandle,
+};
+use serde_json::Value;
+use std::net::{SocketAddr, ToSocketAddrs};
+use std::sync::mpsc::{Receiver, Sender, channel};
+use std::sync::{Arc, Mutex};
+use std::time::Duration;
+
+/// Number of messages per channel that are kept for late subscribers.
+const HISTORY: usize = 1000;
+/// Number of messages queued for a client: room for the history of all channels.
+const BACKLOG: usize = 2 * HISTORY * Channel::ALL.len();
+
+/// Time for the last messages to be sent before the connections end.
+const SETTLE: Duration = Duration::from_millis(300);
+
+/// Reasons why nothing is served.
+#[derive(Debug, thiserror::Error)]
+pub enum ServeError {
+    /// The address isn't valid.
+    #[error("serve at {address:?}: expected HOST:PORT, such as 127.0.0.1:8765")]
+    Address {
+        /// Address as it was given.
+        address: String,
+    },
+    /// The operating system or the protocol refused.
+    #[error("serve at {address}: {reason}")]
+    Start {
+        /// Address.
+        address: String,
+        /// Reason.
+        reason: String,
+    },
+}
+
+impl ServeError {
+    /// Returns whether the port is taken or not allowed, which isn't an error in the address.
+    #[must_use]
+    pub const fn is_bench(&self) -> bool {
+        matches!(self, Self::Start { .. })
+    }
+}
+
+/// Published messages, thinned as they grow.
+#[derive(Debug, Default)]
+struct History {
+    messages: Vec<(u64, Vec<u8>)>,
+    left_out: u64,
+    seen: u64,
+    /// Last message, kept regardless of the thinning.
+    last: Option<(u64, Vec<u8>)>,
+}
+
+impl History {
+    fn push(&mut self, time_ns: u64, message: &[u8]) {
+        self.last = None;
+        if self.seen.is_multiple_of(self.left_out + 1) {
+            self.messages.push((time_ns, message.to_vec()));
+        } else {
+            self.last = Some((time_ns, message.to_vec()));
+        }
+        self.seen += 1;
+        if self.messages.len() > HISTORY {
+            let mut odd = false;
+            self.messages.retain(|_| {
+                odd = !odd;
+                odd
+            });
+            self.left_out = 2 * self.left_out + 1;
+        }
+    }
+}
+
+/// Server with the channels of a run.
+pub struct Server {
+    handle: WebSocketServerHandle,
+    channels: Vec<Arc<RawChannel>>,
+    history: Vec<History>,
+    subscribed: Receiver<(Option<SinkId>, String)>,
+    /// True if the armed faults have been published.
+    told: bool,
+    /// Kept alive with its channels.
+    _context: Arc<Context>,
+}
+
+/// Reports subscriptions.
+struct Listener(Mutex<Sender<(Option<SinkId>, String)>>);
+
+impl ServerListener for Listener {
+    fn on_subscribe(&self, client: Client, channel: ChannelView) {
+        if let Ok(sender) = self.0.lock() {
+            // The receiver is gone while the server shuts down.
+            let _ = sender.send((client.sink_id(), channel.topic().to_owned()));
+        }
+    }
+}
+
+impl Server {
+    /// Starts serving. Port 0 selects any free port.
+    ///
+    /// # Errors
+    /// If the address isn't valid, or the operating system refuses it.
+    pub fn start(address: &str) -> Result<Self, ServeError> {
+        let socket: SocketAddr = (address.to_socket_addrs().ok())
+            .and_then(|mut addresses| addresses.next())
+            .ok_or_else(|| ServeError::Address { address: address.to_owned() })?;
+        let failed = |error: FoxgloveError| ServeError::Start {
+            address: address.to_owned(),
+            reason: error.to_string(),
+        };
+        let context = Context::new();
+        let (sender, subscribed) = channel();
+        let channels = (Channel::ALL.iter())
+            .map(|channel| {
+                let schema = channel.schema().to_string().into_bytes();
+                ChannelBuilder::new(channel.topic())
+                    .context(&context)
+                    .message_encoding("json")
+                    .schema(Schema::new(channel.schema_name(), "jsonschema", schema))
+                    .build_raw()
+            })
+            .collect::<Result<Vec<_>, _>>()
+            .map_err(failed)?;
+        let handle = WebSocketServer::new()
+            .context(&context)
+            .name("octant")
+            .bind(socket.ip().to_string(), socket.port())
+            .capabilities([Capability::Time])
+            .message_backlog_size(BACKLOG)
+            .listener(Arc::new(Listener(Mutex::new(sender))))
+            .start_blocking()
+            .map_err(failed)?;
+        let history = Channel::ALL.iter().map(|_| History::default()).collect();
+        Ok(Self { handle, channels, history, subscribed, told: false, _context: context })
+    }
+
+    /// Returns the port that is served.
+    #[must_use]
+    pub fn port(&self) -> u16 {
+        self.handle.port()
+    }
+
+    /// Reads the available messages of a run and publishes them. Returns true if more are there
+    /// already.
+    ///
+    /// # Errors
+    /// As [`Follow::look`].
+    pub fn look(&mut self, follow: &mut Follow) -> Result<bool, TailError> {
+        self.answer();
+        let before_ns = follow.state.time_ns;
+        let more = follow.look(|state, time_ns, item| {
+            if !self.told {
+                self.told = true;
+                self.publish(Channel::Faults, time_ns, &faults(state));
+            }
+            messages(state, item, |channel, message| self.publish(channel, time_ns, &message));
+        })?;
+        if follow.state.time_ns != before_ns {
+            self.handle.broadcast_time(follow.state.time_ns);
+        }
+        Ok(more)
+    }
+
+    fn publish(&mut self, channel: Channel, time_ns: u64, message: &Value) {
+        let bytes = message.to_string().into_bytes();
+        let metadata = PartialMetadata { log_time: Some(time_ns) };
+        self.channels[channel as usize].log_with_meta(&bytes, metadata);
+        self.history[channel as usize].push(time_ns, &bytes);
+    }
+
+    /// Sends the earlier messages to new subscribers.
+    fn answer(&mut self) {
+        while let Ok((sink, topic)) = self.subscribed.try_recv() {
+            let Some(channel) = Channel::ALL.iter().find(|c| c.topic() == topic) else { continue };
+            let (raw, history) =
+                (&self.channels[*channel as usize], &self.history[*channel as usize]);
+            for (time_ns, message) in history.messages.iter().chain(&history.last) {
+                let metadata = PartialMetadata { log_time: Some(*time_ns) };
+                raw.log_with_meta_to_sink(message, metadata, sink);
+            }
+        }
+    }
+
+    /// Ends the connections in order.
+    pub fn stop(self) {
+        // Messages that are still queued are dropped with the connection, and nothing reports when
+        // they have been sent.
+        if self.handle.client_count() > 0 {
+            std::thread::sleep(SETTLE);
+        }
+        self.handle.stop().wait_blocking();
+    }
+}

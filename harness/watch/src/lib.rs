@@ -1,0 +1,21 @@
+//! Watches a run from outside, during the run and afterwards.
+//!
+//! A run writes its recording every 250 ms ([`FLUSH_INTERVAL`](octant_recorder::FLUSH_INTERVAL)).
+//! The watching program reads that file as it grows ([`tail`]) and keeps the state of the run
+//! ([`state`]); [`follow`] knows the place of the file and the end of the run. The state is shown
+//! as a line ([`plain`]), as a dashboard ([`dashboard`]), or in Foxglove (`foxglove`, a feature).
+//!
+//! Nothing here communicates with the run: it can't be delayed, and doesn't know that it is
+//! watched.
+
+pub mod about;
+pub mod dashboard;
+pub mod follow;
+#[cfg(feature = "foxglove")]
+pub mod foxglove;
+pub mod place;
+pub mod plain;
+pub mod published;
+pub mod series;
+pub mod state;
+pub mod tail;

@@ -1,0 +1,303 @@
+//! Messages published during a run: JSON with schemas, in display units, by topic.
+
+use super::state::State;
+use octant_recorder::reader::Item;
+use octant_sample::parameters::{Group, NAMES};
+use serde_json::{Map, Value, json};
+
+/// Channel of messages.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Channel {
+    /// Progress of the run: mode, stop, health.
+    State,
+    /// Navigation minus truth.
+    Error,
+    /// Estimated parameters with σ.
+    Parameters,
+    /// Gimbal angles, as sensed and as commanded.
+    Gimbals,
+    /// NIS of the measurements.
+    Nis,
+    /// Lateness of a run by the clock.
+    Pacing,
+    /// Faults, armed and fired.
+    Faults,
+}
+
+impl Channel {
+    /// All channels.
+    pub const ALL: [Self; 7] = [
+        Self::State,
+        Self::Error,
+        Self::Parameters,
+        Self::Gimbals,
+        Self::Nis,
+        Self::Pacing,
+        Self::Faults,
+    ];
+
+    /// Topic.
+    #[must_use]
+    pub const fn topic(self) -> &'static str {
+        match self {
+            Self::State => "/octant/state",
+            Self::Error => "/octant/error",
+            Self::Parameters => "/octant/parameters",
+            Self::Gimbals => "/octant/gimbals",
+            Self::Nis => "/octant/nis",
+            Self::Pacing => "/octant/pacing",
+            Self::Faults => "/octant/faults",
+        }
+    }
+
+    /// Returns the name of the schema.
+    #[must_use]
+    pub const fn schema_name(self) -> &'static str {
+        match self {
+            Self::State => "octant.State",
+            Self::Error => "octant.NavigationError",
+            Self::Parameters => "octant.Parameters",
+            Self::Gimbals => "octant.Gimbals",
+            Self::Nis => "octant.Nis",
+            Self::Pacing => "octant.Pacing",
+            Self::Faults => "octant.Faults",
+        }
+    }
+
+    /// JSON Schema.
+    #[must_use]
+    pub fn schema(self) -> Value {
+        match self {
+            Self::State => object(&[
+                ("time_s", number("s", "Run time")),
+                ("done_percent", number("%", "Share of the run that is done; null where unknown")),
+                ("mode", json!({ "type": "string" })),
+                (
+                    "mode_number",
+                    number("", "0 aligning, 1 calibrating, 2 refused, 3 navigating, 4 done"),
+                ),
+                ("stop", number("", "Number of the stop, from 1")),
+                ("moving", json!({ "type": "boolean" })),
+                ("health", json!({ "type": "array", "items": { "type": "string" } })),
+                ("health_bits", number("", "Flags of the core's health")),
+            ]),
+            Self::Error => object(&[
+                ("latitude_arcmin", number("arcmin", "Navigation minus truth")),
+                ("longitude_arcmin", number("arcmin", "Navigation minus truth")),
+                ("radial_nmi", number("nmi", "Distance")),
+            ]),
+            Self::Parameters => {
+                let one = |i: usize| {
+                    let unit = Group::of(i).unit();
+                    let parts = [("value", number(unit, "")), ("sigma", number(unit, "1 sigma"))];
+                    (NAMES[i], object(&parts))
+                };
+                let parameters: Vec<_> = (0..NAMES.len()).map(one).collect();
+                object(&parameters)
+            }
+            Self::Gimbals => object(&[
+                ("azimuth_deg", number("deg", "As sensed")),
+                ("roll_deg", number("deg", "As sensed")),
+                ("command_azimuth_deg", number("deg", "As commanded")),
+                ("command_roll_deg", number("deg", "As commanded")),
+            ]),
+            Self::Nis => object(&[
+                ("nis", number("", "Normalized innovation squared; 3 is right")),
+                ("mean", number("", "Mean so far")),
+            ]),
+            Self::Pacing => object(&[
+                ("samples", number("", "Samples that have left")),
+                ("latest_us", number("us", "Largest lateness of the last second")),
+                ("overruns", number("", "Overruns so far")),
+                ("late_answers", number("", "Periods so far that ended without their answer")),
+            ]),
+            Self::Faults => {
+                let fault = object(&[
+                    ("id", json!({ "type": "string" })),
+                    ("kind", json!({ "type": "string" })),
+                    ("when", json!({ "type": "string" })),
+                    ("acts", json!({ "type": "boolean" })),
+                    ("firings", number("", "How often it set in")),
+                ]);
+                object(&[
+                    ("armed", number("", "Faults of the scenario")),
+                    ("fired", number("", "Those that have set in")),
+                    ("acting", number("", "Those that act now")),
+                    ("faults", json!({ "type": "array", "items": fault })),
+                ])
+            }
+        }
+    }
+}
+
+fn number(unit: &str, description: &str) -> Value {
+    let text = match (unit, description) {
+        ("", text) => text.to_owned(),
+        (unit, "") => unit.to_owned(),
+        (unit, text) => format!("{text}, {unit}"),
+    };
+    json!({ "type": "number", "description": text })
+}
+
+fn object(properties: &[(&str, Value)]) -> Value {
+    let properties: Map<String, Value> =
+        properties.iter().map(|(name, value)| ((*name).to_owned(), value.clone())).collect();
+    json!({ "type": "object", "properties": properties })
+}
+
+/// Publishes the messages that follow from an item of the recording, with the state after it.
+pub fn messages(state: &State, item: &Item, mut publish: impl FnMut(Channel, Value)) {
+    match item {
+        Item::Output(output) => {
+            publish(
+                Channel::State,
+                json!({
+                    "time_s": state.time_ns as f64 * 1e-9,
+                    "done_percent": state.done().map(|done| done * 100.0),
+                    "mode": output.mode.name(),
+                    "mode_number": output.mode as u8,
+                    "stop": output.stop + 1,
+                    "moving": output.moving,
+                    "health": output.health.iter().map(octant_score::health::name).collect::<Vec<_>>(),
+                    "health_bits": output.health.bits(),
+                }),
+            );
+            let target = output.gimbal_command.target;
+            let mut gimbals = json!({
+                "command_azimuth_deg": target.azimuth_rad().to_degrees(),
+                "command_roll_deg": target.roll_rad().to_degrees(),
+            });
+            if let Some(sensed) = state.gimbals {
+                gimbals["azimuth_deg"] = sensed.azimuth_rad().to_degrees().into();
+                gimbals["roll_deg"] = sensed.roll_rad().to_degrees().into();
+            }
+            publish(Channel::Gimbals, gimbals);
+            if let Some(nis) = state.nis.filter(|_| output.nis.is_finite()) {
+                publish(Channel::Nis, json!({ "nis": nis.last, "mean": finite(nis.mean()) }));
+            }
+        }
+        Item::Truth(truth) => {
+            let same = state.output.is_some_and(|output| output.device_time.ns == truth.time.ns);
+            if let Some(drift) = state.drift.filter(|_| same) {
+                publish(
+                    Channel::Error,
+                    json!({
+                        "latitude_arcmin": finite(drift.latitude_arcmin),
+                        "longitude_arcmin": finite(drift.longitude_arcmin),
+                        "radial_nmi": finite(drift.radial_nmi),
+                    }),
+                );
+            }
+        }
+        Item::Parameters(_, estimate) => {
+            let values = estimate.parameters.to_array();
+            let mut message = Map::new();
+            for (i, name) in NAMES.iter().enumerate() {
+                let unit = Group::of(i).si_per_unit();
+                // A parameter that isn't estimated has a value and no σ.
+                let sigma = Some(estimate.sigma[i] / unit).filter(|sigma| *sigma > 0.0);
+                let sigma = sigma.and_then(finite);
+                let value = json!({ "value": finite(values[i] / unit), "sigma": sigma });
+                message.insert((*name).to_owned(), value);
+            }
+            publish(Channel::Parameters, message.into());
+        }
+        Item::Event(event) => match event.kind.as_str() {
+            "pace" => {
+                if let Some(pace) = state.pace {
+                    publish(
+                        Channel::Pacing,
+                        json!({
+                            "samples": pace.frames,
+                            "latest_us": pace.latest_us,
+                            "overruns": pace.overruns,
+                            "late_answers": pace.late_answers,
+                        }),
+                    );
+                }
+            }
+            "fault" | "receipts" => publish(Channel::Faults, faults(state)),
+            _ => {}
+        },
+        Item::Sample(_) | Item::CleanSample(_) | Item::CleanAiding(_) | Item::Aiding(_) => {}
+    }
+}
+
+/// Builds the message of all faults.
+#[must_use]
+pub fn faults(state: &State) -> Value {
+    let count = |is: fn(&super::state::FaultState) -> bool| {
+        state.faults.iter().filter(|fault| is(fault)).count()
+    };
+    json!({
+        "armed": state.faults.len(),
+        "fired": count(|fault| fault.firings > 0),
+        "acting": count(|fault| fault.acts),
+        "faults": state.faults.iter().map(|fault| json!({
+            "id": fault.id,
+            "kind": fault.kind,
+            "when": fault.when,
+            "acts": fault.acts,
+            "firings": fault.firings,
+        })).collect::<Vec<_>>(),
+    })
+}
+
+/// JSON has no NaN.
+fn finite(value: f64) -> Option<f64> {
+    Some(value).filter(|value| value.is_finite())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn strings<'a>(value: &'a Value, found: &mut Vec<&'a str>) {
+        match value {
+            Value::String(text) => found.push(text),
+            Value::Array(values) => values.iter().for_each(|value| strings(value, found)),
+            Value::Object(values) => values.values().for_each(|value| strings(value, found)),
+            _ => {}
+        }
+    }
+
+    #[test]
+    fn the_layout_shows_what_is_published_and_all_of_its_panels() {
+        let path =
+            concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/foxglove/octant-layout.json");
+        let layout: Value = serde_json::from_slice(&std::fs::read(path).unwrap()).unwrap();
+        let panels = layout["configById"].as_object().unwrap();
+        let (mut texts, mut placed) = (Vec::new(), Vec::new());
+        strings(&layout["configById"], &mut texts);
+        strings(&layout["layout"], &mut placed);
+        strings(&layout["configById"]["Tab!parameters"]["tabs"], &mut placed);
+        for panel in panels.keys() {
+            assert!(placed.contains(&panel.as_str()), "{panel} has no place");
+        }
+        for id in placed.iter().filter(|text| text.contains('!')) {
+            assert!(panels.contains_key(*id), "there is no panel {id}");
+        }
+        let mut shown: Vec<Channel> = Vec::new();
+        let paths: Vec<&str> = texts.into_iter().filter(|text| text.starts_with('/')).collect();
+        for path in &paths {
+            let (topic, fields) = path.split_once('.').unwrap_or((path, ""));
+            let channel = Channel::ALL.into_iter().find(|channel| channel.topic() == topic);
+            let channel = channel.unwrap_or_else(|| panic!("nobody publishes {topic}"));
+            let mut schema = channel.schema();
+            for field in fields.split('.').filter(|field| !field.is_empty()) {
+                schema = schema["properties"][field].clone();
+                assert!(!schema.is_null(), "{path}: there is no {field}");
+            }
+            shown.push(channel);
+        }
+        for channel in Channel::ALL {
+            assert!(shown.contains(&channel), "{} is not shown", channel.topic());
+        }
+        for name in NAMES {
+            for part in ["value", "sigma"] {
+                let path = format!("/octant/parameters.{name}.{part}");
+                assert!(paths.contains(&path.as_str()), "{path} is not shown");
+            }
+        }
+    }
+}

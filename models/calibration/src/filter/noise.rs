@@ -1,0 +1,30 @@
+//! Process noise.
+
+use crate::covariance::{Covariance, DV, PHI};
+use nalgebra::Vector3;
+
+/// Adds the process noise of white gyro and accelerometer noise over `elapsed_s`, in which the
+/// specific force in n integrates to `force_sum` (m/s).
+pub fn add_process_noise(
+    covariance: &mut Covariance,
+    noise: (f64, f64),
+    elapsed_s: f64,
+    force_sum: &Vector3<f64>,
+) {
+    let (gyro, accel) = (noise.0 * elapsed_s, noise.1 * elapsed_s);
+    // δv̇ = f × φ: with a constant f the velocity receives half of f T times the noise of φ, and a
+    // third of its square.
+    let f = octant_earth::rotation::skew(force_sum);
+    let cross = f * (0.5 * gyro);
+    let square = f * f.transpose() * (gyro / 3.0);
+    for i in 0..3 {
+        covariance.add(PHI + i, PHI + i, gyro);
+        covariance.add(DV + i, DV + i, accel);
+        for j in 0..3 {
+            covariance.add(DV + i, PHI + j, cross[(i, j)]);
+            if j >= i {
+                covariance.add(DV + i, DV + j, square[(i, j)]);
+            }
+        }
+    }
+}

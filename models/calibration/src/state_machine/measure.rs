@@ -1,0 +1,102 @@
+//! One measurement: the reference that came with a sample, and the filter's use of it.
+
+use super::edges::CORRECTION_RAD;
+use super::estimation::Estimation;
+use super::{Core, Refusal, kalman_of};
+use crate::compensation::Compensation;
+use crate::drift::Drift;
+use octant_sample::{Aiding, Health, Sample};
+
+/// Memory of the running mean of NIS, measurements.
+const NIS_MEMORY: f64 = 64.0;
+
+impl Core {
+    #[inline(never)]
+    pub(super) fn measure(
+        &mut self,
+        sample: &Sample,
+        aiding: Option<&Aiding>,
+        health: &mut Health,
+        nis: &mut f64,
+    ) {
+        let mut aiding = aiding;
+        // The reference's clock and the instrument's may jitter against each other.
+        let stale = |aiding: &Aiding| {
+            let apart_ns = aiding.device_time.ns.abs_diff(sample.device_time.ns);
+            apart_ns > self.config.sample_period_ns / 2
+        };
+        if self.config.screening.aiding_stamps && aiding.is_some_and(stale) {
+            // A stale reference holds for another time.
+            aiding = None;
+            *health |= Health::AIDING_STALE;
+        }
+        let (Estimation::Kalman(_), Some(kalman)) = (&self.estimation, kalman_of(&self.config))
+        else {
+            return;
+        };
+        let explains_ticks = self.explains_ticks();
+        let after_move = self.has_moved_within(explains_ticks);
+        let period_ticks = kalman.aiding_period_ns / self.config.sample_period_ns;
+        let due = self.tick.is_multiple_of(period_ticks);
+        self.due_tick = self.tick.checked_next_multiple_of(period_ticks).unwrap_or(u64::MAX);
+        if !due && aiding.is_none() {
+            return;
+        }
+        self.account();
+        let (Estimation::Kalman(filter), Some(kalman)) =
+            (&mut self.estimation, kalman_of(&self.config))
+        else {
+            return;
+        };
+        filter.propagate(&self.strapdown);
+        let before = self.parameters;
+        let measured = aiding.and_then(|aiding| {
+            filter.measure(&aiding.reference, &mut self.strapdown, &mut self.parameters)
+        });
+        if !self.parameters.to_array().iter().all(|value| value.is_finite()) {
+            self.parameters = before;
+            self.refuse(Refusal::Numeric);
+            *health |= Health::NUMERIC;
+            return;
+        }
+        if let Some(measured) = measured {
+            self.last_measured_tick = self.tick;
+            *nis = measured.nis;
+            if measured.rejected {
+                *health |= Health::INNOVATION_REJECTED;
+            } else {
+                self.compensation = Compensation::new(&self.parameters);
+                self.sigma = filter.parameter_sigmas();
+                self.revision = self.revision.saturating_add(1);
+            }
+            if measured.turned_rad > CORRECTION_RAD
+                && let Some(continuity) = &mut self.continuity
+            {
+                continuity.attitude_corrected();
+            }
+            if measured.recovery_started
+                && self.tick - self.disturbed_tick > explains_ticks
+                && after_move
+            {
+                // The errors that contradict the measurements may be older than the checkpoint.
+                self.unrepaired = self.unrepaired.saturating_add(1);
+            }
+            self.nis_running += (measured.nis - self.nis_running) / NIS_MEMORY;
+        } else if aiding.is_some() {
+            *health |= Health::NUMERIC;
+        }
+        if self.tick - self.last_measured_tick > period_ticks {
+            *health |= Health::AIDING_LOST;
+        }
+        if filter.is_recovering() {
+            *health |= Health::RECOVERING;
+        }
+        if filter.drift().is_some_and(Drift::is_found) {
+            *health |= Health::DRIFTING;
+        }
+        if self.nis_running > kalman.refuse_above_mean_nis {
+            *health |= Health::INCONSISTENT;
+        }
+        self.compare_turns(sample, health);
+    }
+}

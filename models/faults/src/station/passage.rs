@@ -1,0 +1,72 @@
+//! Passage of an epoch through the faults of samples and delivery.
+
+use super::{Delivered, Station};
+use crate::catalogue::Lasts;
+use crate::rule::{Context, Rule};
+use octant_sample::{Epoch, Output};
+
+impl Station {
+    #[inline(never)]
+    pub(super) fn pass(&mut self, epoch: &Epoch, output: &Output) -> Delivered<'_> {
+        let shared = self.shared();
+        self.flight.clear();
+        self.flight.push(*epoch);
+        let mut engaged = false;
+        for stage in &mut self.stages {
+            if !stage.engaged() {
+                continue;
+            }
+            let acting = stage.acting();
+            let instant = stage.kind.lasts == Lasts::Instant;
+            let now = stage.context(&shared, &self.last, output);
+            match &mut stage.rule {
+                Rule::Samples(rule) => {
+                    engaged = true;
+                    for epoch in &mut self.flight {
+                        let clean = *epoch;
+                        if stage.fresh && (acting || instant) {
+                            let strength = if acting { now.strength } else { 1.0 };
+                            rule.on_epoch(epoch, &Context { since_onset: 0, strength, ..now });
+                            stage.fresh = false;
+                        } else if acting && !instant {
+                            let since_onset = now.since_onset.max(1);
+                            rule.on_epoch(epoch, &Context { since_onset, ..now });
+                        } else if rule.lingers() {
+                            rule.afterwards(epoch, &now);
+                        }
+                        if !epoch.same_bits(&clean) {
+                            stage.ledger.touched(shared.epoch);
+                            stage.ledger.clean(&clean);
+                            stage.ledger.faulted(epoch);
+                        }
+                    }
+                }
+                Rule::Delivery(rule) => {
+                    engaged = true;
+                    self.landed.clear();
+                    rule.on_step(&self.flight, acting, &now, &mut self.landed);
+                    debug_assert!(self.landed.len() <= self.burst, "{} allocates", stage.kind.name);
+                    if !same(&self.flight, &self.landed) {
+                        stage.ledger.touched(shared.epoch);
+                        self.flight.iter().for_each(|epoch| stage.ledger.clean(epoch));
+                        self.landed.iter().for_each(|epoch| stage.ledger.faulted(epoch));
+                    }
+                    core::mem::swap(&mut self.flight, &mut self.landed);
+                }
+                Rule::Plant(_)
+                | Rule::Command(_)
+                | Rule::Unit(_)
+                | Rule::Wire(_)
+                | Rule::Host(_) => {}
+            }
+        }
+        self.last = *epoch;
+        self.plan();
+        if engaged { Delivered::These(&self.flight) } else { Delivered::Untouched }
+    }
+}
+
+/// Returns whether both hold the same epochs, bit for bit, in the same order.
+fn same(a: &[Epoch], b: &[Epoch]) -> bool {
+    a.len() == b.len() && a.iter().zip(b).all(|(a, b)| a.same_bits(b))
+}
