@@ -69,11 +69,11 @@ pub fn real_time(uri: &Uri, sample_rate_hz: f64, bus: Option<Bus>) -> Result<Loa
 pub fn bus(uri: &Uri) -> Option<Bus> {
     match uri {
         Uri::Slcan(slcan) => Some(slcan.bus),
-        #[cfg(target_os = "linux")]
+        #[cfg(all(target_os = "linux", feature = "can"))]
         Uri::Can(can) => {
             named_bus(can).or_else(|| crate::port::interface_bus(&can.interface, can.format))
         }
-        #[cfg(not(target_os = "linux"))]
+        #[cfg(not(all(target_os = "linux", feature = "can")))]
         Uri::Can(can) => named_bus(can),
         _ => None,
     }

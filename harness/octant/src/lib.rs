@@ -30,6 +30,8 @@ mod run;
 mod run_folder;
 mod run_system;
 mod score;
+#[cfg(feature = "dashboard")]
+mod screen;
 mod selftest;
 mod serve;
 mod side_by_side;

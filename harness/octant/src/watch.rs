@@ -1,25 +1,23 @@
 //! `octant watch`.
 
-use super::progress::interrupts;
 use crate::failure::Failure;
 use crate::followed::{unreadable, verdict};
+#[cfg(not(feature = "dashboard"))]
+use crate::terminal::note;
 use crate::terminal::print;
 use clap::Args;
 use octant_requirements::Verdict;
-use octant_watch::dashboard::{self, Page};
 use octant_watch::follow::{Follow, Stage};
 use octant_watch::place::Place;
 use octant_watch::plain;
-use ratatui::crossterm::event::{self, Event, KeyCode, KeyEventKind, KeyModifiers};
 use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
-use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
 use std::time::{Duration, Instant};
 
 /// Default folder of runs.
 const RUNS: &str = "runs";
 /// Interval of the polls: the recording grows four times a second.
-const LOOK: Duration = Duration::from_millis(125);
+pub(super) const LOOK: Duration = Duration::from_millis(125);
 /// Interval of the lines.
 const LINE: Duration = Duration::from_secs(1);
 
@@ -62,7 +60,16 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     if arguments.plain || !std::io::stdout().is_terminal() {
         return lines(follow);
     }
-    screen(follow)
+    #[cfg(feature = "dashboard")]
+    return crate::screen::show(follow);
+    #[cfg(not(feature = "dashboard"))]
+    {
+        note!(
+            "this program was built without the dashboard (cargo build --release --features \
+             octant/dashboard): here is a line a second",
+        );
+        lines(follow)
+    }
 }
 
 /// Polls until everything present is known.
@@ -102,67 +109,4 @@ fn lines(mut follow: Follow) -> Result<Verdict, Failure> {
         }
         std::thread::sleep(LOOK);
     }
-}
-
-/// Shows the dashboard. The terminal is restored, even after a panic.
-fn screen(mut follow: Follow) -> Result<Verdict, Failure> {
-    let mut terminal = ratatui::try_init()
-        .map_err(|error| Failure::bench(format!("failed to set up the terminal: {error}")))?;
-    // An interrupt restores the terminal too.
-    interrupts::watch();
-    let shown = show(&mut terminal, &mut follow);
-    ratatui::restore();
-    shown?;
-    // The content of the screen is gone with it.
-    print(&(plain::line(&follow) + "\n" + &plain::end(&follow)))?;
-    verdict(&follow)
-}
-
-fn show(terminal: &mut ratatui::DefaultTerminal, follow: &mut Follow) -> Result<(), Failure> {
-    let failed =
-        |error: std::io::Error| Failure::bench(format!("failed to use the terminal: {error}"));
-    let mut page = Page::default();
-    // A killed program may have left content there.
-    terminal.clear().map_err(failed)?;
-    let events = events().map_err(failed)?;
-    while !interrupts::seen() {
-        // One poll per frame: a long recording fills the screen while it is read.
-        let more = follow.look(|_, _, _| {}).map_err(unreadable)?;
-        terminal.draw(|frame| dashboard::draw(frame, follow, page)).map_err(failed)?;
-        let wait = if more { Duration::ZERO } else { LOOK };
-        let event = match events.recv_timeout(wait) {
-            Ok(event) => event.map_err(failed)?,
-            Err(RecvTimeoutError::Timeout) => continue,
-            // The terminal is gone.
-            Err(RecvTimeoutError::Disconnected) => return Ok(()),
-        };
-        let Event::Key(key) = event else { continue };
-        if key.kind == KeyEventKind::Release {
-            continue;
-        }
-        match key.code {
-            KeyCode::Char('q') | KeyCode::Esc => return Ok(()),
-            KeyCode::Char('c') if key.modifiers.contains(KeyModifiers::CONTROL) => return Ok(()),
-            KeyCode::Tab => page = page.next(),
-            KeyCode::Char(key) => page = Page::of_key(key).unwrap_or(page),
-            _ => {}
-        }
-    }
-    Ok(())
-}
-
-/// Returns the keyboard events. They are read on a thread of their own, which ends with the
-/// program: a terminal that is closed can block its reader.
-fn events() -> std::io::Result<Receiver<std::io::Result<Event>>> {
-    let (sender, receiver) = channel();
-    std::thread::Builder::new().name("keys".to_owned()).spawn(move || {
-        loop {
-            let event = event::read();
-            let is_last = event.is_err();
-            if sender.send(event).is_err() || is_last {
-                return;
-            }
-        }
-    })?;
-    Ok(receiver)
 }

@@ -8,7 +8,7 @@ mod common;
 mod architecture;
 mod campaign;
 mod campaign_report;
-#[cfg(unix)]
+#[cfg(all(unix, feature = "can"))]
 mod can_source;
 mod chain;
 mod compare_refused;
@@ -19,6 +19,8 @@ mod core_faults;
 mod core_hardened;
 mod core_spikes;
 mod covariance_golden;
+#[cfg(feature = "dashboard")]
+mod dashboard;
 mod document_links;
 mod ensemble_against;
 mod ensemble_prediction;

@@ -162,6 +162,12 @@ pub enum SourceError {
         /// Description of the failure.
         reason: String,
     },
+    /// This program was built without instruments on a CAN bus.
+    #[error(
+        "use protocol \"dbc\": this program was built without instruments on a CAN bus, expected one built with \
+         cargo build --release --features octant/can"
+    )]
+    WithoutCan,
 }
 
 /// Returns the period of a nominal rate, rounded to a nanosecond.

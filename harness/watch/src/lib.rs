@@ -3,12 +3,13 @@
 //! A run writes its recording every 250 ms ([`FLUSH_INTERVAL`](octant_recorder::FLUSH_INTERVAL)).
 //! The watching program reads that file as it grows ([`tail`]) and keeps the state of the run
 //! ([`state`]); [`follow`] knows the place of the file and the end of the run. The state is shown
-//! as a line ([`plain`]), as a dashboard ([`dashboard`]), or in Foxglove (`foxglove`, a feature).
+//! as a line ([`plain`]), as a dashboard or in Foxglove (`dashboard`, `foxglove`: features).
 //!
 //! Nothing here communicates with the run: it can't be delayed, and doesn't know that it is
 //! watched.
 
 pub mod about;
+#[cfg(feature = "dashboard")]
 pub mod dashboard;
 pub mod follow;
 #[cfg(feature = "foxglove")]

@@ -44,7 +44,7 @@ pub struct Listener {
 
 #[derive(Debug)]
 enum Bus {
-    #[cfg(target_os = "linux")]
+    #[cfg(all(target_os = "linux", feature = "can"))]
     Kernel(super::SocketCan),
     Slcan(Box<Slcan>),
 }
@@ -58,14 +58,12 @@ impl Listener {
     pub fn open(uri: &Uri, identifiers: &[(u32, bool)]) -> Result<Self, PortError> {
         let bus = match uri {
             Uri::Slcan(slcan) => Bus::Slcan(Box::new(Slcan::open(slcan)?)),
-            #[cfg(target_os = "linux")]
+            #[cfg(all(target_os = "linux", feature = "can"))]
             Uri::Can(can) => Bus::Kernel(super::SocketCan::listen(can, identifiers)?),
-            #[cfg(not(target_os = "linux"))]
+            #[cfg(not(all(target_os = "linux", feature = "can")))]
             Uri::Can(_) => {
                 let _ = identifiers;
-                let reason = "CAN interfaces are part of Linux alone; expected slcan: with an adapter \
-                              on a serial line";
-                return Err(PortError::open(uri, reason));
+                return Err(PortError::open(uri, super::WITHOUT_CAN));
             }
             _ => return Err(PortError::open(uri, "it is no CAN bus")),
         };
@@ -79,7 +77,7 @@ impl Listener {
     /// If the port is gone.
     pub fn hear(&mut self, wait: Duration) -> Result<Option<Heard>, PortError> {
         match &mut self.bus {
-            #[cfg(target_os = "linux")]
+            #[cfg(all(target_os = "linux", feature = "can"))]
             Bus::Kernel(bus) => bus.hear(wait),
             Bus::Slcan(bus) => bus.hear(wait),
         }

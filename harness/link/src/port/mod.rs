@@ -6,14 +6,14 @@ mod serial;
 mod slcan;
 mod udp;
 
-#[cfg(target_os = "linux")]
+#[cfg(all(target_os = "linux", feature = "can"))]
 mod socket_can;
 
 pub use listen::{Heard, Listener};
 pub use pty::Pty;
 pub use serial::SerialLine;
 pub use slcan::Slcan;
-#[cfg(target_os = "linux")]
+#[cfg(all(target_os = "linux", feature = "can"))]
 pub use socket_can::{SocketCan, interface_bus};
 pub use udp::UdpPort;
 
@@ -200,18 +200,24 @@ pub fn open(uri: &Uri, role: Role) -> Result<Port, PortError> {
     }
 }
 
-#[cfg(target_os = "linux")]
+#[cfg(all(target_os = "linux", feature = "can"))]
 fn open_can(can: &crate::uri::Can, role: Role) -> Result<Port, PortError> {
     Ok(Port::Frames(Box::new(SocketCan::open(can, role)?)))
 }
 
-#[cfg(not(target_os = "linux"))]
+#[cfg(not(all(target_os = "linux", feature = "can")))]
 fn open_can(can: &crate::uri::Can, _: Role) -> Result<Port, PortError> {
-    Err(PortError::open(
-        Uri::Can(can.clone()),
-        "CAN interfaces are part of Linux alone; expected slcan: with an adapter on a serial line",
-    ))
+    Err(PortError::open(Uri::Can(can.clone()), WITHOUT_CAN))
 }
+
+/// Reason why no CAN interface can be opened.
+#[cfg(not(all(target_os = "linux", feature = "can")))]
+const WITHOUT_CAN: &str = if cfg!(target_os = "linux") {
+    "this program was built without CAN interfaces, expected one built with cargo build --release \
+     --features octant/can, or slcan: with an adapter on a serial line"
+} else {
+    "CAN interfaces are part of Linux alone; expected slcan: with an adapter on a serial line"
+};
 
 /// Text that tells an operator how to reach a port.
 #[must_use]

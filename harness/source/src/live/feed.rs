@@ -1,13 +1,10 @@
 //! Readings from a port, with their times of arrival.
 
+use super::bus::Bus;
 use crate::SourceError;
 use octant_base::number::counted;
-use octant_instruments::dbc::{CanFrame, Gatherer};
-use octant_instruments::dbc::{Database, Mapping};
 use octant_instruments::{AnyDecoder, Event, Reading};
-use octant_link::port::{self, Bytes, Heard, Listener, Port};
-use octant_scenario::FileName;
-use octant_scenario::Messages;
+use octant_link::port::{self, Bytes, Port};
 use octant_scenario::{Instrument, Speaks};
 use octant_wire::Role;
 use std::path::Path;
@@ -33,14 +30,6 @@ pub(super) struct Line {
     came: Instant,
 }
 
-#[derive(Debug)]
-pub(super) struct Bus {
-    listener: Listener,
-    gatherer: Gatherer,
-    /// Frame that was not taken yet, with its time of arrival.
-    frame: Option<(Heard, Instant)>,
-}
-
 impl Feed {
     /// Opens the port of an instrument. File names are relative to `folder`.
     pub(super) fn open(instrument: &Instrument, folder: &Path) -> Result<Self, SourceError> {
@@ -49,11 +38,7 @@ impl Feed {
         let protocol = match &instrument.speaks {
             Speaks::Bytes(protocol) => *protocol,
             Speaks::Can(messages) => {
-                let gatherer = gatherer(messages, folder)?;
-                let identifiers: Vec<(u32, bool)> = gatherer.identifiers().collect();
-                let listener = Listener::open(uri, &identifiers);
-                let listener = listener.map_err(|error| gone(error.to_string()))?;
-                return Ok(Self::Bus(Box::new(Bus { listener, gatherer, frame: None })));
+                return Ok(Self::Bus(Box::new(Bus::open(uri, messages, folder)?)));
             }
         };
         // The port waits for a sender, as a device does.
@@ -87,12 +72,7 @@ impl Feed {
     pub(super) fn reading(&mut self) -> Option<(Reading, Instant)> {
         match self {
             Self::Line(line) => line.reading(),
-            Self::Bus(bus) => {
-                let (heard, came) = bus.frame.take()?;
-                let (id, extended) = (heard.id, heard.extended);
-                let frame = CanFrame { id, extended, data: heard.data() };
-                bus.gatherer.receive(&frame).map(|reading| (reading, came))
-            }
+            Self::Bus(bus) => bus.reading(),
         }
     }
 
@@ -105,11 +85,7 @@ impl Feed {
                 line.rest = 0..came.map_err(|error| error.to_string())?;
                 Ok(!line.rest.is_empty())
             }
-            Self::Bus(bus) => {
-                let heard = bus.listener.hear(wait).map_err(|error| error.to_string())?;
-                bus.frame = heard.map(|heard| (heard, Instant::now()));
-                Ok(bus.frame.is_some())
-            }
+            Self::Bus(bus) => bus.receive(wait),
         }
     }
 
@@ -133,18 +109,7 @@ impl Feed {
                     counted(counters.checksum, "frame", "frames"),
                 )
             }
-            Self::Bus(bus) => {
-                let counters = bus.gatherer.counters();
-                format!(
-                    "received so far: {}, {}, {} of other messages, {} with a missing message, {} with \
-                     messages of another sample",
-                    counted(counters.frames, "frame", "frames"),
-                    counted(counters.readings, "reading", "readings"),
-                    counted(counters.other, "frame", "frames"),
-                    counted(counters.incomplete, "reading", "readings"),
-                    counted(counters.mixed, "reading", "readings"),
-                )
-            }
+            Self::Bus(bus) => bus.said(),
         }
     }
 }
@@ -165,29 +130,4 @@ impl Line {
             }
         }
     }
-}
-
-/// Builds the gatherer that assembles readings from CAN messages. File names are relative to
-/// `folder`.
-///
-/// # Errors
-/// If a file can't be read, or the files don't fit each other.
-pub(super) fn gatherer(messages: &Messages, folder: &Path) -> Result<Gatherer, SourceError> {
-    let read = |name: &FileName| {
-        let path = name.path(folder).map_err(SourceError::FileName)?;
-        let file = path.display().to_string();
-        match std::fs::read_to_string(&path) {
-            Ok(text) => Ok((file, text)),
-            Err(error) => Err(SourceError::Read { path: file, reason: error.to_string() }),
-        }
-    };
-    let wrong = |problem: octant_instruments::dbc::Problem| SourceError::Read {
-        path: problem.place,
-        reason: problem.what,
-    };
-    let (file, text) = read(&messages.database)?;
-    let database = Database::parse(&file, &text).map_err(wrong)?;
-    let (file, text) = read(&messages.mapping)?;
-    let mapping = Mapping::parse(&file, &text).map_err(wrong)?;
-    Gatherer::new(&database, &mapping).map_err(wrong)
 }

@@ -5,6 +5,11 @@
 //! core's gimbal command; its angles are put into samples whose instrument has no valid angles of
 //! its own.
 
+#[cfg(feature = "can")]
+mod bus;
+#[cfg(not(feature = "can"))]
+#[path = "no_bus.rs"]
+mod bus;
 mod clock;
 mod feed;
 mod table;
@@ -57,7 +62,7 @@ impl LiveSource {
     /// If a file can't be read or isn't valid.
     pub fn check(scenario: &Scenario, instrument: &Instrument) -> Result<(), SourceError> {
         if let Speaks::Can(messages) = &instrument.speaks {
-            feed::gatherer(messages, &scenario.folder)?;
+            bus::check(messages, &scenario.folder)?;
         }
         match &scenario.drive {
             Some(drive) => drive.plan(&scenario.folder).map(drop).map_err(SourceError::Table),
