@@ -20,7 +20,7 @@ fn fixtures() -> Vec<(String, Value)> {
 
 #[test]
 fn every_shipped_scenario_validates_and_none_does_with_an_unknown_key() {
-    let validator = jsonschema::draft202012::new(&octant_scenario::schema()).unwrap();
+    let validator = octant_json_schema::draft202012::new(&octant_scenario::schema()).unwrap();
     for (file, mut scenario) in fixtures() {
         if let Err(error) = validator.validate(&scenario) {
             panic!("{file}: {}: {error}", error.instance_path());
@@ -76,7 +76,7 @@ fn every_shipped_scenario_validates_and_none_does_with_an_unknown_key() {
 
 #[test]
 fn the_schema_refuses_what_the_program_refuses_at_sight() {
-    let validator = jsonschema::draft202012::new(&octant_scenario::schema()).unwrap();
+    let validator = octant_json_schema::draft202012::new(&octant_scenario::schema()).unwrap();
     let base = json!({ "schema": 1, "procedure": { "calibration": {} } });
     assert!(validator.is_valid(&base));
     for (pointer, value) in [

@@ -23,6 +23,7 @@ mod encoder;
 mod gimbal;
 mod imu;
 mod increments;
+pub mod interpolation;
 mod kinematics;
 pub mod motion;
 mod plant;

@@ -10,12 +10,11 @@
 //! The content of a window depends on its number alone, so that a plant that enters it with a
 //! restored state finds the same bits.
 
+use crate::interpolation::{self, NODES, Weights};
 use crate::six_dof::SixDof;
 use crate::sway::Sway;
 use nalgebra::Vector3;
 
-/// Nodes of a window.
-const NODES: usize = 10;
 /// Largest phase that the fastest sinusoid gains in half a window, rad.
 const REACH_RAD: f64 = 0.17;
 /// Most samples of a window, so that their weights stay in the cache.
@@ -23,9 +22,6 @@ const SAMPLES_MAX: f64 = 64.0;
 
 /// Angular rate and specific force, side by side.
 type Six = [f64; 6];
-
-/// Weights of the nodes in a sum over them.
-type Weights = [f64; NODES];
 
 /// Frame at rest against the case: sine and cosine of the gimbal angles.
 pub(crate) type Frame = [(f64, f64); 2];
@@ -63,19 +59,9 @@ impl Window {
             return None;
         }
         let length_s = samples as f64 * period_s;
-        // Chebyshev nodes of the first kind, on (−1, 1).
-        let chebyshev: Weights = core::array::from_fn(|i| {
-            libm::cos(core::f64::consts::PI * (i as f64 + 0.5) / NODES as f64)
-        });
-        let weights_at = |time_s: f64| -> Weights {
-            let x = 2.0 * time_s / length_s - 1.0;
-            core::array::from_fn(|i| {
-                (0..NODES)
-                    .filter(|k| *k != i)
-                    .map(|k| (x - chebyshev[k]) / (chebyshev[i] - chebyshev[k]))
-                    .product()
-            })
-        };
+        let chebyshev = interpolation::nodes();
+        let weights_at =
+            |time_s: f64| interpolation::weights(&chebyshev, 2.0 * time_s / length_s - 1.0);
         let mut at_node = Vec::new();
         let mut integral = Vec::new();
         for sample in 0..samples {

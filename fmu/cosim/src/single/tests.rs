@@ -133,7 +133,7 @@ fn rows_of_mcap_are_json_with_a_schema() {
     let schema: serde_json::Value = serde_json::from_slice(&schema.data).unwrap();
     assert_eq!(schema["properties"]["y"]["description"], "in m");
     let message: serde_json::Value = serde_json::from_slice(&last.data).unwrap();
-    assert!(jsonschema::draft202012::is_valid(&schema, &message));
+    assert!(octant_json_schema::draft202012::is_valid(&schema, &message));
 }
 
 #[test]

@@ -17,6 +17,7 @@ pub(super) fn found(bench: &Bench<'_>) -> Result<Outcome, CaseError> {
     let mut put = |name: String, value: &Value| {
         value.as_f64().map(|value| all.insert(name.clone(), value)).ok_or(format!("find {name}"))
     };
+    put("confidence of the report".to_owned(), &statistics["confidence"])?;
     put("confidence".to_owned(), &requirement["confidence"])?;
     put("lower bound".to_owned(), &requirement["lower_bound"])?;
     for at in requirement["convergence"].as_array().into_iter().flatten() {

@@ -79,6 +79,9 @@ fn drift(all: &mut Found, hours: u32) -> Result<(), String> {
     put("radial final", radial.r#final);
     put("rate per h", radial.rate_per_h);
     put("duration", scores.duration_h);
+    let [_, latitude, longitude] = scores.series_hours.last().ok_or("find the series")?;
+    put("latitude of the last point of the series", *latitude);
+    put("longitude of the last point of the series", *longitude);
     put("slope window hours", scores.slope_window.ok_or("find the window of the slope")?.hours);
     if hours == 30 {
         let mark = scores.marks.get("24h").ok_or("find the scores at 24 h")?;
