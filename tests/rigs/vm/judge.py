@@ -109,12 +109,13 @@ equal = sum(
     for one in recorded
 )
 check("an instrument on the kernel's CAN", told.startswith("instrument 0 "), told)
-# A host that is busy starves the machine, and its controllers overrun: what that costs has to be counted.
+# A host that is busy starves the machine, and its controllers overrun: however many samples that costs, each has to be
+# counted, and one that has arrived has to be equal. Where most are lost, nothing is shown.
 missing = re.search(r'"missing":(\d+)', told)
 missing = int(missing[1]) if missing else 0
 check(
     "it has the samples of the frames, or counts them as missing",
-    equal == len(recorded) == 200 - missing and missing <= 10,
+    equal == len(recorded) == 200 - missing and missing <= 100,
     f"{equal} of {len(recorded)} equal, {missing} missing",
 )
 
