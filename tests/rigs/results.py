@@ -53,10 +53,10 @@ def steps(rigs, out):
         ended = rigs / "steps" / f"{name}.ended"
         log = rigs / "steps" / f"{name}.log"
         if ended.exists():
-            status, seconds, begun, end = ended.read_text().split()
+            status, seconds, begun, end, processor = ended.read_text().split()
             status = int(status)
             step["result"] = {0: "passed", 77: "skipped"}.get(status, "failed")
-            step |= {"exit_status": status, "seconds": int(seconds), "begun": begun, "ended": end}
+            step |= {"exit_status": status, "seconds": int(seconds), "processor_seconds": int(processor), "begun": begun, "ended": end}
         elif log.exists():
             step["result"] = "failed"
             step["reason"] = "it did not end"
