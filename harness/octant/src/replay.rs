@@ -4,7 +4,7 @@ use crate::failure::Failure;
 use crate::terminal::{print, print_json};
 use clap::Args;
 use octant_base::number::counted;
-use octant_endpoint::{Endpoint, InProcess};
+use octant_endpoint::{AnyEndpoint, InProcess};
 use octant_requirements::Verdict;
 use octant_run::replayed::replay;
 use octant_scenario::Scenario;
@@ -63,11 +63,11 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     let (_, core, _) = configurations(&scenario, method, seed).map_err(|e| bad(&e))?;
     // If the recording's core was an FMU, that FMU is used again; a device's answers are compared
     // with the core in this process.
-    let device = matches!(scenario.endpoint, octant_scenario::Endpoint::Live(_));
+    let device = scenario.endpoint.device().is_some();
     let elsewhere = (!device).then(|| octant_endpoint::open(&scenario, &core)).transpose();
-    let mut endpoint: Box<dyn Endpoint> = match elsewhere.map_err(|e| bad(&e))?.flatten() {
+    let mut endpoint: AnyEndpoint = match elsewhere.map_err(|e| bad(&e))?.flatten() {
         Some(endpoint) => endpoint,
-        None => Box::new(InProcess::new(&core).map_err(|e| bad(&format!("set up the core: {e}")))?),
+        None => InProcess::new(&core).map_err(|e| bad(&format!("set up the core: {e}")))?.into(),
     };
     let mut source = Replay::open(path, None).map_err(|e| bad(&e))?;
     let mut replayed = replay(&mut source, &mut endpoint).map_err(|e| bad(&e))?;

@@ -1,9 +1,9 @@
 //! The loop: source → faults → endpoint → recorder and watcher, one step of the source at a time.
 //!
-//! [`drive()`] is the only loop over samples. Its type parameters are the choices, so that each
-//! combination is compiled for itself: [`Source`] and [`Endpoint`]; [`Injects`] for what happens
-//! between them (nothing, faults, events of a recording); [`Keeps`] for the results and the pace:
-//! [`InTime`], by the clock ([`realtime`](super::realtime)), compared with a recording
+//! `drive` is the only loop over samples. Its type parameters are the choices, so that each
+//! combination is compiled for itself: [`Source`] and [`Endpoint`]; `Injects` for what happens
+//! between them (nothing, faults, events of a recording); `Keeps` for the results and the pace: in
+//! time (`InTime`), by the clock ([`realtime`](super::realtime)), compared with a recording
 //! ([`replayed`](super::replayed)) or dropped ([`passes`](super::passes)).
 
 pub use super::ended::{Ended, RunError};
@@ -440,7 +440,7 @@ impl<S: Source + ?Sized, E: Endpoint + ?Sized> Keeps<S, E> for InTime<'_> {
 /// Drives in simulated time. Receipts of faults are recorded at the end, also after a failure.
 ///
 /// # Errors
-/// As [`drive()`].
+/// If source, endpoint or recorder fail; epochs recorded before stay readable.
 pub fn drive_in_time<S, E>(
     line: Line<'_, S, E>,
     recorder: &mut Recorder,

@@ -184,13 +184,13 @@ pub fn run_as_far_as_it_goes(
             to_the_end(realtime, line, &mut recorder, &mut watcher, control)?
         }
         (opened, elsewhere) => {
-            let mut source: Box<dyn Source> = match opened {
+            let mut source = match opened {
                 Some(source) => source,
-                None => Box::new(PlantSource::new(&plant, samples).map_err(SetupError::Plant)?),
+                None => PlantSource::new(&plant, samples).map_err(SetupError::Plant)?.into(),
             };
-            let mut endpoint: Box<dyn Endpoint> = match elsewhere {
+            let mut endpoint = match elsewhere {
                 Some(endpoint) => endpoint,
-                None => Box::new(InProcess::new(&core).map_err(SetupError::Core)?),
+                None => InProcess::new(&core).map_err(SetupError::Core)?.into(),
             };
             let faulted = faulted.as_mut();
             let line = Line { source: &mut source, faulted, endpoint: &mut endpoint };
