@@ -327,8 +327,8 @@ impl<'a> Books<'a> {
         let (recorder, watcher) = (&mut *self.recorder, &mut *self.watcher);
         match step {
             InStep::First(clean) => {
-                recorder.push(Frame { clean, faulted: sent, output })?;
                 watcher.source(clean);
+                recorder.push(Frame { clean, faulted: sent, output })?;
             }
             InStep::Further { step_ns } => {
                 watcher.source_time = Some(DeviceTime { ns: step_ns });
