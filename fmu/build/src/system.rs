@@ -6,7 +6,7 @@ use super::own::Own;
 use super::parameters;
 use super::ssp::{self, ParameterValues};
 use octant_fmu::table::Model;
-use octant_scenario::{Method, Scenario, Source};
+use octant_scenario::{Method, Scenario};
 use octant_source::configure::configurations;
 use std::path::Path;
 
@@ -29,7 +29,7 @@ impl Configured {
     /// Computes the values from a scenario.
     pub(super) fn new(scenario: &Scenario, name: &str) -> Result<Self, BuildError> {
         let failed = |reason: String| BuildError::Scenario { name: name.to_owned(), reason };
-        if !matches!(scenario.source, Source::Plant) {
+        if !scenario.source.is_plant_alone() {
             return Err(failed("its samples don't come from the plant".to_owned()));
         }
         let (plant, core, _) = configurations(scenario, Method::Primary, scenario.seed)

@@ -29,6 +29,12 @@ impl InProcess {
     pub fn core(&self) -> &Core {
         &self.core
     }
+
+    /// Returns the core itself, after its last step.
+    #[must_use]
+    pub fn into_core(self) -> Core {
+        self.core
+    }
 }
 
 impl Endpoint for InProcess {

@@ -1,11 +1,13 @@
 //! Endpoints: the core in this process, in an FMU, or at the other end of a wire.
 
 pub mod answer;
+mod any;
 mod fmu;
 mod in_process;
 mod live;
 mod served;
 
+pub use any::AnyEndpoint;
 pub use fmu::FmuEndpoint;
 pub use in_process::InProcess;
 pub use live::{LiveEndpoint, configuration};
@@ -101,56 +103,6 @@ pub trait Endpoint {
     }
 }
 
-impl<E: Endpoint + ?Sized> Endpoint for Box<E> {
-    fn step(&mut self, epoch: &Epoch, output: &mut Output) -> Result<(), EndpointError> {
-        (**self).step(epoch, output)
-    }
-
-    fn tells(&self) -> Tells {
-        (**self).tells()
-    }
-
-    fn uri(&self) -> String {
-        (**self).uri()
-    }
-
-    fn send(&mut self, epoch: &Epoch, output: &mut Output) -> Result<Sent, EndpointError> {
-        (**self).send(epoch, output)
-    }
-
-    fn answer(
-        &mut self,
-        until: HostTime,
-        output: &mut Output,
-    ) -> Result<Option<usize>, EndpointError> {
-        (**self).answer(until, output)
-    }
-
-    fn remote_clock(&self) -> Option<RemoteClock> {
-        (**self).remote_clock()
-    }
-
-    fn restart(&mut self, offset: Option<&Parameters>) -> Result<(), EndpointError> {
-        (**self).restart(offset)
-    }
-
-    fn parameters(&self) -> ParameterEstimate {
-        (**self).parameters()
-    }
-
-    fn end_of_stream(&mut self) -> Result<Option<Output>, EndpointError> {
-        (**self).end_of_stream()
-    }
-
-    fn conclusion(&mut self) -> Conclusion {
-        (**self).conclusion()
-    }
-
-    fn wired(&mut self) -> Option<&mut dyn Wired> {
-        (**self).wired()
-    }
-}
-
 /// Quantities that a core's answers contain. The others aren't judged.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Tells {
@@ -234,19 +186,29 @@ pub enum OpenError {
     },
 }
 
+/// Checks that the endpoint of a scenario can be opened. A device's port is opened only once, when
+/// the run begins: some devices restart when it is opened.
+///
+/// # Errors
+/// As [`open`].
+pub fn check(scenario: &Scenario, config: &Config) -> Result<(), OpenError> {
+    match scenario.endpoint.device() {
+        Some(live) => LiveEndpoint::check(scenario, live),
+        None => open(scenario, config).map(drop),
+    }
+}
+
 /// Opens the endpoint of a scenario with the core of `config`; `None` where it is the core in this
 /// process, which is called directly: see [`InProcess`].
 ///
 /// # Errors
 /// If it can't be opened, or doesn't fit.
-pub fn open(scenario: &Scenario, config: &Config) -> Result<Option<Box<dyn Endpoint>>, OpenError> {
+pub fn open(scenario: &Scenario, config: &Config) -> Result<Option<AnyEndpoint>, OpenError> {
     match &scenario.endpoint {
         scenario::Endpoint::InProcess => Ok(None),
-        scenario::Endpoint::Fmu(fmu) => {
-            Ok(Some(Box::new(FmuEndpoint::open(scenario, fmu, config)?)))
-        }
+        scenario::Endpoint::Fmu(fmu) => Ok(Some(FmuEndpoint::open(scenario, fmu, config)?.into())),
         scenario::Endpoint::Live(live) => {
-            Ok(Some(Box::new(LiveEndpoint::open(scenario, live, config)?)))
+            Ok(Some(LiveEndpoint::open(scenario, live, config)?.into()))
         }
     }
 }

@@ -5,22 +5,17 @@ use octant_base::hash::sha256;
 use octant_fmu_host::description::Description;
 use octant_mapping::open::path;
 use octant_mapping::stepper::UseError;
-use octant_scenario::{Endpoint, Fmu, Process, Scenario, Source};
+use octant_scenario::{Fmu, Process, Scenario};
 
 /// Collects the facts about the FMUs of a scenario.
 ///
 /// # Errors
 /// If one can't be read.
 pub fn fmus(scenario: &Scenario) -> Result<Vec<FmuFacts>, UseError> {
-    let source = match &scenario.source {
-        Source::Fmu(fmu) => Some(("source", fmu)),
-        _ => None,
-    };
-    let endpoint = match &scenario.endpoint {
-        Endpoint::Fmu(fmu) => Some(("endpoint", fmu)),
-        Endpoint::InProcess | Endpoint::Live(_) => None,
-    };
-    source.into_iter().chain(endpoint).map(|(role, fmu)| facts(scenario, role, fmu)).collect()
+    [("source", scenario.source.fmu()), ("endpoint", scenario.endpoint.fmu())]
+        .into_iter()
+        .filter_map(|(role, fmu)| Some(facts(scenario, role, fmu?)))
+        .collect()
 }
 
 fn facts(scenario: &Scenario, role: &str, fmu: &Fmu) -> Result<FmuFacts, UseError> {

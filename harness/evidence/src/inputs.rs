@@ -1,7 +1,7 @@
 //! Facts for the manifest about the recordings from which a run took its samples.
 
 use octant_base::hash::sha256;
-use octant_scenario::{FileName, Scenario, Source};
+use octant_scenario::{FileName, Scenario};
 use serde::{Deserialize, Serialize};
 
 /// Recording from which samples came.
@@ -37,13 +37,6 @@ pub enum InputError {
 /// # Errors
 /// If one can't be read.
 pub fn inputs(scenario: &Scenario) -> Result<Vec<InputFacts>, InputError> {
-    let names: Vec<FileName> = match &scenario.source {
-        Source::Replay { file, .. } => vec![file.clone()],
-        Source::Text(mapping) => {
-            mapping.files.all().map(|path| FileName(path.display().to_string())).collect()
-        }
-        Source::Plant | Source::Fmu(_) | Source::Live(_) => Vec::new(),
-    };
     let one = |name: FileName| {
         let path = name
             .path(&scenario.folder)
@@ -54,5 +47,5 @@ pub fn inputs(scenario: &Scenario) -> Result<Vec<InputFacts>, InputError> {
             Err(error) => Err(InputError::Read { file, error }),
         }
     };
-    names.into_iter().map(one).collect()
+    scenario.source.recordings().into_iter().map(one).collect()
 }

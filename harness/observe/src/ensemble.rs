@@ -21,9 +21,7 @@ use octant_run::method::{SetupError, label};
 use octant_sample::GimbalAngles;
 use octant_sample::parameters::Group;
 use octant_scenario::resolve::{Draws, Seeded};
-use octant_scenario::{
-    Alignment, Distribution, Dockside, Endpoint, Method, Motion, Scenario, Source,
-};
+use octant_scenario::{Alignment, Distribution, Dockside, Method, Motion, Scenario};
 use octant_source::configure::configurations;
 use octant_statistics::normal;
 use octant_statistics::radius::Plane;
@@ -134,7 +132,7 @@ pub enum EnsembleError {
 /// # Errors
 /// If it is not simulated, or not calibrated by a Kalman filter.
 pub fn ensemble(scenario: &Scenario, method: Method) -> Result<Ensemble, EnsembleError> {
-    if !matches!(scenario.source, Source::Plant) {
+    if !scenario.source.is_plant_alone() {
         return Err(EnsembleError::NotSimulated);
     }
     let (_, config, _) =
@@ -418,7 +416,7 @@ fn not_modelled(scenario: &Scenario) -> Vec<String> {
         ),
         (!scenario.faults.is_empty(), "the scenario's faults"),
         (
-            !matches!(scenario.endpoint, Endpoint::InProcess),
+            !scenario.endpoint.is_in_process(),
             "the core at endpoint.uri: the built-in core stands for it",
         ),
     ];

@@ -14,7 +14,7 @@ use octant_run::assemble::{Choice, assemble_with, parameter_text, text};
 use octant_run::findings::broken as what_broke;
 use octant_run::method::MethodError;
 use octant_run::{Ended, MethodRun, Prepared, PreparedError, Run, raw_counts};
-use octant_scenario::{Method, Scenario, Source};
+use octant_scenario::{Method, Scenario};
 use octant_score::junit::junit;
 use octant_source::configure::configurations;
 use std::path::{Path, PathBuf};
@@ -84,7 +84,7 @@ pub(crate) fn run(request: &Request) -> Result<Verdict, Failure> {
     let seed = request.seed.unwrap_or(scenario.seed);
     // Contradictions, and sources that can't be opened, are reported before anything is written. A
     // real instrument doesn't repeat its measurements, so it has no twin.
-    let once = matches!(scenario.source, Source::Live(_));
+    let once = scenario.source.instrument().is_some();
     let twins = !request.no_twin && !once;
     if once && !request.no_twin && !scenario.faults.is_empty() {
         note!("octant: no twin run: a real instrument doesn't repeat its measurements");

@@ -13,7 +13,7 @@ use octant_evidence::manifest::{Manifest, program_sha256};
 use octant_requirements::Verdict;
 use octant_requirements::equipment::Day;
 use octant_run::assemble::{Choice, assemble_with};
-use octant_scenario::{Endpoint, Scenario, Source};
+use octant_scenario::Scenario;
 use octant_score::numerics::differs;
 use serde::Serialize;
 use serde_json::Value;
@@ -103,8 +103,7 @@ fn run(folder: &Path, manifest: &Manifest, same_program: bool) -> Result<Reexecu
         Ok(scenario) => scenario,
         Err(error) => return Ok(cannot(format!("not possible: {error}"))),
     };
-    if matches!(scenario.source, Source::Live(_)) || matches!(scenario.endpoint, Endpoint::Live(_))
-    {
+    if scenario.source.instrument().is_some() || scenario.endpoint.device().is_some() {
         return Ok(cannot(
             "not possible: the run used a device, which can't be run again".to_owned(),
         ));

@@ -4,16 +4,12 @@ use crate::failure::Failure;
 use crate::terminal::{print, print_json};
 use clap::Args;
 use octant_base::number::counted;
-use octant_endpoint::{Endpoint, InProcess};
-use octant_recorder::StreamHash;
+use octant_endpoint::{AnyEndpoint, InProcess};
 use octant_requirements::Verdict;
-use octant_run::unit;
-use octant_sample::parameters::PARAMETER_COUNT;
-use octant_sample::parameters::ParameterEstimate;
-use octant_sample::{GimbalCommand, Output};
+use octant_run::replayed::replay;
 use octant_scenario::Scenario;
+use octant_source::Replay;
 use octant_source::configure::configurations;
-use octant_source::{Epoch, Replay, Source};
 use serde::Serialize;
 use std::path::PathBuf;
 
@@ -67,54 +63,21 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     let (_, core, _) = configurations(&scenario, method, seed).map_err(|e| bad(&e))?;
     // If the recording's core was an FMU, that FMU is used again; a device's answers are compared
     // with the core in this process.
-    let device = matches!(scenario.endpoint, octant_scenario::Endpoint::Live(_));
+    let device = scenario.endpoint.device().is_some();
     let elsewhere = (!device).then(|| octant_endpoint::open(&scenario, &core)).transpose();
-    let mut endpoint: Box<dyn Endpoint> = match elsewhere.map_err(|e| bad(&e))?.flatten() {
+    let mut endpoint: AnyEndpoint = match elsewhere.map_err(|e| bad(&e))?.flatten() {
         Some(endpoint) => endpoint,
-        None => Box::new(InProcess::new(&core).map_err(|e| bad(&format!("set up the core: {e}")))?),
+        None => InProcess::new(&core).map_err(|e| bad(&format!("set up the core: {e}")))?.into(),
     };
     let mut source = Replay::open(path, None).map_err(|e| bad(&e))?;
-    let (mut hash, mut samples, mut revision) = (StreamHash::new(), 0u64, 0);
-    let (mut first_difference_sample, mut parameters_equal) = (None, true);
-    let mut outputs_equal = true;
-    let (mut epoch, mut output) = (Epoch::default(), Output::default());
-    while source.next(&GimbalCommand::default(), &mut epoch).map_err(|e| bad(&e))? {
-        for event in &source.recorded().events {
-            if let Some(event) = unit::of(event).map_err(|e| bad(&e))? {
-                unit::happen(&event, &mut endpoint).map_err(|e| bad(&e))?;
-            }
-        }
-        endpoint.step(&epoch, &mut output).map_err(|e| bad(&e))?;
-        samples += 1;
-        hash.epoch(&epoch.sample, epoch.aiding.as_ref(), &output);
-        let announced = output.parameters_revision != revision;
-        if announced {
-            revision = output.parameters_revision;
-            hash.parameters(&endpoint.parameters());
-        }
-        let recorded = source.recorded();
-        let equal = match &recorded.parameters {
-            Some(estimate) => announced && same_parameters(estimate, &endpoint.parameters()),
-            // A file that ends in the middle may have lost the parameters of its last sample.
-            None => !announced || source.truncated(),
-        };
-        if !equal {
-            parameters_equal = false;
-            first_difference_sample.get_or_insert(output.sequence);
-        }
-        if let Some(recorded) = &recorded.output
-            && !same(recorded, &output)
-        {
-            first_difference_sample.get_or_insert(output.sequence);
-            outputs_equal = false;
-        }
-    }
+    let mut replayed = replay(&mut source, &mut endpoint).map_err(|e| bad(&e))?;
+    let samples = replayed.samples;
     let comparison = Comparison {
         samples,
-        stream_hash: hash.hex(),
-        outputs_equal,
-        parameters_equal,
-        first_difference_sample,
+        stream_hash: replayed.hash.hex(),
+        outputs_equal: !replayed.outputs_differ,
+        parameters_equal: !replayed.parameters_differ,
+        first_difference_sample: replayed.first_difference_sample,
         truncated: source.truncated(),
     };
     if arguments.json {
@@ -146,20 +109,4 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         (true, true) => Verdict::Inconclusive,
         (true, false) => Verdict::Pass,
     })
-}
-
-/// Compares all bits, NaN included.
-fn same_parameters(a: &ParameterEstimate, b: &ParameterEstimate) -> bool {
-    let bits = |values: &[f64; PARAMETER_COUNT]| values.map(f64::to_bits);
-    bits(&a.parameters.to_array()) == bits(&b.parameters.to_array())
-        && bits(&a.sigma) == bits(&b.sigma)
-}
-
-/// Compares all bits, NaN included.
-fn same(a: &octant_sample::Output, b: &octant_sample::Output) -> bool {
-    use octant_sample::canonical::{OUTPUT_BYTES, output};
-    let (mut left, mut right) = ([0; OUTPUT_BYTES], [0; OUTPUT_BYTES]);
-    output(a, &mut left);
-    output(b, &mut right);
-    left == right
 }

@@ -44,7 +44,7 @@ fn true_parameters(path: &Path, scenario: &Scenario) -> Result<bool, Failure> {
         .map_err(|error| Failure::input(format!("failed to read {}: {error}", path.display())))?;
     // Recordings from before FMUs don't state it.
     let said = recording.info().run.get("true_parameters").map(|text| text == "true");
-    Ok(said.unwrap_or(scenario.source == octant_scenario::Source::Plant))
+    Ok(said.unwrap_or(scenario.source.is_plant_alone()))
 }
 
 /// Returns the scenario inside a recording.

@@ -6,8 +6,7 @@ use octant_endpoint::{Endpoint, EndpointError, InProcess, Tells};
 use octant_faults::Receipt;
 use octant_recorder::Recorder;
 use octant_run::done::Plan;
-use octant_run::drive::drive;
-use octant_run::faulted::drive_faulted;
+use octant_run::drive::{Line, drive_in_time};
 use octant_run::method::{MethodError, SetupError, faulted};
 use octant_run::watch::Watcher;
 use octant_sample::disturbance::Disturbed;
@@ -72,17 +71,10 @@ fn watched(
     let plan = Plan::of(scenario, Method::Primary, &core, Tells::ALL, None);
     let (mut recorder, mut watcher) = (Recorder::none(), Watcher::new(plan));
     let control = Control::default();
-    let receipts = match faulted(scenario, seed)? {
-        None => {
-            drive(&mut source, &mut endpoint, &mut recorder, &mut watcher, &control)?;
-            Vec::new()
-        }
-        Some(mut faulted) => {
-            let (recorder, watcher) = (&mut recorder, &mut watcher);
-            drive_faulted(&mut source, &mut faulted, &mut endpoint, recorder, watcher, &control)?;
-            faulted.station.receipts()
-        }
-    };
+    let mut faulted = faulted(scenario, seed)?;
+    let line = Line { source: &mut source, faulted: faulted.as_mut(), endpoint: &mut endpoint };
+    drive_in_time(line, &mut recorder, &mut watcher, &control)?;
+    let receipts = faulted.map_or_else(Vec::new, |faulted| faulted.station.receipts());
     Ok((seen.take(), receipts))
 }
 

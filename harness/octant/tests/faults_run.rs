@@ -14,7 +14,7 @@ use octant_recorder::{Event, Policy, Recorder, RecorderOptions, RecorderSummary,
 use octant_requirements::Verdict;
 use octant_run::done::Plan;
 use octant_run::{
-    Ended, Faulted, Host, MethodRun, Recording, Watcher, assemble, drive_faulted, run_method,
+    Ended, Faulted, Host, Line, MethodRun, Recording, Watcher, assemble, drive_in_time, run_method,
 };
 use octant_sample::canonical::{AIDING_BYTES, SAMPLE_BYTES, aiding, sample};
 use octant_sample::{GimbalCommand, Mode, Output, Parameters};
@@ -338,15 +338,8 @@ fn drive_with(kind: &'static Kind, first: u64, epochs: u64, policy: Policy) -> D
     let mut endpoint = InProcess::new(&core).unwrap();
     let mut watcher = Watcher::new(Plan::lasting(&scenario));
     let control = Control::default();
-    let ended = drive_faulted(
-        &mut source,
-        &mut faulted,
-        &mut endpoint,
-        &mut recorder,
-        &mut watcher,
-        &control,
-    )
-    .unwrap();
+    let line = Line { source: &mut source, faulted: Some(&mut faulted), endpoint: &mut endpoint };
+    let ended = drive_in_time(line, &mut recorder, &mut watcher, &control).unwrap();
     let summary = recorder.finish().unwrap();
     let epochs = epochs_of(&path);
     Driven { ended, epochs, summary, watcher, station: faulted.station, path, _folder: folder }

@@ -5,7 +5,7 @@ use octant_calibration::least_squares::raw::{self, Nominal};
 use octant_earth::Vector3;
 use octant_run::passes::in_passes;
 use octant_scenario::resolve::{Draws, Seeded};
-use octant_scenario::{Method, Scenario, Source};
+use octant_scenario::{Method, Scenario};
 use octant_source as source;
 use std::path::{Path, PathBuf};
 
@@ -44,7 +44,7 @@ fn the_values_of_an_independent_program_come_out_of_the_scenario() {
     println!("{tally:?}");
     assert_eq!((tally.gaps, tally.out_of_order), (0, 0));
 
-    let Source::Text(mapping) = &scenario.source else { panic!("{:?}", scenario.source) };
+    let mapping = scenario.source.text().unwrap();
     let nominal = |axes: &[octant_scenario::recorded::Axis; 3]| Nominal {
         bias_counts: axes.each_ref().map(|axis| axis.offset),
         scale: axes.each_ref().map(|axis| axis.scale),

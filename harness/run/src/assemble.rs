@@ -12,7 +12,7 @@ use octant_requirements::Verdict;
 use octant_requirements::decision::{Against, Rule};
 use octant_requirements::equipment::Day;
 use octant_sample::parameters::NAMES;
-use octant_scenario::{Endpoint, Motion, Scenario, Source};
+use octant_scenario::{Motion, Scenario};
 use octant_score::equipment;
 use octant_score::judge::{Finding, judge_by};
 use octant_score::numerics::NUMERICS;
@@ -109,12 +109,7 @@ pub fn assemble_with(
     findings.extend(choice.findings(!scenario.requirements.is_empty()));
     let (planned, done) = primary.watcher.work();
     let against = Against {
-        simulated: match &scenario.source {
-            Source::Plant | Source::Fmu(_) => true,
-            // An octant recording that contains truth comes from a simulation.
-            Source::Replay { mapping: None, .. } => primary.navigation.is_some(),
-            Source::Replay { .. } | Source::Text(_) | Source::Live(_) => false,
-        },
+        simulated: scenario.source.is_simulated(primary.navigation.is_some()),
         latitude_rad: scenario.site.latitude_rad,
         height_m: scenario.site.height_m,
         navigation_s: done.navigation_s.unwrap_or_default(),
@@ -209,20 +204,7 @@ pub fn facts(scenario: &Scenario) -> Vec<(String, String)> {
             format!("{:.2} µg/√Hz", imu.velocity_random_walk / MICRO_G),
         ),
     ];
-    match &scenario.source {
-        Source::Plant => {}
-        Source::Replay { .. } | Source::Text(_) => {
-            facts.push(("source".to_owned(), "recorded samples, no truth".to_owned()));
-        }
-        Source::Fmu(fmu) if fmu.is_motion() => {
-            facts.push(("motion of the case".to_owned(), format!("FMU {}", fmu.file.0)));
-        }
-        Source::Live(instrument) => facts.push((
-            "source".to_owned(),
-            format!("instrument at {}, {}, no truth", instrument.uri, instrument.speaks.name()),
-        )),
-        Source::Fmu(fmu) => facts.push(("source".to_owned(), format!("FMU {}", fmu.file.0))),
-    }
+    facts.extend(scenario.source.fact().map(|(name, fact)| (name.to_owned(), fact)));
     if let Some(drive) = &scenario.drive {
         let range = |axis: Axis| {
             let limits = drive.settings.limits.of(axis);
@@ -240,13 +222,7 @@ pub fn facts(scenario: &Scenario) -> Vec<(String, String)> {
             ),
         ));
     }
-    match &scenario.endpoint {
-        Endpoint::InProcess => {}
-        Endpoint::Fmu(fmu) => facts.push(("core".to_owned(), format!("FMU {}", fmu.file.0))),
-        Endpoint::Live(live) => {
-            facts.push(("core".to_owned(), format!("device at {}, in lock-step", live.uri)));
-        }
-    }
+    facts.extend(scenario.endpoint.fact().map(|fact| ("core".to_owned(), fact)));
     facts
 }
 

@@ -1,74 +1,448 @@
-//! The loop: source → endpoint → recorder, one epoch at a time.
+//! The loop: source → faults → endpoint → recorder and watcher, one step of the source at a time.
+//!
+//! `drive` is the only loop over samples. Its type parameters are the choices, so that each
+//! combination is compiled for itself: [`Source`] and [`Endpoint`]; `Injects` for what happens
+//! between them (nothing, faults, events of a recording); `Keeps` for the results and the pace: in
+//! time (`InTime`), by the clock ([`realtime`](super::realtime)), compared with a recording
+//! ([`replayed`](super::replayed)) or dropped ([`passes`](super::passes)).
 
+pub use super::ended::{Ended, RunError};
+
+use super::ended::over;
+use super::faulted::{Behind, Faulted, occurrence_event};
+use super::unit;
 use super::watch::Watcher;
 use octant_base::control::Control;
-use octant_endpoint::{Endpoint, EndpointError};
+use octant_endpoint::{Endpoint, Sent};
+use octant_faults::catalogue::Acts;
+use octant_faults::rule::UnitEvent;
+use octant_faults::station::{Delivered, Occurrence};
+use octant_realtime::clock::HostTime;
 use octant_recorder::{Extra, Frame, Recorder, RecorderError};
-use octant_sample::{GimbalCommand, Mode, Output};
-use octant_source::{Epoch, Source, SourceError};
+use octant_sample::parameters::ParameterEstimate;
+use octant_sample::{DeviceTime, GimbalCommand, Output, Truth};
+use octant_source::{Epoch, Source};
 
 /// Epochs between two checks of the control: about a millisecond of wall time.
 const CONTROL_EPOCHS: u64 = 8192;
 
-/// How the loop ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Ended {
-    /// The core has finished its procedure.
-    Done,
-    /// The core refused its calibration and stopped there.
-    Refused,
-    /// The source had no more samples.
-    SourceEnded,
-    /// Interrupted on request.
-    Cancelled,
-    /// The core's answer broke the rules.
-    Misbehaved,
-    /// Source, endpoint or the disk of the recording failed.
-    Broken,
-}
-
-/// Reasons why a run was aborted. These are failures of the bench, not of the core.
-#[derive(Debug, thiserror::Error)]
-pub enum RunError {
-    /// The source failed.
-    #[error(transparent)]
-    Source(#[from] SourceError),
-    /// The endpoint failed.
-    #[error(transparent)]
-    Endpoint(#[from] EndpointError),
-    /// The recorder failed.
-    #[error(transparent)]
-    Recorder(#[from] RecorderError),
-    /// A navigation can't be scored.
-    #[error(transparent)]
-    Drift(#[from] octant_score::drift::DriftError),
-}
-
-impl RunError {
-    /// True if source, endpoint or the disk of the recording went away: results up to then stay
-    /// valid.
-    #[must_use]
-    pub fn is_gone(&self) -> bool {
-        matches!(
-            self,
-            Self::Source(SourceError::Gone { .. } | SourceError::TableStopped { .. })
-                | Self::Endpoint(
-                    EndpointError::Gone { .. }
-                        | EndpointError::Live(_)
-                        | EndpointError::Restart { .. }
-                )
-                | Self::Recorder(RecorderError::Write { .. })
-        )
-    }
+/// Parts of a run that its samples go through.
+#[derive(Debug)]
+pub struct Line<'a, S: ?Sized, E: ?Sized> {
+    /// Source of samples.
+    pub source: &'a mut S,
+    /// Faults.
+    pub faulted: Option<&'a mut Faulted>,
+    /// Endpoint with the core.
+    pub endpoint: &'a mut E,
 }
 
 /// Drives the source through the endpoint until one of them ends.
+pub(super) fn drive<S, F, E, K>(
+    source: &mut S,
+    faults: &mut F,
+    endpoint: &mut E,
+    keeper: &mut K,
+) -> Result<Ended, RunError>
+where
+    S: Source + ?Sized,
+    F: Injects<S, E>,
+    E: Endpoint + ?Sized,
+    K: Keeps<S, E>,
+{
+    let (mut epoch, mut output) = (Epoch::default(), Output::default());
+    let mut powered = true;
+    let total = source.samples_total().filter(|_| F::INJECTS || K::PACED).unwrap_or(u64::MAX);
+    let mut number = 0;
+    loop {
+        // No fault sets in after the last sample, and no frame begins.
+        if number == total {
+            return keeper.drain(endpoint, &mut output);
+        }
+        if keeper.begin(number) {
+            return Ok(Ended::Cancelled);
+        }
+        number += 1;
+        // The turntable keeps the command of the last output while the core gives no answer.
+        let mut command = output.gimbal_command;
+        faults.before(number, &mut command, &output, (source, endpoint));
+        if !source.next(&command, &mut epoch)? {
+            return Ok(Ended::SourceEnded);
+        }
+        for event in faults.unit_events(source)? {
+            unit::happen(event, endpoint)?;
+            powered = *event != UnitEvent::PowerOff;
+            keeper.unit(event, number);
+        }
+        let these = match faults.after(&epoch, &output) {
+            _ if !powered => &[],
+            Delivered::Untouched => std::slice::from_ref(&epoch),
+            Delivered::These(these) => these,
+        };
+        let delivered = deliver(source, (&epoch, these), endpoint, &mut output, keeper);
+        faults.exchanged(endpoint);
+        let ended = delivered?;
+        faults.tell(|occurrence| keeper.occurrence(occurrence));
+        if let Some(ended) = ended {
+            return Ok(ended);
+        }
+    }
+}
+
+/// Gives the epochs of one step of the source to the endpoint, and the answers to the keeper;
+/// returns the end of the run, where an answer is one.
+#[inline(always)]
+fn deliver<S, E, K>(
+    source: &S,
+    (clean, these): (&Epoch, &[Epoch]),
+    endpoint: &mut E,
+    output: &mut Output,
+    keeper: &mut K,
+) -> Result<Option<Ended>, RunError>
+where
+    S: Source + ?Sized,
+    E: Endpoint + ?Sized,
+    K: Keeps<S, E>,
+{
+    let step_ns = clean.sample.device_time.ns;
+    let (mut told, mut ended) = (false, None);
+    for sent in these {
+        if keeper.send(endpoint, step_ns, sent, output)? == Sent::Answered {
+            let step = if told { InStep::Further { step_ns } } else { InStep::First(clean) };
+            told = true;
+            ended = keeper.answered(source, endpoint, (step, sent), output)?;
+            if ended.is_some() {
+                break;
+            }
+        }
+    }
+    while ended.is_none()
+        && let Some(owed) = keeper.owed(endpoint, output)?
+    {
+        let first = !told && owed.step_ns == step_ns;
+        let further = InStep::Further { step_ns: owed.step_ns };
+        let step = if first { InStep::First(clean) } else { further };
+        told |= first;
+        ended = keeper.answered(source, endpoint, (step, &owed.epoch), output)?;
+    }
+    if !told {
+        keeper.lost(source, clean)?;
+    }
+    keeper.end(endpoint)?;
+    Ok(ended)
+}
+
+/// Acts between source and endpoint. Every method can do nothing.
+pub(super) trait Injects<S: ?Sized, E: ?Sized> {
+    /// True if something can be injected, so that the loop ends with the source's last sample.
+    const INJECTS: bool = false;
+
+    /// Acts before the source makes the epoch of this number: on source, endpoint and command.
+    fn before(
+        &mut self,
+        _number: u64,
+        _command: &mut GimbalCommand,
+        _output: &Output,
+        _on: (&mut S, &mut E),
+    ) {
+    }
+
+    /// Returns the events of the unit before it gets the epoch that the source has just made.
+    fn unit_events(&mut self, _source: &S) -> Result<&[UnitEvent], RunError> {
+        Ok(&[])
+    }
+
+    /// Acts on the epoch on its way to the core.
+    fn after(&mut self, _epoch: &Epoch, _output: &Output) -> Delivered<'_> {
+        Delivered::Untouched
+    }
+
+    /// Takes up what happened on the wire to the endpoint, on the way there and back.
+    fn exchanged(&mut self, _endpoint: &mut E) {}
+
+    /// Tells the onsets and ends of faults in this step.
+    fn tell(&mut self, _to: impl FnMut(&Occurrence)) {}
+}
+
+/// Nothing between source and endpoint.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct NoFaults;
+
+impl<S: ?Sized, E: ?Sized> Injects<S, E> for NoFaults {}
+
+impl<S: Source + ?Sized, E: Endpoint + ?Sized> Injects<S, E> for Faulted {
+    const INJECTS: bool = true;
+
+    fn before(
+        &mut self,
+        number: u64,
+        command: &mut GimbalCommand,
+        output: &Output,
+        (source, endpoint): (&mut S, &mut E),
+    ) {
+        for (_, id) in self.fires.iter().filter(|(at, _)| *at == number) {
+            self.station.fire(id);
+        }
+        self.station.before(command, output, &mut Behind(source, endpoint, &mut self.host));
+    }
+
+    fn unit_events(&mut self, _source: &S) -> Result<&[UnitEvent], RunError> {
+        Ok(self.station.unit_events())
+    }
+
+    fn after(&mut self, epoch: &Epoch, output: &Output) -> Delivered<'_> {
+        self.station.after(epoch, output)
+    }
+
+    fn exchanged(&mut self, endpoint: &mut E) {
+        if let Some(wire) = endpoint.wired()
+            && self.station.acts_on(Acts::Wire)
+        {
+            self.station.exchanged(wire);
+        }
+    }
+
+    fn tell(&mut self, to: impl FnMut(&Occurrence)) {
+        if !self.station.occurrences().is_empty() || !self.station.unit_events().is_empty() {
+            self.station.occurrences().iter().for_each(to);
+            self.station.told();
+        }
+    }
+}
+
+/// Place of an answered epoch among those that one step of the source delivers.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum InStep<'a> {
+    /// The first one of the step with this clean epoch.
+    First(&'a Epoch),
+    /// A further one of the step with this stamp, or one of an earlier step.
+    Further {
+        /// Stamp of the source's epoch, ns.
+        step_ns: u64,
+    },
+}
+
+/// Epoch that was sent and not answered at once.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Owed {
+    /// The epoch.
+    pub(super) epoch: Epoch,
+    /// Stamp of the source's epoch in that step, ns.
+    pub(super) step_ns: u64,
+    /// Time at which it was sent.
+    pub(super) at: HostTime,
+}
+
+/// Keeps the results of the steps, and sets their pace: by default none, with each answer at once.
+pub(super) trait Keeps<S: ?Sized, E: Endpoint + ?Sized> {
+    /// True if steps begin at times of the host.
+    const PACED: bool = false;
+
+    /// Begins a step after this number of them; true if the run is to end instead.
+    fn begin(&mut self, _done: u64) -> bool {
+        false
+    }
+
+    /// Sends an epoch of the step with this stamp to the endpoint.
+    fn send(
+        &mut self,
+        endpoint: &mut E,
+        _step_ns: u64,
+        epoch: &Epoch,
+        output: &mut Output,
+    ) -> Result<Sent, RunError> {
+        endpoint.step(epoch, output)?;
+        Ok(Sent::Answered)
+    }
+
+    /// Waits for an owed answer until the end of the step; `None`: none came.
+    fn owed(&mut self, _from: &mut E, _output: &mut Output) -> Result<Option<Owed>, RunError> {
+        Ok(None)
+    }
+
+    /// Takes the answer to an epoch with its place; returns the end of the run, if it is one.
+    fn answered(
+        &mut self,
+        source: &S,
+        endpoint: &E,
+        sent: (InStep<'_>, &Epoch),
+        output: &Output,
+    ) -> Result<Option<Ended>, RunError>;
+
+    /// Takes an epoch of the source that reached no core in its step, or isn't answered yet.
+    fn lost(&mut self, _source: &S, _clean: &Epoch) -> Result<(), RunError> {
+        Ok(())
+    }
+
+    /// Takes an event of the unit before the epoch of this number.
+    fn unit(&mut self, _event: &UnitEvent, _number: u64) {}
+
+    /// Takes the onset or the end of a fault.
+    fn occurrence(&mut self, _occurrence: &Occurrence) {}
+
+    /// Ends a step.
+    fn end(&mut self, _endpoint: &E) -> Result<(), RunError> {
+        Ok(())
+    }
+
+    /// Waits for the answers still owed after the source's last sample.
+    fn drain(&mut self, _endpoint: &mut E, _output: &mut Output) -> Result<Ended, RunError> {
+        Ok(Ended::SourceEnded)
+    }
+}
+
+/// Recorder and watcher of a run.
+#[derive(Debug)]
+pub(super) struct Books<'a> {
+    /// The recorder.
+    pub(super) recorder: &'a mut Recorder,
+    /// The watcher, which scores.
+    pub(super) watcher: &'a mut Watcher,
+    /// Ids and kinds of the faults, in order.
+    pub(super) names: Vec<(String, String)>,
+}
+
+impl<'a> Books<'a> {
+    /// Opens the books of a run.
+    pub(super) fn new(
+        recorder: &'a mut Recorder,
+        watcher: &'a mut Watcher,
+        faulted: Option<&Faulted>,
+    ) -> Self {
+        let names = faulted.into_iter().flat_map(|faulted| faulted.station.names());
+        let names = names.map(|(id, kind)| (id.to_owned(), kind.to_owned())).collect();
+        Self { recorder, watcher, names }
+    }
+
+    /// Takes the answer to an epoch, and the parameters where they are new; asks for the truth
+    /// where it is needed. `altered` tells whether faults changed the epoch.
+    #[inline(always)]
+    pub(super) fn answered(
+        &mut self,
+        (step, sent, altered): (InStep<'_>, &Epoch, bool),
+        output: &Output,
+        estimate: Option<&ParameterEstimate>,
+        truth: impl FnOnce() -> Option<Truth>,
+    ) -> Result<(), RecorderError> {
+        let (recorder, watcher) = (&mut *self.recorder, &mut *self.watcher);
+        match step {
+            InStep::First(clean) => {
+                watcher.source(clean);
+                recorder.push(Frame { clean, faulted: sent, output })?;
+            }
+            InStep::Further { step_ns } => {
+                watcher.source_time = Some(DeviceTime { ns: step_ns });
+                recorder.added(step_ns, sent, output)?;
+            }
+        }
+        let watched = watcher.answer(sent, altered, output);
+        if let Some(estimate) = estimate {
+            recorder.extra(&Extra::Parameters(*estimate));
+            watcher.parameters(output, estimate);
+        }
+        if (watched || recorder.truth_due())
+            && let Some(truth) = truth()
+        {
+            if recorder.truth_due() {
+                recorder.extra(&Extra::Truth(truth));
+            }
+            if watched {
+                watcher.truth(output, &truth);
+            }
+        }
+        Ok(())
+    }
+
+    /// Takes an epoch of the source that reached no core in its step, or isn't answered yet.
+    pub(super) fn lost(
+        &mut self,
+        clean: &Epoch,
+        truth: impl FnOnce() -> Option<Truth>,
+    ) -> Result<(), RecorderError> {
+        self.watcher.source(clean);
+        self.recorder.lost(clean)?;
+        if self.recorder.truth_due()
+            && let Some(truth) = truth()
+        {
+            self.recorder.extra(&Extra::Truth(truth));
+        }
+        Ok(())
+    }
+
+    /// Takes an event of the unit before the epoch of this number.
+    #[cold]
+    pub(super) fn unit(&mut self, event: &UnitEvent, number: u64) {
+        if *event != UnitEvent::PowerOff {
+            self.watcher.restarted();
+        }
+        self.recorder.event(unit::event(event, number));
+    }
+
+    /// Takes the onset or the end of a fault.
+    #[cold]
+    pub(super) fn occurrence(&mut self, occurrence: &Occurrence) {
+        if let Some((id, kind)) = self.names.get(occurrence.fault) {
+            let Occurrence { begins, epoch, .. } = *occurrence;
+            self.recorder.event(occurrence_event(id, kind, begins, epoch));
+        }
+    }
+}
+
+/// Keeps the results of a run in simulated time, which waits for nothing.
+#[derive(Debug)]
+struct InTime<'a> {
+    /// Recorder and watcher.
+    books: Books<'a>,
+    /// Control of the run.
+    control: &'a Control,
+    /// Number of epochs between two checks of the control.
+    look_every: u64,
+    /// Revision of the last parameters.
+    revision: u32,
+}
+
+impl<S: Source + ?Sized, E: Endpoint + ?Sized> Keeps<S, E> for InTime<'_> {
+    fn begin(&mut self, done: u64) -> bool {
+        done != 0 && done.is_multiple_of(self.look_every) && self.control.look(done)
+    }
+
+    #[inline(always)]
+    fn answered(
+        &mut self,
+        source: &S,
+        endpoint: &E,
+        (step, sent): (InStep<'_>, &Epoch),
+        output: &Output,
+    ) -> Result<Option<Ended>, RunError> {
+        let is_new = output.parameters_revision != self.revision;
+        self.revision = output.parameters_revision;
+        let estimate = is_new.then(|| endpoint.parameters());
+        let untouched = matches!(step, InStep::First(clean) if std::ptr::eq(clean, sent));
+        let answered = (step, sent, !untouched);
+        self.books.answered(answered, output, estimate.as_ref(), || source.truth())?;
+        let misbehaved = self.books.watcher.misbehaved.is_some();
+        Ok(if misbehaved { Some(Ended::Misbehaved) } else { over(output) })
+    }
+
+    fn lost(&mut self, source: &S, clean: &Epoch) -> Result<(), RunError> {
+        Ok(self.books.lost(clean, || source.truth())?)
+    }
+
+    fn unit(&mut self, event: &UnitEvent, number: u64) {
+        self.books.unit(event, number);
+    }
+
+    fn occurrence(&mut self, occurrence: &Occurrence) {
+        self.books.occurrence(occurrence);
+    }
+}
+
+/// Drives in simulated time. Receipts of faults are recorded at the end, also after a failure.
 ///
 /// # Errors
 /// If source, endpoint or recorder fail; epochs recorded before stay readable.
-pub fn drive<S, E>(
-    source: &mut S,
-    endpoint: &mut E,
+pub fn drive_in_time<S, E>(
+    line: Line<'_, S, E>,
     recorder: &mut Recorder,
     watcher: &mut Watcher,
     control: &Control,
@@ -77,78 +451,12 @@ where
     S: Source + ?Sized,
     E: Endpoint + ?Sized,
 {
-    let mut command = GimbalCommand::default();
-    let mut revision = 0;
-    let mut epochs = 0u64;
-    let look = look_every(source);
-    let (mut epoch, mut output) = (Epoch::default(), Output::default());
-    loop {
-        if !source.next(&command, &mut epoch)? {
-            return Ok(Ended::SourceEnded);
-        }
-        endpoint.step(&epoch, &mut output)?;
-        command = output.gimbal_command;
-        recorder.push(Frame { clean: &epoch, faulted: &epoch, output: &output })?;
-        watcher.source(&epoch);
-        answered((&epoch, false), &output, &mut revision, endpoint, recorder, watcher, source);
-        epochs += 1;
-        if watcher.misbehaved.is_some() {
-            return Ok(Ended::Misbehaved);
-        }
-        if let Some(ended) = over(&output) {
-            return Ok(ended);
-        }
-        if epochs.is_multiple_of(look) && control.look(epochs) {
-            return Ok(Ended::Cancelled);
-        }
-    }
-}
-
-/// Returns the number of epochs between two checks of the control.
-pub(super) fn look_every<S: Source + ?Sized>(source: &S) -> u64 {
-    if source.is_live() { 1 } else { CONTROL_EPOCHS }
-}
-
-/// Handles the parameters and truth that belong to an output; `altered` tells whether faults
-/// changed the epoch.
-#[inline(always)]
-pub(super) fn answered<S, E>(
-    (sent, altered): (&Epoch, bool),
-    output: &Output,
-    revision: &mut u32,
-    endpoint: &E,
-    recorder: &mut Recorder,
-    watcher: &mut Watcher,
-    source: &S,
-) where
-    S: Source + ?Sized,
-    E: Endpoint + ?Sized,
-{
-    let watched = watcher.answer(sent, altered, output);
-    if output.parameters_revision != *revision {
-        *revision = output.parameters_revision;
-        let estimate = endpoint.parameters();
-        recorder.extra(&Extra::Parameters(estimate));
-        watcher.parameters(output, &estimate);
-    }
-    if (watched || recorder.truth_due())
-        && let Some(truth) = source.truth()
-    {
-        if recorder.truth_due() {
-            recorder.extra(&Extra::Truth(truth));
-        }
-        if watched {
-            watcher.truth(output, &truth);
-        }
-    }
-}
-
-/// Returns the end that the core's output signals, if any.
-#[inline(always)]
-pub(super) fn over(output: &Output) -> Option<Ended> {
-    match output.mode {
-        Mode::Done => Some(Ended::Done),
-        Mode::Refused => Some(Ended::Refused),
-        Mode::Aligning | Mode::Calibrating | Mode::Navigating => None,
-    }
+    let Line { source, faulted, endpoint } = line;
+    let books = Books::new(recorder, watcher, faulted.as_deref());
+    let look_every = if source.is_live() { 1 } else { CONTROL_EPOCHS };
+    let mut keeper = InTime { books, control, look_every, revision: 0 };
+    let Some(faulted) = faulted else { return drive(source, &mut NoFaults, endpoint, &mut keeper) };
+    let ended = drive(source, faulted, endpoint, &mut keeper);
+    faulted.last_words().into_iter().for_each(|event| keeper.books.recorder.event(event));
+    ended
 }

@@ -1,6 +1,6 @@
 //! Reasons why a method gave no result.
 
-use super::drive::RunError;
+use super::ended::RunError;
 use octant_calibration::state_machine::ConfigError;
 use octant_recorder::RecorderError;
 use octant_source::SourceError;

@@ -5,10 +5,10 @@ pub use super::recording::Recording;
 
 use super::concluded;
 use super::done::Plan;
-use super::drive::{Ended, RunError, drive};
-use super::faulted::{Faulted, drive_faulted};
+use super::drive::{Ended, Line, RunError, drive_in_time};
+use super::faulted::Faulted;
 use super::host::Host;
-use super::realtime::{Kept, Line, drive_by_clock};
+use super::realtime::{Kept, drive_by_clock};
 use super::watch::Watcher;
 use crate::passes::{PassError, in_passes};
 use octant_base::control::Control;
@@ -184,13 +184,13 @@ pub fn run_as_far_as_it_goes(
             to_the_end(realtime, line, &mut recorder, &mut watcher, control)?
         }
         (opened, elsewhere) => {
-            let mut source: Box<dyn Source> = match opened {
+            let mut source = match opened {
                 Some(source) => source,
-                None => Box::new(PlantSource::new(&plant, samples).map_err(SetupError::Plant)?),
+                None => PlantSource::new(&plant, samples).map_err(SetupError::Plant)?.into(),
             };
-            let mut endpoint: Box<dyn Endpoint> = match elsewhere {
+            let mut endpoint = match elsewhere {
                 Some(endpoint) => endpoint,
-                None => Box::new(InProcess::new(&core).map_err(SetupError::Core)?),
+                None => InProcess::new(&core).map_err(SetupError::Core)?.into(),
             };
             let faulted = faulted.as_mut();
             let line = Line { source: &mut source, faulted, endpoint: &mut endpoint };
@@ -226,18 +226,13 @@ fn to_the_end<S: Source, E: Endpoint>(
     control: &Control,
 ) -> Result<Closed, RunError> {
     let Line { source, faulted, endpoint } = line;
-    let mut kept = None;
-    let driven = match (realtime, faulted) {
-        (None, None) => drive(source, endpoint, recorder, watcher, control),
-        (None, Some(faulted)) => {
-            drive_faulted(source, faulted, endpoint, recorder, watcher, control)
-        }
-        (Some((settings, period_ns)), faulted) => {
-            let line = Line { source, faulted, endpoint: &mut *endpoint };
-            let (driven, time) =
+    let line = Line { source: &mut *source, faulted, endpoint: &mut *endpoint };
+    let (driven, kept) = match realtime {
+        None => (drive_in_time(line, recorder, watcher, control), None),
+        Some((settings, period_ns)) => {
+            let (driven, kept) =
                 drive_by_clock(settings, period_ns, line, recorder, watcher, control);
-            kept = Some(time);
-            driven
+            (driven, Some(kept))
         }
     };
     // Moving equipment is stopped first.
@@ -319,7 +314,7 @@ fn settle(
     };
     let passes = in_passes(core, open).map_err(|error| match error {
         PassError::Config(error) => MethodError::Setup(SetupError::Core(error)),
-        PassError::Source(error) => MethodError::Run(RunError::Source(error)),
+        PassError::Run(error) => MethodError::Run(error),
     })?;
     if passes.core.table().is_some() {
         core.initial_parameters = *passes.core.parameters();

@@ -3,9 +3,11 @@
 //! Least squares linearises about its initial parameters. If errors are large (MEMS: percents),
 //! each pass starts from the result of the previous one, until the parameters settle.
 
+use super::drive::{Ended, InStep, Keeps, NoFaults, RunError, drive};
 use octant_calibration::state_machine::ConfigError;
 use octant_calibration::{Config, Core};
-use octant_sample::{GimbalCommand, Mode};
+use octant_endpoint::{Endpoint, InProcess};
+use octant_sample::{Mode, Output};
 use octant_source::{Epoch, Source, SourceError};
 
 /// Maximum number of passes.
@@ -32,9 +34,9 @@ pub enum PassError {
     /// The configuration contradicts itself.
     #[error(transparent)]
     Config(#[from] ConfigError),
-    /// The source failed.
+    /// A pass was aborted.
     #[error(transparent)]
-    Source(#[from] SourceError),
+    Run(#[from] RunError),
 }
 
 /// Calibrates in passes. `open` opens the source again for each; the first one starts from
@@ -51,7 +53,7 @@ pub fn in_passes<S: Source>(
     let mut passes = 0;
     loop {
         passes += 1;
-        let core = pass(&config, &mut open()?)?;
+        let core = pass(&config, &mut open().map_err(RunError::from)?)?;
         let settled = core.table().is_some() && settled(&config, &core);
         if settled || core.table().is_none() || passes == PASSES_MAX {
             return Ok(Passes { core, passes, settled });
@@ -62,18 +64,27 @@ pub fn in_passes<S: Source>(
 
 /// Makes one pass: until the calibration is over, or the source.
 fn pass(config: &Config, source: &mut impl Source) -> Result<Core, PassError> {
-    let mut core = Core::new(config)?;
-    let mut command = GimbalCommand::default();
-    let mut epoch = Epoch::default();
-    while source.next(&command, &mut epoch)? {
-        let output = core.step(&epoch.sample, epoch.aiding.as_ref());
-        command = output.gimbal_command;
-        if !matches!(output.mode, Mode::Aligning | Mode::Calibrating) {
-            return Ok(core);
-        }
+    let mut endpoint = InProcess::new(config)?;
+    if drive(source, &mut NoFaults, &mut endpoint, &mut Calibrates)? == Ended::SourceEnded {
+        endpoint.end_of_stream().map_err(RunError::from)?;
     }
-    core.end_of_stream();
-    Ok(core)
+    Ok(endpoint.into_core())
+}
+
+/// Keeps nothing, and ends with the calibration.
+struct Calibrates;
+
+impl<S: Source, E: Endpoint> Keeps<S, E> for Calibrates {
+    fn answered(
+        &mut self,
+        _source: &S,
+        _endpoint: &E,
+        _sent: (InStep<'_>, &Epoch),
+        output: &Output,
+    ) -> Result<Option<Ended>, RunError> {
+        let over = !matches!(output.mode, Mode::Aligning | Mode::Calibrating);
+        Ok(over.then_some(Ended::Done))
+    }
 }
 
 /// Returns whether a pass changed no parameter significantly. A parameter that isn't estimated has

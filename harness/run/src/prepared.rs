@@ -2,9 +2,7 @@
 
 use super::method::{MethodError, MethodRun, Recording, SetupError, run_as_far_as_it_goes};
 use octant_base::control::Control;
-use octant_endpoint::LiveEndpoint;
-use octant_scenario::{Endpoint, Method, Scenario, Source};
-use octant_source::LiveSource;
+use octant_scenario::{Method, Scenario};
 use octant_source::configure::configurations;
 use std::path::Path;
 use std::sync::Arc;
@@ -98,8 +96,7 @@ impl<'a> Prepared<'a> {
             run_as_far_as_it_goes(scenario, method, self.seed, recording, control)
         };
         // By the clock, one method would delay another. A device can only do one run at a time.
-        let alone =
-            self.scenario.realtime.by_clock || matches!(self.scenario.endpoint, Endpoint::Live(_));
+        let alone = self.scenario.realtime.by_clock || self.scenario.endpoint.device().is_some();
         let at_once = if alone { 1 } else { self.tasks.len() };
         let mut results = Vec::with_capacity(self.tasks.len());
         for (tasks, controls) in self.tasks.chunks(at_once).zip(self.controls.chunks(at_once)) {
@@ -136,17 +133,6 @@ impl<'a> Prepared<'a> {
 fn set_up(scenario: &Scenario, method: Method, seed: u64) -> Result<(), SetupError> {
     let (plant, core, _) = configurations(scenario, method, seed)?;
     octant_calibration::Core::new(&core)?;
-    // An instrument's port is opened only once: data sent in between would be lost.
-    if let Source::Live(instrument) = &scenario.source {
-        LiveSource::check(scenario, instrument)?;
-    } else {
-        octant_source::open(scenario, &plant)?;
-    }
-    // A device's port is opened only once, when the run begins: some devices restart when it is
-    // opened.
-    match &scenario.endpoint {
-        Endpoint::Live(live) => LiveEndpoint::check(scenario, live)?,
-        _ => drop(octant_endpoint::open(scenario, &core)?),
-    }
-    Ok(())
+    octant_source::check(scenario, &plant)?;
+    Ok(octant_endpoint::check(scenario, &core)?)
 }

@@ -8,7 +8,7 @@ use octant_scenario::Source;
 #[must_use]
 pub fn text(source: &Source, parameters: &Parameters) -> String {
     use std::fmt::Write as _;
-    let Source::Text(mapping) = source else { return String::new() };
+    let Some(mapping) = source.text() else { return String::new() };
     let nominal = |axes: &[octant_scenario::recorded::Axis; 3]| Nominal {
         bias_counts: [0, 1, 2].map(|i| axes[i].offset),
         scale: [0, 1, 2].map(|i| axes[i].scale),

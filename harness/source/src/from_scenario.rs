@@ -1,10 +1,22 @@
 //! Opens the source of a scenario.
 
-use super::{LiveSource, Replay, Source, SourceError, TextSource};
+use super::{AnySource, LiveSource, Replay, SourceError, TextSource};
 use octant_plant::config::Config;
 use octant_scenario::recorded::{TextFiles, TextMapping};
 use octant_scenario::{self as scenario, FileName, Scenario};
 use std::path::PathBuf;
+
+/// Checks that the source of a scenario can be opened. An instrument's port is opened only once:
+/// data sent in between would be lost.
+///
+/// # Errors
+/// As [`open`].
+pub fn check(scenario: &Scenario, plant: &Config) -> Result<(), SourceError> {
+    match scenario.source.instrument() {
+        Some(instrument) => LiveSource::check(scenario, instrument),
+        None => open(scenario, plant).map(drop),
+    }
+}
 
 /// Opens the source of a scenario; `None` where it is the plant alone, which is built from the
 /// seed's draws: see [`super::PlantSource`]. `plant` is the configuration of that plant, needed for
@@ -12,12 +24,12 @@ use std::path::PathBuf;
 ///
 /// # Errors
 /// If a file name can't be expanded, or a file can't be read.
-pub fn open(scenario: &Scenario, plant: &Config) -> Result<Option<Box<dyn Source>>, SourceError> {
+pub fn open(scenario: &Scenario, plant: &Config) -> Result<Option<AnySource>, SourceError> {
     let path = |name: &FileName| name.path(&scenario.folder).map_err(SourceError::FileName);
     match &scenario.source {
         scenario::Source::Plant => Ok(None),
         scenario::Source::Replay { file, mapping } => {
-            Ok(Some(Box::new(Replay::open(&path(file)?, mapping.as_ref())?)))
+            Ok(Some(Replay::open(&path(file)?, mapping.as_ref())?.into()))
         }
         scenario::Source::Text(mapping) => {
             let path = |written: &PathBuf| path(&FileName(written.display().to_string()));
@@ -28,10 +40,10 @@ pub fn open(scenario: &Scenario, plant: &Config) -> Result<Option<Box<dyn Source
                 }
             };
             let mapping = TextMapping { files, ..mapping.clone() };
-            Ok(Some(Box::new(TextSource::open(&mapping)?)))
+            Ok(Some(TextSource::open(&mapping)?.into()))
         }
         scenario::Source::Live(instrument) => {
-            Ok(Some(Box::new(LiveSource::of(scenario, instrument)?)))
+            Ok(Some(LiveSource::of(scenario, instrument)?.into()))
         }
         scenario::Source::Fmu(fmu) => Ok(Some(super::fmu::open(scenario, fmu, plant)?)),
     }

@@ -1,6 +1,7 @@
 //! Sources of samples: the plant, a recording, a file of a real instrument, or the instrument
 //! itself.
 
+mod any;
 pub mod configure;
 mod counting;
 mod fields;
@@ -13,7 +14,8 @@ mod replay;
 mod rows;
 mod text;
 
-pub use from_scenario::open;
+pub use any::AnySource;
+pub use from_scenario::{check, open};
 pub use live::LiveSource;
 pub use plant::PlantSource;
 pub use replay::Replay;
@@ -82,47 +84,6 @@ pub trait Source {
     /// True if the instrument has the errors that the scenario gives or draws.
     fn has_true_parameters(&self) -> bool {
         false
-    }
-}
-
-impl<S: Source + ?Sized> Source for Box<S> {
-    fn next(&mut self, command: &GimbalCommand, epoch: &mut Epoch) -> Result<bool, SourceError> {
-        (**self).next(command, epoch)
-    }
-
-    fn truth(&self) -> Option<Truth> {
-        (**self).truth()
-    }
-
-    fn samples_total(&self) -> Option<u64> {
-        (**self).samples_total()
-    }
-
-    fn samples_planned(&self) -> Option<u64> {
-        (**self).samples_planned()
-    }
-
-    fn cut_short(&self) -> Option<String> {
-        (**self).cut_short()
-    }
-
-    fn disturbed(&mut self) -> Option<&mut dyn Disturbed> {
-        (**self).disturbed()
-    }
-
-    fn is_live(&self) -> bool {
-        (**self).is_live()
-    }
-
-    fn conclude(
-        &mut self,
-        broken: Option<&str>,
-    ) -> (Option<serde_json::Value>, Option<SourceError>) {
-        (**self).conclude(broken)
-    }
-
-    fn has_true_parameters(&self) -> bool {
-        (**self).has_true_parameters()
     }
 }
 

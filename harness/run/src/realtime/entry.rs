@@ -1,6 +1,7 @@
 //! Messages from the real-time thread to the rest of the program about a step.
 
 use octant_faults::rule::UnitEvent;
+use octant_faults::station::Occurrence;
 use octant_sample::parameters::ParameterEstimate;
 use octant_sample::{Output, Truth};
 use octant_source::Epoch;
@@ -18,8 +19,8 @@ pub(super) enum Entry {
     Added { step_ns: u64, faulted: Epoch, answer: Answer },
     /// Event of the unit before the epoch of this number.
     Unit { event: UnitEvent, epoch: u64 },
-    /// Onset or end of a fault, given by its place in the list.
-    Occurrence { fault: usize, begins: bool, epoch: u64 },
+    /// Onset or end of a fault.
+    Occurrence(Occurrence),
     /// First violation of a real-time limit by the bench, at a time of the source.
     Broke { step_ns: u64, broke: Broke },
     /// Time keeping so far, for display: once a second.

@@ -1,13 +1,9 @@
 //! Records and watches the messages of the real-time thread.
 
-use super::entry::{Answer, Entry};
+use super::entry::Entry;
 use super::kept::Kept;
-use crate::faulted::occurrence_event;
-use crate::unit;
-use crate::watch::Watcher;
-use octant_faults::rule::UnitEvent;
-use octant_recorder::{Event, Extra, Frame, Recorder, RecorderError};
-use octant_source::Epoch;
+use crate::drive::{Books, InStep};
+use octant_recorder::{Event, RecorderError};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
@@ -21,9 +17,7 @@ const PAUSE: Duration = Duration::from_millis(5);
 /// If the recorder fails; earlier entries stay readable.
 pub(super) fn keep(
     mut ring: rtrb::Consumer<Entry>,
-    names: &[(String, String)],
-    recorder: &mut Recorder,
-    watcher: &mut Watcher,
+    books: &mut Books<'_>,
     stop: &AtomicBool,
 ) -> Result<(), RecorderError> {
     loop {
@@ -31,8 +25,8 @@ pub(super) fn keep(
         let mut any = false;
         while let Ok(entry) = ring.pop() {
             any = true;
-            take(entry, names, recorder, watcher)?;
-            if watcher.misbehaved.is_some() {
+            take(entry, books)?;
+            if books.watcher.misbehaved.is_some() {
                 stop.store(true, Ordering::Relaxed);
             }
         }
@@ -46,46 +40,22 @@ pub(super) fn keep(
     }
 }
 
-fn take(
-    entry: Entry,
-    names: &[(String, String)],
-    recorder: &mut Recorder,
-    watcher: &mut Watcher,
-) -> Result<(), RecorderError> {
+fn take(entry: Entry, books: &mut Books<'_>) -> Result<(), RecorderError> {
     match entry {
         Entry::Frame { clean, faulted, answer } => {
-            watcher.source(&clean);
-            recorder.push(Frame { clean: &clean, faulted: &faulted, output: &answer.output })?;
-            answered((&faulted, clean != faulted), &answer, recorder, watcher);
+            let sent = (InStep::First(&clean), &faulted, clean != faulted);
+            books.answered(sent, &answer.output, answer.estimate.as_ref(), || answer.truth)?;
         }
         Entry::Added { step_ns, faulted, answer } => {
-            watcher.source_time = Some(octant_sample::DeviceTime { ns: step_ns });
-            recorder.added(step_ns, &faulted, &answer.output)?;
             // The epoch of an earlier step may have been altered: this isn't known any more.
-            answered((&faulted, true), &answer, recorder, watcher);
+            let sent = (InStep::Further { step_ns }, &faulted, true);
+            books.answered(sent, &answer.output, answer.estimate.as_ref(), || answer.truth)?;
         }
-        Entry::Lost { clean, truth } => {
-            watcher.source(&clean);
-            recorder.lost(&clean)?;
-            if recorder.truth_due()
-                && let Some(truth) = truth
-            {
-                recorder.extra(&Extra::Truth(truth));
-            }
-        }
-        Entry::Unit { event, epoch } => {
-            if event != UnitEvent::PowerOff {
-                watcher.restarted();
-            }
-            recorder.event(unit::event(&event, epoch));
-        }
-        Entry::Occurrence { fault, begins, epoch } => {
-            if let Some((id, kind)) = names.get(fault) {
-                recorder.event(occurrence_event(id, kind, begins, epoch));
-            }
-        }
-        Entry::Broke { step_ns, broke } => watcher.bench_broke(step_ns, broke.to_string()),
-        Entry::Pace { frames, latest_ns, overruns, late_answers } => recorder.event(Event {
+        Entry::Lost { clean, truth } => books.lost(&clean, || truth)?,
+        Entry::Unit { event, epoch } => books.unit(&event, epoch),
+        Entry::Occurrence(occurrence) => books.occurrence(&occurrence),
+        Entry::Broke { step_ns, broke } => books.watcher.bench_broke(step_ns, broke.to_string()),
+        Entry::Pace { frames, latest_ns, overruns, late_answers } => books.recorder.event(Event {
             kind: "pace".to_owned(),
             detail: serde_json::json!({
                 "frames": frames,
@@ -96,27 +66,6 @@ fn take(
         }),
     }
     Ok(())
-}
-
-/// Handles the parameters and truth that belong to an output.
-fn answered(
-    (sent, altered): (&Epoch, bool),
-    answer: &Answer,
-    recorder: &mut Recorder,
-    watcher: &mut Watcher,
-) {
-    let watched = watcher.answer(sent, altered, &answer.output);
-    if let Some(estimate) = &answer.estimate {
-        recorder.extra(&Extra::Parameters(*estimate));
-        watcher.parameters(&answer.output, estimate);
-    }
-    let Some(truth) = &answer.truth else { return };
-    if recorder.truth_due() {
-        recorder.extra(&Extra::Truth(*truth));
-    }
-    if watched {
-        watcher.truth(&answer.output, truth);
-    }
 }
 
 /// Builds the event that ends the recording of a run by the clock.

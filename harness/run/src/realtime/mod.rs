@@ -1,9 +1,9 @@
 //! A run against the clock: sample k leaves at the start of the run plus k periods.
 //!
-//! `frames` is the real-time thread: it waits for the frame, steps source, faults and endpoint, and
-//! puts the results into a ring (`entry`). It allocates nothing and touches no file. `keep` runs on
-//! a second thread, which takes the entries out, records and watches. If the ring is full an entry
-//! is dropped and counted, and the run is inconclusive.
+//! `frames` keeps the results on the real-time thread: the loop waits in it for the frame and for
+//! answers, and it puts the results into a ring (`entry`). It allocates nothing and touches no file.
+//! `keep` runs on a second thread, which takes the entries out, records and watches. If the ring is
+//! full an entry is dropped and counted, and the run is inconclusive.
 //!
 //! The clock has no effect on computed values: an endpoint that answers in time gives the bits of a
 //! run in simulated time.
@@ -15,8 +15,8 @@ mod kept;
 
 pub use kept::Kept;
 
-use super::drive::{Ended, RunError};
-use super::faulted::Faulted;
+use super::drive::{Books, Line, NoFaults, drive};
+use super::ended::{Ended, RunError};
 use super::watch::Watcher;
 use octant_base::control::Control;
 use octant_endpoint::{Endpoint, RemoteClock};
@@ -32,20 +32,9 @@ use std::sync::atomic::{AtomicBool, Ordering};
 /// Capacity of the ring: at 1 kHz the recorder may stall for eight seconds.
 const ENTRIES: usize = 8192;
 
-/// Parts of a run that the frames go through.
-#[derive(Debug)]
-pub struct Line<'a, S: ?Sized, E: ?Sized> {
-    /// Source of samples.
-    pub source: &'a mut S,
-    /// Faults.
-    pub faulted: Option<&'a mut Faulted>,
-    /// Endpoint with the core.
-    pub endpoint: &'a mut E,
-}
-
-/// Drives as [`drive`](super::drive()) and [`drive_faulted`](super::drive_faulted) do, but by the
-/// clock, on the calling thread, which has the granted real-time settings until the run has ended.
-/// Time keeping is returned whatever the end was.
+/// Drives as [`drive_in_time`](super::drive_in_time) does, but by the clock, on the calling thread,
+/// which has the granted real-time settings until the run has ended. Time keeping is returned
+/// whatever the end was.
 pub fn drive_by_clock<S, E>(
     settings: &Realtime,
     period_ns: u64,
@@ -59,14 +48,13 @@ where
     E: Endpoint + ?Sized,
 {
     let (producer, consumer) = rtrb::RingBuffer::new(ENTRIES);
-    let names: Vec<(String, String)> = line.faulted.as_ref().map_or_else(Vec::new, |faulted| {
-        faulted.station.names().map(|(id, kind)| (id.to_owned(), kind.to_owned())).collect()
-    });
+    let Line { source, mut faulted, endpoint } = line;
+    let mut books = Books::new(recorder, watcher, faulted.as_deref());
     let stop = AtomicBool::new(false);
     let (ended, kept, time) = std::thread::scope(|scope| {
-        let stop = &stop;
-        let keeper = scope.spawn(|| {
-            let kept = keep::keep(consumer, &names, recorder, watcher, stop);
+        let (stop, books) = (&stop, &mut books);
+        let keeper = scope.spawn(move || {
+            let kept = keep::keep(consumer, books, stop);
             stop.store(true, Ordering::Relaxed);
             kept
         });
@@ -77,9 +65,12 @@ where
         });
         let clock = clock(settings, period_ns, granted.is_realtime());
         let limits = (settings.silence_ns, settings.overruns);
-        let mut frames = frames::Frames::new(clock, period_ns, limits, producer, stop);
-        let Line { source, mut faulted, endpoint } = line;
-        let ended = frames.run(source, faulted.as_deref_mut(), endpoint, control);
+        let ends = (stop, control);
+        let mut frames = frames::Frames::new(clock, period_ns, limits, producer, ends);
+        let ended = match faulted.as_deref_mut() {
+            None => drive(source, &mut NoFaults, endpoint, &mut frames),
+            Some(faulted) => drive(source, faulted, endpoint, &mut frames),
+        };
         // Dropping the frames closes their end of the ring: the keeper takes the remaining entries,
         // and ends.
         let found = frames.found();

@@ -14,6 +14,42 @@ pub enum Endpoint {
     Live(Box<Live>),
 }
 
+impl Endpoint {
+    /// True if the core is called directly.
+    #[must_use]
+    pub fn is_in_process(&self) -> bool {
+        matches!(self, Self::InProcess)
+    }
+
+    /// The device, which does one thing at a time.
+    #[must_use]
+    pub fn device(&self) -> Option<&Live> {
+        match self {
+            Self::Live(live) => Some(live),
+            _ => None,
+        }
+    }
+
+    /// The FMU.
+    #[must_use]
+    pub fn fmu(&self) -> Option<&Fmu> {
+        match self {
+            Self::Fmu(fmu) => Some(fmu),
+            _ => None,
+        }
+    }
+
+    /// Fact for the report about the core; `None` for the one in this process.
+    #[must_use]
+    pub fn fact(&self) -> Option<String> {
+        match self {
+            Self::InProcess => None,
+            Self::Fmu(fmu) => Some(format!("FMU {}", fmu.file.0)),
+            Self::Live(live) => Some(format!("device at {}, in lock-step", live.uri)),
+        }
+    }
+}
+
 /// A device on a port.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Live {

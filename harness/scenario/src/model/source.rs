@@ -35,10 +35,99 @@ impl Source {
     /// True if this program's plant makes the samples; an FMU may move its case.
     #[must_use]
     pub fn has_plant(&self) -> bool {
+        self.is_plant_alone() || self.motion().is_some()
+    }
+
+    /// True if this program's plant makes the samples, and nothing else moves it.
+    #[must_use]
+    pub fn is_plant_alone(&self) -> bool {
+        matches!(self, Self::Plant)
+    }
+
+    /// True for a simulation; `has_truth` tells whether its samples came with truth.
+    #[must_use]
+    pub fn is_simulated(&self, has_truth: bool) -> bool {
         match self {
-            Self::Plant => true,
-            Self::Fmu(fmu) => fmu.is_motion(),
+            Self::Plant | Self::Fmu(_) => true,
+            // An octant recording that contains truth comes from a simulation.
+            Self::Replay { mapping: None, .. } => has_truth,
             Self::Replay { .. } | Self::Text(_) | Self::Live(_) => false,
+        }
+    }
+
+    /// The real instrument, which measures once and moves equipment.
+    #[must_use]
+    pub fn instrument(&self) -> Option<&Instrument> {
+        match self {
+            Self::Live(instrument) => Some(instrument),
+            _ => None,
+        }
+    }
+
+    /// The FMU.
+    #[must_use]
+    pub fn fmu(&self) -> Option<&Fmu> {
+        match self {
+            Self::Fmu(fmu) => Some(fmu),
+            _ => None,
+        }
+    }
+
+    /// The FMU that moves the case of this program's plant.
+    #[must_use]
+    pub fn motion(&self) -> Option<&Fmu> {
+        self.fmu().filter(|fmu| fmu.is_motion())
+    }
+
+    /// The mapping of text files, whose raw numbers a data sheet refers to.
+    #[must_use]
+    pub fn text(&self) -> Option<&TextMapping> {
+        match self {
+            Self::Text(mapping) => Some(mapping),
+            _ => None,
+        }
+    }
+
+    /// Recordings from which the samples come, as written.
+    #[must_use]
+    pub fn recordings(&self) -> Vec<FileName> {
+        match self {
+            Self::Replay { file, .. } => vec![file.clone()],
+            Self::Text(mapping) => {
+                mapping.files.all().map(|path| FileName(path.display().to_string())).collect()
+            }
+            Self::Plant | Self::Fmu(_) | Self::Live(_) => Vec::new(),
+        }
+    }
+
+    /// Reason for having no truth; `None` if there is some. An FMU without a map may be Octant's
+    /// plant, which has it.
+    pub(crate) fn without_truth(&self) -> Option<&'static str> {
+        match self {
+            Self::Plant => None,
+            Self::Fmu(fmu) if fmu.is_motion() || fmu.map.is_empty() => None,
+            Self::Fmu(fmu) if fmu.map.iter().any(|m| m.channel.name.starts_with("truth.")) => None,
+            Self::Fmu(_) => Some("source.fmu.map has no truth"),
+            Self::Replay { .. } | Self::Text(_) => Some("the source is a recording"),
+            Self::Live(_) => Some("the source is a real instrument"),
+        }
+    }
+
+    /// Fact for the report, with its name; `None` for the plant alone.
+    #[must_use]
+    pub fn fact(&self) -> Option<(&'static str, String)> {
+        match self {
+            Self::Plant => None,
+            Self::Replay { .. } | Self::Text(_) => {
+                Some(("source", "recorded samples, no truth".to_owned()))
+            }
+            Self::Fmu(fmu) => {
+                let name = if fmu.is_motion() { "motion of the case" } else { "source" };
+                Some((name, format!("FMU {}", fmu.file.0)))
+            }
+            Self::Live(Instrument { uri, speaks, .. }) => {
+                Some(("source", format!("instrument at {uri}, {}, no truth", speaks.name())))
+            }
         }
     }
 }

@@ -85,7 +85,7 @@ fn fault(table: &Reader<'_>, scenario: &Scenario, timing: &Timing) -> Result<Fau
         return Err(table.problem("kind", format!("{name} {why}")));
     }
     if kind.acts == Acts::Command
-        && matches!(scenario.source, Source::Live(_))
+        && scenario.source.instrument().is_some()
         && scenario.drive.is_none()
     {
         let message = format!(
@@ -114,20 +114,20 @@ fn fault(table: &Reader<'_>, scenario: &Scenario, timing: &Timing) -> Result<Fau
 
 /// Reason why a kind can't act on a source.
 fn impossible(kind: &Kind, source: &Source) -> Option<&'static str> {
-    match (kind.acts, source) {
-        (Acts::Plant, _) if source.has_plant() => None,
-        (Acts::Plant, Source::Fmu(_)) => Some(
+    match kind.acts {
+        Acts::Plant if source.has_plant() => None,
+        Acts::Plant if source.fmu().is_some() => Some(
             "acts inside the simulated instrument, and the source is an FMU, into which it doesn't \
              reach",
         ),
-        (Acts::Plant, Source::Live(_)) => {
+        Acts::Plant if source.instrument().is_some() => {
             Some("acts inside the simulated instrument, and the source is a real one")
         }
-        (Acts::Plant, _) => Some(
+        Acts::Plant => Some(
             "acts inside the simulated instrument, and the source is a recording: what it holds has \
              happened",
         ),
-        (Acts::Command, _) if source.is_recorded() => Some(
+        Acts::Command if source.is_recorded() => Some(
             "acts on the set points of the simulated turntable, and the source is a recording: what \
              it holds has happened",
         ),
@@ -140,7 +140,7 @@ fn without_wire(kind: &Kind, endpoint: &Endpoint) -> Option<String> {
     if kind.acts != Acts::Wire {
         return None;
     }
-    let Endpoint::Live(live) = endpoint else {
+    let Some(live) = endpoint.device() else {
         return Some(
             "acts on the wire to a device, and there is none: endpoint.uri names no port"
                 .to_owned(),

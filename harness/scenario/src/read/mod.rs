@@ -16,7 +16,7 @@ pub use reader::Reader;
 
 use super::document::Table;
 use super::error::Problem;
-use super::model::{Endpoint, Motion, Realtime, Record, Scenario, Source};
+use super::model::{Motion, Realtime, Record, Scenario, Source};
 use octant_plant::config as plant;
 use std::path::Path;
 
@@ -89,7 +89,7 @@ pub fn scenario(document: Table, folder: &Path) -> Result<Scenario, Problem> {
 /// their own timing.
 fn check_once(root: &Reader<'_>, scenario: &Scenario) -> Result<(), Problem> {
     let by_clock = scenario.realtime.by_clock;
-    if matches!(scenario.source, Source::Live(_)) {
+    if scenario.source.instrument().is_some() {
         if scenario.baseline.is_some() {
             return Err(root.problem(
                 "baseline",
@@ -104,7 +104,7 @@ fn check_once(root: &Reader<'_>, scenario: &Scenario) -> Result<(), Problem> {
             ));
         }
     }
-    if let Endpoint::Live(live) = &scenario.endpoint
+    if let Some(live) = scenario.endpoint.device()
         && by_clock
         && live.reconnect_s > 0.0
     {
@@ -119,14 +119,11 @@ fn check_once(root: &Reader<'_>, scenario: &Scenario) -> Result<(), Problem> {
 
 /// Checks that the motion is a moving one if an FMU moves the case.
 fn check_motion(source: &Source, motion: &Motion) -> Result<(), Problem> {
-    match source {
-        Source::Fmu(fmu) if fmu.is_motion() => match motion {
-            Motion::Dockside(_) => Ok(()),
-            Motion::Static(_) => Err(fmu.at.problem(
-                "the FMU moves the case, and motion.kind is \"static\": expected \"dockside\", whose \
-                 sway tells the core what to expect",
-            )),
-        },
+    match (source.motion(), motion) {
+        (Some(fmu), Motion::Static(_)) => Err(fmu.at.problem(
+            "the FMU moves the case, and motion.kind is \"static\": expected \"dockside\", whose \
+             sway tells the core what to expect",
+        )),
         _ => Ok(()),
     }
 }

@@ -203,7 +203,7 @@ fn three(binder: &mut Binder<'_>, channels: [&'static Channel; 3]) -> Option<[Ha
 }
 
 /// A running instrument.
-pub(super) struct FmuSource {
+pub(crate) struct FmuSource {
     stepper: Stepper,
     instrument: Instrument,
     timing: Timing,

@@ -1,13 +1,13 @@
 //! FMUs as a source: our own plant, a foreign instrument, or the ship under our plant.
 
-mod instrument;
-mod motion;
+pub(super) mod instrument;
+pub(super) mod motion;
 
 use instrument::{FmuSource, Instrument, Timing};
 use motion::{MovedPlant, Moving};
 use octant_plant::Truth;
 
-use super::{Source, SourceError};
+use super::{AnySource, Source, SourceError};
 use octant_mapping::open::{self, Kept};
 use octant_mapping::stepper::{Stepper, UseError};
 use octant_plant::config as plant;
@@ -22,7 +22,7 @@ pub(super) fn open(
     scenario: &Scenario,
     fmu: &Fmu,
     plant: &plant::Config,
-) -> Result<Box<dyn Source>, SourceError> {
+) -> Result<AnySource, SourceError> {
     of_instance(scenario, fmu, plant, open::instance(scenario, fmu)?)
 }
 
@@ -31,13 +31,13 @@ fn of_instance(
     fmu: &Fmu,
     plant: &plant::Config,
     Kept { instance, uri }: Kept,
-) -> Result<Box<dyn Source>, SourceError> {
+) -> Result<AnySource, SourceError> {
     let description = instance.description().clone();
     if fmu.is_motion() {
         let moving = moving(scenario, fmu, plant, Kept { instance, uri })?;
         let samples = scenario.samples().unwrap_or(u64::MAX);
         let samples_a_piece = fmu.step_ns / scenario.sample_period_ns;
-        return Ok(Box::new(MovedPlant::new(moving, plant, samples, samples_a_piece)?));
+        return Ok(MovedPlant::new(moving, plant, samples, samples_a_piece)?.into());
     }
     let own = open::own_plant(&description, plant)
         .map_err(|error| UseError::Open { uri: uri.clone(), reason: error.to_string() })?;
@@ -52,7 +52,7 @@ fn of_instance(
         reference_samples: (scenario.aiding.period_ns / scenario.sample_period_ns).max(1),
         position: matches!(scenario.aiding.kind, plant::AidingKind::DockPosition { .. }),
     };
-    Ok(Box::new(FmuSource::new(stepper, instrument, timing, fmu.step_ns, own.is_some())))
+    Ok(FmuSource::new(stepper, instrument, timing, fmu.step_ns, own.is_some()).into())
 }
 
 /// Opens the case motion that an FMU outputs, at its start.

@@ -242,7 +242,7 @@ pub(super) fn on_a_course(config: &Config) -> Config {
 }
 
 /// The plant on a case that an FMU moves.
-pub(super) struct MovedPlant {
+pub(crate) struct MovedPlant {
     plant: Plant,
     moving: Moving,
     course: Course,

@@ -47,7 +47,7 @@ fn open(
     scenario: &Scenario,
     description: Description,
     behaviour: impl FnMut(&mut [f64], f64) -> Result<bool, String> + Send + 'static,
-) -> Result<Box<dyn Source>, SourceError> {
+) -> Result<AnySource, SourceError> {
     let scenario::Source::Fmu(fmu) = &scenario.source else { panic!("an FMU") };
     let (plant, ..) = configurations(scenario, Method::Primary, 1).unwrap();
     let instance = Scripted::boxed(description, behaviour);

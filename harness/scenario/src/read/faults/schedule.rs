@@ -3,7 +3,7 @@
 use super::grid::Grid;
 use crate::condition;
 use crate::error::Problem;
-use crate::model::{Alignment, Calibration, Fault, Method, Scenario, Source};
+use crate::model::{Alignment, Calibration, Fault, Method, Scenario};
 use crate::read::reader::Reader;
 use octant_calibration::config::TurntableRates;
 use octant_calibration::schedule::move_between_s;
@@ -77,7 +77,7 @@ impl<'a> Timing<'a> {
             let (signal, comparison, value) =
                 condition::parse(table.text("when")?).map_err(|m| table.problem("when", m))?;
             if signal.needs_truth()
-                && let Some(without) = without_truth(&self.scenario.source)
+                && let Some(without) = self.scenario.source.without_truth()
             {
                 let found = table.text("when")?;
                 let message = format!("found {found:?}, which needs truth, and {without}");
@@ -281,19 +281,6 @@ impl Walk<'_> {
 
 fn positions(calibration: &Calibration) -> u64 {
     calibration.sequence.stops().len() as u64 * u64::from(calibration.sequence.passes())
-}
-
-/// Description of a source without truth; `None` if it has truth. An FMU without a map may be Octant's
-/// plant, which has it.
-fn without_truth(source: &Source) -> Option<&'static str> {
-    match source {
-        Source::Plant => None,
-        Source::Fmu(fmu) if fmu.is_motion() || fmu.map.is_empty() => None,
-        Source::Fmu(fmu) if fmu.map.iter().any(|m| m.channel.name.starts_with("truth.")) => None,
-        Source::Fmu(_) => Some("source.fmu.map has no truth"),
-        Source::Replay { .. } | Source::Text(_) => Some("the source is a recording"),
-        Source::Live(_) => Some("the source is a real instrument"),
-    }
 }
 
 /// Name of a method, for messages.

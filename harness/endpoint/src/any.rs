@@ -1,0 +1,91 @@
+//! An endpoint whose kind is known only from the scenario.
+
+use super::{
+    Conclusion, Endpoint, EndpointError, FmuEndpoint, InProcess, LiveEndpoint, RemoteClock, Sent,
+    Tells,
+};
+use octant_faults::wire::Wired;
+use octant_realtime::clock::HostTime;
+use octant_sample::parameters::ParameterEstimate;
+use octant_sample::{Epoch, Output, Parameters};
+
+/// An endpoint of any kind.
+pub struct AnyEndpoint(Kind);
+
+enum Kind {
+    InProcess(Box<InProcess>),
+    Fmu(Box<FmuEndpoint>),
+    Live(Box<LiveEndpoint>),
+}
+
+macro_rules! of {
+    ($($from:ty => $kind:ident),*) => {
+        $(impl From<$from> for AnyEndpoint {
+            fn from(endpoint: $from) -> Self {
+                Self(Kind::$kind(Box::new(endpoint)))
+            }
+        })*
+    };
+}
+
+of!(InProcess => InProcess, FmuEndpoint => Fmu, LiveEndpoint => Live);
+
+macro_rules! each {
+    ($any:expr, $endpoint:ident => $call:expr) => {
+        match $any {
+            Kind::InProcess($endpoint) => $call,
+            Kind::Fmu($endpoint) => $call,
+            Kind::Live($endpoint) => $call,
+        }
+    };
+}
+
+impl Endpoint for AnyEndpoint {
+    fn step(&mut self, epoch: &Epoch, output: &mut Output) -> Result<(), EndpointError> {
+        each!(&mut self.0, endpoint => endpoint.step(epoch, output))
+    }
+
+    fn tells(&self) -> Tells {
+        each!(&self.0, endpoint => endpoint.tells())
+    }
+
+    fn uri(&self) -> String {
+        each!(&self.0, endpoint => endpoint.uri())
+    }
+
+    fn send(&mut self, epoch: &Epoch, output: &mut Output) -> Result<Sent, EndpointError> {
+        each!(&mut self.0, endpoint => endpoint.send(epoch, output))
+    }
+
+    fn answer(
+        &mut self,
+        until: HostTime,
+        output: &mut Output,
+    ) -> Result<Option<usize>, EndpointError> {
+        each!(&mut self.0, endpoint => endpoint.answer(until, output))
+    }
+
+    fn remote_clock(&self) -> Option<RemoteClock> {
+        each!(&self.0, endpoint => endpoint.remote_clock())
+    }
+
+    fn restart(&mut self, offset: Option<&Parameters>) -> Result<(), EndpointError> {
+        each!(&mut self.0, endpoint => endpoint.restart(offset))
+    }
+
+    fn parameters(&self) -> ParameterEstimate {
+        each!(&self.0, endpoint => endpoint.parameters())
+    }
+
+    fn end_of_stream(&mut self) -> Result<Option<Output>, EndpointError> {
+        each!(&mut self.0, endpoint => endpoint.end_of_stream())
+    }
+
+    fn conclusion(&mut self) -> Conclusion {
+        each!(&mut self.0, endpoint => endpoint.conclusion())
+    }
+
+    fn wired(&mut self) -> Option<&mut dyn Wired> {
+        each!(&mut self.0, endpoint => endpoint.wired())
+    }
+}

@@ -1,0 +1,72 @@
+//! Ends of a run's loop, planned ones and failures.
+
+use super::unit::UnitEventError;
+use octant_endpoint::EndpointError;
+use octant_recorder::RecorderError;
+use octant_sample::{Mode, Output};
+use octant_source::SourceError;
+
+/// How the loop ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ended {
+    /// The core has finished its procedure.
+    Done,
+    /// The core refused its calibration and stopped there.
+    Refused,
+    /// The source had no more samples.
+    SourceEnded,
+    /// Interrupted on request.
+    Cancelled,
+    /// The core's answer broke the rules.
+    Misbehaved,
+    /// Source, endpoint or the disk of the recording failed.
+    Broken,
+}
+
+/// Returns the end that the core's output signals, if any.
+#[inline(always)]
+pub(super) fn over(output: &Output) -> Option<Ended> {
+    match output.mode {
+        Mode::Done => Some(Ended::Done),
+        Mode::Refused => Some(Ended::Refused),
+        Mode::Aligning | Mode::Calibrating | Mode::Navigating => None,
+    }
+}
+
+/// Reasons why a run was aborted. These are failures of the bench, not of the core.
+#[derive(Debug, thiserror::Error)]
+pub enum RunError {
+    /// The source failed.
+    #[error(transparent)]
+    Source(#[from] SourceError),
+    /// The endpoint failed.
+    #[error(transparent)]
+    Endpoint(#[from] EndpointError),
+    /// The recorder failed.
+    #[error(transparent)]
+    Recorder(#[from] RecorderError),
+    /// A navigation can't be scored.
+    #[error(transparent)]
+    Drift(#[from] octant_score::drift::DriftError),
+    /// A recorded event of the unit can't be repeated.
+    #[error(transparent)]
+    Unit(#[from] UnitEventError),
+}
+
+impl RunError {
+    /// True if source, endpoint or the disk of the recording went away: results up to then stay
+    /// valid.
+    #[must_use]
+    pub fn is_gone(&self) -> bool {
+        matches!(
+            self,
+            Self::Source(SourceError::Gone { .. } | SourceError::TableStopped { .. })
+                | Self::Endpoint(
+                    EndpointError::Gone { .. }
+                        | EndpointError::Live(_)
+                        | EndpointError::Restart { .. }
+                )
+                | Self::Recorder(RecorderError::Write { .. })
+        )
+    }
+}

@@ -1,0 +1,87 @@
+//! A source whose kind is known only from the scenario.
+
+use super::fmu::instrument::FmuSource;
+use super::fmu::motion::MovedPlant;
+use super::{Epoch, LiveSource, PlantSource, Replay, Source, SourceError, TextSource};
+use octant_plant::Truth;
+use octant_sample::GimbalCommand;
+use octant_sample::disturbance::Disturbed;
+
+/// A source of any kind.
+pub struct AnySource(Kind);
+
+enum Kind {
+    Plant(Box<PlantSource>),
+    Moved(Box<MovedPlant>),
+    Fmu(Box<FmuSource>),
+    Replay(Box<Replay>),
+    Text(Box<TextSource>),
+    Live(Box<LiveSource>),
+}
+
+macro_rules! of {
+    ($($from:ty => $kind:ident),*) => {
+        $(impl From<$from> for AnySource {
+            fn from(source: $from) -> Self {
+                Self(Kind::$kind(Box::new(source)))
+            }
+        })*
+    };
+}
+
+of!(PlantSource => Plant, MovedPlant => Moved, FmuSource => Fmu, Replay => Replay,
+    TextSource => Text, LiveSource => Live);
+
+macro_rules! each {
+    ($any:expr, $source:ident => $call:expr) => {
+        match $any {
+            Kind::Plant($source) => $call,
+            Kind::Moved($source) => $call,
+            Kind::Fmu($source) => $call,
+            Kind::Replay($source) => $call,
+            Kind::Text($source) => $call,
+            Kind::Live($source) => $call,
+        }
+    };
+}
+
+impl Source for AnySource {
+    fn next(&mut self, command: &GimbalCommand, epoch: &mut Epoch) -> Result<bool, SourceError> {
+        each!(&mut self.0, source => source.next(command, epoch))
+    }
+
+    fn truth(&self) -> Option<Truth> {
+        each!(&self.0, source => source.truth())
+    }
+
+    fn samples_total(&self) -> Option<u64> {
+        each!(&self.0, source => source.samples_total())
+    }
+
+    fn samples_planned(&self) -> Option<u64> {
+        each!(&self.0, source => source.samples_planned())
+    }
+
+    fn cut_short(&self) -> Option<String> {
+        each!(&self.0, source => source.cut_short())
+    }
+
+    fn disturbed(&mut self) -> Option<&mut dyn Disturbed> {
+        each!(&mut self.0, source => source.disturbed())
+    }
+
+    fn is_live(&self) -> bool {
+        each!(&self.0, source => source.is_live())
+    }
+
+    fn conclude(
+        &mut self,
+        broken: Option<&str>,
+    ) -> (Option<serde_json::Value>, Option<SourceError>) {
+        each!(&mut self.0, source => source.conclude(broken))
+    }
+
+    fn has_true_parameters(&self) -> bool {
+        each!(&self.0, source => source.has_true_parameters())
+    }
+}
