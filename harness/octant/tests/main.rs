@@ -45,6 +45,7 @@ mod fmu_source;
 mod formats;
 mod fuzz_corpus;
 #[cfg(target_os = "linux")]
+mod generated;
 mod hostile;
 #[cfg(unix)]
 mod live;

@@ -216,8 +216,8 @@ fn open_can(can: &crate::uri::Can, _: Role) -> Result<Port, PortError> {
 /// Text that tells an operator how to reach a port.
 #[must_use]
 pub fn announcement(uri: &Uri, port: &Port) -> String {
-    match (uri, port) {
-        (Uri::Pty { .. } | Uri::Udp(_), Port::Bytes(bytes)) => bytes.reached_at(),
-        _ => uri.to_string(),
+    match port {
+        Port::Bytes(bytes) => bytes.reached_at(),
+        Port::Frames(_) => uri.to_string(),
     }
 }
