@@ -24,6 +24,7 @@ mod ensemble_against;
 mod ensemble_prediction;
 mod ensembles;
 mod equipment;
+mod extending;
 mod faults_any;
 mod faults_host;
 mod faults_run;
