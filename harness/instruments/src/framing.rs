@@ -168,6 +168,12 @@ pub struct Decoder<P: Framing> {
     counters: Counters,
 }
 
+impl<P: Framing + Default> Default for Decoder<P> {
+    fn default() -> Self {
+        Self::new(P::default())
+    }
+}
+
 impl<P: Framing> Decoder<P> {
     /// Makes a decoder that has received nothing.
     #[must_use]

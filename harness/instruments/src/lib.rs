@@ -1,10 +1,10 @@
 //! Decoders and encoders for the protocols of existing inertial units.
 //!
-//! Each protocol is a module: [`vectornav`], [`xsens`], [`novatel`], [`sbg`], and [`own`], the wire of
-//! this project. Each has a decoder, which takes bytes in pieces of any length, finds the frames among
-//! other bytes and counts everything that it can't use, and an encoder, for tests and simulated
-//! instruments. All use the same [`Reading`], in SI units: a value that a protocol doesn't send is
-//! `None`, not a guess. [`any`] chooses a protocol by name.
+//! Each protocol is a module, [`own`] that of this project's wire. Each has a decoder, which takes
+//! bytes in pieces of any length, finds the frames among other bytes and counts everything that it
+//! can't use, and an encoder, for tests and simulated instruments. All use the same [`Reading`], in SI
+//! units: a value that a protocol doesn't send is `None`, not a guess. [`any`] lists the protocols and
+//! chooses one by name.
 //!
 //! [`Sampler`] converts readings to [`octant_sample::Sample`]s: it turns the axes of the unit to those
 //! of the body, counts increments and carries their remainders, and continues sequence and time across
@@ -41,6 +41,7 @@ mod bytes;
 mod carry;
 mod checksum;
 mod encoding;
+mod facts;
 mod reading;
 mod rollover;
 mod sampler;
@@ -48,6 +49,7 @@ mod sampler;
 pub use any::{AnyDecoder, AnyEncoder, Protocol};
 pub use axes::{Axes, AxesError};
 pub use encoding::CannotCarry;
+pub use facts::ProtocolFacts;
 pub use framing::{Cause, Counters, Event, Lost};
 pub use reading::{Clock, Kind, Measured, Reading, Stamp};
 pub use sampler::{Sampler, SamplerCounters, Settings, Unusable};

@@ -4,12 +4,21 @@
 //! other messages pass. Increments are the counts of [`octant_sample::counts`] and lose nothing.
 
 use crate::encoding::{CannotCarry, Needs};
+use crate::facts::ProtocolFacts;
 use crate::framing::{Cause, Counters, Event, Lost};
 use crate::{Measured, Reading};
 use octant_sample::counts::{Accumulator, DELTA_THETA_LSB_RAD, DELTA_VELOCITY_LSB_MPS};
 use octant_sample::{DeviceTime, Sample, Status};
 use octant_wire::message::{ClockTime, SampleMessage, Step};
 use octant_wire::{Message, serial};
+
+/// Facts of the protocol.
+pub(crate) const FACTS: ProtocolFacts = ProtocolFacts {
+    name: "octant",
+    doc: "the wire of this program",
+    resolution: [1.5e-11, 9.4e-10],
+    false_starts: &[&[1, 2, 3], &[0xFF; 300]],
+};
 
 /// Finds readings in a stream of bytes.
 #[derive(Clone, Debug, Default)]

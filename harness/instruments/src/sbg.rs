@@ -13,6 +13,7 @@ use crate::bytes::{Frame, Reader};
 use crate::carry::Carry;
 use crate::checksum;
 use crate::encoding::{CannotCarry, Needs};
+use crate::facts::ProtocolFacts;
 use crate::framing::{Cause, Extent, Framing};
 use crate::rollover::Rollover;
 use crate::{Clock, Kind, Measured, Reading, Stamp};
@@ -50,6 +51,14 @@ const GYROS_IN_RANGE: u16 = 1 << 9;
 const GYROS_USE_HIGH_SCALE: u16 = 1 << 10;
 /// Bits that are set if the inertial values are valid.
 const USABLE: u16 = COM_OK | STATUS_OK | ACCELEROMETERS_OK | GYROS_OK;
+
+/// Facts of the protocol: the counts are 2⁻²⁶ rad/s and 2⁻²⁰ m/s², times the interval.
+pub(crate) const FACTS: ProtocolFacts = ProtocolFacts {
+    name: "sbg",
+    doc: "SBG's sbgECom, IMU_SHORT or IMU_DATA",
+    resolution: [7.5e-11, 4.8e-9],
+    false_starts: &[&[0xFF], &[0xFF, 0x5A, 0x2C, 0x00, 0xF6, 0x0F], &[0xFF, 0xFF, 0x5A]],
+};
 
 /// SBG's protocol, with the state of its clock.
 #[derive(Clone, Copy, Debug)]

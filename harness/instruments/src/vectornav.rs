@@ -17,6 +17,7 @@ use crate::bytes::{Frame, Reader};
 use crate::carry::Carry;
 use crate::checksum;
 use crate::encoding::{CannotCarry, Needs};
+use crate::facts::ProtocolFacts;
 use crate::framing::{Cause, Extent, Framing};
 use crate::{Clock, Measured, Reading, Stamp};
 use octant_sample::Status;
@@ -83,6 +84,15 @@ const IMU_SENS_SAT: u16 = 1 << 11;
 /// Bits of `SensSat`.
 const SATURATED_ACCELEROMETER: u16 = 0b111 << 3;
 const SATURATED_GYRO: u16 = 0b111 << 6;
+
+/// Facts of the protocol. Floats have 24 bits, of up to 0.1 rad and 1 m/s; the carried remainder adds
+/// the same error again.
+pub(crate) const FACTS: ProtocolFacts = ProtocolFacts {
+    name: "vectornav",
+    doc: "VectorNav's binary output",
+    resolution: [1.2e-8, 1.2e-7],
+    false_starts: &[&[0xFA], &[0xFA, 0x01, 0xFF, 0x7F], &[0xFA, 0xFA, 0xFA]],
+};
 
 /// VectorNav's protocol.
 #[derive(Clone, Copy, Debug, Default)]

@@ -17,6 +17,7 @@ use crate::bytes::{Frame, Reader};
 use crate::carry::Carry;
 use crate::checksum;
 use crate::encoding::{CannotCarry, Needs};
+use crate::facts::ProtocolFacts;
 use crate::framing::{Cause, Extent, Framing};
 use crate::rollover::Rollover;
 use crate::{Clock, Measured, Reading, Stamp};
@@ -46,6 +47,20 @@ const FINE_NS: u64 = 100_000;
 /// Bits of the status word for accelerometers and gyros out of range.
 const CLIPPED_ACCELEROMETER: u32 = 0b111 << 8;
 const CLIPPED_GYRO: u32 = 0b111 << 11;
+
+/// Facts of the protocol. Floats have 24 bits, of up to 0.1 rad and 1 m/s; the carried remainder adds
+/// the same error again.
+pub(crate) const FACTS: ProtocolFacts = ProtocolFacts {
+    name: "xsens",
+    doc: "Xsens' MTData2",
+    resolution: [1.2e-8, 1.2e-7],
+    false_starts: &[
+        &[0xFA],
+        &[0xFA, 0xFF],
+        &[0xFA, 0xFF, 0x36, 0xFF, 0x07, 0xFF],
+        &[0xFA, 0xFF, 0x36, 0xFE],
+    ],
+};
 
 /// Xsens' protocol, with the state of its counters.
 #[derive(Clone, Copy, Debug)]

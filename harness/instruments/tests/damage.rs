@@ -67,20 +67,8 @@ fn a_frame_that_is_cut_short_costs_itself() {
 #[test]
 fn a_sync_by_chance_costs_no_frame() {
     for (protocol, frames) in streams(40) {
-        let chance: &[&[u8]] = match protocol {
-            Protocol::VectorNav => &[&[0xFA], &[0xFA, 0x01, 0xFF, 0x7F], &[0xFA, 0xFA, 0xFA]],
-            Protocol::Xsens => &[
-                &[0xFA],
-                &[0xFA, 0xFF],
-                &[0xFA, 0xFF, 0x36, 0xFF, 0x07, 0xFF],
-                &[0xFA, 0xFF, 0x36, 0xFE],
-            ],
-            Protocol::NovAtel => &[&[0xAA], &[0xAA, 0x44, 0x13, 0xFF], b"%", b"%RAWIMUSXA,"],
-            Protocol::Sbg => &[&[0xFF], &[0xFF, 0x5A, 0x2C, 0x00, 0xF6, 0x0F], &[0xFF, 0xFF, 0x5A]],
-            Protocol::Octant => &[&[1, 2, 3], &[0xFF; 300]],
-        };
         let sent = decode(protocol, &frames.concat()).0;
-        for chance in chance {
+        for chance in protocol.facts().false_starts {
             let bytes = [*chance, &frames.concat()].concat();
             let (found, decoder) = decode(protocol, &bytes);
             assert_eq!(found, sent, "{protocol:?} {chance:?}");

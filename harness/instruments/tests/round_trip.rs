@@ -7,20 +7,6 @@ use octant_instruments::{
 use octant_sample::Status;
 use proptest::prelude::*;
 
-/// Largest error by a protocol's resolution, in an increment over 5 ms and in the sum of all.
-fn resolution(protocol: Protocol) -> (f64, f64) {
-    match protocol {
-        // Floats with 24 bits, of up to 0.1 rad and 1 m/s; the carried remainder adds the same error
-        // again.
-        Protocol::VectorNav | Protocol::Xsens => (1.2e-8, 1.2e-7),
-        // 2⁻³³ rad and 2⁻²⁹ m/s.
-        Protocol::NovAtel => (1.2e-10, 1.9e-9),
-        // 2⁻²⁶ rad/s and 2⁻²⁰ m/s² times the interval.
-        Protocol::Sbg => (7.5e-11, 4.8e-9),
-        Protocol::Octant => (1.5e-11, 9.4e-10),
-    }
-}
-
 fn any_reading() -> impl Strategy<Value = Reading> {
     let three = |most: f64| proptest::array::uniform3(-most..most);
     (three(0.031), three(0.5), any::<bool>(), any::<bool>(), -40.0f32..80.0).prop_map(
@@ -50,7 +36,7 @@ proptest! {
     ) {
         for protocol in Protocol::ALL {
             let (mut encoder, mut decoder) = (AnyEncoder::new(protocol), AnyDecoder::new(protocol));
-            let (rotation, velocity) = resolution(protocol);
+            let [rotation, velocity] = protocol.facts().resolution;
             let mut sums = [[0.0; 3]; 2];
             let mut first = None;
             for (number, told) in told.iter().enumerate() {

@@ -1,7 +1,7 @@
 //! Whether a line or bus carries a sample rate, before anything is sent.
 
-use crate::uri::Uri;
-use octant_wire::can::{self, Bus, Format};
+use crate::uri::{Rates, Uri};
+use octant_wire::can::{self, Bus};
 use octant_wire::serial::{Baud, LineLoad};
 use octant_wire::traffic::Traffic;
 
@@ -51,12 +51,10 @@ pub enum LoadError {
 /// If the port is too slow.
 pub fn real_time(uri: &Uri, sample_rate_hz: f64, bus: Option<Bus>) -> Result<Load, LoadError> {
     let traffic = Traffic::session(sample_rate_hz);
-    let bus = match uri {
-        Uri::Serial(serial) => return line(serial.baud, &traffic),
-        Uri::Pty { .. } | Uri::Udp(_) => return Ok(Load::Unlimited),
-        // The line of an adapter is USB, whatever baud rate it was given.
-        Uri::Slcan(slcan) => Some(slcan.bus),
-        Uri::Can(can) => named_bus(can).or(bus),
+    let bus = match uri.rates() {
+        Rates::Line(baud) => return line(baud, &traffic),
+        Rates::Bus(named) => named.or(bus),
+        Rates::Unlimited => None,
     };
     match bus {
         Some(bus) => Ok(Load::Bus(bus, bus.carry(&traffic, LIMIT)?)),
@@ -67,26 +65,12 @@ pub fn real_time(uri: &Uri, sample_rate_hz: f64, bus: Option<Bus>) -> Result<Loa
 /// Bus of a port: as named by its URI, else as reported by the interface.
 #[must_use]
 pub fn bus(uri: &Uri) -> Option<Bus> {
-    match uri {
-        Uri::Slcan(slcan) => Some(slcan.bus),
-        #[cfg(all(target_os = "linux", feature = "can"))]
-        Uri::Can(can) => {
-            named_bus(can).or_else(|| crate::port::interface_bus(&can.interface, can.format))
-        }
-        #[cfg(not(all(target_os = "linux", feature = "can")))]
-        Uri::Can(can) => named_bus(can),
-        _ => None,
+    let Rates::Bus(named) = uri.rates() else { return None };
+    #[cfg(all(target_os = "linux", feature = "can"))]
+    if let (None, Uri::Can(can)) = (named, uri) {
+        return crate::port::interface_bus(&can.interface, can.format);
     }
-}
-
-/// Bus as named by a URI, if it names its rates.
-#[must_use]
-pub fn named_bus(can: &crate::uri::Can) -> Option<Bus> {
-    let nominal_bps = can.bitrate?;
-    match (can.format, can.data_bitrate) {
-        (Format::Classic, _) => Some(Bus::classic(nominal_bps)),
-        (Format::Fd, data) => Some(Bus::fd(nominal_bps, data.unwrap_or(nominal_bps))),
-    }
+    named
 }
 
 /// Common bit rates of serial lines, bit/s.

@@ -3,7 +3,13 @@
 //! A name is `SCHEME:NAME?OPTION=VALUE&OPTION=VALUE`. Unknown names are refused, with the nearest known
 //! one.
 
+mod parts;
+
+pub use parts::UriError;
+
+use octant_faults::wire::Medium;
 use octant_wire::can::{Bus, Format};
+use parts::Parts;
 use std::fmt;
 
 /// A port, by its name.
@@ -46,6 +52,17 @@ pub struct Can {
     pub data_bitrate: Option<u32>,
 }
 
+impl Can {
+    /// Bus as named, if its rates are.
+    fn bus(&self) -> Option<Bus> {
+        let nominal_bps = self.bitrate?;
+        match (self.format, self.data_bitrate) {
+            (Format::Classic, _) => Some(Bus::classic(nominal_bps)),
+            (Format::Fd, data) => Some(Bus::fd(nominal_bps, data.unwrap_or(nominal_bps))),
+        }
+    }
+}
+
 /// A CAN adapter behind a serial line.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Slcan {
@@ -64,6 +81,17 @@ pub struct Udp {
     pub port: u16,
 }
 
+/// Bit rates of a port.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Rates {
+    /// A line with a wire for each direction, bit/s.
+    Line(u32),
+    /// A bus; `None`: the rates are those that its interface reports.
+    Bus(Option<Bus>),
+    /// None: a pseudo terminal, UDP.
+    Unlimited,
+}
+
 /// Default bit rate of a serial line, bit/s.
 pub const DEFAULT_BAUD: u32 = 921_600;
 
@@ -74,210 +102,101 @@ pub const SLCAN_BITRATES: [u32; 9] =
 /// Bit rates of FD data that slcan has a command for, bit/s.
 pub const SLCAN_DATA_BITRATES: [u32; 4] = [1_000_000, 2_000_000, 4_000_000, 5_000_000];
 
-/// Schemes, with a description and examples.
-pub const SCHEMES: [(&str, &str); 5] = [
-    ("serial", "a serial line: serial:/dev/ttyUSB0?baud=921600"),
-    ("can", "a CAN interface: can:can0, can:can0?fd=1"),
-    ("slcan", "a CAN adapter on a serial line: slcan:/dev/ttyACM0?bitrate=500000"),
-    ("udp", "UDP: udp:HOST:PORT"),
-    ("pty", "a new pseudo terminal, for octant serve alone"),
-];
-
-/// Error of a text that names no port.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum UriError {
-    /// The text has nothing before a colon.
-    #[error("found {found:?}, expected SCHEME:NAME with a scheme of {}", names(&schemes()))]
-    NoScheme {
-        /// The text.
-        found: String,
-    },
-    /// The scheme is unknown.
-    #[error("found scheme {found:?}, {}", nearest(found, &schemes()))]
-    Scheme {
-        /// The scheme.
-        found: String,
-    },
-    /// The name after the scheme is missing.
-    #[error("found {found:?}, expected {expected}")]
-    Name {
-        /// The text.
-        found: String,
-        /// Expected form.
-        expected: &'static str,
-    },
-    /// The scheme doesn't have this option.
-    #[error("found option {option:?} of {scheme}:, {}", nearest(option, known))]
-    Option {
-        /// The scheme.
-        scheme: &'static str,
-        /// The option.
-        option: String,
-        /// Options of the scheme.
-        known: &'static [&'static str],
-    },
-    /// An option has no value, or is given twice.
-    #[error("found {found:?} among the options, expected OPTION=VALUE, each once")]
-    Form {
-        /// Text found.
-        found: String,
-    },
-    /// The value is invalid.
-    #[error("found {option}={found}, expected {expected}")]
-    Value {
-        /// The option.
-        option: &'static str,
-        /// Value found.
-        found: String,
-        /// Expected form.
-        expected: String,
-    },
+/// A scheme: everything that follows from it alone.
+#[derive(Debug)]
+pub struct Scheme {
+    /// Text before the colon.
+    pub name: &'static str,
+    /// Devices behind a port of this scheme, with an example; `None`: it is for the device end alone.
+    pub devices: Option<&'static str>,
+    /// Medium, which decides what faults it can have.
+    pub medium: Medium,
+    options: &'static [&'static str],
+    read: fn(&Parts<'_>) -> Result<Uri, UriError>,
 }
 
-fn schemes() -> [&'static str; 5] {
-    SCHEMES.map(|(name, _)| name)
-}
+/// All schemes.
+pub const SCHEMES: [Scheme; 5] = [SERIAL, CAN, SLCAN, UDP, PTY];
 
-fn names(known: &[&str]) -> String {
-    known.join(", ")
-}
+const SERIAL: Scheme = Scheme {
+    name: "serial",
+    devices: Some("a device on a serial line: serial:/dev/ttyUSB0?baud=921600"),
+    medium: Medium::Line,
+    options: &["baud"],
+    read: |parts| {
+        let path = parts.named("serial:PORT, such as serial:/dev/ttyUSB0")?;
+        let baud = parts.rate("baud")?.unwrap_or(DEFAULT_BAUD);
+        Ok(Uri::Serial(Serial { path, baud }))
+    },
+};
 
-/// Suggests the nearest of some names, or lists all of them.
-fn nearest(found: &str, known: &[&str]) -> String {
-    let near = known
-        .iter()
-        .map(|name| (strsim::damerau_levenshtein(found, name), name))
-        .filter(|(distance, name)| *distance <= name.len().max(2) / 2)
-        .min();
-    match near {
-        Some((_, name)) => format!("expected {name}?"),
-        None if known.is_empty() => "it has no options".to_owned(),
-        None => format!("known are {}", names(known)),
-    }
-}
+const CAN: Scheme = Scheme {
+    name: "can",
+    devices: Some("a device on a CAN bus: can:can0, can:can0?fd=1"),
+    medium: Medium::Bus,
+    options: &["fd", "bitrate", "data_bitrate"],
+    read: |parts| {
+        Ok(Uri::Can(Can {
+            interface: parts.named("can:INTERFACE, such as can:can0")?,
+            format: parts.format()?,
+            bitrate: parts.rate("bitrate")?,
+            data_bitrate: parts.rate("data_bitrate")?,
+        }))
+    },
+};
 
-/// Options as written.
-struct Options<'a> {
-    all: Vec<(&'a str, &'a str)>,
-}
+const SLCAN: Scheme = Scheme {
+    name: "slcan",
+    devices: Some("the same through an adapter: slcan:/dev/ttyACM0?bitrate=500000"),
+    medium: Medium::Bus,
+    options: &["baud", "bitrate", "fd", "data_bitrate"],
+    read: |parts| {
+        let path = parts.named("slcan:PORT, such as slcan:/dev/ttyACM0")?;
+        let baud = parts.rate("baud")?.unwrap_or(DEFAULT_BAUD);
+        Ok(Uri::Slcan(Slcan { serial: Serial { path, baud }, bus: slcan_bus(parts)? }))
+    },
+};
 
-impl<'a> Options<'a> {
-    fn read(
-        text: Option<&'a str>,
-        scheme: &'static str,
-        known: &'static [&'static str],
-    ) -> Result<Self, UriError> {
-        let mut all: Vec<(&str, &str)> = Vec::new();
-        for part in text.into_iter().flat_map(|text| text.split('&')) {
-            let Some((option, value)) = part.split_once('=') else {
-                return Err(UriError::Form { found: part.to_owned() });
-            };
-            if !known.contains(&option) {
-                return Err(UriError::Option { scheme, option: option.to_owned(), known });
-            }
-            if all.iter().any(|(other, _)| *other == option) {
-                return Err(UriError::Form { found: part.to_owned() });
-            }
-            all.push((option, value));
-        }
-        Ok(Self { all })
-    }
+const UDP: Scheme = Scheme {
+    name: "udp",
+    devices: Some("a device on UDP: udp:HOST:PORT"),
+    medium: Medium::Datagrams,
+    options: &[],
+    read: |parts| {
+        udp(parts.name).ok_or_else(|| UriError::Name {
+            found: parts.text.to_owned(),
+            expected: "udp:HOST:PORT, such as udp:127.0.0.1:5005 or udp:[::1]:5005",
+        })
+    },
+};
 
-    fn get(&self, option: &str) -> Option<&'a str> {
-        self.all.iter().find(|(name, _)| *name == option).map(|(_, value)| *value)
-    }
+const PTY: Scheme = Scheme {
+    name: "pty",
+    devices: None,
+    medium: Medium::Line,
+    options: &[],
+    read: |parts| Ok(Uri::Pty { link: parts.name.to_owned() }),
+};
 
-    fn rate(&self, option: &'static str) -> Result<Option<u32>, UriError> {
-        let Some(text) = self.get(option) else { return Ok(None) };
-        match text.parse() {
-            Ok(rate @ 1..) => Ok(Some(rate)),
-            _ => Err(UriError::Value {
-                option,
-                found: text.to_owned(),
-                expected: "a whole number of bits a second".to_owned(),
-            }),
-        }
-    }
-
-    /// Format given by `fd`; `data_bitrate` requires `fd=1`.
-    fn format(&self) -> Result<Format, UriError> {
-        let format = match self.get("fd") {
-            None | Some("0") => Format::Classic,
-            Some("1") => Format::Fd,
-            Some(found) => {
-                return Err(UriError::Value {
-                    option: "fd",
-                    found: found.to_owned(),
-                    expected: "0 (classic CAN) or 1 (CAN FD)".to_owned(),
-                });
-            }
-        };
-        if let (Format::Classic, Some(found)) = (format, self.get("data_bitrate")) {
-            return Err(UriError::Value {
-                option: "data_bitrate",
-                found: found.to_owned(),
-                expected: "fd=1 with it: classic CAN has one bit rate".to_owned(),
-            });
-        }
-        Ok(format)
-    }
+fn schemes() -> Vec<&'static str> {
+    SCHEMES.iter().map(|scheme| scheme.name).collect()
 }
 
 impl std::str::FromStr for Uri {
     type Err = UriError;
 
     fn from_str(text: &str) -> Result<Self, UriError> {
-        let found = || text.to_owned();
-        let (scheme, rest) =
-            text.split_once(':').ok_or_else(|| UriError::NoScheme { found: found() })?;
-        let (name, options) = match rest.split_once('?') {
-            Some((name, options)) => (name, Some(options)),
-            None => (rest, None),
+        let Some((scheme, rest)) = text.split_once(':') else {
+            return Err(UriError::NoScheme { found: text.to_owned(), known: schemes() });
         };
-        let named = |expected| match name {
-            "" => Err(UriError::Name { found: found(), expected }),
-            name => Ok(name.to_owned()),
+        let Some(known) = SCHEMES.iter().find(|known| known.name == scheme) else {
+            return Err(UriError::Scheme { found: scheme.to_owned(), known: schemes() });
         };
-        match scheme {
-            "serial" => {
-                let options = Options::read(options, "serial", &["baud"])?;
-                let path = named("serial:PORT, such as serial:/dev/ttyUSB0")?;
-                let baud = options.rate("baud")?.unwrap_or(DEFAULT_BAUD);
-                Ok(Self::Serial(Serial { path, baud }))
-            }
-            "pty" => {
-                Options::read(options, "pty", &[])?;
-                Ok(Self::Pty { link: name.to_owned() })
-            }
-            "can" => {
-                let options = Options::read(options, "can", &["fd", "bitrate", "data_bitrate"])?;
-                Ok(Self::Can(Can {
-                    interface: named("can:INTERFACE, such as can:can0")?,
-                    format: options.format()?,
-                    bitrate: options.rate("bitrate")?,
-                    data_bitrate: options.rate("data_bitrate")?,
-                }))
-            }
-            "slcan" => {
-                const KNOWN: &[&str] = &["baud", "bitrate", "fd", "data_bitrate"];
-                let options = Options::read(options, "slcan", KNOWN)?;
-                let path = named("slcan:PORT, such as slcan:/dev/ttyACM0")?;
-                let baud = options.rate("baud")?.unwrap_or(DEFAULT_BAUD);
-                Ok(Self::Slcan(Slcan { serial: Serial { path, baud }, bus: slcan_bus(&options)? }))
-            }
-            "udp" => {
-                Options::read(options, "udp", &[])?;
-                udp(name).ok_or_else(|| UriError::Name {
-                    found: found(),
-                    expected: "udp:HOST:PORT, such as udp:127.0.0.1:5005 or udp:[::1]:5005",
-                })
-            }
-            _ => Err(UriError::Scheme { found: scheme.to_owned() }),
-        }
+        (known.read)(&Parts::read(text, rest, known.name, known.options)?)
     }
 }
 
-fn slcan_bus(options: &Options<'_>) -> Result<Bus, UriError> {
+fn slcan_bus(options: &Parts<'_>) -> Result<Bus, UriError> {
     let one_of = |option, found: Option<u32>, known: &[u32]| match found {
         Some(rate) if known.contains(&rate) => Ok(rate),
         found => Err(UriError::Value {
@@ -310,22 +229,45 @@ fn udp(name: &str) -> Option<Uri> {
 }
 
 impl Uri {
+    const fn of(&self) -> &'static Scheme {
+        match self {
+            Self::Serial(_) => const { &SERIAL },
+            Self::Pty { .. } => const { &PTY },
+            Self::Can(_) => const { &CAN },
+            Self::Slcan(_) => const { &SLCAN },
+            Self::Udp(_) => const { &UDP },
+        }
+    }
+
     /// Scheme of the URI.
     #[must_use]
-    pub fn scheme(&self) -> &'static str {
+    pub const fn scheme(&self) -> &'static str {
+        self.of().name
+    }
+
+    /// Medium of the port.
+    #[must_use]
+    pub const fn medium(&self) -> Medium {
+        self.of().medium
+    }
+
+    /// Bit rates of the port.
+    #[must_use]
+    pub fn rates(&self) -> Rates {
         match self {
-            Self::Serial(_) => "serial",
-            Self::Pty { .. } => "pty",
-            Self::Can(_) => "can",
-            Self::Slcan(_) => "slcan",
-            Self::Udp(_) => "udp",
+            Self::Serial(serial) => Rates::Line(serial.baud),
+            Self::Pty { .. } | Self::Udp(_) => Rates::Unlimited,
+            Self::Can(can) => Rates::Bus(can.bus()),
+            // The line of an adapter is USB, whatever baud rate it was given.
+            Self::Slcan(slcan) => Rates::Bus(Some(slcan.bus)),
         }
     }
 
     /// True if a text names a port by a known scheme, correctly or not.
     #[must_use]
     pub fn is_one(text: &str) -> bool {
-        text.split_once(':').is_some_and(|(scheme, _)| schemes().contains(&scheme))
+        text.split_once(':')
+            .is_some_and(|(scheme, _)| SCHEMES.iter().any(|known| known.name == scheme))
     }
 }
 

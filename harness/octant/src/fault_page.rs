@@ -4,7 +4,7 @@ use crate::failure::Failure;
 use crate::fault_picture::{Window, picture as draw};
 use crate::fault_words::{acts, lasts};
 use crate::side_by_side::side_by_side;
-use octant_faults::catalogue::{Acts, Kind, Lasts};
+use octant_faults::catalogue::{Acts, Kind};
 use octant_scenario::{Scenario, fault_example, fault_parameters};
 use std::path::Path;
 
@@ -93,7 +93,7 @@ pub(super) fn picture(kind: &'static Kind) -> Result<String, Failure> {
         let onset = runs.receipts.first().and_then(|receipt| receipt.first_sample);
         let Some(onset) = onset else { continue };
         let duration = scenario.faults.first().and_then(|fault| fault.spec.schedule.duration);
-        let lasts_s = duration.map_or_else(|| instant_s(kind), |n| n as f64 * period_s);
+        let lasts_s = duration.map_or_else(|| kind.example.shown_s, |n| n as f64 * period_s);
         let shown_s = (1.4 * lasts_s).clamp(10.0 * period_s, SHOWN_MAX_S);
         let after = (shown_s / period_s).round() as u64;
         let before = after * 3 / 10;
@@ -110,16 +110,4 @@ pub(super) fn picture(kind: &'static Kind) -> Result<String, Failure> {
         "failed to draw {}: its example changes none of the drawn quantities",
         kind.name
     )))
-}
-
-/// Returns the time for which an instantaneous fault is visible, s.
-fn instant_s(kind: &Kind) -> f64 {
-    debug_assert!(kind.lasts == Lasts::Instant);
-    match kind.name {
-        "shock" => 0.25,
-        "gimbal-slip" => 0.2,
-        "mooring-jerk" => 5.0,
-        "time-step" | "sequence-gap" => 0.1,
-        _ => 10.0,
-    }
 }

@@ -4,7 +4,7 @@
 use crate::common::program::{octant_in, program};
 use octant_base::control::Control;
 use octant_endpoint::{Endpoint, InProcess};
-use octant_faults::catalogue::{Acts, Family, Kind, Lasts};
+use octant_faults::catalogue::{Acts, Example, Family, Kind, Lasts};
 use octant_faults::rule::{Context, DeliveryRule, Rule, UnitEvent, UnitRule};
 use octant_faults::station::Spec;
 use octant_faults::trigger::{Repeat, Schedule, Trigger};
@@ -286,6 +286,7 @@ macro_rules! test_kind {
             model: "",
             parameters: &[],
             lasts: Lasts::Span,
+            example: Example::NONE,
             build: |_, _| Ok($rule),
         };
     };

@@ -26,6 +26,7 @@ mod ensemble_against;
 mod ensemble_prediction;
 mod ensembles;
 mod equipment;
+mod extending;
 mod faults_any;
 mod faults_host;
 mod faults_run;
@@ -47,6 +48,7 @@ mod fmu_source;
 mod formats;
 mod fuzz_corpus;
 #[cfg(target_os = "linux")]
+mod generated;
 mod hostile;
 #[cfg(unix)]
 mod live;

@@ -7,12 +7,12 @@
 
 mod arguments;
 pub mod channel;
+mod choices;
 pub mod complete;
 mod condition;
 mod derive;
 pub mod document;
 pub mod error;
-mod examples;
 pub mod keys;
 mod load;
 mod model;

@@ -4,10 +4,10 @@
 
 use super::complete::expected;
 use super::document::{join, parse_default, write_value};
-use super::examples;
 use super::keys::{Bounds, Default, Key, Kind, SCENARIO, Section};
 use super::ports;
 use super::quantity::{self, Dimension};
+use octant_faults::{connection::kinds as connection, kinds};
 
 /// Settings of the tour beside the defaults: path and TOML value.
 const SET: &[(&str, &str)] = &[
@@ -364,11 +364,12 @@ pub fn fault_parameters(kind: &str) -> Vec<(&'static str, String)> {
 #[must_use]
 pub fn fault_example(kind: &str) -> Option<String> {
     let section = section_of(kind)?;
+    let own = kinds::named(kind).map(|kind| &kind.example);
+    let own = own.or_else(|| connection::named(kind).map(|kind| &kind.example))?;
     let mut out = String::from("[[faults]]\n");
     for key in section.keys {
-        let own = examples::FAULTS.iter().find(|(of, name, _)| *of == kind && *name == key.name);
-        let value = match (own, key.default) {
-            (Some((.., text)), _) => (*text).to_owned(),
+        let value = match (own.value(key.name), key.default) {
+            (Some(text), _) => text.to_owned(),
             (None, Default::Value(text)) => written(text),
             (None, Default::Required) => match key.name {
                 "id" => format!("{:?}", format!("{kind}-1")),

@@ -24,6 +24,8 @@ pub struct Kind {
     pub parameters: &'static [Parameter],
     /// Duration of faults of this kind.
     pub lasts: Lasts,
+    /// Example of the kind, as its page shows it.
+    pub example: Example,
     /// Makes the rule of one fault of this kind.
     pub build: fn(&Values, &Setup) -> Result<Rule, BuildError>,
 }
@@ -124,6 +126,37 @@ pub enum Lasts {
     Fading,
     /// An instant: it has no duration.
     Instant,
+}
+
+/// Example of a kind: the values that its form alone doesn't give, and the length of its picture.
+#[derive(Debug)]
+pub struct Example {
+    values: &'static [(&'static str, &'static str)],
+    /// Seconds from the onset that the picture shows, where the kind is over in an instant.
+    pub shown_s: f64,
+}
+
+impl Example {
+    /// Example in which every value is the usual one of its form.
+    pub const NONE: Self = Self::of(&[]);
+
+    /// Makes an example with values of its own: keys, and values as TOML.
+    #[must_use]
+    pub const fn of(values: &'static [(&'static str, &'static str)]) -> Self {
+        Self { values, shown_s: 10.0 }
+    }
+
+    /// Sets the seconds from the onset that the picture shows.
+    #[must_use]
+    pub const fn showing_s(self, shown_s: f64) -> Self {
+        Self { shown_s, ..self }
+    }
+
+    /// Finds the value of a key, as TOML.
+    #[must_use]
+    pub fn value(&self, key: &str) -> Option<&'static str> {
+        self.values.iter().find(|(name, _)| *name == key).map(|(_, value)| *value)
+    }
 }
 
 /// One parameter of a kind.

@@ -22,6 +22,7 @@ use crate::bytes::{Frame, Reader};
 use crate::carry::Carry;
 use crate::checksum;
 use crate::encoding::{CannotCarry, Needs};
+use crate::facts::ProtocolFacts;
 use crate::framing::{Cause, Extent, Framing};
 use crate::{Clock, Kind, Measured, Reading, Stamp};
 use octant_sample::Status;
@@ -41,6 +42,14 @@ const ENCRYPTED: u8 = 1 << 1;
 
 /// Duration of a week, ns.
 const WEEK_NS: u64 = 604_800_000_000_000;
+
+/// Facts of the protocol: the counts are 2⁻³³ rad and 2⁻²⁹ m/s.
+pub(crate) const FACTS: ProtocolFacts = ProtocolFacts {
+    name: "novatel",
+    doc: "NovAtel's RAWIMUSX, binary or ASCII",
+    resolution: [1.2e-10, 1.9e-9],
+    false_starts: &[&[0xAA], &[0xAA, 0x44, 0x13, 0xFF], b"%", b"%RAWIMUSXA,"],
+};
 
 /// NovAtel's protocol.
 #[derive(Clone, Copy, Debug, Default)]
@@ -148,6 +157,18 @@ pub struct Encoder {
     frame: Frame<MAX_BYTES>,
     rotation: Carry,
     velocity: Carry,
+}
+
+impl Default for Encoder {
+    /// Makes an encoder for an HG4930, which has the finest counts.
+    fn default() -> Self {
+        const KIND: u8 = 58;
+        const SCALE: Scale = match scale_of(KIND) {
+            Some(scale) => scale,
+            None => panic!("the kind is in the table"),
+        };
+        Self::new(KIND, SCALE)
+    }
 }
 
 impl Encoder {

@@ -222,8 +222,8 @@ const WITHOUT_CAN: &str = if cfg!(target_os = "linux") {
 /// Text that tells an operator how to reach a port.
 #[must_use]
 pub fn announcement(uri: &Uri, port: &Port) -> String {
-    match (uri, port) {
-        (Uri::Pty { .. } | Uri::Udp(_), Port::Bytes(bytes)) => bytes.reached_at(),
-        _ => uri.to_string(),
+    match port {
+        Port::Bytes(bytes) => bytes.reached_at(),
+        Port::Frames(_) => uri.to_string(),
     }
 }

@@ -443,14 +443,7 @@ static REALTIME: Section = section(&[
 static ENDPOINT: Section = section(&[
     key(
         "uri",
-        Kind::Uri(&[
-            ("in-process", "in Octant itself"),
-            ("fmu", "an FMU: Octant's calibrator, or another core: fmu:FILE"),
-            ("serial", "a device on a serial line: serial:/dev/ttyUSB0?baud=921600"),
-            ("can", "a device on a CAN bus: can:can0, can:can0?fd=1"),
-            ("slcan", "the same through an adapter: slcan:/dev/ttyACM0?bitrate=500000"),
-            ("udp", "a device on UDP: udp:HOST:PORT"),
-        ]),
+        Kind::Uri(&crate::choices::ENDPOINTS),
         Default::Value("in-process"),
         "Where the core runs. A file name is relative to the scenario, and may start with ${OCTANT_RECORDINGS}.",
     ),

@@ -55,14 +55,7 @@ pub(crate) static SOURCE: Section = section(&[
 pub(crate) static SOURCE_LIVE: Section = section(&[
     key(
         "protocol",
-        Kind::Choice(&[
-            ("octant", "the wire of this program"),
-            ("vectornav", "VectorNav's binary output"),
-            ("xsens", "Xsens' MTData2"),
-            ("novatel", "NovAtel's RAWIMUSX, binary or ASCII"),
-            ("sbg", "SBG's sbgECom, IMU_SHORT or IMU_DATA"),
-            ("dbc", "messages on a CAN bus, by a database and a mapping"),
-        ]),
+        Kind::Choice(&crate::choices::PROTOCOLS),
         Default::Derived("\"octant\"; on a CAN bus \"dbc\""),
         "What the instrument speaks.",
     ),

@@ -14,9 +14,7 @@ use octant_faults::catalogue::{Acts, Kind};
 use octant_faults::kinds::host::{FULL, STARVED};
 use octant_faults::kinds::wire::happens_on;
 use octant_faults::station::Spec;
-use octant_faults::wire::Medium;
 use octant_faults::{BuildError, Setup, Station, Values, kinds};
-use octant_link::Uri;
 use schedule::Timing;
 use value::value;
 
@@ -146,11 +144,7 @@ fn without_wire(kind: &Kind, endpoint: &Endpoint) -> Option<String> {
                 .to_owned(),
         );
     };
-    let medium = match live.uri {
-        Uri::Serial(_) | Uri::Pty { .. } => Medium::Line,
-        Uri::Udp(_) => Medium::Datagrams,
-        Uri::Can(_) | Uri::Slcan(_) => Medium::Bus,
-    };
+    let medium = live.uri.medium();
     (!happens_on(kind, medium))
         .then(|| format!("doesn't happen on {}, which endpoint.uri names", medium.name()))
 }

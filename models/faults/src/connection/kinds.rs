@@ -1,6 +1,6 @@
 //! The kinds of faults on connections.
 
-use crate::catalogue::{Bounds, Dimension, Lasts, Parameter, Takes};
+use crate::catalogue::{Bounds, Dimension, Example, Lasts, Parameter, Takes};
 use crate::setup::{BuildError, Setup, Stream};
 use crate::values::{Value, Values};
 use alloc::vec;
@@ -23,6 +23,8 @@ pub struct Kind {
     pub parameters: &'static [Parameter],
     /// Duration of faults of this kind.
     pub lasts: Lasts,
+    /// Example of the kind.
+    pub example: Example,
     /// Types of inputs that it can act on.
     pub on: On,
     build: fn(&Values, &Setup, &[Target]) -> Result<Rule, BuildError>,
@@ -99,6 +101,7 @@ static STUCK: Kind = Kind {
         doc: "The value, in the unit of the input or with a unit, or \"last\".",
     }],
     lasts: Lasts::Span,
+    example: Example::NONE,
     on: On::All,
     build: |values, _, targets| {
         let value = match values.get("value") {
@@ -122,6 +125,7 @@ static BIAS: Kind = Kind {
         doc: "What is added, in the unit of the input or with a unit.",
     }],
     lasts: Lasts::Fading,
+    example: Example::of(&[("value", r#""0.01 arcsec""#)]),
     on: On::Numbers,
     build: |values, _, _| Ok(Rule::Bias(values.number("value")?)),
 };
@@ -139,6 +143,7 @@ static SCALE: Kind = Kind {
         doc: "The factor; 1 would do nothing.",
     }],
     lasts: Lasts::Fading,
+    example: Example::of(&[("factor", "1.01")]),
     on: On::Numbers,
     build: |values, _, _| {
         let factor = values.number("factor")?;
@@ -164,6 +169,7 @@ static NOISE: Kind = Kind {
         doc: "Standard deviation, in the unit of the input or with a unit.",
     }],
     lasts: Lasts::Fading,
+    example: Example::of(&[("sigma", r#""0.01 arcsec""#)]),
     on: On::Numbers,
     build: |values, setup, targets| {
         let sigma = values.number("sigma")?;
@@ -191,6 +197,7 @@ static DELAY: Kind = Kind {
         doc: "How late: a time, rounded to whole steps, or a number of steps, \"3 samples\".",
     }],
     lasts: Lasts::Span,
+    example: Example::of(&[("delay", r#""10 ms""#)]),
     on: On::All,
     build: |values, setup, targets| {
         let (delay, dimension) = values.quantity_and_dimension("delay")?;
@@ -235,6 +242,7 @@ static DROP: Kind = Kind {
         },
     ],
     lasts: Lasts::Span,
+    example: Example::NONE,
     on: On::All,
     build: |values, setup, targets| {
         Ok(Rule::Drop {
@@ -263,6 +271,7 @@ static NAN: Kind = Kind {
         doc: "What it becomes.",
     }],
     lasts: Lasts::Span,
+    example: Example::NONE,
     on: On::Floats,
     build: |values, _, _| {
         Ok(Rule::Constant(match values.choice("value")? {

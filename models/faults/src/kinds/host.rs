@@ -1,6 +1,6 @@
 //! The harness's own host: processors, disk, recorder.
 
-use crate::catalogue::{Acts, Bounds, Dimension, Family, Kind, Lasts, Parameter, Takes};
+use crate::catalogue::{Acts, Bounds, Dimension, Example, Family, Kind, Lasts, Parameter, Takes};
 use crate::host::HostAction;
 use crate::rule::Rule;
 use crate::setup::{BuildError, Setup};
@@ -72,7 +72,8 @@ const fn host(
     build: fn(&Values, &Setup) -> Result<Rule, BuildError>,
 ) -> Kind {
     let (family, acts, lasts) = (Family::Host, Acts::Host, Lasts::Instant);
-    Kind { name, family, acts, summary, model, parameters, lasts, build }
+    let example = Example::NONE;
+    Kind { name, family, acts, summary, model, parameters, lasts, example, build }
 }
 
 const fn time(name: &'static str, default: &'static str, doc: &'static str) -> Parameter {

@@ -1,6 +1,6 @@
 //! References that arrive late.
 
-use crate::catalogue::{Acts, Bounds, Dimension, Family, Kind, Lasts, Parameter, Takes};
+use crate::catalogue::{Acts, Bounds, Dimension, Example, Family, Kind, Lasts, Parameter, Takes};
 use crate::kinds::span::samples;
 use crate::rule::{Context, Rule, SampleRule};
 use crate::setup::{BuildError, Setup};
@@ -43,6 +43,7 @@ pub(super) static AIDING_LATE: Kind = Kind {
         },
     ],
     lasts: Lasts::Span,
+    example: Example::of(&[("delay", r#""2 s""#), ("duration", r#""10 s""#)]),
     build,
 };
 

@@ -1,6 +1,6 @@
 //! References that are lost.
 
-use crate::catalogue::{Acts, Family, Kind, Lasts};
+use crate::catalogue::{Acts, Example, Family, Kind, Lasts};
 use crate::kinds::chance::{self, LOSS};
 use crate::rule::{Context, Rule, SampleRule};
 use crate::setup::{BuildError, Setup, Stream};
@@ -22,6 +22,7 @@ pub(super) static AIDING_LOST: Kind = Kind {
             A message of an epoch that is lost altogether is `dropout`.",
     parameters: &[LOSS],
     lasts: Lasts::Span,
+    example: Example::of(&[("duration", r#""10 s""#)]),
     build,
 };
 

@@ -1,6 +1,6 @@
 //! References that are wrong.
 
-use crate::catalogue::{Acts, Bounds, Dimension, Family, Kind, Lasts, Parameter, Takes};
+use crate::catalogue::{Acts, Bounds, Dimension, Example, Family, Kind, Lasts, Parameter, Takes};
 use crate::rule::{Context, Rule, SampleRule};
 use crate::setup::{BuildError, Setup, Stream};
 use crate::values::{Value, Values};
@@ -36,6 +36,10 @@ pub(super) static AIDING_WRONG: Kind = Kind {
         doc: "Error of the reference, north, east, down: a velocity or a length.",
     }],
     lasts: Lasts::Fading,
+    example: Example::of(&[
+        ("error", r#"["5 mm/s", "0 mm/s", "0 mm/s"]"#),
+        ("duration", r#""10 s""#),
+    ]),
     build: build_wrong,
 };
 
@@ -78,6 +82,7 @@ pub(super) static POSITION_JUMP: Kind = Kind {
         doc: "Height of the jump, north, east, down.",
     }],
     lasts: Lasts::Instant,
+    example: Example::of(&[("jump", r#"["0 m", "5 m", "0 m"]"#)]),
     build: build_jump,
 };
 
@@ -132,6 +137,7 @@ pub(super) static AIDING_NOISE: Kind = Kind {
         doc: "Standard deviation of the noise on each axis: a velocity or a length.",
     }],
     lasts: Lasts::Fading,
+    example: Example::of(&[("sigma", r#""5 mm/s""#), ("duration", r#""10 s""#)]),
     build: build_noise,
 };
 

@@ -1,6 +1,6 @@
 //! A constant error that sets in at once or grows.
 
-use crate::catalogue::{Acts, Bounds, Dimension, Family, Kind, Lasts, Parameter, Takes};
+use crate::catalogue::{Acts, Bounds, Dimension, Example, Family, Kind, Lasts, Parameter, Takes};
 use crate::kinds::added::Added;
 use crate::kinds::onset::Onset;
 use crate::rule::{Context, Rule, SampleRule};
@@ -43,6 +43,7 @@ pub(super) static BIAS_STEP: Kind = Kind {
         },
     ],
     lasts: Lasts::Fading,
+    example: Example::of(&[("amplitude", r#""0.05 deg/h""#)]),
     build: build_step,
 };
 
@@ -77,6 +78,11 @@ pub(super) static BIAS_RAMP: Kind = Kind {
         },
     ],
     lasts: Lasts::Fading,
+    example: Example::of(&[
+        ("amplitude", r#""0.05 deg/h""#),
+        ("rise", r#""5 s""#),
+        ("duration", r#""10 s""#),
+    ]),
     build: build_ramp,
 };
 

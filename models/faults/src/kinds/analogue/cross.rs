@@ -1,6 +1,6 @@
 //! Cross-coupling of axes.
 
-use crate::catalogue::{Acts, Bounds, Dimension, Family, Kind, Lasts, Parameter, Takes};
+use crate::catalogue::{Acts, Bounds, Dimension, Example, Family, Kind, Lasts, Parameter, Takes};
 use crate::kinds::added::{Adder, counts_per_si};
 use crate::kinds::channel::{gyros, pair, read};
 use crate::kinds::onset::Onset;
@@ -45,6 +45,12 @@ pub(super) static CROSS_AXIS: Kind = Kind {
         },
     ],
     lasts: Lasts::Fading,
+    example: Example::of(&[
+        ("from", r#""gyro z""#),
+        ("into", r#""gyro x""#),
+        ("trigger", "{ moving_to = 3 }"),
+        ("duration", r#""12 s""#),
+    ]),
     build: build_cross,
 };
 
@@ -78,6 +84,7 @@ pub(super) static G_SENSITIVITY: Kind = Kind {
         },
     ],
     lasts: Lasts::Fading,
+    example: Example::of(&[("coefficients", r#"["0 deg/h/g", "0 deg/h/g", "0.05 deg/h/g"]"#)]),
     build: build_g,
 };
 

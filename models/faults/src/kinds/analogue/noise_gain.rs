@@ -1,6 +1,6 @@
 //! Additional noise.
 
-use crate::catalogue::{Acts, Bounds, Dimension, Family, Kind, Lasts, Parameter, Takes};
+use crate::catalogue::{Acts, Bounds, Dimension, Example, Family, Kind, Lasts, Parameter, Takes};
 use crate::kinds::added::{Adder, counts_per_si};
 use crate::kinds::onset::Onset;
 use crate::kinds::six::Six;
@@ -45,6 +45,7 @@ pub(super) static NOISE_GAIN: Kind = Kind {
         },
     ],
     lasts: Lasts::Fading,
+    example: Example::of(&[("gain", r#""300 %""#)]),
     build,
 };
 

@@ -1,6 +1,6 @@
 //! A coarser least significant bit.
 
-use crate::catalogue::{Acts, Bounds, Dimension, Family, Kind, Lasts, Parameter, Takes};
+use crate::catalogue::{Acts, Bounds, Dimension, Example, Family, Kind, Lasts, Parameter, Takes};
 use crate::kinds::added::{counts_per_si, fitting};
 use crate::kinds::channel::{read, write_saturating};
 use crate::kinds::onset::Onset;
@@ -40,6 +40,7 @@ pub(super) static QUANTIZATION: Kind = Kind {
         },
     ],
     lasts: Lasts::Span,
+    example: Example::of(&[("resolution", r#""0.02 arcsec""#)]),
     build,
 };
 

@@ -1,6 +1,6 @@
 //! Saturation and dead zone: the ends and the middle of the range.
 
-use crate::catalogue::{Acts, Bounds, Dimension, Family, Kind, Lasts, Parameter, Takes};
+use crate::catalogue::{Acts, Bounds, Dimension, Example, Family, Kind, Lasts, Parameter, Takes};
 use crate::kinds::added::{counts_per_si, fitting};
 use crate::kinds::channel::{read, saturated, write};
 use crate::kinds::mapped::Mapped;
@@ -46,6 +46,12 @@ pub(super) static SATURATION: Kind = Kind {
         },
     ],
     lasts: Lasts::Span,
+    example: Example::of(&[
+        ("channels", r#""gyro z""#),
+        ("limit", r#""8 deg/s""#),
+        ("trigger", "{ moving_to = 3 }"),
+        ("duration", r#""12 s""#),
+    ]),
     build: build_saturation,
 };
 
@@ -89,6 +95,7 @@ pub(super) static DEAD_ZONE: Kind = Kind {
         },
     ],
     lasts: Lasts::Fading,
+    example: Example::of(&[("threshold", r#""20 deg/h""#)]),
     build: build_dead_zone,
 };
 

@@ -1,6 +1,6 @@
 //! Errors of scale factors.
 
-use crate::catalogue::{Acts, Bounds, Dimension, Family, Kind, Lasts, Parameter, Takes};
+use crate::catalogue::{Acts, Bounds, Dimension, Example, Family, Kind, Lasts, Parameter, Takes};
 use crate::kinds::mapped::Mapped;
 use crate::rule::Rule;
 use crate::setup::{BuildError, Setup};
@@ -37,6 +37,12 @@ pub(super) static SCALE_STEP: Kind = Kind {
         },
     ],
     lasts: Lasts::Fading,
+    example: Example::of(&[
+        ("channels", r#""gyro z""#),
+        ("error", r#""100 ppm""#),
+        ("trigger", "{ moving_to = 3 }"),
+        ("duration", r#""12 s""#),
+    ]),
     build: build_step,
 };
 
@@ -65,6 +71,12 @@ pub(super) static ASYMMETRY: Kind = Kind {
         },
     ],
     lasts: Lasts::Fading,
+    example: Example::of(&[
+        ("channels", r#""gyro z""#),
+        ("error", r#""100 ppm""#),
+        ("trigger", "{ moving_to = 3 }"),
+        ("duration", r#""12 s""#),
+    ]),
     build: build_asymmetry,
 };
 

@@ -1,6 +1,6 @@
 //! Biases that wander at random.
 
-use crate::catalogue::{Acts, Bounds, Dimension, Family, Kind, Lasts, Parameter, Takes};
+use crate::catalogue::{Acts, Bounds, Dimension, Example, Family, Kind, Lasts, Parameter, Takes};
 use crate::kinds::added::{Adder, counts_per_si, fitting};
 use crate::kinds::onset::Onset;
 use crate::kinds::six::Six;
@@ -47,6 +47,7 @@ pub(super) static RATE_RANDOM_WALK: Kind = Kind {
         },
     ],
     lasts: Lasts::Fading,
+    example: Example::of(&[("coefficient", r#""0.3 deg/h/sqrt(h)""#), ("duration", r#""10 s""#)]),
     build: build_walk,
 };
 
@@ -91,6 +92,11 @@ pub(super) static GAUSS_MARKOV: Kind = Kind {
         },
     ],
     lasts: Lasts::Fading,
+    example: Example::of(&[
+        ("sigma", r#""0.05 deg/h""#),
+        ("correlation_time", r#""2 s""#),
+        ("duration", r#""10 s""#),
+    ]),
     build: build_markov,
 };
 

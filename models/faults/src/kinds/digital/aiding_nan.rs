@@ -1,6 +1,6 @@
 //! NaN and infinity where a port has real numbers.
 
-use crate::catalogue::{Acts, Family, Kind, Lasts, Parameter, Takes};
+use crate::catalogue::{Acts, Example, Family, Kind, Lasts, Parameter, Takes};
 use crate::rule::{Context, Rule, SampleRule};
 use crate::setup::{BuildError, Setup};
 use crate::values::Values;
@@ -44,6 +44,7 @@ pub(super) static AIDING_NAN: Kind = Kind {
         },
     ],
     lasts: Lasts::Span,
+    example: Example::of(&[("duration", r#""10 s""#)]),
     build,
 };
 

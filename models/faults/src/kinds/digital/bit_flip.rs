@@ -1,6 +1,6 @@
 //! Single bits of counts.
 
-use crate::catalogue::{Acts, Bounds, Dimension, Family, Kind, Lasts, Parameter, Takes};
+use crate::catalogue::{Acts, Bounds, Dimension, Example, Family, Kind, Lasts, Parameter, Takes};
 use crate::kinds::channel::{read, write};
 use crate::kinds::six::Six;
 use crate::rule::{Context, Rule, SampleRule};
@@ -57,6 +57,7 @@ pub(super) static BIT_FLIP: Kind = Kind {
         },
     ],
     lasts: Lasts::Span,
+    example: Example::of(&[("bit", "20"), ("duration", r#""0.1 s""#)]),
     build,
 };
 

@@ -1,6 +1,6 @@
 //! Samples without content: they arrive, but carry no new measurement.
 
-use crate::catalogue::{Acts, Bounds, Dimension, Family, Kind, Lasts, Parameter, Takes};
+use crate::catalogue::{Acts, Bounds, Dimension, Example, Family, Kind, Lasts, Parameter, Takes};
 use crate::kinds::channel::{counts, write};
 use crate::kinds::onset::Onset;
 use crate::rule::{Context, Rule, SampleRule};
@@ -35,6 +35,7 @@ pub(super) static DROPOUT_ZERO: Kind = Kind {
             all take `dropout`.",
     parameters: &[CHANNELS, GIMBAL],
     lasts: Lasts::Span,
+    example: Example::of(&[("duration", r#""0.1 s""#)]),
     build: build_zero,
 };
 
@@ -52,6 +53,7 @@ pub(super) static DROPOUT_HELD: Kind = Kind {
             that stands is `stuck-at-current`; samples that don't come at all are `dropout`.",
     parameters: &[CHANNELS, GIMBAL],
     lasts: Lasts::Span,
+    example: Example::of(&[("duration", r#""0.1 s""#)]),
     build: build_held,
 };
 
@@ -96,6 +98,7 @@ pub(super) static INTERMITTENT: Kind = Kind {
         },
     ],
     lasts: Lasts::Span,
+    example: Example::of(&[("mean_out", r#""20 ms""#), ("mean_in", r#""0.1 s""#)]),
     build: build_intermittent,
 };
 

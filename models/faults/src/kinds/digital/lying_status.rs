@@ -1,6 +1,6 @@
 //! Flags that are wrong.
 
-use crate::catalogue::{Acts, Family, Kind, Lasts, Parameter, Takes};
+use crate::catalogue::{Acts, Example, Family, Kind, Lasts, Parameter, Takes};
 use crate::rule::{Context, Rule, SampleRule};
 use crate::setup::{BuildError, Setup};
 use crate::values::Values;
@@ -41,6 +41,7 @@ pub(super) static LYING_STATUS: Kind = Kind {
         },
     ],
     lasts: Lasts::Span,
+    example: Example::of(&[("flag", r#""inertial-invalid""#), ("duration", r#""0.1 s""#)]),
     build,
 };
 

@@ -1,6 +1,6 @@
 //! Channels that are read less often than they are sent.
 
-use crate::catalogue::{Acts, Family, Kind, Lasts, Parameter, Takes};
+use crate::catalogue::{Acts, Example, Family, Kind, Lasts, Parameter, Takes};
 use crate::kinds::channel::{counts, read, write, write_saturating};
 use crate::kinds::onset::Onset;
 use crate::rule::{Context, Rule, SampleRule};
@@ -52,6 +52,7 @@ pub(super) static SLOW_RATE: Kind = Kind {
         },
     ],
     lasts: Lasts::Span,
+    example: Example::of(&[("every", "4"), ("duration", r#""0.2 s""#)]),
     build,
 };
 

@@ -1,6 +1,6 @@
 //! A pulse on one or more channels.
 
-use crate::catalogue::{Acts, Bounds, Dimension, Family, Kind, Lasts, Parameter, Takes};
+use crate::catalogue::{Acts, Bounds, Dimension, Example, Family, Kind, Lasts, Parameter, Takes};
 use crate::kinds::added::Added;
 use crate::rule::{Context, Rule, SampleRule};
 use crate::setup::{BuildError, Setup};
@@ -33,6 +33,7 @@ pub(super) static SPIKE: Kind = Kind {
         },
     ],
     lasts: Lasts::Span,
+    example: Example::of(&[("amplitude", r#""1000 deg/h""#), ("duration", r#""100 samples""#)]),
     build,
 };
 

@@ -1,6 +1,6 @@
 //! Counts that stay constant.
 
-use crate::catalogue::{Acts, Bounds, Dimension, Family, Kind, Lasts, Parameter, Takes};
+use crate::catalogue::{Acts, Bounds, Dimension, Example, Family, Kind, Lasts, Parameter, Takes};
 use crate::kinds::added::{counts_per_si, fitting};
 use crate::kinds::channel::{counts, read, saturated, write};
 use crate::kinds::onset::Onset;
@@ -30,6 +30,7 @@ pub(super) static STUCK_AT_CURRENT: Kind = Kind {
         doc: "Channels that stick.",
     }],
     lasts: Lasts::Span,
+    example: Example::of(&[("duration", r#""0.2 s""#)]),
     build: build_current,
 };
 
@@ -59,6 +60,7 @@ pub(super) static STUCK_AT_VALUE: Kind = Kind {
         },
     ],
     lasts: Lasts::Span,
+    example: Example::of(&[("value", r#""10 deg/s""#), ("duration", r#""0.2 s""#)]),
     build: build_value,
 };
 
@@ -98,6 +100,7 @@ pub(super) static OUT_OF_RANGE: Kind = Kind {
         },
     ],
     lasts: Lasts::Span,
+    example: Example::of(&[("duration", r#""0.1 s""#)]),
     build: build_limit,
 };
 

@@ -1,6 +1,6 @@
 //! Channels with wrong wiring or decoding.
 
-use crate::catalogue::{Acts, Family, Kind, Lasts, Parameter, Takes};
+use crate::catalogue::{Acts, Example, Family, Kind, Lasts, Parameter, Takes};
 use crate::kinds::channel::{pair, read, write, write_saturating};
 use crate::rule::{Context, Rule, SampleRule};
 use crate::setup::{BuildError, Setup};
@@ -24,6 +24,7 @@ pub(super) static SIGN_FLIP: Kind = Kind {
         doc: "Channels with the wrong sign.",
     }],
     lasts: Lasts::Span,
+    example: Example::NONE,
     build: build_flip,
 };
 
@@ -49,6 +50,7 @@ pub(super) static AXIS_SWAP: Kind = Kind {
         },
     ],
     lasts: Lasts::Span,
+    example: Example::of(&[("second", r#""gyro y""#)]),
     build: build_swap,
 };
 

@@ -1,6 +1,6 @@
 //! Size effect.
 
-use crate::catalogue::{Acts, Dimension, Family, Kind, Lasts, Parameter, Takes};
+use crate::catalogue::{Acts, Dimension, Example, Family, Kind, Lasts, Parameter, Takes};
 use crate::kinds::plant::{fixed, within};
 use crate::rule::Rule;
 use crate::setup::{BuildError, Setup};
@@ -38,6 +38,11 @@ pub(super) static LEVER_ARM: Kind = Kind {
         arm(ARMS[2], "Where the z accelerometer's proof mass is."),
     ],
     lasts: Lasts::Span,
+    example: Example::of(&[
+        ("accelerometer_x", r#"["0 m", "0.05 m", "0 m"]"#),
+        ("trigger", "{ moving_to = 3 }"),
+        ("duration", r#""12 s""#),
+    ]),
     build,
 };
 

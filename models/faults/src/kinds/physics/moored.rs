@@ -1,6 +1,6 @@
 //! Motions of the whole case that the core doesn't expect: a jerk of the mooring, and sway.
 
-use crate::catalogue::{Acts, Bounds, Dimension, Family, Kind, Lasts, Parameter, Takes};
+use crate::catalogue::{Acts, Bounds, Dimension, Example, Family, Kind, Lasts, Parameter, Takes};
 use crate::kinds::plant::{EDGE, angular, fixed, not_nothing, within};
 use crate::rule::{Context, PlantRule, Rule};
 use crate::setup::{BuildError, Setup, Stream};
@@ -53,6 +53,7 @@ pub(super) static MOORING_JERK: Kind = Kind {
         },
     ],
     lasts: Lasts::Instant,
+    example: Example::of(&[("displacement", r#"["0.3 m", "0 m", "0 m"]"#)]).showing_s(5.0),
     build: build_jerk,
 };
 
@@ -113,6 +114,7 @@ pub(super) static SWAY: Kind = Kind {
         Parameter { default: Some("10 s"), ..EDGE },
     ],
     lasts: Lasts::Span,
+    example: Example::of(&[("duration", r#""20 s""#)]),
     build: build_sway,
 };
 

@@ -1,6 +1,6 @@
 //! A shock of the sensor block.
 
-use crate::catalogue::{Acts, Bounds, Dimension, Family, Kind, Lasts, Parameter, Takes};
+use crate::catalogue::{Acts, Bounds, Dimension, Example, Family, Kind, Lasts, Parameter, Takes};
 use crate::kinds::plant::{fixed, something, within};
 use crate::rule::Rule;
 use crate::setup::{BuildError, Setup};
@@ -56,6 +56,7 @@ pub(super) static SHOCK: Kind = Kind {
         },
     ],
     lasts: Lasts::Instant,
+    example: Example::of(&[("peak", r#"["0 g", "0 g", "5 g"]"#)]).showing_s(0.25),
     build,
 };
 

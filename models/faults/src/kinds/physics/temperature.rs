@@ -1,6 +1,6 @@
 //! Temperature.
 
-use crate::catalogue::{Acts, Bounds, Dimension, Family, Kind, Lasts, Parameter, Takes};
+use crate::catalogue::{Acts, Bounds, Dimension, Example, Family, Kind, Lasts, Parameter, Takes};
 use crate::kinds::plant::fixed;
 use crate::rule::Rule;
 use crate::setup::{BuildError, Setup};
@@ -63,6 +63,12 @@ pub(super) static TEMPERATURE_RAMP: Kind = Kind {
         },
     ],
     lasts: Lasts::Span,
+    example: Example::of(&[
+        ("ramp", r#""0.5 K/s""#),
+        ("plateau", r#""4 K""#),
+        ("accelerometer_bias", r#"["20 ug/K", "0 ug/K", "0 ug/K"]"#),
+        ("duration", r#""10 s""#),
+    ]),
     build,
 };
 

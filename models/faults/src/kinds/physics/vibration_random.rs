@@ -1,6 +1,6 @@
 //! Random vibration of the sensor block by its spectral density.
 
-use crate::catalogue::{Acts, Bounds, Dimension, Family, Kind, Lasts, Parameter, Takes};
+use crate::catalogue::{Acts, Bounds, Dimension, Example, Family, Kind, Lasts, Parameter, Takes};
 use crate::kinds::plant::{EDGE, angular, frequency, not_nothing, within};
 use crate::rule::{Context, PlantRule, Rule};
 use crate::setup::{BuildError, Setup, Stream};
@@ -70,6 +70,7 @@ pub(super) static VIBRATION_RANDOM: Kind = Kind {
         EDGE,
     ],
     lasts: Lasts::Span,
+    example: Example::of(&[("psd", r#"["0.01 g^2/Hz", "0.01 g^2/Hz", "0.01 g^2/Hz"]"#)]),
     build,
 };
 

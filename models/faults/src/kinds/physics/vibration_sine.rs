@@ -1,6 +1,6 @@
 //! Sinusoidal vibration of the sensor block.
 
-use crate::catalogue::{Acts, Bounds, Dimension, Family, Kind, Lasts, Parameter, Takes};
+use crate::catalogue::{Acts, Bounds, Dimension, Example, Family, Kind, Lasts, Parameter, Takes};
 use crate::kinds::plant::{EDGE, angular, fixed, frequency, not_nothing, within};
 use crate::rule::Rule;
 use crate::setup::{BuildError, Setup};
@@ -60,6 +60,10 @@ pub(super) static VIBRATION_SINE: Kind = Kind {
         EDGE,
     ],
     lasts: Lasts::Span,
+    example: Example::of(&[
+        ("frequency", r#""35 Hz""#),
+        ("acceleration", r#"["1 m/s^2", "0 m/s^2", "0 m/s^2"]"#),
+    ]),
     build,
 };
 

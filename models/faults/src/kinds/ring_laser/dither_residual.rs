@@ -1,6 +1,6 @@
 //! Dither that remains in the increments.
 
-use crate::catalogue::{Acts, Bounds, Dimension, Family, Kind, Lasts, Parameter, Takes};
+use crate::catalogue::{Acts, Bounds, Dimension, Example, Family, Kind, Lasts, Parameter, Takes};
 use crate::kinds::added::{Adder, counts_per_si};
 use crate::kinds::channel::gyros;
 use crate::kinds::onset::Onset;
@@ -65,6 +65,7 @@ pub(super) static DITHER_RESIDUAL: Kind = Kind {
         },
     ],
     lasts: Lasts::Fading,
+    example: Example::of(&[("amplitude", r#""0.01 arcsec""#), ("frequency", r#""37 Hz""#)]),
     build,
 };
 

@@ -1,6 +1,6 @@
 //! Lock-in: the two beams couple, and slow rotation is not measured.
 
-use crate::catalogue::{Acts, Bounds, Dimension, Family, Kind, Lasts, Parameter, Takes};
+use crate::catalogue::{Acts, Bounds, Dimension, Example, Family, Kind, Lasts, Parameter, Takes};
 use crate::kinds::added::counts_per_si;
 use crate::kinds::channel::gyros;
 use crate::kinds::mapped::Mapped;
@@ -43,6 +43,7 @@ pub(super) static LOCK_IN: Kind = Kind {
         },
     ],
     lasts: Lasts::Fading,
+    example: Example::of(&[("threshold", r#""100 deg/h""#)]),
     build,
 };
 

@@ -1,6 +1,6 @@
 //! Samples that are lost.
 
-use crate::catalogue::{Acts, Family, Kind, Lasts, Parameter, Takes};
+use crate::catalogue::{Acts, Example, Family, Kind, Lasts, Parameter, Takes};
 use crate::kinds::chance::{self, LOSS};
 use crate::rule::{Context, DeliveryRule, Rule};
 use crate::setup::{BuildError, Setup, Stream};
@@ -37,6 +37,7 @@ pub(super) static DROPOUT: Kind = Kind {
         },
     ],
     lasts: Lasts::Span,
+    example: Example::of(&[("duration", r#""0.1 s""#)]),
     build,
 };
 

@@ -1,7 +1,7 @@
 //! Samples that are delivered more than once.
 
 use super::queue::check_queue;
-use crate::catalogue::{Acts, Bounds, Dimension, Family, Kind, Lasts, Parameter, Takes};
+use crate::catalogue::{Acts, Bounds, Dimension, Example, Family, Kind, Lasts, Parameter, Takes};
 use crate::kinds::span::samples;
 use crate::rule::{Context, DeliveryRule, Rule};
 use crate::setup::{BuildError, Setup};
@@ -41,6 +41,7 @@ pub(super) static DUPLICATE: Kind = Kind {
         },
     ],
     lasts: Lasts::Span,
+    example: Example::of(&[("duration", r#""0.1 s""#)]),
     build,
 };
 

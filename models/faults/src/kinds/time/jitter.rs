@@ -1,7 +1,7 @@
 //! Stamps with noise.
 
 use super::clock::{CLOCK, Clocks, to_ns};
-use crate::catalogue::{Acts, Bounds, Dimension, Family, Kind, Lasts, Parameter, Takes};
+use crate::catalogue::{Acts, Bounds, Dimension, Example, Family, Kind, Lasts, Parameter, Takes};
 use crate::rule::{Context, Rule, SampleRule};
 use crate::setup::{BuildError, Setup, Stream};
 use crate::values::Values;
@@ -42,6 +42,7 @@ pub(super) static TIME_JITTER: Kind = Kind {
         CLOCK,
     ],
     lasts: Lasts::Fading,
+    example: Example::of(&[("sigma", r#""0.1 ms""#)]),
     build,
 };
 

@@ -1,7 +1,7 @@
 //! Samples that arrive late.
 
 use super::queue::check_queue;
-use crate::catalogue::{Acts, Bounds, Dimension, Family, Kind, Lasts, Parameter, Takes};
+use crate::catalogue::{Acts, Bounds, Dimension, Example, Family, Kind, Lasts, Parameter, Takes};
 use crate::kinds::span::samples;
 use crate::rule::{Context, DeliveryRule, Rule};
 use crate::setup::{BuildError, Setup};
@@ -50,6 +50,7 @@ pub(super) static LATE_DELIVERY: Kind = Kind {
         },
     ],
     lasts: Lasts::Span,
+    example: Example::of(&[("delay", r#""0.1 s""#), ("duration", r#""0.3 s""#)]),
     build,
 };
 

@@ -1,7 +1,7 @@
 //! Stamps that are off by a constant.
 
 use super::clock::{CLOCK, Clocks, nanoseconds, to_ns};
-use crate::catalogue::{Acts, Bounds, Dimension, Family, Kind, Lasts, Parameter, Takes};
+use crate::catalogue::{Acts, Bounds, Dimension, Example, Family, Kind, Lasts, Parameter, Takes};
 use crate::rule::{Context, Rule, SampleRule};
 use crate::setup::{BuildError, Setup};
 use crate::values::Values;
@@ -35,6 +35,7 @@ pub(super) static TIME_OFFSET: Kind = Kind {
         CLOCK,
     ],
     lasts: Lasts::Fading,
+    example: Example::of(&[("offset", r#""2 ms""#), ("duration", r#""0.1 s""#)]),
     build: build_offset,
 };
 
@@ -81,6 +82,7 @@ pub(super) static TIME_STEP: Kind = Kind {
         CLOCK,
     ],
     lasts: Lasts::Instant,
+    example: Example::of(&[("step", r#""1 s""#)]).showing_s(0.1),
     build: build_step,
 };
 

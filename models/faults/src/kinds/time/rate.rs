@@ -1,7 +1,7 @@
 //! Clocks with a wrong rate: too fast or slow, stopped, backwards.
 
 use super::clock::{AFTERWARDS, CLOCK, Clocks, stays, to_ns};
-use crate::catalogue::{Acts, Bounds, Dimension, Family, Kind, Lasts, Parameter, Takes};
+use crate::catalogue::{Acts, Bounds, Dimension, Example, Family, Kind, Lasts, Parameter, Takes};
 use crate::rule::{Context, Rule, SampleRule};
 use crate::setup::{BuildError, Setup};
 use crate::values::Values;
@@ -39,6 +39,7 @@ pub(super) static CLOCK_SKEW: Kind = Kind {
         },
     ],
     lasts: Lasts::Span,
+    example: Example::of(&[("skew", r#""50 ppm""#)]),
     build: build_skew,
 };
 
@@ -77,6 +78,7 @@ pub(super) static FROZEN_CLOCK: Kind = Kind {
         },
     ],
     lasts: Lasts::Span,
+    example: Example::of(&[("duration", r#""0.1 s""#)]),
     build: build_frozen,
 };
 
@@ -114,6 +116,7 @@ pub(super) static TIME_BACKWARDS: Kind = Kind {
         },
     ],
     lasts: Lasts::Span,
+    example: Example::of(&[("duration", r#""0.1 s""#)]),
     build: build_backwards,
 };
 

@@ -1,6 +1,6 @@
 //! Samples that arrive in another order.
 
-use crate::catalogue::{Acts, Family, Kind, Lasts, Parameter, Takes};
+use crate::catalogue::{Acts, Example, Family, Kind, Lasts, Parameter, Takes};
 use crate::rule::{Context, DeliveryRule, Rule};
 use crate::setup::{BuildError, Setup, Stream};
 use crate::station::FLIGHT_MAX;
@@ -42,6 +42,7 @@ pub(super) static REORDER: Kind = Kind {
         },
     ],
     lasts: Lasts::Span,
+    example: Example::of(&[("window", "4"), ("duration", r#""0.1 s""#)]),
     build,
 };
 

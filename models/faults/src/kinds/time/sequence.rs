@@ -1,6 +1,6 @@
 //! Sequence numbers that jump although no sample was lost.
 
-use crate::catalogue::{Acts, Family, Kind, Lasts, Parameter, Takes};
+use crate::catalogue::{Acts, Example, Family, Kind, Lasts, Parameter, Takes};
 use crate::rule::{Context, Rule, SampleRule};
 use crate::setup::{BuildError, Setup};
 use crate::values::Values;
@@ -39,6 +39,7 @@ pub(super) static SEQUENCE_GAP: Kind = Kind {
         },
     ],
     lasts: Lasts::Instant,
+    example: Example::of(&[("skip", "10")]).showing_s(0.1),
     build,
 };
 

@@ -1,6 +1,6 @@
 //! Stamps that are given twice.
 
-use crate::catalogue::{Acts, Family, Kind, Lasts, Parameter, Takes};
+use crate::catalogue::{Acts, Example, Family, Kind, Lasts, Parameter, Takes};
 use crate::rule::{Context, Rule, SampleRule};
 use crate::setup::{BuildError, Setup};
 use crate::values::Values;
@@ -31,6 +31,7 @@ pub(super) static DUPLICATE_STAMP: Kind = Kind {
         doc: "Samples in a row that share a stamp, the right one included.",
     }],
     lasts: Lasts::Span,
+    example: Example::of(&[("duration", r#""0.1 s""#)]),
     build,
 };
 

@@ -1,6 +1,6 @@
 //! Set points on their way from the core to the turntable.
 
-use crate::catalogue::{Acts, Bounds, Dimension, Family, Kind, Lasts, Parameter, Takes};
+use crate::catalogue::{Acts, Bounds, Dimension, Example, Family, Kind, Lasts, Parameter, Takes};
 use crate::kinds::span::samples;
 use crate::rule::{CommandRule, Context, Rule};
 use crate::setup::{BuildError, Setup};
@@ -35,6 +35,7 @@ pub(super) static SKIPPED_POSITION: Kind = Kind {
             is refused, as for a limit or an interlock, and nobody reads the answer.",
     parameters: &[POSITIONS],
     lasts: Lasts::Span,
+    example: Example::of(&[("trigger", "{ moving_to = 3 }"), ("duration", r#""30 s""#)]),
     build: build_skipped,
 };
 
@@ -61,6 +62,7 @@ pub(super) static REPEATED_POSITION: Kind = Kind {
             moment. A controller that walks a stored list does this when its index goes back.",
     parameters: &[POSITIONS],
     lasts: Lasts::Span,
+    example: Example::of(&[("trigger", "{ moving_to = 3 }"), ("duration", r#""30 s""#)]),
     build: build_repeated,
 };
 
@@ -139,6 +141,7 @@ pub(super) static WRONG_DIRECTION: Kind = Kind {
         doc: "Gimbal that turns the wrong way.",
     }],
     lasts: Lasts::Span,
+    example: Example::of(&[("trigger", "{ moving_to = 3 }"), ("duration", r#""30 s""#)]),
     build: build_direction,
 };
 
@@ -196,6 +199,11 @@ pub(super) static COMMAND_LATE: Kind = Kind {
         doc: "How late set points are: at least one sample period, at most a million.",
     }],
     lasts: Lasts::Span,
+    example: Example::of(&[
+        ("delay", r#""5 s""#),
+        ("trigger", "{ moving_to = 3 }"),
+        ("duration", r#""30 s""#),
+    ]),
     build: build_late,
 };
 
@@ -261,6 +269,7 @@ pub(super) static COMMAND_LOST: Kind = Kind {
             unless it outlasts one. In a dwell a loss does nothing, and its receipt says so.",
     parameters: &[],
     lasts: Lasts::Span,
+    example: Example::of(&[("trigger", "{ moving_to = 3 }"), ("duration", r#""5 s""#)]),
     build: build_lost,
 };
 

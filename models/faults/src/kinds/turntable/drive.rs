@@ -1,7 +1,7 @@
 //! Drives that don't follow their commands.
 
 use super::gimbal::{GIMBAL, happens, limited};
-use crate::catalogue::{Acts, Bounds, Dimension, Family, Kind, Lasts, Parameter, Takes};
+use crate::catalogue::{Acts, Bounds, Dimension, Example, Family, Kind, Lasts, Parameter, Takes};
 use crate::rule::Rule;
 use crate::setup::{BuildError, Setup};
 use crate::values::Values;
@@ -22,6 +22,10 @@ pub(super) static STALL: Kind = Kind {
             (overload, current limit) can also let the gimbal be turned back: see gimbal-slip.",
     parameters: &[GIMBAL],
     lasts: Lasts::Span,
+    example: Example::of(&[
+        ("trigger", r#"{ moving_to = 3, after = "3 s" }"#),
+        ("duration", r#""5 s""#),
+    ]),
     build: build_stall,
 };
 
@@ -52,6 +56,7 @@ pub(super) static RUNAWAY: Kind = Kind {
         },
     ],
     lasts: Lasts::Span,
+    example: Example::of(&[("rate", r#""5 deg/s""#), ("duration", r#""3 s""#)]),
     build: build_runaway,
 };
 
@@ -84,6 +89,11 @@ pub(super) static OVERSHOOT: Kind = Kind {
         },
     ],
     lasts: Lasts::Span,
+    example: Example::of(&[
+        ("angle", r#""0.5 deg""#),
+        ("trigger", "{ moving_to = 3 }"),
+        ("duration", r#""15 s""#),
+    ]),
     build: build_overshoot,
 };
 

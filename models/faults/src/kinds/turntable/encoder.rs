@@ -1,7 +1,7 @@
 //! Encoders that read a wrong angle; no part moves.
 
 use super::gimbal::{GIMBAL, chosen, happens, limited};
-use crate::catalogue::{Acts, Bounds, Dimension, Family, Kind, Lasts, Parameter, Takes};
+use crate::catalogue::{Acts, Bounds, Dimension, Example, Family, Kind, Lasts, Parameter, Takes};
 use crate::rule::{Context, PlantRule, Rule};
 use crate::setup::{BuildError, Setup};
 use crate::values::Values;
@@ -31,6 +31,7 @@ pub(super) static ENCODER_SLIP: Kind = Kind {
         },
     ],
     lasts: Lasts::Span,
+    example: Example::of(&[("angle", r#""0.5 deg""#), ("duration", r#""10 s""#)]),
     build: build_slip,
 };
 
@@ -64,6 +65,10 @@ pub(super) static INDEX_LOSS: Kind = Kind {
         },
     ],
     lasts: Lasts::Span,
+    example: Example::of(&[
+        ("trigger", r#"{ position = 3, after = "20 s" }"#),
+        ("duration", r#""10 s""#),
+    ]),
     build: build_index,
 };
 

@@ -1,6 +1,6 @@
 //! Motions of the body against its drive: slip, play, ringing.
 
-use crate::catalogue::{Acts, Bounds, Dimension, Family, Kind, Lasts, Parameter, Takes};
+use crate::catalogue::{Acts, Bounds, Dimension, Example, Family, Kind, Lasts, Parameter, Takes};
 use crate::kinds::plant::{fixed, frequency, within};
 use crate::rule::Rule;
 use crate::setup::{BuildError, Setup};
@@ -83,6 +83,7 @@ pub(super) static GIMBAL_SLIP: Kind = Kind {
         },
     ],
     lasts: Lasts::Instant,
+    example: Example::of(&[("angle", r#""0.5 deg""#)]).showing_s(0.2),
     build: build_slip,
 };
 
@@ -120,6 +121,7 @@ pub(super) static BACKLASH: Kind = Kind {
         },
     ],
     lasts: Lasts::Span,
+    example: Example::of(&[("trigger", "{ moving_to = 3 }"), ("duration", r#""15 s""#)]),
     build: build_backlash,
 };
 
@@ -170,6 +172,7 @@ pub(super) static SHORT_SETTLE: Kind = Kind {
         },
     ],
     lasts: Lasts::Span,
+    example: Example::of(&[("trigger", "{ moving_to = 3 }"), ("duration", r#""15 s""#)]),
     build: build_ringing,
 };
 

@@ -1,6 +1,6 @@
 //! Loss of the state of the unit under test.
 
-use crate::catalogue::{Acts, Family, Kind, Lasts};
+use crate::catalogue::{Acts, Example, Family, Kind, Lasts};
 use crate::rule::{Context, Rule, UnitEvent, UnitRule};
 use crate::setup::{BuildError, Setup};
 use crate::values::Values;
@@ -26,6 +26,7 @@ pub(super) static RESTART: Kind = Kind {
             unit restarted. One without power doesn't restart.",
     parameters: &[],
     lasts: Lasts::Instant,
+    example: Example::NONE,
     build: build_restart,
 };
 
@@ -61,6 +62,7 @@ pub(super) static BROWN_OUT: Kind = Kind {
             it missed counts as altered. Without a duration the unit stays off.",
     parameters: &[],
     lasts: Lasts::Span,
+    example: Example::of(&[("duration", r#""5 s""#)]),
     build: build_brown_out,
 };
 

@@ -1,7 +1,7 @@
 //! Start of the unit under test from a wrong calibration.
 
 use super::power::Once;
-use crate::catalogue::{Acts, Dimension, Family, Kind, Lasts, Parameter, Takes};
+use crate::catalogue::{Acts, Dimension, Example, Family, Kind, Lasts, Parameter, Takes};
 use crate::rule::{Rule, UnitEvent};
 use crate::setup::{BuildError, Setup};
 use crate::values::Values;
@@ -59,6 +59,10 @@ pub(super) static STALE_TABLE: Kind = Kind {
         },
     ],
     lasts: Lasts::Instant,
+    example: Example::of(&[
+        ("gyro_bias", r#"["0.01 deg/h", "0 deg/h", "0 deg/h"]"#),
+        ("accel_bias", r#"["200 ug", "0 ug", "0 ug"]"#),
+    ]),
     build,
 };
 

@@ -1,6 +1,6 @@
 //! The rule of all faults of the wire, and parameters that they share.
 
-use crate::catalogue::{Acts, Bounds, Dimension, Family, Kind, Lasts, Parameter, Takes};
+use crate::catalogue::{Acts, Bounds, Dimension, Example, Family, Kind, Lasts, Parameter, Takes};
 use crate::rule::{Context, Rule, WireRule};
 use crate::setup::{BuildError, Setup, Stream};
 use crate::values::Values;
@@ -37,7 +37,8 @@ pub(super) const fn wire(
     lasts: Lasts,
     build: fn(&Values, &Setup) -> Result<Rule, BuildError>,
 ) -> Kind {
-    Kind { name, family: Family::Wire, acts: Acts::Wire, summary, model, parameters, lasts, build }
+    let (family, acts, example) = (Family::Wire, Acts::Wire, Example::NONE);
+    Kind { name, family, acts, summary, model, parameters, lasts, example, build }
 }
 
 /// Makes the rule of a fault that acts on frames.
