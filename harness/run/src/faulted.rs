@@ -8,15 +8,16 @@ use super::host::Host;
 use super::watch::Watcher;
 use octant_base::control::Control;
 use octant_endpoint::Endpoint;
+use octant_faults::Station;
 use octant_faults::catalogue::Acts;
 use octant_faults::host::Hosted;
 use octant_faults::rule::UnitEvent;
 use octant_faults::station::{Delivered, World};
 use octant_faults::wire::Wired;
-use octant_faults::{Receipt, Station};
 use octant_recorder::{Event, Extra, Frame, Recorder};
 use octant_sample::disturbance::Disturbed;
 use octant_sample::{GimbalCommand, Output, Truth};
+use octant_score::summary::results;
 use octant_source::{Epoch, Source};
 
 /// Station with the faults that are triggered by hand.
@@ -33,7 +34,7 @@ pub struct Faulted {
 impl Faulted {
     /// Returns the events that are recorded at the end of a run.
     pub(super) fn last_words(&self) -> Vec<Event> {
-        let receipts = receipts_event(&self.station.receipts());
+        let receipts = Event::Receipts(results(&self.station.receipts()));
         self.host.event().into_iter().chain([receipts]).collect()
     }
 }
@@ -229,20 +230,5 @@ fn tell(station: &Station, recorder: &mut Recorder) {
 
 /// Builds the event for the onset or the end of a fault.
 pub(super) fn occurrence_event(id: &str, kind: &str, begins: bool, sample: u64) -> Event {
-    Event {
-        kind: "fault".to_owned(),
-        detail: serde_json::json!({ "id": id, "kind": kind, "begins": begins, "sample": sample }),
-    }
-}
-
-/// Builds the event with the receipts of a run.
-fn receipts_event(receipts: &[Receipt]) -> Event {
-    let one = |receipt: &Receipt| {
-        serde_json::to_value(octant_score::summary::FaultResult::from(receipt))
-            .unwrap_or(serde_json::Value::Null)
-    };
-    Event {
-        kind: "receipts".to_owned(),
-        detail: receipts.iter().map(one).collect::<serde_json::Value>(),
-    }
+    Event::Fault { begins, id: id.to_owned(), kind: kind.to_owned(), sample }
 }

@@ -6,6 +6,7 @@ use crate::faulted::occurrence_event;
 use crate::unit;
 use crate::watch::Watcher;
 use octant_faults::rule::UnitEvent;
+use octant_recorder::event::Pace;
 use octant_recorder::{Event, Extra, Frame, Recorder, RecorderError};
 use octant_source::Epoch;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -85,15 +86,10 @@ fn take(
             }
         }
         Entry::Broke { step_ns, broke } => watcher.bench_broke(step_ns, broke.to_string()),
-        Entry::Pace { frames, latest_ns, overruns, late_answers } => recorder.event(Event {
-            kind: "pace".to_owned(),
-            detail: serde_json::json!({
-                "frames": frames,
-                "latest_us": latest_ns as f64 / 1e3,
-                "overruns": overruns,
-                "late_answers": late_answers,
-            }),
-        }),
+        Entry::Pace { frames, latest_ns, overruns, late_answers } => {
+            let latest_us = latest_ns as f64 / 1e3;
+            recorder.event(Event::Pace(Pace { frames, late_answers, latest_us, overruns }));
+        }
     }
     Ok(())
 }
@@ -121,10 +117,6 @@ fn answered(
 
 /// Builds the event that ends the recording of a run by the clock.
 pub(crate) fn event(kept: &Kept) -> Event {
-    let pacing = serde_json::to_value(&kept.pacing).unwrap_or_default();
-    let granted = serde_json::to_value(&kept.granted).unwrap_or_default();
-    Event {
-        kind: "pacing".to_owned(),
-        detail: serde_json::json!({ "pacing": pacing, "granted": granted }),
-    }
+    let pacing = Box::new(kept.pacing.clone());
+    Event::Pacing { granted: kept.granted.clone(), pacing }
 }
