@@ -23,7 +23,7 @@ use octant_recorder::Event;
 use octant_requirements::Verdict;
 use octant_scenario::{ScenarioError, connection_faults, text_of};
 use octant_score::judge::NO_REQUIREMENT;
-use octant_score::summary::FaultResult;
+use octant_score::summary::{FaultResult, results};
 use std::path::{Path, PathBuf};
 
 /// Maximum number of rows of a recording, where the interval isn't given.
@@ -297,14 +297,10 @@ impl Prepared {
             messages.extend(said.iter().map(|m| (component.name.clone(), m.to_string())));
         }
         let receipts = simulation.station().map(|station| station.receipts()).unwrap_or_default();
-        let faults: Vec<FaultResult> = receipts.iter().map(FaultResult::from).collect();
+        let faults = results(&receipts);
         let (verdict, reasons) = judge(&ended, &faults);
-        let event = Event {
-            kind: "receipts".into(),
-            detail: serde_json::to_value(&faults).unwrap_or_default(),
-        };
         let written = recorder
-            .event(simulation.time_s(simulation.steps()), &event)
+            .event(simulation.time_s(simulation.steps()), &Event::Receipts(faults.clone()))
             .and_then(|()| recorder.finish());
         let (verdict, reasons) = match written {
             Ok(()) => (verdict, reasons),
@@ -396,14 +392,11 @@ fn tell_faults(
     let Some(station) = simulation.station() else { return Ok(()) };
     for occurrence in station.occurrences() {
         let (id, kind) = station.name(occurrence.fault).unwrap_or_default();
-        let event = Event {
-            kind: "fault".into(),
-            detail: serde_json::json!({
-                "id": id,
-                "kind": kind,
-                "begins": occurrence.begins,
-                "sample": occurrence.epoch,
-            }),
+        let event = Event::Fault {
+            begins: occurrence.begins,
+            id: id.to_owned(),
+            kind: kind.to_owned(),
+            sample: occurrence.epoch,
         };
         recorder.event(at_s, &event)?;
     }

@@ -12,7 +12,7 @@ use octant_link::clock::ClockEstimator;
 use octant_link::harness::{ANEW, Event, Harness, Options, Patience, Sending, SessionError};
 use octant_link::{PortError, Uri, Wire, load, port};
 use octant_realtime::clock::{HostTime, now};
-use octant_recorder as recorder;
+use octant_recorder::event::{self, Link};
 use octant_sample::Epoch;
 use octant_sample::parameters::PARAMETER_COUNT;
 use octant_sample::parameters::ParameterEstimate;
@@ -296,33 +296,33 @@ impl Endpoint for LiveEndpoint {
         let (counts, effort) = (self.harness.counts(), self.harness.effort());
         let theirs = self.harness.theirs();
         let wall_s = self.begun.elapsed().as_secs_f64();
-        let detail = serde_json::json!({
-            "port": self.uri.to_string(),
-            "device": theirs.name.as_str(),
-            "firmware": theirs.firmware.as_str(),
-            "pacing": theirs.pacing.name(),
-            "configuration_compared": self.harness.agreement().configuration_compared,
-            "wall_s": wall_s,
-            "sent": counts.sent,
-            "not_sent": counts.not_sent,
-            "received": counts.received,
-            "repeated": effort.repeated,
-            "doubled": effort.doubled,
-            "lost": counts.lost,
-            "damaged": counts.damaged,
-            "missing": counts.missing,
-            "out_of_order": counts.out_of_order,
-            "unreadable": counts.unreadable,
-            "reconnected": effort.reconnected,
-            "away_s": effort.away.as_secs_f64(),
-            "bus_load": (counts.bus_s > 0.0).then(|| counts.bus_s / wall_s),
-            "error_frames": counts.error_frames,
-            "error_passive": counts.error_passive,
-            "bus_off": counts.bus_off,
-            "restarted": counts.restarted,
-            "arbitration_lost": counts.arbitration_lost,
-        });
-        let event = recorder::Event { kind: "link".to_owned(), detail };
+        let link = Link {
+            arbitration_lost: counts.arbitration_lost,
+            away_s: effort.away.as_secs_f64(),
+            bus_load: (counts.bus_s > 0.0).then(|| counts.bus_s / wall_s),
+            bus_off: counts.bus_off,
+            configuration_compared: self.harness.agreement().configuration_compared,
+            damaged: counts.damaged,
+            device: theirs.name.as_str().to_owned(),
+            doubled: effort.doubled,
+            error_frames: counts.error_frames,
+            error_passive: counts.error_passive,
+            firmware: theirs.firmware.as_str().to_owned(),
+            lost: counts.lost,
+            missing: counts.missing,
+            not_sent: counts.not_sent,
+            out_of_order: counts.out_of_order,
+            pacing: theirs.pacing.name().to_owned(),
+            port: self.uri.to_string(),
+            received: counts.received,
+            reconnected: effort.reconnected,
+            repeated: effort.repeated,
+            restarted: counts.restarted,
+            sent: counts.sent,
+            unreadable: counts.unreadable,
+            wall_s,
+        };
+        let event = event::Event::Link(Box::new(link));
         Conclusion { events: vec![event], ..Conclusion::default() }
     }
 }

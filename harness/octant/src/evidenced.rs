@@ -133,7 +133,8 @@ pub(crate) fn run(request: &Request) -> Result<Verdict, Failure> {
         ("baseline", baseline.as_ref().and_then(|b| b.table.clone())),
     ];
     let reasons = what_broke(&primary, baseline.as_ref());
-    let (link, bench) = (primary.link.clone(), primary.bench.clone());
+    let link = primary.link.as_ref().and_then(|link| serde_json::to_value(link).ok());
+    let bench = primary.bench.as_ref().and_then(|bench| serde_json::to_value(bench).ok());
     let realtime = primary.kept.as_ref().map(|kept| kept.granted.clone());
     let refused = primary.calibration.as_ref().is_some_and(|c| c.refused.is_some());
     let estimate = primary.watcher.last_parameters.map(|e| e.parameters).filter(|_| !refused);

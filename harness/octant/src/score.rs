@@ -3,6 +3,7 @@
 use crate::failure::Failure;
 use crate::terminal::{print, print_json};
 use clap::Args;
+use octant_recorder::Event;
 use octant_recorder::reader::Recording;
 use octant_requirements::Verdict;
 use octant_run::method::planned_of;
@@ -97,8 +98,7 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         misbehaved: watcher.misbehaved.as_ref().map(ToString::to_string),
     };
     if scores.navigation.is_none() && scores.parameters.is_empty() && scores.misbehaved.is_none() {
-        if let Some(event) = last_event.filter(|event| event.kind == "refused") {
-            let reason = event.detail.get("reason").and_then(|r| r.as_str()).unwrap_or("no reason");
+        if let Some(Event::Refused { reason }) = last_event {
             return Err(Failure::input(format!(
                 "failed to score {}: its calibration was refused: {reason}",
                 path.display()

@@ -99,10 +99,9 @@ fn samples_from_a_bus_arrive_to_the_last_bit() {
     let (_line, said) = adapter.join().unwrap();
     assert_eq!(said, "C\rS6\rO\r");
     let told = source.conclude(None).0.unwrap();
-    assert_eq!(told["readings"]["samples"], 19);
-    assert_eq!(told["readings"]["missing"], 1);
-    assert_eq!(told["clock"]["stamps"], 19);
-    let name = told["instrument"].as_str().unwrap();
+    assert_eq!((told.readings.samples, told.readings.missing), (19, 1));
+    assert_eq!(told.clock.unwrap().stamps, 19);
+    let name = told.instrument;
     assert!(name.starts_with("slcan:") && name.ends_with(", dbc"), "{name}");
 }
 

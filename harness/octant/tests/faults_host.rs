@@ -2,6 +2,7 @@
 
 use crate::common::program::{json, program};
 use octant_base::control::Control;
+use octant_recorder::Event;
 use octant_recorder::reader::{self, Item};
 use octant_run::method::{MethodError, SetupError};
 use octant_run::{Recording, run_method};
@@ -36,14 +37,16 @@ fn run(here: &Path, name: &str, text: &str, more: &[&str]) -> (Option<i32>, Stri
 }
 
 /// Returns the number of samples of a recording up to its end or tear, and its events of kind
-/// `host`.
-fn recorded(path: &Path) -> (u64, Vec<Value>) {
+/// `host`: scheduling and time.
+fn recorded(path: &Path) -> (u64, Vec<(String, f64)>) {
     let mut recording = reader::Recording::open(path).unwrap();
     let (mut samples, mut events) = (0, Vec::new());
     while let Some((_, item)) = recording.next_item().unwrap() {
         match item {
             Item::Sample(_) => samples += 1,
-            Item::Event(event) if event.kind == "host" => events.push(event.detail),
+            Item::Event(Event::Host { scheduling, taken_s, .. }) => {
+                events.push((scheduling, taken_s))
+            }
             _ => {}
         }
     }
@@ -158,8 +161,8 @@ fn starved_processors_make_samples_late() {
     assert_eq!(summary["stream_hash"], summary["counterfactual"]["twin_stream_hash"]);
     let (samples, events) = recorded(&here.join("starved/recording.mcap"));
     assert_eq!((samples, events.len()), (200, 1));
-    assert!(events[0]["taken_s"].as_f64().unwrap() > 0.0, "{events:?}");
-    let scheduling = events[0]["scheduling"].as_str().unwrap();
+    let (scheduling, taken_s) = &events[0];
+    assert!(*taken_s > 0.0, "{events:?}");
     let manifest = json(&here.join("starved/manifest.json"));
     if manifest["realtime"]["scheduling"]["outcome"] != "granted" {
         assert!(scheduling.starts_with("no SCHED_FIFO"), "{scheduling}");

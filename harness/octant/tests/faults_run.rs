@@ -19,7 +19,7 @@ use octant_run::{
 use octant_sample::canonical::{AIDING_BYTES, SAMPLE_BYTES, aiding, sample};
 use octant_sample::{GimbalCommand, Mode, Output, Parameters};
 use octant_scenario::{Method, Scenario};
-use octant_score::summary::FaultResult;
+use octant_score::summary::results;
 use octant_source::configure::configurations;
 use octant_source::{Epoch, PlantSource, Replay, Source};
 use std::path::Path;
@@ -150,21 +150,21 @@ fn the_receipt_adds_up_with_the_recording_and_nothing_else_is_altered() {
     let expected = 1000.0 * std::f64::consts::PI / 180.0 / 3600.0 * 0.5 * 2f64.powi(36);
     assert!((added as f64 - expected).abs() <= 0.5, "{added} {expected}");
 
-    let events: Vec<&Event> =
-        with.epochs.iter().flat_map(|e| &e.events).filter(|e| e.kind == "fault").collect();
-    let detail = |e: &&Event| (e.detail["begins"].as_bool(), e.detail["sample"].as_u64());
-    let told: Vec<_> = events.iter().map(detail).collect();
-    assert_eq!(told, [(Some(true), Some(36_001)), (Some(false), Some(36_101))]);
+    let told: Vec<_> = (with.epochs.iter().flat_map(|e| &e.events))
+        .filter_map(|event| match event {
+            Event::Fault { begins, sample, .. } => Some((*begins, *sample)),
+            _ => None,
+        })
+        .collect();
+    assert_eq!(told, [(true, 36_001), (false, 36_101)]);
 
     let hash = &with.method.recorder.stream_hash;
     let path = with.file.path().join("recording.mcap");
     assert_eq!(stream_hash(Reader::open(&path).unwrap()).unwrap().as_ref(), Some(hash));
     let mut last = Epochs::new(Reader::open(&path).unwrap());
     while last.next_epoch().unwrap().is_some() {}
-    let event = last.last_event().unwrap();
-    assert_eq!(event.kind, "receipts");
-    let recorded: Vec<FaultResult> = serde_json::from_value(event.detail.clone()).unwrap();
-    assert_eq!(recorded, [FaultResult::from(receipt)]);
+    let recorded = Event::Receipts(results(std::slice::from_ref(receipt)));
+    assert_eq!(last.last_event(), Some(&recorded));
 }
 
 /// Encodes an output, for a comparison of all bits.
@@ -433,7 +433,8 @@ fn a_restarted_core_begins_anew_and_the_rest_copes() {
     assert!(revision(100_000) < revision(99_999));
     assert_eq!(driven.watcher.last_mode, Mode::Calibrating);
     assert_eq!(driven.ended, Ended::SourceEnded);
-    let unit: Vec<_> = driven.epochs[100_000].events.iter().filter(|e| e.kind == "unit").collect();
+    let unit: Vec<_> =
+        driven.epochs[100_000].events.iter().filter(|e| matches!(e, Event::Unit { .. })).collect();
     assert_eq!(unit.len(), 1, "it stands before the sample that the new core got first");
     assert_replays(&driven);
 }

@@ -247,8 +247,8 @@ fn the_default_policy_keeps_one_epoch_a_second_and_every_aiding_and_mode() {
     let mut recording = Recording::new(&bytes[..]).unwrap();
     let mut modes = Vec::new();
     while let Some((time_ns, item)) = recording.next_item().unwrap() {
-        if let Item::Event(event) = item {
-            modes.push((time_ns, event.detail["to"].as_str().unwrap().to_owned()));
+        if let Item::Event(Event::Mode { to, .. }) = item {
+            modes.push((time_ns, to));
         }
     }
     assert_eq!(
@@ -465,8 +465,7 @@ fn events_and_metadata_come_back() {
     let mut recorder = Recorder::to_writer(memory.clone(), &options).unwrap();
     let steps = stream(3);
     push(&mut recorder, &steps[0]).unwrap();
-    let event =
-        Event { kind: "fault".into(), detail: serde_json::json!({"id": "spike", "armed": 1}) };
+    let event = Event::Other { kind: "other".into(), detail: serde_json::json!({"armed": 1}) };
     recorder.event(event.clone());
     recorder.finish().unwrap();
     let bytes = memory.0.lock().unwrap().clone();

@@ -35,6 +35,7 @@ fn the_table_stops_at_a_panic() {
     // The summary is still available, and the table stays where it is.
     let (bench, failed) = source.conclude(Some(&error));
     assert!(failed.is_none(), "{failed:?}");
-    assert_eq!(bench.unwrap()["table"]["stopped"], "the harness panicked");
+    let stopped = bench.unwrap().table.unwrap().stopped;
+    assert_eq!(stopped.as_deref(), Some("the harness panicked"));
     assert!(stage.rests() && stage.angle(octant_turntable::Axis::Roll) < 195.0);
 }

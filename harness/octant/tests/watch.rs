@@ -3,12 +3,13 @@
 use crate::common::epochs::{push, record, stream};
 use crate::common::program::{ended, octant_in, program};
 use octant_evidence::{Existing, RunFolder};
+use octant_recorder::event::Pace;
 use octant_recorder::reader::{Item, Recording};
 use octant_recorder::{Event, Policy, Recorder, RecorderOptions, Samples};
 use octant_watch::follow::{Follow, Stage};
 use octant_watch::place::Place;
 use octant_watch::tail::{Reached, Tail, TailError};
-use serde_json::{Value, json};
+use serde_json::Value;
 use std::collections::BTreeMap;
 use std::io::{self, Read, Write};
 use std::path::Path;
@@ -170,10 +171,6 @@ const SCENARIO: &str = "schema = 1\ntitle = \"a known state\"\nseed = 7\n[realti
     [[faults]]\nid = \"late-1\"\nkind = \"late-delivery\"\ndelay = \"3 samples\"\n\
     trigger = { at = \"30 s\" }\nduration = \"20 samples\"\n";
 
-fn event(kind: &str, detail: Value) -> Event {
-    Event { kind: kind.to_owned(), detail }
-}
-
 /// Records 20 s of the test stream with an active fault and a report of the time keeping, not yet
 /// ended.
 pub fn known(folder: &RunFolder) -> Recorder {
@@ -187,11 +184,10 @@ pub fn known(folder: &RunFolder) -> Recorder {
     for (k, step) in stream(4000).iter().enumerate() {
         push(&mut recorder, step).unwrap();
         if k == 3000 {
-            let fault = json!({ "id": "spike-1", "kind": "spike", "begins": true, "sample": 3001 });
-            recorder.event(event("fault", fault));
-            let pace =
-                json!({ "frames": 3000, "latest_us": 54.25, "overruns": 2, "late_answers": 1 });
-            recorder.event(event("pace", pace));
+            let (id, kind) = ("spike-1".to_owned(), "spike".to_owned());
+            recorder.event(Event::Fault { begins: true, id, kind, sample: 3001 });
+            let (frames, latest_us, overruns, late_answers) = (3000, 54.25, 2, 1);
+            recorder.event(Event::Pace(Pace { frames, late_answers, latest_us, overruns }));
         }
     }
     recorder
@@ -308,12 +304,10 @@ fn a_run_in_another_process_is_watched_to_its_verdict_and_does_not_notice() {
     // The time keeping is reported once a second.
     let bytes = std::fs::read(watched.join("recording.mcap")).unwrap();
     let paces = items(&bytes).into_iter().filter_map(|(time_ns, item)| match item {
-        Item::Event(event) if event.kind == "pace" => {
-            Some((time_ns, event.detail["frames"].clone()))
-        }
+        Item::Event(Event::Pace(pace)) => Some((time_ns, pace.frames)),
         _ => None,
     });
-    let frames: Vec<Value> = paces.map(|(_, frames)| frames).collect();
+    let frames: Vec<u64> = paces.map(|(_, frames)| frames).collect();
     assert_eq!(frames, [200, 400, 600]);
 }
 

@@ -8,6 +8,7 @@ mod altered;
 mod block;
 mod cdr;
 mod digest;
+pub mod event;
 mod handle;
 pub mod message;
 pub mod reader;
@@ -19,6 +20,7 @@ mod trouble;
 mod writer;
 
 pub use altered::AlteredStreams;
+pub use event::Event;
 pub use handle::Recorder;
 pub use stream_hash::StreamHash;
 pub use summary::RecorderSummary;
@@ -60,15 +62,6 @@ pub enum Extra {
     Truth(Truth),
     /// Parameters that changed with the last frame.
     Parameters(ParameterEstimate),
-}
-
-/// A rare event, recorded as JSON.
-#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
-pub struct Event {
-    /// Kind of event: `mode`, `fault`, `verdict`, ...
-    pub kind: String,
-    /// Details.
-    pub detail: serde_json::Value,
 }
 
 /// Selection of samples and outputs that are kept.

@@ -238,13 +238,10 @@ impl<W: Write> RecordingWriter<W> {
             self.unwritten_parameters = None;
             self.next_parameters_ns = 0;
         }
-        self.event(&Event {
-            kind: "mode".into(),
-            detail: serde_json::json!({
-                "from": from.map(Mode::name),
-                "to": output.mode.name(),
-                "sequence": output.sequence,
-            }),
+        self.event(&Event::Mode {
+            from: from.map(|mode| mode.name().to_owned()),
+            sequence: output.sequence,
+            to: output.mode.name().to_owned(),
         })
     }
 

@@ -17,9 +17,7 @@ use octant_score::equipment;
 use octant_score::judge::{Finding, judge_by};
 use octant_score::numerics::NUMERICS;
 use octant_score::reference::{ReferenceInput, reference};
-use octant_score::summary::{
-    AlteredStreams, Baseline, FaultResult, ParameterScore, SCHEMA, Summary,
-};
+use octant_score::summary::{AlteredStreams, Baseline, ParameterScore, SCHEMA, Summary, results};
 use octant_turntable::Axis;
 use std::collections::BTreeMap;
 
@@ -129,7 +127,7 @@ pub fn assemble_with(
         decision: Some(scenario.decision.decided(&against)),
         planned: Some(planned),
         done: Some(done),
-        faults: primary.receipts.iter().map(FaultResult::from).collect(),
+        faults: results(&primary.receipts),
         altered_streams: primary.recorder.altered_streams.as_ref().map(AlteredStreams::from),
         method: primary.label.clone(),
         calibration: primary.calibration.take(),
@@ -142,7 +140,7 @@ pub fn assemble_with(
             navigation: run.navigation,
             counterfactual: baseline_counterfactual,
             stream_hash: run.recorder.stream_hash,
-            faults: run.receipts.iter().map(FaultResult::from).collect(),
+            faults: results(&run.receipts),
         }),
         reference: Some(references),
         counterfactual,

@@ -4,48 +4,34 @@
 //! there is none.
 
 use octant_recorder::Event;
+use octant_recorder::event::by_name;
 use octant_sample::Parameters;
 use octant_sample::parameters::NAMES;
 use octant_sample::parameters::ParameterEstimate;
-use serde_json::{Map, Value};
 
-/// Kind of the event.
-const KIND: &str = "calibration";
-
-/// Builds the event: `parameters` and `sigma` by name, SI, and their `revision`; σ is null where a
-/// parameter isn't estimated.
+/// Builds the event.
 #[must_use]
 pub fn event(estimate: &ParameterEstimate) -> Event {
-    let by_name = |values: &[f64]| -> Map<String, Value> {
-        NAMES
-            .iter()
-            .zip(values)
-            .map(|(name, value)| ((*name).to_owned(), (*value).into()))
-            .collect()
-    };
-    Event {
-        kind: KIND.to_owned(),
-        detail: serde_json::json!({
-            "parameters": by_name(&estimate.parameters.to_array()),
-            "sigma": by_name(&estimate.sigma),
-            "revision": estimate.revision,
-        }),
+    Event::Calibration {
+        parameters: by_name(&estimate.parameters.to_array()),
+        revision: estimate.revision,
+        sigma: by_name(&estimate.sigma),
     }
 }
 
 /// Reads the parameters of such an event; `None` for another one, or an incomplete one.
 #[must_use]
 pub fn estimate(event: &Event) -> Option<ParameterEstimate> {
-    if event.kind != KIND {
+    let Event::Calibration { parameters: values, revision, sigma: deviations } = event else {
         return None;
-    }
+    };
     let (mut parameters, mut sigma) = ([0.0; NAMES.len()], [f64::NAN; NAMES.len()]);
     for (i, name) in NAMES.iter().enumerate() {
-        parameters[i] = event.detail.get("parameters")?.get(name)?.as_f64()?;
-        sigma[i] = event.detail.get("sigma")?.get(name)?.as_f64().unwrap_or(f64::NAN);
+        parameters[i] = (*values.get(*name)?)?;
+        sigma[i] = deviations.get(*name)?.unwrap_or(f64::NAN);
     }
-    let revision = event.detail.get("revision")?.as_u64()?.try_into().ok()?;
-    Some(ParameterEstimate { revision, parameters: Parameters::from_array(&parameters), sigma })
+    let parameters = Parameters::from_array(&parameters);
+    Some(ParameterEstimate { revision: *revision, parameters, sigma })
 }
 
 #[cfg(test)]
@@ -64,7 +50,7 @@ mod tests {
         assert_eq!(found.parameters, parameters);
         assert_eq!(found.sigma.map(f64::to_bits), sigma.map(f64::to_bits));
         assert_eq!(found.revision, 3);
-        let other = Event { kind: "refused".to_owned(), detail: event.detail };
+        let other = Event::Refused { reason: String::new() };
         assert!(estimate(&other).is_none());
     }
 }

@@ -2,13 +2,14 @@
 
 use super::host::Host;
 use octant_endpoint::Endpoint;
+use octant_faults::Station;
 use octant_faults::host::Hosted;
 use octant_faults::station::World;
 use octant_faults::wire::Wired;
-use octant_faults::{Receipt, Station};
 use octant_recorder::Event;
 use octant_sample::Truth;
 use octant_sample::disturbance::Disturbed;
+use octant_score::summary::results;
 use octant_source::Source;
 
 /// Station with the faults that are triggered by hand.
@@ -25,7 +26,7 @@ pub struct Faulted {
 impl Faulted {
     /// Returns the events that are recorded at the end of a run.
     pub(super) fn last_words(&self) -> Vec<Event> {
-        let receipts = receipts_event(&self.station.receipts());
+        let receipts = Event::Receipts(results(&self.station.receipts()));
         self.host.event().into_iter().chain([receipts]).collect()
     }
 }
@@ -57,20 +58,5 @@ impl<S: Source + ?Sized, E: Endpoint + ?Sized> World for Behind<'_, S, E> {
 
 /// Builds the event for the onset or the end of a fault.
 pub(super) fn occurrence_event(id: &str, kind: &str, begins: bool, sample: u64) -> Event {
-    Event {
-        kind: "fault".to_owned(),
-        detail: serde_json::json!({ "id": id, "kind": kind, "begins": begins, "sample": sample }),
-    }
-}
-
-/// Builds the event with the receipts of a run.
-fn receipts_event(receipts: &[Receipt]) -> Event {
-    let one = |receipt: &Receipt| {
-        serde_json::to_value(octant_score::summary::FaultResult::from(receipt))
-            .unwrap_or(serde_json::Value::Null)
-    };
-    Event {
-        kind: "receipts".to_owned(),
-        detail: receipts.iter().map(one).collect::<serde_json::Value>(),
-    }
+    Event::Fault { begins, id: id.to_owned(), kind: kind.to_owned(), sample }
 }

@@ -62,13 +62,10 @@ impl Host {
     pub(super) fn event(&self) -> Option<Event> {
         let burners = self.burners.as_ref()?;
         let all_ns = burners.shared.burned_ns.load(Ordering::Relaxed);
-        Some(Event {
-            kind: "host".to_owned(),
-            detail: serde_json::json!({
-                "threads": burners.all.len(),
-                "scheduling": burners.granted.scheduling.text(),
-                "taken_s": all_ns as f64 * 1e-9,
-            }),
+        Some(Event::Host {
+            scheduling: burners.granted.scheduling.text(),
+            taken_s: all_ns as f64 * 1e-9,
+            threads: burners.all.len(),
         })
     }
 }

@@ -16,6 +16,7 @@ use octant_calibration::config as core;
 use octant_calibration::table::CalibrationTable;
 use octant_endpoint::{Conclusion, Endpoint, EndpointError, InProcess, Tells};
 use octant_faults::Receipt;
+use octant_recorder::event::{Bench, Link};
 use octant_recorder::{
     Event, Policy, Recorder, RecorderError, RecorderOptions, RecorderSummary, Samples, Trouble,
 };
@@ -60,9 +61,9 @@ pub struct MethodRun {
     /// Time keeping of a run by the clock.
     pub kept: Option<Kept>,
     /// Device and traffic of a run over a wire; as in the recording.
-    pub link: Option<serde_json::Value>,
+    pub link: Option<Box<Link>>,
     /// Clocks and counts of a real instrument and its table; as in the recording.
-    pub bench: Option<serde_json::Value>,
+    pub bench: Option<Box<Bench>>,
     /// Description of the point where the source ended in the middle of something.
     pub cut_short: Option<String>,
 }
@@ -212,8 +213,8 @@ struct Closed {
     conclusion: Conclusion,
     estimate: ParameterEstimate,
     kept: Option<Kept>,
-    link: Option<serde_json::Value>,
-    bench: Option<serde_json::Value>,
+    link: Option<Box<Link>>,
+    bench: Option<Box<Bench>>,
     cut_short: Option<String>,
 }
 
@@ -244,7 +245,7 @@ fn to_the_end<S: Source, E: Endpoint>(
     };
     let cut_short = source.cut_short();
     if let Some(detail) = &bench {
-        recorder.event(Event { kind: "bench".to_owned(), detail: detail.clone() });
+        recorder.event(Event::Bench(detail.clone()));
     }
     let driven = driven.and_then(|ended| match ended {
         Ended::SourceEnded => Ok((ended, endpoint.end_of_stream()?)),
@@ -262,17 +263,16 @@ fn to_the_end<S: Source, E: Endpoint>(
             (Ended::Cancelled, None, None)
         }
         Err(error) if error.is_gone() => {
-            recorder.event(Event {
-                kind: "error".to_owned(),
-                detail: serde_json::json!({ "reason": error.to_string() }),
-            });
+            recorder.event(Event::Error { reason: error.to_string() });
             (Ended::Broken, None, Some(error))
         }
         Err(error) => return Err(error),
     };
     let mut conclusion = endpoint.conclusion();
-    let link = conclusion.events.iter().find(|event| event.kind == "link");
-    let link = link.map(|event| event.detail.clone());
+    let link = conclusion.events.iter().find_map(|event| match event {
+        Event::Link(link) => Some(link.clone()),
+        _ => None,
+    });
     conclusion.events.drain(..).for_each(|event| recorder.event(event));
     let estimate = endpoint.parameters();
     Ok(Closed { ended, broken, last, conclusion, estimate, kept, link, bench, cut_short })
@@ -377,10 +377,7 @@ fn finish(
         refused => refused,
     };
     if let Some(reason) = &refused {
-        recorder.event(Event {
-            kind: "refused".to_owned(),
-            detail: serde_json::json!({ "reason": reason }),
-        });
+        recorder.event(Event::Refused { reason: reason.clone() });
     }
     let (_, done) = watcher.work();
     let calibration = match method {

@@ -3,32 +3,23 @@
 use octant_endpoint::{Endpoint, EndpointError};
 use octant_faults::rule::UnitEvent;
 use octant_recorder::Event;
+use octant_recorder::event::{UnitAction, by_name};
 use octant_sample::Parameters;
 use octant_sample::parameters::NAMES;
-use serde_json::{Map, Value, json};
-
-/// Kind of the event.
-const KIND: &str = "unit";
+use serde_json::Value;
 
 /// Builds the event that happened before the unit got the sample of this number.
 #[must_use]
 pub fn event(event: &UnitEvent, sample: u64) -> Event {
     let (action, offset) = match event {
-        UnitEvent::Restart => ("restart", None),
-        UnitEvent::PowerOff => ("power-off", None),
-        UnitEvent::PowerOn => ("power-on", None),
-        UnitEvent::RestartWith { offset } => ("restart-with", Some(offset)),
+        UnitEvent::Restart => (UnitAction::Restart, None),
+        UnitEvent::PowerOff => (UnitAction::PowerOff, None),
+        UnitEvent::PowerOn => (UnitAction::PowerOn, None),
+        UnitEvent::RestartWith { offset } => {
+            (UnitAction::RestartWith, Some(by_name(&offset.to_array())))
+        }
     };
-    let mut detail = json!({ "action": action, "sample": sample });
-    if let Some(offset) = offset {
-        let by_name: Map<String, Value> = NAMES
-            .iter()
-            .zip(offset.to_array())
-            .map(|(name, value)| ((*name).to_owned(), value.into()))
-            .collect();
-        detail["offset"] = by_name.into();
-    }
-    Event { kind: KIND.to_owned(), detail }
+    Event::Unit { action, offset, sample }
 }
 
 /// Reason why a unit's event can't be read: a fragment that fits after "failed to …".
@@ -56,27 +47,27 @@ pub enum UnitEventError {
 /// # Errors
 /// If it can't be read.
 pub fn of(event: &Event) -> Result<Option<UnitEvent>, UnitEventError> {
-    if event.kind != KIND {
-        return Ok(None);
-    }
-    let action = event.detail.get("action").and_then(Value::as_str).unwrap_or_default();
+    let (action, offset) = match event {
+        Event::Unit { action, offset, .. } => (action, offset),
+        Event::Other { kind, detail } if kind == "unit" => {
+            let found = detail.get("action").and_then(Value::as_str).unwrap_or_default();
+            return Err(UnitEventError::Action { found: found.to_owned() });
+        }
+        _ => return Ok(None),
+    };
     Ok(Some(match action {
-        "restart" => UnitEvent::Restart,
-        "power-off" => UnitEvent::PowerOff,
-        "power-on" => UnitEvent::PowerOn,
-        "restart-with" => {
-            let mut offset = [0.0; NAMES.len()];
-            for (value, name) in offset.iter_mut().zip(NAMES) {
-                *value = event
-                    .detail
-                    .get("offset")
-                    .and_then(|offset| offset.get(name)?.as_f64())
+        UnitAction::Restart => UnitEvent::Restart,
+        UnitAction::PowerOff => UnitEvent::PowerOff,
+        UnitAction::PowerOn => UnitEvent::PowerOn,
+        UnitAction::RestartWith => {
+            let mut values = [0.0; NAMES.len()];
+            for (value, name) in values.iter_mut().zip(NAMES) {
+                *value = offset
+                    .as_ref()
+                    .and_then(|offset| *offset.get(name)?)
                     .ok_or(UnitEventError::Offset { expected: name })?;
             }
-            UnitEvent::RestartWith { offset: Parameters::from_array(&offset) }
-        }
-        other => {
-            return Err(UnitEventError::Action { found: other.to_owned() });
+            UnitEvent::RestartWith { offset: Parameters::from_array(&values) }
         }
     }))
 }
@@ -114,9 +105,10 @@ mod tests {
             let read: Event = serde_json::from_str(&json).unwrap();
             assert_eq!(of(&read).unwrap(), Some(happened));
         }
-        let other = Event { kind: "mode".to_owned(), detail: Value::Null };
+        let other = Event::Refused { reason: String::new() };
         assert_eq!(of(&other).unwrap(), None);
-        let unknown = Event { kind: KIND.to_owned(), detail: json!({ "action": "melt" }) };
-        assert!(of(&unknown).unwrap_err().to_string().contains("melt"));
+        let unknown = r#"{"kind":"unit","detail":{"action":"melt","sample":1}}"#;
+        let unknown = of(&serde_json::from_str(unknown).unwrap());
+        assert!(unknown.unwrap_err().to_string().contains("melt"));
     }
 }

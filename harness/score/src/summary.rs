@@ -7,6 +7,8 @@ pub use super::navigation::{
     ErrorScore, HeightChannel, Mark, Navigation, RadialScore, SlopeWindow,
 };
 
+pub use octant_recorder::event::{DeviceClock, FaultResult, Lateness, Pacing};
+
 use super::counterfactual::Counterfactual;
 use super::finding::Finding;
 use super::reference::Reference;
@@ -155,60 +157,14 @@ pub enum SummaryError {
     },
 }
 
-/// Result of one fault.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct FaultResult {
-    /// Id in the scenario.
-    pub id: String,
-    /// Kind.
-    pub kind: String,
-    /// True if the fault was armed.
-    pub armed: bool,
-    /// True if it altered at least one sample.
-    pub fired: bool,
-    /// First sample altered.
-    pub first_sample: Option<u64>,
-    /// Last sample altered.
-    pub last_sample: Option<u64>,
-    /// Number of samples altered.
-    pub samples_altered: u64,
-    /// Number of firings.
-    #[serde(default)]
-    pub firings: u32,
-    /// CRC-32 of the samples before the alteration, hexadecimal; null if there are none.
-    #[serde(default)]
-    pub clean_crc32: Option<String>,
-    /// CRC-32 of the samples after the alteration.
-    #[serde(default)]
-    pub faulted_crc32: Option<String>,
-}
-
-impl FaultResult {
-    /// Text `fault spike-1 (spike): fired once, 100 samples from 36001 to 36100`.
-    #[must_use]
-    pub fn sentence(&self) -> String {
-        let times = match self.firings {
-            1 => "once".to_owned(),
-            n => format!("{n} times"),
-        };
-        let what = match (self.first_sample, self.last_sample) {
-            (Some(first), Some(last)) if first == last => format!("fired {times}, sample {first}"),
-            (Some(first), Some(last)) => {
-                format!("fired {times}, {} samples from {first} to {last}", self.samples_altered)
-            }
-            _ if self.firings > 0 => format!("set in {times} and altered nothing"),
-            _ => "never fired".to_owned(),
-        };
-        format!("fault {} ({}): {what}", self.id, self.kind)
-    }
-}
-
-impl From<&octant_faults::Receipt> for FaultResult {
-    fn from(receipt: &octant_faults::Receipt) -> Self {
+/// Returns the results of faults from their receipts.
+#[must_use]
+pub fn results(receipts: &[octant_faults::Receipt]) -> Vec<FaultResult> {
+    let one = |receipt: &octant_faults::Receipt| {
         // A fault that touches no sample (of the plant, of the unit) leaves both checksums empty.
         let sums = receipt.fired() && receipt.clean_crc32 != receipt.faulted_crc32;
         let hex = |sum: u32| sums.then(|| format!("{sum:08x}"));
-        Self {
+        FaultResult {
             id: receipt.id.clone(),
             kind: receipt.kind.to_owned(),
             armed: receipt.armed,
@@ -220,7 +176,8 @@ impl From<&octant_faults::Receipt> for FaultResult {
             clean_crc32: hex(receipt.clean_crc32),
             faulted_crc32: hex(receipt.faulted_crc32),
         }
-    }
+    };
+    receipts.iter().map(one).collect()
 }
 
 /// Checksums of the two streams of a run in which faults altered something: as delivered by the source
@@ -268,66 +225,4 @@ pub struct Baseline {
     /// Results of the faults in it.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub faults: Vec<FaultResult>,
-}
-
-/// Timing of a run against the host's clock.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Pacing {
-    /// Number of frames.
-    pub frames: u64,
-    /// Period of the frames, µs.
-    pub period_us: f64,
-    /// Lateness of the frames, µs.
-    pub lateness_us: Lateness,
-    /// Histogram of the lateness: an upper edge, ns, and the number of frames up to it and above the
-    /// edge before.
-    pub lateness_histogram_ns: Vec<[u64; 2]>,
-    /// Lateness above which a frame is an overrun, µs.
-    pub overrun_us: f64,
-    /// Number of overruns.
-    pub overruns: u64,
-    /// Largest number of overruns in a row.
-    pub overruns_in_a_row: u64,
-    /// Number of the first overrun frame, from 1.
-    pub first_overrun: Option<u64>,
-    /// Part of the period that 99 % of the frames left unused at least, µs.
-    pub slack_p1_us: f64,
-    /// Time from sending a sample to receiving its answer, µs.
-    pub answer_us: Lateness,
-    /// Number of frames that ended without their answer.
-    pub late_answers: u64,
-    /// Number of samples whose answer never came, while later ones were answered.
-    pub missed_answers: u64,
-    /// Number of samples that could not be sent: the device's window or the port was full.
-    pub not_sent: u64,
-    /// Clock of the device against the host's; null if there was none to compare.
-    pub device_clock: Option<DeviceClock>,
-    /// Number of steps that found no room on their way to the recorder.
-    pub dropped_records: u64,
-}
-
-/// Clock of a device against the host's.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct DeviceClock {
-    /// Offset by which it was ahead at the last exchange, µs.
-    pub offset_us: f64,
-    /// Bound of the error of the offset, µs.
-    pub bound_us: f64,
-    /// Relative rate by which it is fast; null with too few exchanges.
-    pub skew_ppm: Option<f64>,
-    /// Number of exchanges of the time.
-    pub exchanges: u64,
-}
-
-/// Quantiles of a duration, µs.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Lateness {
-    /// Median.
-    pub p50: f64,
-    /// 99 % quantile.
-    pub p99: f64,
-    /// 99.9 % quantile.
-    pub p999: f64,
-    /// Maximum.
-    pub max: f64,
 }

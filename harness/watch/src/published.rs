@@ -1,6 +1,7 @@
 //! Messages published during a run: JSON with schemas, in display units, by topic.
 
 use super::state::State;
+use octant_recorder::Event;
 use octant_recorder::reader::Item;
 use octant_sample::parameters::{Group, NAMES};
 use serde_json::{Map, Value, json};
@@ -202,8 +203,8 @@ pub fn messages(state: &State, item: &Item, mut publish: impl FnMut(Channel, Val
             }
             publish(Channel::Parameters, message.into());
         }
-        Item::Event(event) => match event.kind.as_str() {
-            "pace" => {
+        Item::Event(event) => match event {
+            Event::Pace(_) => {
                 if let Some(pace) = state.pace {
                     publish(
                         Channel::Pacing,
@@ -216,7 +217,7 @@ pub fn messages(state: &State, item: &Item, mut publish: impl FnMut(Channel, Val
                     );
                 }
             }
-            "fault" | "receipts" => publish(Channel::Faults, faults(state)),
+            Event::Fault { .. } | Event::Receipts(_) => publish(Channel::Faults, faults(state)),
             _ => {}
         },
         Item::Sample(_) | Item::CleanSample(_) | Item::CleanAiding(_) | Item::Aiding(_) => {}

@@ -5,13 +5,13 @@ use super::series::Series;
 use octant_earth::ellipsoid::Ellipsoid;
 use octant_earth::units::{ARCMIN, NAUTICAL_MILE_M};
 use octant_recorder::Event;
+use octant_recorder::event::Pace;
 use octant_recorder::reader::Item;
 use octant_run::concluded;
 use octant_sample::parameters::ParameterEstimate;
 use octant_sample::{GimbalAngles, Health, Mode, Output, Truth};
 use octant_score::health;
 use octant_score::summary::{FaultResult, Pacing};
-use serde::Deserialize;
 use std::collections::VecDeque;
 
 /// Maximum number of lines of the log.
@@ -73,19 +73,6 @@ pub struct FaultState {
     pub last_ns: Option<u64>,
     /// Receipt, at the end of the run.
     pub receipt: Option<FaultResult>,
-}
-
-/// Time keeping of a run by the clock, reported once a second.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize)]
-pub struct Pace {
-    /// Number of frames that began.
-    pub frames: u64,
-    /// Largest lateness since the last report, µs.
-    pub latest_us: f64,
-    /// Overruns so far.
-    pub overruns: u64,
-    /// Number of frames so far that ended without their answer.
-    pub late_answers: u64,
 }
 
 /// Cause that the core has reported.
@@ -269,30 +256,29 @@ impl State {
     }
 
     fn event(&mut self, time_ns: u64, event: &Event) {
-        let text = |key: &str| event.detail.get(key).and_then(|value| value.as_str());
-        match event.kind.as_str() {
-            "pace" => {
-                if let Ok(pace) = Pace::deserialize(&event.detail) {
-                    self.latest_us = self.latest_us.max(pace.latest_us);
-                    self.pace = Some(pace);
-                    let hours = self.hours();
-                    self.lateness.push(hours, pace.latest_us);
-                }
+        match event {
+            Event::Pace(pace) => {
+                self.latest_us = self.latest_us.max(pace.latest_us);
+                self.pace = Some(*pace);
+                let hours = self.hours();
+                self.lateness.push(hours, pace.latest_us);
                 return;
             }
-            "pacing" => {
-                let pacing = event.detail.get("pacing").map(Pacing::deserialize);
-                self.pacing = pacing.and_then(Result::ok).map(Box::new);
+            Event::Pacing { pacing, .. } => self.pacing = Some(pacing.clone()),
+            Event::Fault { begins, id, kind, .. } => {
+                let fault = self.fault_of(id, kind);
+                fault.firings += u64::from(*begins);
+                fault.acts = *begins;
+                fault.last_ns = Some(time_ns);
             }
-            "fault" => self.fault(time_ns, event),
-            "receipts" => self.receipts(event),
-            "calibration" => {
+            Event::Receipts(receipts) => self.receipts(receipts),
+            Event::Calibration { .. } => {
                 if let Some(estimate) = concluded::estimate(event) {
                     self.parameters = Some((time_ns, Box::new(estimate)));
                 }
             }
-            "refused" => self.refused = text("reason").map(str::to_owned),
-            "error" => self.error = text("reason").map(str::to_owned),
+            Event::Refused { reason } => self.refused = Some(reason.clone()),
+            Event::Error { reason } => self.error = Some(reason.clone()),
             _ => {}
         }
         if self.log.len() == LOG_LINES {
@@ -311,47 +297,34 @@ impl State {
         &mut self.faults[at]
     }
 
-    fn fault(&mut self, time_ns: u64, event: &Event) {
-        let text = |key: &str| event.detail.get(key).and_then(|value| value.as_str());
-        let begins = event.detail.get("begins").and_then(serde_json::Value::as_bool);
-        if let (Some(id), Some(begins)) = (text("id"), begins) {
-            let fault = self.fault_of(id, text("kind").unwrap_or_default());
-            fault.firings += u64::from(begins);
-            fault.acts = begins;
-            fault.last_ns = Some(time_ns);
-        }
-    }
-
-    fn receipts(&mut self, event: &Event) {
-        for receipt in event.detail.as_array().into_iter().flatten() {
-            if let Ok(receipt) = FaultResult::deserialize(receipt) {
-                let fault = self.fault_of(&receipt.id, &receipt.kind);
-                fault.acts = false;
-                fault.firings = u64::from(receipt.firings);
-                fault.receipt = Some(receipt);
-            }
+    fn receipts(&mut self, receipts: &[FaultResult]) {
+        for receipt in receipts {
+            let fault = self.fault_of(&receipt.id, &receipt.kind);
+            fault.acts = false;
+            fault.firings = u64::from(receipt.firings);
+            fault.receipt = Some(receipt.clone());
         }
     }
 }
 
 /// Describes an event in a line.
 fn words(event: &Event) -> String {
-    let detail = &event.detail;
-    let text = |key: &str| detail.get(key).and_then(|value| value.as_str()).unwrap_or("?");
-    let sample = || detail.get("sample").map_or_else(|| "?".to_owned(), ToString::to_string);
-    match event.kind.as_str() {
-        "mode" => format!("mode {}", text("to")),
-        "fault" => {
-            let begins = detail.get("begins").and_then(serde_json::Value::as_bool);
-            let what = if begins == Some(true) { "sets in" } else { "ends" };
-            format!("fault {} ({}) {what}, sample {}", text("id"), text("kind"), sample())
+    match event {
+        Event::Mode { to, .. } => format!("mode {to}"),
+        Event::Fault { begins, id, kind, sample } => {
+            let what = if *begins { "sets in" } else { "ends" };
+            format!("fault {id} ({kind}) {what}, sample {sample}")
         }
-        "unit" => format!("unit: {}, sample {}", text("action"), sample()),
-        "refused" => format!("calibration refused: {}", text("reason")),
-        "error" => format!("the run broke off: {}", text("reason")),
-        "receipts" => "receipts of the faults".to_owned(),
-        "pacing" => "how time was kept".to_owned(),
-        "calibration" => "calibration concluded by the end of the stream".to_owned(),
-        kind => format!("{kind}: {detail}"),
+        Event::Unit { action, sample, .. } => format!("unit: {}, sample {sample}", action.name()),
+        Event::Refused { reason } => format!("calibration refused: {reason}"),
+        Event::Error { reason } => format!("the run broke off: {reason}"),
+        Event::Receipts(_) => "receipts of the faults".to_owned(),
+        Event::Pacing { .. } => "how time was kept".to_owned(),
+        Event::Calibration { .. } => "calibration concluded by the end of the stream".to_owned(),
+        Event::Other { kind, detail } => format!("{kind}: {detail}"),
+        Event::Bench(_) | Event::Host { .. } | Event::Link(_) | Event::Pace(_) => {
+            let stored = serde_json::to_value(event).unwrap_or_default();
+            format!("{}: {}", stored["kind"].as_str().unwrap_or_default(), stored["detail"])
+        }
     }
 }

@@ -3,6 +3,7 @@
 use super::entry::Entry;
 use super::kept::Kept;
 use crate::drive::{Books, InStep};
+use octant_recorder::event::Pace;
 use octant_recorder::{Event, RecorderError};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
@@ -55,25 +56,16 @@ fn take(entry: Entry, books: &mut Books<'_>) -> Result<(), RecorderError> {
         Entry::Unit { event, epoch } => books.unit(&event, epoch),
         Entry::Occurrence(occurrence) => books.occurrence(&occurrence),
         Entry::Broke { step_ns, broke } => books.watcher.bench_broke(step_ns, broke.to_string()),
-        Entry::Pace { frames, latest_ns, overruns, late_answers } => books.recorder.event(Event {
-            kind: "pace".to_owned(),
-            detail: serde_json::json!({
-                "frames": frames,
-                "latest_us": latest_ns as f64 / 1e3,
-                "overruns": overruns,
-                "late_answers": late_answers,
-            }),
-        }),
+        Entry::Pace { frames, latest_ns, overruns, late_answers } => {
+            let latest_us = latest_ns as f64 / 1e3;
+            books.recorder.event(Event::Pace(Pace { frames, late_answers, latest_us, overruns }));
+        }
     }
     Ok(())
 }
 
 /// Builds the event that ends the recording of a run by the clock.
 pub(crate) fn event(kept: &Kept) -> Event {
-    let pacing = serde_json::to_value(&kept.pacing).unwrap_or_default();
-    let granted = serde_json::to_value(&kept.granted).unwrap_or_default();
-    Event {
-        kind: "pacing".to_owned(),
-        detail: serde_json::json!({ "pacing": pacing, "granted": granted }),
-    }
+    let pacing = Box::new(kept.pacing.clone());
+    Event::Pacing { granted: kept.granted.clone(), pacing }
 }

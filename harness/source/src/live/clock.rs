@@ -1,7 +1,7 @@
 //! Relates the instrument's clock to the host's.
 
 use octant_instruments::align::Alignment;
-use serde_json::json;
+use octant_recorder::event::BenchClock;
 use std::time::{Duration, Instant, SystemTime};
 
 /// Host time at which the alignment starts, ns: an hour above zero, so that slightly earlier events
@@ -44,7 +44,7 @@ impl Clock {
     }
 
     /// Describes the clock relation in words and figures; `None` without stamps.
-    pub(super) fn told(&self) -> Option<(String, serde_json::Value)> {
+    pub(super) fn told(&self) -> Option<(String, BenchClock)> {
         let estimate = self.alignment.estimate()?;
         let since_ns = estimate.offset_ns - BASE_NS as f64;
         let since = Duration::from_secs_f64((since_ns.abs() * 1e-9).min(1e9));
@@ -60,16 +60,16 @@ impl Clock {
             estimate.late_mean_ns * 1e-6,
             estimate.late_sigma_ns * 1e-6,
         );
-        let figures = json!({
-            "first_stamp_ns": estimate.origin_ns,
-            "first_stamp_utc": first,
-            "skew_ppm": estimate.skew.map(|skew| skew * 1e6),
-            "span_s": estimate.span_s,
-            "late_mean_us": estimate.late_mean_ns * 1e-3,
-            "late_sigma_us": estimate.late_sigma_ns * 1e-3,
-            "stamps": estimate.readings,
-            "stamps_behind": estimate.behind,
-        });
+        let figures = BenchClock {
+            first_stamp_ns: estimate.origin_ns,
+            first_stamp_utc: first,
+            late_mean_us: estimate.late_mean_ns * 1e-3,
+            late_sigma_us: estimate.late_sigma_ns * 1e-3,
+            skew_ppm: estimate.skew.map(|skew| skew * 1e6),
+            span_s: estimate.span_s,
+            stamps: estimate.readings,
+            stamps_behind: estimate.behind,
+        };
         Some((words, figures))
     }
 }
@@ -94,9 +94,9 @@ mod tests {
         }
         assert!(worst < Duration::from_micros(1), "{worst:?}");
         let (words, figures) = clock.told().unwrap();
-        assert!((figures["skew_ppm"].as_f64().unwrap() - 100.0).abs() < 0.01, "{figures}");
-        assert!((figures["late_mean_us"].as_f64().unwrap() - 1500.0).abs() < 1.0, "{figures}");
-        assert_eq!(figures["first_stamp_ns"], 90_000);
+        assert!((figures.skew_ppm.unwrap() - 100.0).abs() < 0.01, "{figures:?}");
+        assert!((figures.late_mean_us - 1500.0).abs() < 1.0, "{figures:?}");
+        assert_eq!(figures.first_stamp_ns, 90_000);
         assert!(words.starts_with("host faster by +100.0"), "{words}");
     }
 

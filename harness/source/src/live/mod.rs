@@ -20,9 +20,9 @@ use self::table::Table;
 use super::{Epoch, Source, SourceError};
 use octant_instruments::{Sampler, Settings, Unusable};
 use octant_plant::Truth;
+use octant_recorder::event::{Bench, BenchReadings};
 use octant_sample::{GimbalCommand, Status};
 use octant_scenario::{Instrument, Scenario, Speaks};
-use serde_json::json;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
@@ -180,35 +180,33 @@ impl Source for LiveSource {
         true
     }
 
-    fn conclude(
-        &mut self,
-        broken: Option<&str>,
-    ) -> (Option<serde_json::Value>, Option<SourceError>) {
+    fn conclude(&mut self, broken: Option<&str>) -> (Option<Box<Bench>>, Option<SourceError>) {
         let table = self.table.take();
         let told = table.as_ref().map(Table::told);
         // The table is stopped before anything else is done.
         let ended = table.and_then(|table| table.end(broken).err());
         let counters = self.sampler.counters();
         let protocol = self.instrument.speaks.name();
-        let mut bench = json!({
-            "instrument": format!("{}, {protocol}", self.instrument.uri),
-            "readings": {
-                "samples": counters.samples,
-                "missing": counters.missing,
-                "behind": counters.behind,
-                "irregular": counters.irregular,
+        let (instruments_clock, clock) = self.clock.told().unzip();
+        let (table, tables_angles, turntable) = match told {
+            Some(told) => (Some(told.figures), Some(told.angles), Some(told.table)),
+            None => (None, None, None),
+        };
+        let bench = Bench {
+            clock,
+            instrument: format!("{}, {protocol}", self.instrument.uri),
+            instruments_clock,
+            readings: BenchReadings {
+                behind: counters.behind,
+                irregular: counters.irregular,
+                missing: counters.missing,
+                samples: counters.samples,
             },
-        });
-        if let Some((words, figures)) = self.clock.told() {
-            bench["instrument's clock"] = words.into();
-            bench["clock"] = figures;
-        }
-        if let Some(told) = told {
-            bench["turntable"] = told.table.into();
-            bench["table's angles"] = told.angles.into();
-            bench["table"] = told.figures;
-        }
-        (Some(bench), ended)
+            table,
+            tables_angles,
+            turntable,
+        };
+        (Some(Box::new(bench)), ended)
     }
 }
 #[cfg(test)]

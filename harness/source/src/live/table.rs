@@ -2,10 +2,10 @@
 
 use crate::SourceError;
 use octant_base::number::counted;
+use octant_recorder::event::{BenchAngles, BenchAxis, BenchTable};
 use octant_sample::{GimbalAngles, GimbalCommand};
 use octant_scenario::Drive;
 use octant_turntable::{Axis, Following};
-use serde_json::json;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
@@ -35,7 +35,7 @@ struct Ages {
 pub(super) struct Told {
     pub(super) table: String,
     pub(super) angles: String,
-    pub(super) figures: serde_json::Value,
+    pub(super) figures: BenchTable,
 }
 
 impl Table {
@@ -99,36 +99,36 @@ impl Table {
         let (drive, ages) = (&self.drive, &self.ages);
         let axis = |axis: Axis| {
             let limits = drive.settings.limits.of(axis);
-            json!({
-                "least_deg": limits.least_rad.to_degrees(),
-                "greatest_deg": limits.most_rad.to_degrees(),
-                "rate_degps": limits.rate_radps.to_degrees(),
-                "acceleration_degps2": limits.acceleration_radps2.to_degrees(),
-            })
+            BenchAxis {
+                acceleration_degps2: limits.acceleration_radps2.to_degrees(),
+                greatest_deg: limits.most_rad.to_degrees(),
+                least_deg: limits.least_rad.to_degrees(),
+                rate_degps: limits.rate_radps.to_degrees(),
+            }
         };
         let went = self.following.told();
         let seconds = |time: Option<Duration>| time.map(|time| time.as_secs_f64());
         let ms = |time: Duration| time.as_secs_f64() * 1e3;
         let mean_ms = ms(ages.sum) / ages.given.max(1) as f64;
         let stopped = self.following.stopped();
-        let figures = json!({
-            "port": drive.port,
-            "dialect": self.language,
-            "azimuth": axis(Axis::Azimuth),
-            "roll": axis(Axis::Roll),
-            "watchdog_s": seconds(drive.settings.watchdog),
-            "guard_s": seconds(drive.guard),
-            "looks": went.looks,
-            "commands": went.commands,
-            "stopped": stopped,
-            "angles": {
-                "samples": ages.given,
-                "samples_without": ages.without,
-                "age_mean_ms": mean_ms,
-                "age_max_ms": ms(ages.largest),
-                "time_within_ms": ms(ages.within),
+        let figures = BenchTable {
+            angles: BenchAngles {
+                age_max_ms: ms(ages.largest),
+                age_mean_ms: mean_ms,
+                samples: ages.given,
+                samples_without: ages.without,
+                time_within_ms: ms(ages.within),
             },
-        });
+            azimuth: axis(Axis::Azimuth),
+            commands: went.commands,
+            dialect: self.language.clone(),
+            guard_s: seconds(drive.guard),
+            looks: went.looks,
+            port: drive.port.clone(),
+            roll: axis(Axis::Roll),
+            stopped: stopped.clone(),
+            watchdog_s: seconds(drive.settings.watchdog),
+        };
         let range = |axis: Axis| {
             let limits = drive.settings.limits.of(axis);
             let (least, most) = (limits.least_rad.to_degrees(), limits.most_rad.to_degrees());
