@@ -264,7 +264,7 @@ fn imports(source: &Path) -> BTreeMap<Vec<String>, BTreeSet<Vec<String>>> {
             for name in names {
                 let mut target = at.clone();
                 target.push(name);
-                while !modules.contains_key(&target) {
+                while !target.is_empty() && !modules.contains_key(&target) {
                     target.pop();
                 }
                 takes.insert(target);
