@@ -45,7 +45,7 @@ keys! {
     }
 }
 
-/// How the initial attitude is found.
+/// Ways to the initial attitude.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum AlignmentMethod {
     Given,
@@ -142,7 +142,7 @@ pub(crate) enum Reference {
     DockPosition,
 }
 
-/// How static intervals are found.
+/// Ways to static intervals.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Intervals {
     Commanded,
