@@ -28,7 +28,7 @@ pub fn override_set(document: &mut Table, argument: &str) -> Result<(), Problem>
         fault.set_at(key, parse_argument(value, argument));
         return Ok(());
     }
-    let mut section = &SCENARIO;
+    let mut section = SCENARIO;
     let mut names = path.split('.').peekable();
     while let Some(name) = names.next() {
         let Some(key) = section.key(name) else {

@@ -2,7 +2,9 @@
 
 use super::document::{Node, Table, Value, parse_default};
 use super::error::Problem;
-use super::keys::{Default, ENDPOINT_FMU, ENDPOINT_LINK, SOURCE_FMU, SOURCE_LIVE, Section};
+use super::keys::{
+    Default, EndpointFmuKeys, Keys, LinkKeys, Section, SourceFmuKeys, SourceLiveKeys,
+};
 use super::quantity::{self, Dimension};
 
 /// Adds the defaults that depend on other keys to a document that isn't checked yet: values of a wrong
@@ -23,13 +25,14 @@ pub(crate) fn derive(document: &mut Table) {
     let (still, moving) =
         (octant_calibration::drift::LIMIT_SIGMAS, octant_calibration::drift::LIMIT_MOVING_SIGMAS);
     set(document, "screening.drift", &format!("{:?}", if dockside { moving } else { still }));
-    for (name, keys) in [("source", &SOURCE_FMU), ("endpoint", &ENDPOINT_FMU)] {
+    for (name, keys) in [("source", SourceFmuKeys::SECTION), ("endpoint", EndpointFmuKeys::SECTION)]
+    {
         if text(document, &format!("{name}.uri")).is_some_and(|uri| uri.starts_with("fmu:")) {
             fmu(document, &format!("{name}.fmu"), keys);
         }
     }
     if is_live(document) {
-        for key in ENDPOINT_LINK.keys {
+        for key in LinkKeys::SECTION.keys {
             if let Default::Value(value) = key.default {
                 set(document, &format!("endpoint.link.{}", key.name), value);
             }
@@ -39,7 +42,7 @@ pub(crate) fn derive(document: &mut Table) {
         let bus = text(document, "source.uri")
             .is_some_and(|uri| uri.starts_with("can:") || uri.starts_with("slcan:"));
         set(document, "source.live.protocol", if bus { "dbc" } else { "octant" });
-        for key in SOURCE_LIVE.keys {
+        for key in SourceLiveKeys::SECTION.keys {
             if let Default::Value(value) = key.default {
                 set(document, &format!("source.live.{}", key.name), value);
             }

@@ -68,7 +68,7 @@ impl Scenario {
         }
         derive::derive(&mut document);
         let start = Place::File { line: 1, column: 1 };
-        complete(&mut document, &keys::SCENARIO, "", &start, &mut problems);
+        complete(&mut document, keys::SCENARIO, "", &start, &mut problems);
         if problems.is_empty() {
             problems = derive::refuse_without_effect(&document);
         }

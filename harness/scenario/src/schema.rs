@@ -14,7 +14,7 @@ const QUANTITY: &str =
 /// JSON Schema (draft 2020-12) of scenario files.
 #[must_use]
 pub fn schema() -> Value {
-    let mut schema = object(&SCENARIO);
+    let mut schema = object(SCENARIO);
     if let Value::Object(root) = &mut schema {
         root.insert("$schema".into(), json!("https://json-schema.org/draft/2020-12/schema"));
         root.insert("title".into(), json!(format!("Octant scenario, version {SCHEMA}")));

@@ -14,9 +14,9 @@
 //! ```
 
 use super::complete::complete;
-use super::document::{self, Table};
+use super::document;
 use super::error::{Place, Problem, ScenarioError};
-use super::keys::SUITE;
+use super::keys::{CaseKeys, Keys, SuiteKeys};
 use super::read::Reader;
 use octant_requirements::Verdict;
 use std::path::{Path, PathBuf};
@@ -59,47 +59,40 @@ impl Suite {
         let mut document = document::parse(text).map_err(with_file)?;
         let mut problems = Vec::new();
         let start = Place::File { line: 1, column: 1 };
-        complete(&mut document, &SUITE, "", &start, &mut problems);
+        complete(&mut document, SuiteKeys::SECTION, "", &start, &mut problems);
         if !problems.is_empty() {
             return Err(with_file(problems));
         }
-        cases(&document, folder).map_err(|problem| with_file(vec![problem]))
+        let keys = SuiteKeys::of(&Reader::root(&document));
+        keys.and_then(|keys| cases(keys, folder)).map_err(|problem| with_file(vec![problem]))
     }
 }
 
-fn cases(document: &Table, folder: &Path) -> Result<Suite, Problem> {
+fn cases(keys: SuiteKeys, folder: &Path) -> Result<Suite, Problem> {
     let mut cases: Vec<Case> = Vec::new();
-    for table in Reader::root(document).tables("cases") {
-        let name = table.text("scenario")?;
-        let scenario = folder.join(name);
+    for CaseKeys { scenario: name, expect, because } in keys.cases {
+        let scenario = folder.join(&*name);
         if cases.iter().any(|case| case.scenario == scenario) {
-            let message = format!("found {name:?} a second time, expected one case a scenario");
-            return Err(table.problem("scenario", message));
+            let message = format!("found {:?} a second time, expected one case a scenario", *name);
+            return Err(name.problem(message));
         }
-        let expect = match table.text("expect")? {
-            "none" => Verdict::None,
-            "pass" => Verdict::Pass,
-            "fail" => Verdict::Fail,
-            _ => Verdict::Inconclusive,
-        };
-        let because = table.optional_text("because").map(str::to_owned);
-        match (expect, because.as_deref()) {
+        let problem = match (expect, because.as_deref()) {
             (Verdict::None | Verdict::Pass, Some(_)) => {
-                let message = "found a reason, and a pass or none needs none";
-                return Err(table.problem("because", message));
+                Some("found a reason, and a pass or none needs none")
             }
-            (Verdict::None | Verdict::Pass, None) => {}
+            (Verdict::None | Verdict::Pass, None) => None,
             (_, None) => {
-                let message =
-                    "missing, expected words that the reasons of the verdict have to contain";
-                return Err(table.problem("because", message));
+                Some("missing, expected words that the reasons of the verdict have to contain")
             }
             (_, Some(text)) if text.trim().is_empty() => {
-                return Err(table.problem("because", "found an empty text, expected words"));
+                Some("found an empty text, expected words")
             }
-            (_, Some(_)) => {}
+            (_, Some(_)) => None,
+        };
+        if let Some(message) = problem {
+            return Err(because.problem(message));
         }
-        cases.push(Case { scenario, expect, because });
+        cases.push(Case { scenario, expect, because: because.value });
     }
     Ok(Suite { cases })
 }

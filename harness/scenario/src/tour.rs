@@ -118,7 +118,7 @@ pub fn tour() -> String {
          # requirements. It runs: the instrument of Table 1 of the paper, static, four hours of\n\
          # calibration in eight positions, 24 hours of navigation, and again with six positions.\n\n",
     );
-    table(&SCENARIO, "", true, &mut out);
+    table(SCENARIO, "", true, &mut out);
     out
 }
 
@@ -429,7 +429,7 @@ mod tests {
     fn the_tour_names_every_key_of_the_table() {
         let tour = tour();
         let mut all = Vec::new();
-        paths(&SCENARIO, "", &mut all);
+        paths(SCENARIO, "", &mut all);
         assert!(all.len() > 150, "{} keys", all.len());
         for (path, _) in all {
             let (parent, name) = path.rsplit_once('.').unwrap_or(("", &path));
@@ -464,7 +464,7 @@ mod tests {
     #[test]
     fn every_example_and_every_default_passes_the_check() {
         let mut all = Vec::new();
-        paths(&SCENARIO, "", &mut all);
+        paths(SCENARIO, "", &mut all);
         // A table's example consists of those of its keys.
         all.retain(|(_, key)| key.kind.section().is_none_or(|section| section.one_of));
         for (path, key) in all {
@@ -480,7 +480,7 @@ mod tests {
         }
         let mut table = document::parse("").unwrap();
         let mut problems = Vec::new();
-        complete(&mut table, &SCENARIO, "", &Place::Default, &mut problems);
+        complete(&mut table, SCENARIO, "", &Place::Default, &mut problems);
         assert_eq!(problems.len(), 1, "the schema alone has to be given: {problems:?}");
     }
 }

@@ -54,7 +54,7 @@ impl Scenario {
         let mut out = String::from(
             "# Resolved by Octant: every default and every value drawn from the seed.\n",
         );
-        write_table(&document, &SCENARIO, "", &mut out);
+        write_table(&document, SCENARIO, "", &mut out);
         out
     }
 

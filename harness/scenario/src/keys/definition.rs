@@ -38,7 +38,7 @@ pub enum Default {
 }
 
 /// Kind of a key's values.
-#[derive(Debug)]
+#[derive(Clone, Copy, Debug)]
 pub enum Kind {
     /// Any text.
     Text,
@@ -267,10 +267,6 @@ impl Variants {
 
 pub(super) const fn section(keys: &'static [Key]) -> Section {
     Section { keys, one_of: false }
-}
-
-pub(super) const fn one_of(keys: &'static [Key]) -> Section {
-    Section { keys, one_of: true }
 }
 
 pub(super) const fn key(

@@ -1,88 +1,87 @@
 //! Keys of imported FMUs: execution, settings, and the mapping of variables.
 
 use super::definition::{Bounds, Default, Key, Kind, Section, key, section};
+use super::table::{At, Of, Raw, choice, keys, number, si, time};
 use crate::channel::{Channel, answer, case, sample, truth};
+use crate::model::{InterfaceChoice, Process};
 use crate::quantity::Dimension;
+use octant_sample::Mode;
 
-const INTERFACE: Key = key(
-    "interface",
-    Kind::Choice(&[
-        ("auto", "co-simulation where the FMU has it, else model exchange"),
-        ("co-simulation", "the FMU steps itself"),
-        ("model-exchange", "the FMU's equations are integrated by Octant"),
-    ]),
-    Default::Value("auto"),
-    "Interface type of the FMU.",
-);
-const PROCESS: Key = key(
-    "process",
-    Kind::Choice(&[
-        ("own", "in a process of its own: a crash or a hang ends the run in order"),
-        ("shared", "in Octant's own process: faster, and a crash takes Octant with it"),
-    ]),
-    Default::Value("own"),
-    "Where the FMU runs.",
-);
-const TIME_LIMIT: Key = key(
-    "time_limit",
-    Kind::Quantity(&[Dimension::TIME], Bounds::Within(1e-3, 86400.0, "from 1 ms to 24 h")),
-    Default::Derived("\"10 s\" in a process of its own; in the shared one nothing can end a call"),
-    "Wall time that one call of the FMU may take; longer, and it counts as hung.",
-);
-const TOLERANCE: Key = key(
-    "tolerance",
-    Kind::Number(Bounds::Within(1e-14, 1e-1, "from 1e-14 to 0.1")),
-    Default::Absent("that of the FMU's default experiment"),
-    "Relative tolerance of the FMU's solver, or of Octant's in model exchange.",
-);
-const PARAMETERS: Key = key(
-    "parameters",
-    Kind::Settings,
-    Default::Absent("nothing is set"),
-    "Values of the FMU's parameters, and of inputs that are held: a number is in the variable's own unit, a quantity is converted into it.",
-);
+/// Keys of every FMU.
+pub(crate) struct FmuKeys<'a> {
+    pub(crate) interface: InterfaceChoice,
+    pub(crate) process: Process,
+    pub(crate) time_limit: Option<f64>,
+    pub(crate) tolerance: Option<f64>,
+    pub(crate) parameters: Option<&'a Raw>,
+    pub(crate) map: Option<&'a Raw>,
+}
 
-pub(crate) static SOURCE_FMU: Section = section(&[
-    INTERFACE,
-    PROCESS,
-    TIME_LIMIT,
-    key(
-        "step",
-        Kind::Quantity(&[Dimension::TIME], Bounds::Positive),
-        Default::Derived("the sample period"),
-        "Communication step: a whole part of the sample period, or of a ship a multiple of it, between which its motion is interpolated.",
-    ),
-    TOLERANCE,
-    PARAMETERS,
-    key(
-        "map",
-        Kind::Table(&SOURCE_MAP),
-        Default::Absent(BY_NAME),
-        "Which variable of the FMU is what. Units are converted as the FMU's description says; a name after a minus sign is negated.",
-    ),
-]);
+/// Keys of an FMU, with those that only a source or only a core has.
+macro_rules! fmu {
+    ($(#[$attribute:meta])* $name:ident, $map:ident, [$($step:tt)*], [$($modes:tt)*]) => {
+        keys! {
+            $(#[$attribute])*
+            pub(crate) struct $name {
+                interface: InterfaceChoice = choice! {
+                        "auto" => InterfaceChoice::Auto,
+                            "co-simulation where the FMU has it, else model exchange";
+                        "co-simulation" => InterfaceChoice::CoSimulation, "the FMU steps itself";
+                        "model-exchange" => InterfaceChoice::ModelExchange,
+                            "the FMU's equations are integrated by Octant";
+                    }, "auto", "Interface type of the FMU.";
+                process: Process = choice! {
+                        "own" => Process::Own,
+                            "in a process of its own: a crash or a hang ends the run in order";
+                        "shared" => Process::Shared,
+                            "in Octant's own process: faster, and a crash takes Octant with it";
+                    }, "own", "Where the FMU runs.";
+                time_limit: Option<f64> = time(1e-3, 86400.0, "from 1 ms to 24 h"),
+                    derived("\"10 s\" in a process of its own; in the shared one nothing can end a call"),
+                    "Wall time that one call of the FMU may take; longer, and it counts as hung.";
+                $($step)*
+                tolerance: Option<f64> = number(Bounds::Within(1e-14, 1e-1, "from 1e-14 to 0.1")),
+                    absent("that of the FMU's default experiment"),
+                    "Relative tolerance of the FMU's solver, or of Octant's in model exchange.";
+                parameters: Option<Raw> = Of::<Raw>::kind(Kind::Settings), absent("nothing is set"),
+                    "Values of the FMU's parameters, and of inputs that are held: a number is in the variable's own unit, a quantity is converted into it.";
+                map: Option<Raw> = Of::<Raw>::kind(Kind::Table(&$map)), absent(BY_NAME),
+                    "Which variable of the FMU is what. Units are converted as the FMU's description says; a name after a minus sign is negated.";
+                $($modes)*
+            }
+        }
 
-pub(crate) static ENDPOINT_FMU: Section = section(&[
-    INTERFACE,
-    PROCESS,
-    TIME_LIMIT,
-    TOLERANCE,
-    PARAMETERS,
-    key(
-        "map",
-        Kind::Table(&ENDPOINT_MAP),
-        Default::Absent(BY_NAME),
-        "Which variable of the FMU is what. Units are converted as the FMU's description says; a name after a minus sign is negated.",
-    ),
-    key(
-        "modes",
-        Kind::Table(&MODES),
-        Default::Absent(
-            "0, 1, 2, 3, 4 in the order aligning, calibrating, refused, navigating, done",
-        ),
-        "Which values of the variable of map.mode mean what.",
-    ),
-]);
+        impl $name {
+            pub(crate) fn common(&self) -> FmuKeys<'_> {
+                FmuKeys {
+                    interface: self.interface,
+                    process: self.process,
+                    time_limit: self.time_limit,
+                    tolerance: self.tolerance,
+                    parameters: self.parameters.as_ref(),
+                    map: self.map.as_ref(),
+                }
+            }
+        }
+    };
+}
+
+fmu! {
+    /// `[source.fmu]`.
+    SourceFmuKeys, SOURCE_MAP, [
+        step: At<Option<f64>> = si(&[Dimension::TIME], Bounds::Positive), derived("the sample period"),
+            "Communication step: a whole part of the sample period, or of a ship a multiple of it, between which its motion is interpolated.";
+    ], []
+}
+
+fmu! {
+    /// `[endpoint.fmu]`.
+    EndpointFmuKeys, ENDPOINT_MAP, [], [
+        modes: Option<Raw> = Of::<Raw>::kind(Kind::Table(&MODES)),
+            absent("0, 1, 2, 3, 4 in the order aligning, calibrating, refused, navigating, done"),
+            "Which values of the variable of map.mode mean what.";
+    ]
+}
 
 const BY_NAME: &str = "the variable of the channel's own name, where the FMU has it";
 
@@ -221,13 +220,14 @@ static SIGMAS: Section = section(&[
 ]);
 
 static MODES: Section = section(&[
-    mode("aligning"),
-    mode("calibrating"),
-    mode("refused"),
-    mode("navigating"),
-    mode("done"),
+    mode(Mode::Aligning),
+    mode(Mode::Calibrating),
+    mode(Mode::Refused),
+    mode(Mode::Navigating),
+    mode(Mode::Done),
 ]);
 
-const fn mode(name: &'static str) -> Key {
-    key(name, Kind::Codes, Default::Absent("no value means it"), "Values that mean this mode.")
+const fn mode(mode: Mode) -> Key {
+    const DOC: &str = "Values that mean this mode.";
+    key(mode.name(), Kind::Codes, Default::Absent("no value means it"), DOC)
 }

@@ -1,462 +1,320 @@
 //! Keys of the root, the site, the motion, and the use of the results.
 
-use super::definition::{Bounds, Default, Key, Kind, SCHEMA, Section, key, section};
-use super::fmu::ENDPOINT_FMU;
-use super::link::ENDPOINT_LINK;
-use super::{calibration, faults, instrument, screening, source};
+use super::calibration::{BASELINE, ProcedureKeys};
+use super::definition::{Bounds, Kind, SCHEMA};
+use super::faults::FAULT;
+use super::fmu::EndpointFmuKeys;
+use super::instrument::{ImuKeys, TurntableKeys};
+use super::link::LinkKeys;
+use super::screening::ScreeningKeys;
+use super::source::SourceKeys;
+use super::table::{
+    At, Of, Raw, boolean, choice, integer, keys, si, si_array, table, tables, text, time, within,
+};
+use crate::model::Component;
 use crate::quantity::Dimension;
 use octant_earth::units::DEG;
+use octant_requirements::Comparison;
+use octant_requirements::decision::Rule;
 
-pub(crate) static SCENARIO: Section = section(&[
-    key("schema", Kind::Integer(SCHEMA, SCHEMA), Default::Required, "Version of the format."),
-    key("title", Kind::Text, Default::Value("untitled"), "What the run is about, in a line."),
-    key(
-        "seed",
-        Kind::Integer(0, i64::MAX),
-        Default::Value("1"),
-        "Seed of every random draw: the same seed gives the same bytes.",
-    ),
-    key("site", Kind::Table(&SITE), Default::Section, "Where the instrument stands."),
-    key("motion", Kind::Table(&MOTION), Default::Section, "How the case of the instrument moves."),
-    key(
-        "imu",
-        Kind::Table(&instrument::IMU),
-        Default::Section,
-        "The sensors and their true errors.",
-    ),
-    key("turntable", Kind::Table(&instrument::TURNTABLE), Default::Section, "The two gimbals."),
-    key(
-        "procedure",
-        Kind::Table(&calibration::PROCEDURE),
-        Default::Section,
-        "What the core does: align, calibrate, navigate.",
-    ),
-    key(
-        "screening",
-        Kind::Table(&screening::SCREENING),
-        Default::Section,
-        "Screens and gates of the core.",
-    ),
-    key(
-        "baseline",
-        Kind::Table(&calibration::BASELINE),
-        Default::Absent("no second method"),
-        "A second method, run on the same seed and noise and compared: what it does differently.",
-    ),
-    key(
-        "requirements",
-        Kind::Tables(&REQUIREMENT, 0, 1000),
-        Default::Absent("no requirement is checked"),
-        "Limits that the results have to keep.",
-    ),
-    key(
-        "equipment",
-        Kind::Tables(&EQUIPMENT, 0, 100),
-        Default::Absent("nothing is told of the bench"),
-        "Equipment of the bench with its certificates. One that has expired makes a run inconclusive.",
-    ),
-    key(
-        "decision",
-        Kind::Table(&DECISION),
-        Default::Section,
-        "What a value near its limit comes to, by how uncertain its reference is.",
-    ),
-    key(
-        "faults",
-        Kind::VariantTables(&faults::FAULT, 1000),
-        Default::Absent("no fault is injected"),
-        "Faults that are injected on the way from the instrument to the core, in the order in which \
+keys! {
+    /// A scenario.
+    pub(crate) struct ScenarioKeys {
+        #[expect(dead_code, reason = "it has one value")]
+        schema: u32 = integer(SCHEMA, SCHEMA), required, "Version of the format.";
+        title: String = text(), "untitled", "What the run is about, in a line.";
+        seed: u64 = integer(0, i64::MAX), "1",
+            "Seed of every random draw: the same seed gives the same bytes.";
+        site: SiteKeys = table(), section, "Where the instrument stands.";
+        motion: MotionKeys = table(), section, "How the case of the instrument moves.";
+        imu: ImuKeys = table(), section, "The sensors and their true errors.";
+        turntable: TurntableKeys = table(), section, "The two gimbals.";
+        procedure: ProcedureKeys = table(), section,
+            "What the core does: align, calibrate, navigate.";
+        screening: ScreeningKeys = table(), section,
+            "Screens and gates of the core.";
+        baseline: At<Option<Raw>> = Of::<Raw>::kind(Kind::Table(&BASELINE)), absent("no second method"),
+            "A second method, run on the same seed and noise and compared: what it does differently.";
+        requirements: Option<Vec<RequirementKeys>>
+            = tables::<RequirementKeys>(0, 1000), absent("no requirement is checked"),
+            "Limits that the results have to keep.";
+        equipment: Option<Vec<EquipmentKeys>>
+            = tables::<EquipmentKeys>(0, 100), absent("nothing is told of the bench"),
+            "Equipment of the bench with its certificates. One that has expired makes a run inconclusive.";
+        decision: DecisionKeys = table(), section,
+            "What a value near its limit comes to, by how uncertain its reference is.";
+        faults: At<Option<Vec<Raw>>>
+            = Of::<Vec<Raw>>::kind(Kind::VariantTables(&FAULT, 1000)), absent("no fault is injected"),
+            "Faults that are injected on the way from the instrument to the core, in the order in which \
          they act. Beside the keys that all have there are those of the kind: `octant faults list` \
-         names all kinds, `octant faults describe KIND` tells what one does and takes.",
-    ),
-    key("record", Kind::Table(&RECORD), Default::Section, "What is recorded, and how often."),
-    key("source", Kind::Table(&source::SOURCE), Default::Section, "Where the samples come from."),
-    key("endpoint", Kind::Table(&ENDPOINT), Default::Section, "Where the core runs."),
-    key(
-        "realtime",
-        Kind::Table(&REALTIME),
-        Default::Section,
-        "Whether the run goes by the clock, how, and what makes it too late.",
-    ),
-]);
-
-static SITE: Section = section(&[
-    key(
-        "latitude",
-        Kind::Quantity(
-            &[Dimension::ANGLE],
-            Bounds::Within(
-                -89.3 * DEG,
-                89.3 * DEG,
-                "within ±89.3 deg: at the poles east has no direction",
-            ),
-        ),
-        Default::Value("30.5 deg"),
-        "Geodetic latitude, north positive.",
-    ),
-    key(
-        "longitude",
-        Kind::Quantity(
-            &[Dimension::ANGLE],
-            Bounds::Within(-180.0 * DEG, 180.0 * DEG, "within ±180 deg"),
-        ),
-        Default::Value("114.4 deg"),
-        "Longitude, east positive.",
-    ),
-    key(
-        "height",
-        Kind::Quantity(&[Dimension::LENGTH], Bounds::Within(-10e3, 100e3, "from -10 km to 100 km")),
-        Default::Value("0 m"),
-        "Height above the ellipsoid.",
-    ),
-]);
-
-static MOTION: Section = section(&[
-    key(
-        "kind",
-        Kind::Choice(&[
-            ("static", "fixed to the ground"),
-            ("dockside", "on a moored ship that sways"),
-        ]),
-        Default::Value("static"),
-        "Whether the case stands still.",
-    ),
-    key(
-        "heading",
-        angle(180.0, "within ±180 deg"),
-        Default::Value("0 deg"),
-        "Mean heading of the case, from north over east.",
-    ),
-    key(
-        "pitch",
-        angle(85.0, "within ±85 deg"),
-        Default::Value("0 deg"),
-        "Mean pitch of the case, bow up positive.",
-    ),
-    key(
-        "roll",
-        angle(180.0, "within ±180 deg"),
-        Default::Value("0 deg"),
-        "Mean roll of the case, starboard down positive.",
-    ),
-    key(
-        "ship",
-        Kind::Table(&SHIP),
-        Default::Derived("dockside: the default sway; static: none"),
-        "Motion of the moored ship about the mean attitude and position.",
-    ),
-]);
-
-const fn angle(limit_deg: f64, words: &'static str) -> Kind {
-    // The slice is a named constant because a static can't borrow a temporary array through a function.
-    const ANGLE: &[Dimension] = &[Dimension::ANGLE];
-    Kind::Quantity(ANGLE, Bounds::Within(-limit_deg * DEG, limit_deg * DEG, words))
+         names all kinds, `octant faults describe KIND` tells what one does and takes.";
+        record: RecordKeys = table(), section, "What is recorded, and how often.";
+        source: SourceKeys = table(), section, "Where the samples come from.";
+        endpoint: EndpointKeys = table(), section, "Where the core runs.";
+        realtime: RealtimeKeys = table(), section,
+            "Whether the run goes by the clock, how, and what makes it too late.";
+    }
 }
 
-static SHIP: Section = section(&[
-    key(
-        "preset",
-        Kind::Choice(&[
-            (
-                "default",
-                "roll 3°/8 s, pitch 1.5°/6 s, yaw 1°/10 s; surge, sway, heave 0.2 m at 6, 7, 8 s",
-            ),
-            (
-                "severe",
-                "roll 5°/10 s, pitch 5°/8 s, yaw 1°/12 s; surge and sway 0.25 m at 8.5 and 8 s, heave 0.3 m/8 s: horizontal acceleration up to 0.22 m/s², the dynamic condition of ISO 8728",
-            ),
-            ("calm", "no motion but the components listed"),
-        ]),
-        Default::Derived("\"default\", or \"calm\" when components or a spectrum are given"),
-        "Ready-made motion; components that are given replace those of the preset.",
-    ),
-    key(
-        "roll",
-        ANGULAR,
-        Default::Absent("as in the preset"),
-        "Roll of the ship: a sum of sinusoids.",
-    ),
-    key("pitch", ANGULAR, Default::Absent("as in the preset"), "Pitch of the ship."),
-    key("yaw", ANGULAR, Default::Absent("as in the preset"), "Yaw of the ship."),
-    key("surge", LINEAR, Default::Absent("as in the preset"), "Motion along the mean heading."),
-    key(
-        "sway",
-        LINEAR,
-        Default::Absent("as in the preset"),
-        "Motion to starboard of the mean heading.",
-    ),
-    key("heave", LINEAR, Default::Absent("as in the preset"), "Vertical motion, positive down."),
-    key(
-        "spectrum",
-        Kind::Table(&SPECTRUM),
-        Default::Absent("sinusoids alone"),
-        "Irregular sea: sinusoids of a Pierson-Moskowitz spectrum are added, with frequencies and phases drawn from the seed.",
-    ),
-    key(
-        "mooring_offset",
-        Kind::Quantities(Dimension::LENGTH, 3),
-        Default::Value("[\"0 m\", \"0 m\", \"0 m\"]"),
-        "Constant offset from the dock's reference position: north, east, down.",
-    ),
-]);
+keys! {
+    /// `[site]`.
+    pub(crate) struct SiteKeys {
+        latitude: f64
+            = within(&[Dimension::ANGLE], -89.3 * DEG, 89.3 * DEG, "within ±89.3 deg: at the poles east has no direction"),
+            "30.5 deg",
+            "Geodetic latitude, north positive.";
+        longitude: f64
+            = within(&[Dimension::ANGLE], -180.0 * DEG, 180.0 * DEG, "within ±180 deg"),
+            "114.4 deg",
+            "Longitude, east positive.";
+        height: f64 = within(&[Dimension::LENGTH], -10e3, 100e3, "from -10 km to 100 km"), "0 m",
+            "Height above the ellipsoid.";
+    }
+}
 
-const ANGULAR: Kind = Kind::Tables(&ANGULAR_COMPONENT, 0, 64);
-const LINEAR: Kind = Kind::Tables(&LINEAR_COMPONENT, 0, 64);
+keys! {
+    /// `[motion]`.
+    pub(crate) struct MotionKeys {
+        kind: MotionKind = choice! {
+                "static" => MotionKind::Static, "fixed to the ground";
+                "dockside" => MotionKind::Dockside, "on a moored ship that sways";
+            }, "static",
+            "Whether the case stands still.";
+        heading: f64 = angle(180.0, "within ±180 deg"), "0 deg",
+            "Mean heading of the case, from north over east.";
+        pitch: f64 = angle(85.0, "within ±85 deg"), "0 deg",
+            "Mean pitch of the case, bow up positive.";
+        roll: f64 = angle(180.0, "within ±180 deg"), "0 deg",
+            "Mean roll of the case, starboard down positive.";
+        ship: Option<ShipKeys>
+            = table::<ShipKeys>(), derived("dockside: the default sway; static: none"),
+            "Motion of the moored ship about the mean attitude and position.";
+    }
+}
 
-static ANGULAR_COMPONENT: Section = section(&[
-    key(
-        "amplitude",
-        Kind::Quantity(&[Dimension::ANGLE], Bounds::Within(0.0, 45.0 * DEG, "from 0 to 45 deg")),
-        Default::Required,
-        "Amplitude.",
-    ),
-    PERIOD,
-    PHASE,
-]);
+const fn angle(limit_deg: f64, words: &'static str) -> Of<f64> {
+    within(&[Dimension::ANGLE], -limit_deg * DEG, limit_deg * DEG, words)
+}
 
-static LINEAR_COMPONENT: Section = section(&[
-    key(
-        "amplitude",
-        Kind::Quantity(&[Dimension::LENGTH], Bounds::Within(0.0, 100.0, "from 0 to 100 m")),
-        Default::Required,
-        "Amplitude.",
-    ),
-    PERIOD,
-    PHASE,
-]);
+/// Motion of the case.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum MotionKind {
+    Static,
+    Dockside,
+}
 
-const PERIOD: Key = key(
-    "period",
-    Kind::Quantity(&[Dimension::TIME], Bounds::Within(0.5, 86400.0, "from 0.5 s to 24 h")),
-    Default::Required,
-    "Period.",
-);
-const PHASE: Key = key(
-    "phase",
-    Kind::Quantity(&[Dimension::ANGLE], Bounds::Any),
-    Default::Absent("drawn from the seed"),
-    "Phase at time 0 of amplitude · sin(2π t / period + phase).",
-);
+/// Amplitude (deg or m) and period (s) of each motion of a preset; `None`: no motion.
+type Preset = Option<[(f64, f64); 6]>;
 
-static SPECTRUM: Section = section(&[
-    key(
-        "peak_period",
-        Kind::Quantity(&[Dimension::TIME], Bounds::Within(1.0, 60.0, "from 1 s to 60 s")),
-        Default::Required,
-        "Period at which the spectrum has its peak.",
-    ),
-    key(
-        "components",
-        Kind::Integer(2, 64),
-        Default::Value("16"),
-        "Sinusoids of each motion, spread over frequency.",
-    ),
-    key("roll", RMS_ANGLE, Default::Value("0 deg"), "Root mean square of roll."),
-    key("pitch", RMS_ANGLE, Default::Value("0 deg"), "Root mean square of pitch."),
-    key("yaw", RMS_ANGLE, Default::Value("0 deg"), "Root mean square of yaw."),
-    key("surge", RMS_LENGTH, Default::Value("0 m"), "Root mean square of surge."),
-    key("sway", RMS_LENGTH, Default::Value("0 m"), "Root mean square of sway."),
-    key("heave", RMS_LENGTH, Default::Value("0 m"), "Root mean square of heave."),
-]);
+const DEFAULT_SWAY: Preset =
+    Some([(3.0, 8.0), (1.5, 6.0), (1.0, 10.0), (0.2, 6.0), (0.2, 7.0), (0.2, 8.0)]);
+/// The dynamic condition of ISO 8728: harmonic roll and pitch of 5°, horizontal acceleration up to
+/// 0.22 m/s², periods from 6 to 15 s.
+const SEVERE_SWAY: Preset =
+    Some([(5.0, 10.0), (5.0, 8.0), (1.0, 12.0), (0.25, 8.5), (0.25, 8.0), (0.3, 8.0)]);
 
-const RMS_ANGLE: Kind =
-    Kind::Quantity(&[Dimension::ANGLE], Bounds::Within(0.0, 20.0 * DEG, "from 0 to 20 deg"));
-const RMS_LENGTH: Kind =
-    Kind::Quantity(&[Dimension::LENGTH], Bounds::Within(0.0, 50.0, "from 0 to 50 m"));
+keys! {
+    /// `[motion.ship]`.
+    pub(crate) struct ShipKeys {
+        preset: Preset = choice! {
+                "default" => DEFAULT_SWAY,
+                    "roll 3°/8 s, pitch 1.5°/6 s, yaw 1°/10 s; surge, sway, heave 0.2 m at 6, 7, 8 s";
+                "severe" => SEVERE_SWAY,
+                    "roll 5°/10 s, pitch 5°/8 s, yaw 1°/12 s; surge and sway 0.25 m at 8.5 and 8 s, heave 0.3 m/8 s: horizontal acceleration up to 0.22 m/s², the dynamic condition of ISO 8728";
+                "calm" => None, "no motion but the components listed";
+            }, derived("\"default\", or \"calm\" when components or a spectrum are given"),
+            "Ready-made motion; components that are given replace those of the preset.";
+        roll: Option<Vec<AngularKeys>> = tables(0, 64), absent("as in the preset"),
+            "Roll of the ship: a sum of sinusoids.";
+        pitch: Option<Vec<AngularKeys>> = tables(0, 64), absent("as in the preset"), "Pitch of the ship.";
+        yaw: Option<Vec<AngularKeys>> = tables(0, 64), absent("as in the preset"), "Yaw of the ship.";
+        surge: Option<Vec<LinearKeys>> = tables(0, 64), absent("as in the preset"),
+            "Motion along the mean heading.";
+        sway: Option<Vec<LinearKeys>> = tables(0, 64), absent("as in the preset"),
+            "Motion to starboard of the mean heading.";
+        heave: Option<Vec<LinearKeys>> = tables(0, 64), absent("as in the preset"),
+            "Vertical motion, positive down.";
+        spectrum: Option<SpectrumKeys> = table::<SpectrumKeys>(), absent("sinusoids alone"),
+            "Irregular sea: sinusoids of a Pierson-Moskowitz spectrum are added, with frequencies and phases drawn from the seed.";
+        mooring_offset: [f64; 3] = si_array(Dimension::LENGTH), "[\"0 m\", \"0 m\", \"0 m\"]",
+            "Constant offset from the dock's reference position: north, east, down.";
+    }
+}
 
-static DECISION: Section = section(&[
-    key(
-        "rule",
-        Kind::Choice(&[
-            ("guard-band", "within the uncertainty of its limit it is inconclusive"),
-            ("simple-acceptance", "it is held against its limit as it is"),
-        ]),
-        Default::Absent("guard-band; of simulated truth the band is zero"),
-        "What a value comes to that its reference can't tell from its limit (JCGM 106).",
-    ),
-    key(
-        "position",
-        Kind::Quantity(&[Dimension::LENGTH], Bounds::NotNegative),
-        Default::Absent("not stated: exact where it is simulated"),
-        "Expanded uncertainty (95 %) of the reference position, in each direction.",
-    ),
-    key(
-        "uncertainties",
-        Kind::Tables(&UNCERTAINTY, 0, 1000),
-        Default::Absent("none is stated"),
-        "Expanded uncertainties (95 %) of what single measures are held against, such as a turntable.",
-    ),
-]);
+macro_rules! component {
+    ($name:ident, $amplitude:expr) => {
+        keys! {
+            /// A sinusoid.
+            pub(crate) struct $name {
+                amplitude: f64 = $amplitude, required, "Amplitude.";
+                period: f64 = time(0.5, 86400.0, "from 0.5 s to 24 h"), required, "Period.";
+                phase: Option<f64> = si(&[Dimension::ANGLE], Bounds::Any),
+                    absent("drawn from the seed"),
+                    "Phase at time 0 of amplitude · sin(2π t / period + phase).";
+            }
+        }
 
-static EQUIPMENT: Section = section(&[
-    key("name", Kind::Text, Default::Required, "What it is: a turntable, a reference, a counter."),
-    key("serial", Kind::Text, Default::Absent("not told"), "Its serial number."),
-    key("certificate", Kind::Text, Default::Required, "Number of its certificate of calibration."),
-    key(
-        "expires",
-        Kind::Text,
-        Default::Required,
-        "The last day on which the certificate holds, UTC, such as 2027-03-31.",
-    ),
-]);
+        impl From<&$name> for Component {
+            fn from(keys: &$name) -> Self {
+                let $name { amplitude, period: period_s, phase: phase_rad } = *keys;
+                Self { amplitude, period_s, phase_rad }
+            }
+        }
+    };
+}
+component!(AngularKeys, within(&[Dimension::ANGLE], 0.0, 45.0 * DEG, "from 0 to 45 deg"));
+component!(LinearKeys, within(&[Dimension::LENGTH], 0.0, 100.0, "from 0 to 100 m"));
 
-static UNCERTAINTY: Section = section(&[
-    key(
-        "measure",
-        Kind::Text,
-        Default::Required,
-        "The measure, as in a requirement, without bars.",
-    ),
-    key(
-        "uncertainty",
-        Kind::Limit,
-        Default::Required,
-        "Its uncertainty: a quantity, or a number in the measure's unit.",
-    ),
-]);
+keys! {
+    /// `[motion.ship.spectrum]`.
+    pub(crate) struct SpectrumKeys {
+        peak_period: f64 = time(1.0, 60.0, "from 1 s to 60 s"), required,
+            "Period at which the spectrum has its peak.";
+        components: u32 = integer(2, 64), "16", "Sinusoids of each motion, spread over frequency.";
+        roll: f64 = rms_angle(), "0 deg", "Root mean square of roll.";
+        pitch: f64 = rms_angle(), "0 deg", "Root mean square of pitch.";
+        yaw: f64 = rms_angle(), "0 deg", "Root mean square of yaw.";
+        surge: f64 = rms_length(), "0 m", "Root mean square of surge.";
+        sway: f64 = rms_length(), "0 m", "Root mean square of sway.";
+        heave: f64 = rms_length(), "0 m", "Root mean square of heave.";
+    }
+}
 
-static REQUIREMENT: Section = section(&[
-    key("id", Kind::Text, Default::Required, "Identifier, unique in the scenario."),
-    key("text", Kind::Text, Default::Required, "What is required, as a sentence."),
-    key(
-        "measure",
-        Kind::Text,
-        Default::Required,
-        "What is compared: a dotted path into summary.json, such as navigation.longitude_error_arcmin.max.",
-    ),
-    key(
-        "limit",
-        Kind::Limit,
-        Default::Required,
-        "The limit: a quantity, or a number in the measure's unit.",
-    ),
-    key(
-        "comparison",
-        Kind::Choice(&[
-            ("<=", "at most the limit"),
-            ("<", "below the limit"),
-            (">=", "at least the limit"),
-            (">", "above the limit"),
-        ]),
-        Default::Value("<="),
-        "How the measure is compared with the limit.",
-    ),
-    key(
-        "clause",
-        Kind::Text,
-        Default::Absent("none"),
-        "Where the requirement comes from: document and clause.",
-    ),
-]);
+const fn rms_angle() -> Of<f64> {
+    within(&[Dimension::ANGLE], 0.0, 20.0 * DEG, "from 0 to 20 deg")
+}
 
-static RECORD: Section = section(&[
-    key(
-        "rate",
-        Kind::Quantity(&[Dimension::FREQUENCY], Bounds::Positive),
-        Default::Value("1 Hz"),
-        "Rate of truth, output and decimated samples; a whole number of samples apart.",
-    ),
-    key(
-        "samples",
-        Kind::Choice(&[
-            ("decimated", "samples at the record rate"),
-            ("full", "every sample: can be replayed"),
-        ]),
-        Default::Value("decimated"),
-        "Which samples are kept.",
-    ),
-    key(
-        "parameters",
-        Kind::Quantity(&[Dimension::TIME], Bounds::Positive),
-        Default::Value("10 s"),
-        "Shortest time between two records of the estimated parameters.",
-    ),
-]);
+const fn rms_length() -> Of<f64> {
+    within(&[Dimension::LENGTH], 0.0, 50.0, "from 0 to 50 m")
+}
 
-static REALTIME: Section = section(&[
-    key(
-        "pace",
-        Kind::Choice(&[
-            ("free", "as fast as it goes"),
-            ("clock", "a sample leaves when its time has come; `octant run --realtime`"),
-        ]),
-        Default::Value("free"),
-        "What a run goes by. What is computed is the same.",
-    ),
-    key(
-        "overrun",
-        Kind::Quantity(&[Dimension::TIME], Bounds::Positive),
-        Default::Value("1 ms"),
-        "A sample that leaves later than this is an overrun.",
-    ),
-    key(
-        "overruns",
-        Kind::Integer(0, i64::MAX),
-        Default::Value("0"),
-        "Overruns that are allowed; beyond, the run is inconclusive.",
-    ),
-    key(
-        "lateness_p99",
-        Kind::Quantity(&[Dimension::TIME], Bounds::Positive),
-        Default::Absent("no limit"),
-        "Largest lateness of 99 % of the samples; beyond, the run is inconclusive.",
-    ),
-    key(
-        "late_answers",
-        Kind::Integer(0, i64::MAX),
-        Default::Value("0"),
-        "Periods that may end without their answer; beyond, the run is inconclusive.",
-    ),
-    key(
-        "silence",
-        Kind::Quantity(&[Dimension::TIME], Bounds::Positive),
-        Default::Value("1 s"),
-        "An endpoint that owes an answer for longer is gone, which ends the run.",
-    ),
-    key(
-        "priority",
-        Kind::Integer(0, 99),
-        Default::Value("80"),
-        "Priority of SCHED_FIFO that the thread of the samples asks for; 0: none.",
-    ),
-    key(
-        "cpu",
-        Kind::Integer(0, 1023),
-        Default::Absent("any"),
-        "The only processor that the thread of the samples runs on.",
-    ),
-    key(
-        "lock_memory",
-        Kind::Boolean,
-        Default::Value("true"),
-        "All memory of the program stays in place.",
-    ),
-    key(
-        "spin",
-        Kind::Quantity(&[Dimension::TIME], Bounds::NotNegative),
-        Default::Value("0 s"),
-        "The last part of each wait that is spent looking at the clock, where a real-time priority \
-         was granted.",
-    ),
-]);
+keys! {
+    /// `[decision]`.
+    pub(crate) struct DecisionKeys {
+        rule: Option<Rule> = choice! {
+                "guard-band" => Rule::GuardBand, "within the uncertainty of its limit it is inconclusive";
+                "simple-acceptance" => Rule::SimpleAcceptance, "it is held against its limit as it is";
+            }, absent("guard-band; of simulated truth the band is zero"),
+            "What a value comes to that its reference can't tell from its limit (JCGM 106).";
+        position: Option<f64>
+            = si(&[Dimension::LENGTH], Bounds::NotNegative),
+            absent("not stated: exact where it is simulated"),
+            "Expanded uncertainty (95 %) of the reference position, in each direction.";
+        uncertainties: Option<Vec<UncertaintyKeys>>
+            = tables::<UncertaintyKeys>(0, 1000), absent("none is stated"),
+            "Expanded uncertainties (95 %) of what single measures are held against, such as a turntable.";
+    }
+}
 
-static ENDPOINT: Section = section(&[
-    key(
-        "uri",
-        Kind::Uri(&crate::choices::ENDPOINTS),
-        Default::Value("in-process"),
-        "Where the core runs. A file name is relative to the scenario, and may start with ${OCTANT_RECORDINGS}.",
-    ),
-    key(
-        "fmu",
-        Kind::Table(&ENDPOINT_FMU),
-        Default::Derived("fmu: the defaults of its keys"),
-        "How the FMU of endpoint.uri is run, and what its variables are.",
-    ),
-    key(
-        "link",
-        Kind::Table(&ENDPOINT_LINK),
-        Default::Derived("with a device: the defaults of its keys"),
-        "What is waited for how long, of the device at endpoint.uri.",
-    ),
-]);
+keys! {
+    /// One of `[[equipment]]`.
+    pub(crate) struct EquipmentKeys {
+        name: At<String> = text(), required, "What it is: a turntable, a reference, a counter.";
+        serial: Option<String> = text(), absent("not told"), "Its serial number.";
+        certificate: At<String> = text(), required, "Number of its certificate of calibration.";
+        expires: At<String> = text(), required,
+            "The last day on which the certificate holds, UTC, such as 2027-03-31.";
+    }
+}
+
+keys! {
+    /// One of the uncertainties of `[decision]`.
+    pub(crate) struct UncertaintyKeys {
+        measure: At<String> = text(), required, "The measure, as in a requirement, without bars.";
+        uncertainty: At<f64> = Of::<f64>::kind(Kind::Limit), required,
+            "Its uncertainty: a quantity, or a number in the measure's unit.";
+    }
+}
+
+keys! {
+    /// One of `[[requirements]]`.
+    pub(crate) struct RequirementKeys {
+        id: At<String> = text(), required, "Identifier, unique in the scenario.";
+        text: String = text(), required, "What is required, as a sentence.";
+        measure: At<String> = text(), required,
+            "What is compared: a dotted path into summary.json, such as navigation.longitude_error_arcmin.max.";
+        limit: At<f64> = Of::<f64>::kind(Kind::Limit), required,
+            "The limit: a quantity, or a number in the measure's unit.";
+        comparison: Comparison = choice! {
+                "<=" => Comparison::AtMost, "at most the limit";
+                "<" => Comparison::Below, "below the limit";
+                ">=" => Comparison::AtLeast, "at least the limit";
+                ">" => Comparison::Above, "above the limit";
+            }, "<=",
+            "How the measure is compared with the limit.";
+        clause: Option<String> = text(), absent("none"),
+            "Where the requirement comes from: document and clause.";
+    }
+}
+
+keys! {
+    /// `[record]`.
+    pub(crate) struct RecordKeys {
+        rate: At<f64> = si(&[Dimension::FREQUENCY], Bounds::Positive), "1 Hz",
+            "Rate of truth, output and decimated samples; a whole number of samples apart.";
+        samples: bool = choice! {
+                "decimated" => false, "samples at the record rate";
+                "full" => true, "every sample: can be replayed";
+            }, "decimated",
+            "Which samples are kept.";
+        parameters: f64 = si(&[Dimension::TIME], Bounds::Positive), "10 s",
+            "Shortest time between two records of the estimated parameters.";
+    }
+}
+
+keys! {
+    /// `[realtime]`.
+    pub(crate) struct RealtimeKeys {
+        pace: At<bool> = choice! {
+                "free" => false, "as fast as it goes";
+                "clock" => true, "a sample leaves when its time has come; `octant run --realtime`";
+            }, "free",
+            "What a run goes by. What is computed is the same.";
+        overrun: f64 = si(&[Dimension::TIME], Bounds::Positive), "1 ms",
+            "A sample that leaves later than this is an overrun.";
+        overruns: u64 = integer(0, i64::MAX), "0",
+            "Overruns that are allowed; beyond, the run is inconclusive.";
+        lateness_p99: Option<f64> = si(&[Dimension::TIME], Bounds::Positive), absent("no limit"),
+            "Largest lateness of 99 % of the samples; beyond, the run is inconclusive.";
+        late_answers: u64 = integer(0, i64::MAX), "0",
+            "Periods that may end without their answer; beyond, the run is inconclusive.";
+        silence: f64 = si(&[Dimension::TIME], Bounds::Positive), "1 s",
+            "An endpoint that owes an answer for longer is gone, which ends the run.";
+        priority: u8 = integer(0, 99), "80",
+            "Priority of SCHED_FIFO that the thread of the samples asks for; 0: none.";
+        cpu: Option<u16> = integer::<u16>(0, 1023), absent("any"),
+            "The only processor that the thread of the samples runs on.";
+        lock_memory: bool = boolean(), "true", "All memory of the program stays in place.";
+        spin: f64 = si(&[Dimension::TIME], Bounds::NotNegative), "0 s",
+            "The last part of each wait that is spent looking at the clock, where a real-time priority \
+         was granted.";
+    }
+}
+
+keys! {
+    /// `[endpoint]`.
+    pub(crate) struct EndpointKeys {
+        uri: At<String> = Of::<String>::kind(Kind::Uri(&crate::choices::ENDPOINTS)), "in-process",
+            "Where the core runs. A file name is relative to the scenario, and may start with ${OCTANT_RECORDINGS}.";
+        fmu: Option<EndpointFmuKeys>
+            = table::<EndpointFmuKeys>(), derived("fmu: the defaults of its keys"),
+            "How the FMU of endpoint.uri is run, and what its variables are.";
+        link: Option<LinkKeys>
+            = table::<LinkKeys>(), derived("with a device: the defaults of its keys"),
+            "What is waited for how long, of the device at endpoint.uri.";
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_severe_preset_keeps_the_horizontal_acceleration_of_iso_8728() {
+        let acceleration =
+            |(amplitude, period): (f64, f64)| amplitude * (std::f64::consts::TAU / period).powi(2);
+        let [.., surge, sway, _] = SEVERE_SWAY.unwrap();
+        let horizontal = acceleration(surge).hypot(acceleration(sway));
+        assert!((0.19..=0.22).contains(&horizontal), "{horizontal} m/s²");
+    }
+}

@@ -1,107 +1,62 @@
 //! Keys of the screening.
 
-use super::definition::{Bounds, Default, Kind, Section, key, section};
+use super::definition::{Bounds, Kind};
+use super::table::{Of, choice, integer, keys, number, or_text, si};
 use crate::quantity::Dimension;
 
-pub(crate) static SCREENING: Section = section(&[
-    key(
-        "gate",
-        Kind::Either(&[Kind::Choice(&[("off", "every measurement is used")]), Kind::Table(&GATE)]),
-        Default::Value("{}"),
-        "Innovation gate.",
-    ),
-    key(
-        "stuck_samples",
-        Kind::Either(&[Kind::Choice(&[("off", "no test")]), Kind::Integer(2, 1_000_000)]),
-        Default::Value("8"),
-        "Identical counts in a row that make a channel stuck.",
-    ),
-    key(
-        "jumps",
-        ON_OFF,
-        Default::Derived("recordings as text: \"off\"; else \"on\""),
-        "Samples that jump as no motion of turntable and base can are not believed.",
-    ),
-    key(
-        "bridging",
-        ON_OFF,
-        Default::Value("on"),
-        "Samples missing, invalid, stuck or not believed are bridged by what is known of the motion; \
-         off: used as they are.",
-    ),
-    key(
-        "gimbals",
-        ON_OFF,
-        Default::Value("on"),
-        "Turns by gyros and by encoders are compared, and encoders with the set point.",
-    ),
-    key(
-        "drift",
-        Kind::Either(&[Kind::Choice(&[("off", "no test")]), Kind::Number(Bounds::Positive)]),
-        Default::Derived("static: 6; dockside: 8"),
-        "Correction of a parameter over a stretch of the calibration, in its standard deviations, \
-         above which the calibration is refused.",
-    ),
-    key(
-        "checkpoints",
-        ON_OFF,
-        Default::Value("on"),
-        "A recovery goes back to the parameters of one to two minutes before it.",
-    ),
-    key(
-        "aiding_stamps",
-        ON_OFF,
-        Default::Value("on"),
-        "Aiding that doesn't carry the stamp of its sample is not used.",
-    ),
-]);
+keys! {
+    /// `[screening]`.
+    pub(crate) struct ScreeningKeys {
+        gate: Option<GateKeys>
+            = or_text!("off", "every measurement is used", Kind::Table(GateKeys::SECTION)), "{}",
+            "Innovation gate.";
+        stuck_samples: Option<u32> = or_text!("off", "no test", Kind::Integer(2, 1_000_000)), "8",
+            "Identical counts in a row that make a channel stuck.";
+        jumps: bool = on_off(), derived("recordings as text: \"off\"; else \"on\""),
+            "Samples that jump as no motion of turntable and base can are not believed.";
+        bridging: bool = on_off(), "on",
+            "Samples missing, invalid, stuck or not believed are bridged by what is known of the motion; \
+             off: used as they are.";
+        gimbals: bool = on_off(), "on",
+            "Turns by gyros and by encoders are compared, and encoders with the set point.";
+        drift: Option<f64> = or_text!("off", "no test", Kind::Number(Bounds::Positive)),
+            derived("static: 6; dockside: 8"),
+            "Correction of a parameter over a stretch of the calibration, in its standard deviations, \
+             above which the calibration is refused.";
+        checkpoints: bool = on_off(), "on",
+            "A recovery goes back to the parameters of one to two minutes before it.";
+        aiding_stamps: bool = on_off(), "on",
+            "Aiding that doesn't carry the stamp of its sample is not used.";
+    }
+}
 
-const ON_OFF: Kind = Kind::Choice(&[("on", "done"), ("off", "not done")]);
+const fn on_off() -> Of<bool> {
+    choice! { "on" => true, "done"; "off" => false, "not done"; }
+}
 
-static GATE: Section = section(&[
-    key(
-        "nis",
-        Kind::Number(Bounds::Positive),
-        Default::Value("36.0"),
-        "Normalized innovation squared (three axes) above which a measurement is rejected.",
-    ),
-    key(
-        "rejections",
-        Kind::Integer(1, 1_000_000),
-        Default::Value("5"),
-        "Rejections in a row that start a recovery.",
-    ),
-    key(
-        "recovery",
-        Kind::Either(&[
-            Kind::Choice(&[(
+keys! {
+    /// `[screening.gate]`.
+    pub(crate) struct GateKeys {
+        nis: f64 = number(Bounds::Positive), "36.0",
+            "Normalized innovation squared (three axes) above which a measurement is rejected.";
+        rejections: u32 = integer(1, 1_000_000), "5", "Rejections in a row that start a recovery.";
+        recovery: Option<ResetKeys> = or_text!(
                 "widening",
                 "attitude, velocity, position re-open as wide as the innovation says",
-            )]),
-            Kind::Table(&RESET),
-        ]),
-        Default::Value("widening"),
-        "What a recovery does: widening, or a reset to given standard deviations.",
-    ),
-]);
+                Kind::Table(ResetKeys::SECTION)
+            ), "widening",
+            "What a recovery does: widening, or a reset to given standard deviations.";
+    }
+}
 
-static RESET: Section = section(&[
-    key(
-        "attitude",
-        Kind::Quantity(&[Dimension::SMALL_ANGLE], Bounds::Positive),
-        Default::Value("600 arcsec"),
-        "Attitude after a reset.",
-    ),
-    key(
-        "velocity",
-        Kind::Quantity(&[Dimension::VELOCITY], Bounds::Positive),
-        Default::Value("1 m/s"),
-        "Velocity after a reset.",
-    ),
-    key(
-        "position",
-        Kind::Quantity(&[Dimension::LENGTH], Bounds::Positive),
-        Default::Value("10 m"),
-        "Position after a reset.",
-    ),
-]);
+keys! {
+    /// `[screening.gate.recovery]`.
+    pub(crate) struct ResetKeys {
+        attitude: f64 = si(&[Dimension::SMALL_ANGLE], Bounds::Positive), "600 arcsec",
+            "Attitude after a reset.";
+        velocity: f64 = si(&[Dimension::VELOCITY], Bounds::Positive), "1 m/s",
+            "Velocity after a reset.";
+        position: f64 = si(&[Dimension::LENGTH], Bounds::Positive), "10 m",
+            "Position after a reset.";
+    }
+}

@@ -1,13 +1,19 @@
 //! Keys of the source: the plant, a recording, text files of a real instrument.
 
-use super::definition::{Bounds, Default, Key, Kind, Section, key, section};
-use super::fmu::SOURCE_FMU;
+use super::definition::Kind;
+use super::fmu::SourceFmuKeys;
+use super::table::{
+    At, Of, Value, boolean, choice, integer, keys, numbers, table, text, time, within,
+};
+use crate::error::Problem;
 use crate::quantity::Dimension;
+use crate::read::reader::Reader;
+use crate::recorded::{Column, Delimiter, Quantity, SPLIT_MAX, TimeUnit};
 
-pub(crate) static SOURCE: Section = section(&[
-    key(
-        "uri",
-        Kind::Uri(&[
+keys! {
+    /// `[source]`.
+    pub(crate) struct SourceKeys {
+        uri: At<String> = Of::<String>::kind(Kind::Uri(&[
             ("plant", "simulated"),
             ("replay", "a recording of this program or another MCAP file: replay:FILE"),
             ("text", "columns of numbers: text:FILE"),
@@ -22,292 +28,204 @@ pub(crate) static SOURCE: Section = section(&[
                 "slcan",
                 "one behind a CAN adapter on a serial line: slcan:/dev/ttyACM0?bitrate=500000",
             ),
-        ]),
-        Default::Value("plant"),
-        "Where samples come from. A file name is relative to the scenario, and may start with ${OCTANT_RECORDINGS}.",
-    ),
-    key(
-        "text",
-        Kind::Table(&TEXT),
-        Default::Derived("needed by text:FILE"),
-        "How the text files are read.",
-    ),
-    key(
-        "mcap",
-        Kind::Table(&MCAP),
-        Default::Derived("replay: the channels that this program writes"),
-        "Which channels and fields of another program's MCAP file are read.",
-    ),
-    key(
-        "fmu",
-        Kind::Table(&SOURCE_FMU),
-        Default::Derived("fmu: the defaults of its keys"),
-        "How the FMU of source.uri is run, and what its variables are.",
-    ),
-    key(
-        "live",
-        Kind::Table(&SOURCE_LIVE),
-        Default::Derived("serial, udp, can and slcan: the defaults of its keys"),
-        "What the instrument of source.uri speaks, and how it is mounted.",
-    ),
-]);
+        ])), "plant",
+            "Where samples come from. A file name is relative to the scenario, and may start with ${OCTANT_RECORDINGS}.";
+        text: At<Option<TextKeys>> = table::<TextKeys>(), derived("needed by text:FILE"),
+            "How the text files are read.";
+        mcap: Option<McapKeys>
+            = table::<McapKeys>(), derived("replay: the channels that this program writes"),
+            "Which channels and fields of another program's MCAP file are read.";
+        fmu: Option<SourceFmuKeys>
+            = table::<SourceFmuKeys>(), derived("fmu: the defaults of its keys"),
+            "How the FMU of source.uri is run, and what its variables are.";
+        live: Option<SourceLiveKeys>
+            = table::<SourceLiveKeys>(),
+            derived("serial, udp, can and slcan: the defaults of its keys"),
+            "What the instrument of source.uri speaks, and how it is mounted.";
+    }
+}
 
-pub(crate) static SOURCE_LIVE: Section = section(&[
-    key(
-        "protocol",
-        Kind::Choice(&crate::choices::PROTOCOLS),
-        Default::Derived("\"octant\"; on a CAN bus \"dbc\""),
-        "What the instrument speaks.",
-    ),
-    key(
-        "database",
-        Kind::Text,
-        Default::Absent("needed by protocol = \"dbc\""),
-        "The maker's CAN database, a DBC file. Relative to the scenario.",
-    ),
-    key(
-        "mapping",
-        Kind::Text,
-        Default::Absent("needed by protocol = \"dbc\""),
-        "Which signals of the database are which channels, a TOML file. Relative to the scenario.",
-    ),
-    key(
-        "axes",
-        Kind::Text,
-        Default::Value("x y z"),
-        "Which axes of the instrument body x, y and z are, with a minus for the opposite: x -y -z.",
-    ),
-    key(
-        "silence",
-        Kind::Quantity(&[Dimension::TIME], Bounds::Within(1e-3, 3600.0, "from 1 ms to 1 h")),
-        Default::Value("5 s"),
-        "How long a reading is waited for; then the instrument is gone.",
-    ),
-]);
+keys! {
+    /// `[source.live]`.
+    pub(crate) struct SourceLiveKeys {
+        protocol: At<String> = Of::<String>::kind(Kind::Choice(&crate::choices::PROTOCOLS)), derived("\"octant\"; on a CAN bus \"dbc\""),
+            "What the instrument speaks.";
+        database: At<Option<String>> = text(), absent("needed by protocol = \"dbc\""),
+            "The maker's CAN database, a DBC file. Relative to the scenario.";
+        mapping: At<Option<String>> = text(), absent("needed by protocol = \"dbc\""),
+            "Which signals of the database are which channels, a TOML file. Relative to the scenario.";
+        axes: At<String> = text(), "x y z",
+            "Which axes of the instrument body x, y and z are, with a minus for the opposite: x -y -z.";
+        silence: f64 = time(1e-3, 3600.0, "from 1 ms to 1 h"), "5 s",
+            "How long a reading is waited for; then the instrument is gone.";
+    }
+}
 
-static TEXT: Section = section(&[
-    key(
-        "rate",
-        Kind::Quantity(&[Dimension::FREQUENCY], Bounds::Within(1.0, 10e3, "from 1 Hz to 10 kHz")),
-        Default::Derived("imu.rate divided by split"),
-        "Nominal rate of the rows: times split, it is imu.rate.",
-    ),
-    SPLIT,
-    key(
-        "delimiter",
-        Kind::Choice(&[
-            ("whitespace", "any run of blanks and tabs"),
-            ("comma", ","),
-            ("semicolon", ";"),
-            ("tab", "one tab"),
-        ]),
-        Default::Value("whitespace"),
-        "What separates columns.",
-    ),
-    key(
-        "skip_lines",
-        Kind::Integer(0, 1_000_000),
-        Default::Value("0"),
-        "Lines to skip at the start.",
-    ),
-    key(
-        "header",
-        Kind::Boolean,
-        Default::Value("false"),
-        "Whether the first line after those skipped names the columns.",
-    ),
-    key("comment", Kind::Text, Default::Value("#"), "Lines that start with this are skipped."),
-    key("time_column", Kind::Column, Default::Value("1"), "Column of the time stamp."),
-    key(
-        "time_unit",
-        Kind::Choice(&[
-            ("s", "seconds"),
-            ("ms", "milliseconds"),
-            ("us", "microseconds"),
-            ("ns", "nanoseconds"),
-        ]),
-        Default::Value("s"),
-        "Unit of the time stamp.",
-    ),
-    key("gyro", Kind::Table(&GYRO), Default::Required, "Columns of the gyros."),
-    key(
-        "accelerometer",
-        Kind::Table(&ACCELEROMETER),
-        Default::Required,
-        "Columns of the accelerometers.",
-    ),
-    key(
-        "gimbal",
-        Kind::Table(&GIMBAL),
-        Default::Absent("no gimbals: their angles are flagged invalid"),
-        "Columns of the gimbal angles, in the gyro's file.",
-    ),
-]);
+keys! {
+    /// `[source.text]`.
+    pub(crate) struct TextKeys {
+        rate: At<f64>
+            = within(&[Dimension::FREQUENCY], 1.0, 10e3, "from 1 Hz to 10 kHz"),
+            derived("imu.rate divided by split"),
+            "Nominal rate of the rows: times split, it is imu.rate.";
+        split: u32 = integer(1, SPLIT_MAX as i64), "1", SPLIT_DOC;
+        delimiter: Delimiter = choice! {
+                "whitespace" => Delimiter::Blanks, "any run of blanks and tabs";
+                "comma" => Delimiter::Character(b','), ",";
+                "semicolon" => Delimiter::Character(b';'), ";";
+                "tab" => Delimiter::Character(b'\t'), "one tab";
+            }, "whitespace",
+            "What separates columns.";
+        skip_lines: usize = integer(0, 1_000_000), "0", "Lines to skip at the start.";
+        header: bool = boolean(), "false",
+            "Whether the first line after those skipped names the columns.";
+        comment: String = text(), "#", "Lines that start with this are skipped.";
+        time_column: At<Column> = column(), "1", "Column of the time stamp.";
+        time_unit: TimeUnit = time_unit(), "s", "Unit of the time stamp.";
+        gyro: GyroKeys = table(), required, "Columns of the gyros.";
+        accelerometer: AccelerometerKeys = table(), required, "Columns of the accelerometers.";
+        gimbal: Option<GimbalKeys>
+            = table::<GimbalKeys>(), absent("no gimbals: their angles are flagged invalid"),
+            "Columns of the gimbal angles, in the gyro's file.";
+    }
+}
 
-const SPLIT: Key = key(
-    "split",
-    Kind::Integer(1, crate::recorded::SPLIT_MAX as i64),
-    Default::Value("1"),
-    "Samples that a row or message becomes, equal parts of its interval, so that counts hold faster rates (179 deg/s at 100 Hz, 358 deg/s at 200 Hz).",
-);
+const SPLIT_DOC: &str = "Samples that a row or message becomes, equal parts of its interval, so that counts hold faster rates (179 deg/s at 100 Hz, 358 deg/s at 200 Hz).";
 const FILE_DOC: &str = "File of these columns, where it isn't that of source.uri.";
-const AXES: Kind = Kind::Choices(&["x", "-x", "y", "-y", "z", "-z"]);
-const AXES_DOC: &str = "Which instrument axis, with its sign, lies along body x, y and z.";
-const QUANTITY: Kind = Kind::Choice(&[
-    ("rate", "a rate or specific force"),
-    ("increment", "its integral over the sample's interval"),
-]);
-const SCALE_DOC: &str =
-    "Unit per raw number, x, y, z, before axes are exchanged: value = (raw − offset) · scale.";
 
-pub(crate) static GYRO: Section = section(&[
-    key("file", Kind::Text, Default::Absent("the file of source.uri"), FILE_DOC),
-    key("x", Kind::Column, Default::Required, "Column of x: its number from 1, or its name."),
-    key("y", Kind::Column, Default::Required, "Column of y."),
-    key("z", Kind::Column, Default::Required, "Column of z."),
-    key(
-        "unit",
-        Kind::Choice(&[
-            ("rad/s", ""),
-            ("deg/s", ""),
-            ("deg/h", ""),
-            ("rad", ""),
-            ("deg", ""),
-            ("arcsec", ""),
-        ]),
-        Default::Value("rad/s"),
-        "Unit after scaling: of a rate, or of an angle for increments.",
-    ),
-    key("quantity", QUANTITY, Default::Value("rate"), "Rates or increments."),
-    key("scale", Kind::Numbers(3), Default::Value("[1.0, 1.0, 1.0]"), SCALE_DOC),
-    key(
-        "offset",
-        Kind::Numbers(3),
-        Default::Value("[0.0, 0.0, 0.0]"),
-        "Raw number of zero, x, y, z.",
-    ),
-    key("axes", AXES, Default::Value(r#"["x", "y", "z"]"#), AXES_DOC),
-]);
+impl Value for Column {
+    fn read(table: &Reader<'_>, key: &str) -> Result<Option<Self>, Problem> {
+        Ok(match String::read(table, key)? {
+            Some(name) => Some(Self::Name(name)),
+            None => usize::read(table, key)?.map(Self::Number),
+        })
+    }
+}
 
-pub(crate) static ACCELEROMETER: Section = section(&[
-    key("file", Kind::Text, Default::Absent("the file of source.uri"), FILE_DOC),
-    key("x", Kind::Column, Default::Required, "Column of x: its number from 1, or its name."),
-    key("y", Kind::Column, Default::Required, "Column of y."),
-    key("z", Kind::Column, Default::Required, "Column of z."),
-    key(
-        "unit",
-        Kind::Choice(&[("m/s^2", ""), ("g", ""), ("mg", ""), ("m/s", ""), ("mm/s", "")]),
-        Default::Value("m/s^2"),
-        "Unit after scaling: of specific force, or of a velocity for increments.",
-    ),
-    key("quantity", QUANTITY, Default::Value("rate"), "Specific force or increments."),
-    key("scale", Kind::Numbers(3), Default::Value("[1.0, 1.0, 1.0]"), SCALE_DOC),
-    key(
-        "offset",
-        Kind::Numbers(3),
-        Default::Value("[0.0, 0.0, 0.0]"),
-        "Raw number of zero, x, y, z.",
-    ),
-    key("axes", AXES, Default::Value(r#"["x", "y", "z"]"#), AXES_DOC),
-]);
+const fn column() -> Of<Column> {
+    Of::kind(Kind::Column)
+}
 
-static GIMBAL: Section = section(&[
-    key("azimuth", Kind::Column, Default::Required, "Column of the inner gimbal."),
-    key("roll", Kind::Column, Default::Required, "Column of the outer gimbal."),
-    key(
-        "unit",
-        Kind::Choice(&[("deg", ""), ("rad", ""), ("arcsec", "")]),
-        Default::Value("deg"),
-        "Unit of both.",
-    ),
-]);
+const fn time_unit() -> Of<TimeUnit> {
+    choice! {
+        "s" => TimeUnit::Second, "seconds";
+        "ms" => TimeUnit::Millisecond, "milliseconds";
+        "us" => TimeUnit::Microsecond, "microseconds";
+        "ns" => TimeUnit::Nanosecond, "nanoseconds";
+    }
+}
 
-static MCAP: Section = section(&[
-    key("topic", Kind::Text, Default::Required, "Topic of the inertial samples."),
-    key(
-        "time_field",
-        Kind::Text,
-        Default::Derived("the message's log time"),
-        "Dotted name of the field with the time stamp, a number.",
-    ),
-    key(
-        "nanoseconds_field",
-        Kind::Text,
-        Default::Absent("the time stamp is one number"),
-        "Dotted name of a field with nanoseconds to add, as stamps of ROS have them.",
-    ),
-    key(
-        "time_unit",
-        Kind::Choice(&[
-            ("s", "seconds"),
-            ("ms", "milliseconds"),
-            ("us", "microseconds"),
-            ("ns", "nanoseconds"),
-        ]),
-        Default::Value("ns"),
-        "Unit of the time stamp.",
-    ),
-    key(
-        "rate",
-        Kind::Quantity(&[Dimension::FREQUENCY], Bounds::Within(1.0, 10e3, "from 1 Hz to 10 kHz")),
-        Default::Derived("imu.rate divided by split"),
-        "Nominal rate of the messages: times split, it is imu.rate.",
-    ),
-    SPLIT,
-    key("gyro", Kind::Table(&MCAP_GYRO), Default::Required, "Fields of the gyros."),
-    key(
-        "accelerometer",
-        Kind::Table(&MCAP_ACCELEROMETER),
-        Default::Required,
-        "Fields of the accelerometers.",
-    ),
-]);
+/// Conversion of a sensor's raw numbers, whatever they come from.
+pub(crate) struct SignalKeys<'a> {
+    pub(crate) unit: &'a At<String>,
+    pub(crate) quantity: &'a At<Quantity>,
+    pub(crate) scale: &'a At<[f64; 3]>,
+    pub(crate) offset: &'a [f64; 3],
+    pub(crate) axes: &'a At<Vec<String>>,
+}
 
-static MCAP_GYRO: Section = section(&[
-    key("x", Kind::Text, Default::Required, "Dotted name of the field of x."),
-    key("y", Kind::Text, Default::Required, "Field of y."),
-    key("z", Kind::Text, Default::Required, "Field of z."),
-    key(
-        "unit",
-        Kind::Choice(&[
-            ("rad/s", ""),
-            ("deg/s", ""),
-            ("deg/h", ""),
-            ("rad", ""),
-            ("deg", ""),
-            ("arcsec", ""),
-        ]),
-        Default::Value("rad/s"),
-        "Unit after scaling.",
-    ),
-    key("quantity", QUANTITY, Default::Value("rate"), "Rates or increments."),
-    key("scale", Kind::Numbers(3), Default::Value("[1.0, 1.0, 1.0]"), SCALE_DOC),
-    key(
-        "offset",
-        Kind::Numbers(3),
-        Default::Value("[0.0, 0.0, 0.0]"),
-        "Raw number of zero, x, y, z.",
-    ),
-    key("axes", AXES, Default::Value(r#"["x", "y", "z"]"#), AXES_DOC),
-]);
+/// Keys of a sensor: where its numbers are, and their conversion.
+macro_rules! sensor {
+    ($(#[$attribute:meta])* $name:ident { $($columns:tt)+ }
+     $unit:literal [$($units:literal)+] $unit_doc:literal, $quantity_doc:literal) => {
+        keys! {
+            $(#[$attribute])*
+            pub(crate) struct $name {
+                $($columns)+
+                unit: At<String> = Of::<String>::kind(Kind::Choice(&[$(($units, "")),+])), $unit, $unit_doc;
+                quantity: At<Quantity> = choice! {
+                        "rate" => Quantity::Rates, "a rate or specific force";
+                        "increment" => Quantity::Increments, "its integral over the sample's interval";
+                    }, "rate", $quantity_doc;
+                scale: At<[f64; 3]> = numbers(), "[1.0, 1.0, 1.0]",
+                    "Unit per raw number, x, y, z, before axes are exchanged: value = (raw − offset) · scale.";
+                offset: [f64; 3] = numbers(), "[0.0, 0.0, 0.0]", "Raw number of zero, x, y, z.";
+                axes: At<Vec<String>> = Of::<Vec<String>>::kind(Kind::Choices(&["x", "-x", "y", "-y", "z", "-z"])),
+                    r#"["x", "y", "z"]"#,
+                    "Which instrument axis, with its sign, lies along body x, y and z.";
+            }
+        }
 
-static MCAP_ACCELEROMETER: Section = section(&[
-    key("x", Kind::Text, Default::Required, "Dotted name of the field of x."),
-    key("y", Kind::Text, Default::Required, "Field of y."),
-    key("z", Kind::Text, Default::Required, "Field of z."),
-    key(
-        "unit",
-        Kind::Choice(&[("m/s^2", ""), ("g", ""), ("mg", ""), ("m/s", ""), ("mm/s", "")]),
-        Default::Value("m/s^2"),
-        "Unit after scaling.",
-    ),
-    key("quantity", QUANTITY, Default::Value("rate"), "Specific force or increments."),
-    key("scale", Kind::Numbers(3), Default::Value("[1.0, 1.0, 1.0]"), SCALE_DOC),
-    key(
-        "offset",
-        Kind::Numbers(3),
-        Default::Value("[0.0, 0.0, 0.0]"),
-        "Raw number of zero, x, y, z.",
-    ),
-    key("axes", AXES, Default::Value(r#"["x", "y", "z"]"#), AXES_DOC),
-]);
+        impl $name {
+            pub(crate) fn signal(&self) -> SignalKeys<'_> {
+                let Self { unit, quantity, scale, offset, axes, .. } = self;
+                SignalKeys { unit, quantity, scale, offset, axes }
+            }
+        }
+    };
+}
+sensor! {
+    /// `[source.text.gyro]`.
+    GyroKeys {
+        file: Option<String> = text(), absent("the file of source.uri"), FILE_DOC;
+        x: At<Column> = column(), required, "Column of x: its number from 1, or its name.";
+        y: At<Column> = column(), required, "Column of y.";
+        z: At<Column> = column(), required, "Column of z.";
+    }
+    "rad/s" ["rad/s" "deg/s" "deg/h" "rad" "deg" "arcsec"]
+        "Unit after scaling: of a rate, or of an angle for increments.", "Rates or increments."
+}
+
+sensor! {
+    /// `[source.text.accelerometer]`.
+    AccelerometerKeys {
+        file: Option<String> = text(), absent("the file of source.uri"), FILE_DOC;
+        x: At<Column> = column(), required, "Column of x: its number from 1, or its name.";
+        y: At<Column> = column(), required, "Column of y.";
+        z: At<Column> = column(), required, "Column of z.";
+    }
+    "m/s^2" ["m/s^2" "g" "mg" "m/s" "mm/s"]
+        "Unit after scaling: of specific force, or of a velocity for increments.", "Specific force or increments."
+}
+
+keys! {
+    /// `[source.text.gimbal]`.
+    pub(crate) struct GimbalKeys {
+        azimuth: At<Column> = column(), required, "Column of the inner gimbal.";
+        roll: At<Column> = column(), required, "Column of the outer gimbal.";
+        unit: At<String>
+            = Of::<String>::kind(Kind::Choice(&[("deg", ""), ("rad", ""), ("arcsec", "")])), "deg",
+            "Unit of both.";
+    }
+}
+
+keys! {
+    /// `[source.mcap]`.
+    pub(crate) struct McapKeys {
+        topic: String = text(), required, "Topic of the inertial samples.";
+        time_field: Option<String> = text(), derived("the message's log time"),
+            "Dotted name of the field with the time stamp, a number.";
+        nanoseconds_field: At<Option<String>> = text(), absent("the time stamp is one number"),
+            "Dotted name of a field with nanoseconds to add, as stamps of ROS have them.";
+        time_unit: TimeUnit = time_unit(), "ns", "Unit of the time stamp.";
+        rate: At<f64>
+            = within(&[Dimension::FREQUENCY], 1.0, 10e3, "from 1 Hz to 10 kHz"),
+            derived("imu.rate divided by split"),
+            "Nominal rate of the messages: times split, it is imu.rate.";
+        split: u32 = integer(1, SPLIT_MAX as i64), "1", SPLIT_DOC;
+        gyro: McapGyroKeys = table(), required, "Fields of the gyros.";
+        accelerometer: McapAccelerometerKeys = table(), required, "Fields of the accelerometers.";
+    }
+}
+
+sensor! {
+    /// `[source.mcap.gyro]`.
+    McapGyroKeys {
+        x: String = text(), required, "Dotted name of the field of x.";
+        y: String = text(), required, "Field of y.";
+        z: String = text(), required, "Field of z.";
+    }
+    "rad/s" ["rad/s" "deg/s" "deg/h" "rad" "deg" "arcsec"]
+        "Unit after scaling.", "Rates or increments."
+}
+
+sensor! {
+    /// `[source.mcap.accelerometer]`.
+    McapAccelerometerKeys {
+        x: String = text(), required, "Dotted name of the field of x.";
+        y: String = text(), required, "Field of y.";
+        z: String = text(), required, "Field of z.";
+    }
+    "m/s^2" ["m/s^2" "g" "mg" "m/s" "mm/s"]
+        "Unit after scaling.", "Specific force or increments."
+}

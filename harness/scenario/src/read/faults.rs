@@ -8,6 +8,7 @@ mod value;
 
 use super::reader::Reader;
 use crate::error::Problem;
+use crate::keys::{At, Raw};
 use crate::model::{Endpoint, Fault, Scenario, Source};
 use grid::{Waiting, check_chains};
 use octant_faults::catalogue::{Acts, Kind};
@@ -19,8 +20,11 @@ use schedule::Timing;
 use value::value;
 
 /// Reads the faults of a scenario whose other fields were already read.
-pub(super) fn read(root: &Reader<'_>, scenario: &Scenario) -> Result<Vec<Fault>, Problem> {
-    let tables = root.tables("faults");
+pub(super) fn read(
+    faults: &At<Option<Vec<Raw>>>,
+    scenario: &Scenario,
+) -> Result<Vec<Fault>, Problem> {
+    let tables: Vec<Reader<'_>> = faults.iter().flatten().map(Raw::reader).collect();
     let timing = Timing::of(scenario);
     let mut all: Vec<Fault> = Vec::with_capacity(tables.len());
     for table in &tables {
@@ -55,10 +59,9 @@ pub(super) fn read(root: &Reader<'_>, scenario: &Scenario) -> Result<Vec<Fault>,
         Ok(_) => Ok(all),
         Err((id, error)) => {
             let at = all.iter().position(|fault| fault.spec.id == id).unwrap_or_default();
-            Err(tables.get(at).map_or_else(
-                || root.problem("faults", error.to_string()),
-                |table| build(table, &error),
-            ))
+            Err(tables
+                .get(at)
+                .map_or_else(|| faults.problem(error.to_string()), |table| build(table, &error)))
         }
     }
 }

@@ -5,37 +5,37 @@
 
 use super::live;
 use super::reader::Reader;
-use crate::document::{Node, Value};
 use crate::error::Problem;
-use crate::keys::{ENDPOINT_MAP, Kind, SOURCE_MAP, Section};
-use crate::model::{Code, Endpoint, FileName, Fmu, InterfaceChoice, Mapped, Process, Written};
+use crate::keys::{
+    At, ENDPOINT_MAP, EndpointKeys, FmuKeys, Kind, Raw, SOURCE_MAP, Section, SourceKeys,
+};
+use crate::model::{Code, Endpoint, FileName, Fmu, Mapped, Written};
 use crate::ports;
 use octant_sample::Mode;
 
 /// Reads `[source.fmu]`.
 pub(super) fn source(
-    source: &Reader<'_>,
+    source: &SourceKeys,
     file: &str,
     sample_period_ns: u64,
 ) -> Result<Fmu, Problem> {
-    let table = source.table("fmu")?;
-    let mut fmu = fmu(source, &table, file, &SOURCE_MAP, sample_period_ns)?;
-    if let Some(step_s) = table.optional_si("step") {
+    let keys = source.fmu.as_ref().ok_or_else(|| source.uri.problem("source.fmu is missing"))?;
+    let mut fmu = fmu(&source.uri, keys.common(), file, &SOURCE_MAP, sample_period_ns)?;
+    if let Some(step_s) = *keys.step {
         fmu.step_ns = (step_s * 1e9).round() as u64;
-        let found = table.text("step")?;
+        let found = &keys.step.text;
         let fits = |big: u64, small: u64| small > 0 && big.is_multiple_of(small);
         if fmu.is_motion() {
             if !fits(fmu.step_ns, sample_period_ns) {
-                return Err(table.problem(
-                    "step",
-                    format!("found {found:?}, expected a multiple of the sample period, {sample_period_ns} ns"),
-                ));
+                return Err(keys.step.problem(format!(
+                    "found {found:?}, expected a multiple of the sample period, {sample_period_ns} ns"
+                )));
             }
         } else if !fits(sample_period_ns, fmu.step_ns) {
-            return Err(table.problem(
-                "step",
-                format!("found {found:?}, expected the sample period, {sample_period_ns} ns, divided by a whole number"),
-            ));
+            return Err(keys.step.problem(format!(
+                "found {found:?}, expected the sample period, {sample_period_ns} ns, divided by a \
+                 whole number"
+            )));
         }
     }
     if let Some(case) = fmu.map.iter().find(|mapped| mapped.channel.name.starts_with("case."))
@@ -50,63 +50,48 @@ pub(super) fn source(
 }
 
 /// Reads `[endpoint]`.
-pub(super) fn endpoint(endpoint: &Reader<'_>, sample_period_ns: u64) -> Result<Endpoint, Problem> {
-    let uri = endpoint.text("uri")?;
+pub(super) fn endpoint(keys: &EndpointKeys, sample_period_ns: u64) -> Result<Endpoint, Problem> {
+    let uri = keys.uri.as_str();
     match uri.split_once(':') {
         None if uri == "in-process" => Ok(Endpoint::InProcess),
         Some(("fmu", file)) if !file.is_empty() => {
-            let table = endpoint.table("fmu")?;
-            let mut fmu = fmu(endpoint, &table, file, &ENDPOINT_MAP, sample_period_ns)?;
-            fmu.modes = modes(&table);
+            let of_fmu = keys.fmu.as_ref();
+            let of_fmu = of_fmu.ok_or_else(|| keys.uri.problem("endpoint.fmu is missing"))?;
+            let mut fmu = fmu(&keys.uri, of_fmu.common(), file, &ENDPOINT_MAP, sample_period_ns)?;
+            fmu.modes = of_fmu.modes.as_ref().map(modes).unwrap_or_default();
             Ok(Endpoint::Fmu(Box::new(fmu)))
         }
-        Some(_) if octant_link::Uri::is_one(uri) => {
-            Ok(Endpoint::Live(Box::new(live::live(endpoint, uri)?)))
-        }
+        Some(_) if octant_link::Uri::is_one(uri) => Ok(Endpoint::Live(Box::new(live::live(keys)?))),
         _ => {
-            let message = format!("found {uri:?}, expected in-process, fmu:FILE or a port");
-            Err(endpoint.problem("uri", message))
+            Err(keys.uri.problem(format!("found {uri:?}, expected in-process, fmu:FILE or a port")))
         }
     }
 }
 
 fn fmu(
-    parent: &Reader<'_>,
-    table: &Reader<'_>,
+    uri: &At<String>,
+    keys: FmuKeys<'_>,
     file: &str,
     map: &'static Section,
     sample_period_ns: u64,
 ) -> Result<Fmu, Problem> {
     let mut mapped = Vec::new();
-    if let Some(table) = table.optional_table("map") {
-        channels(&table, map, &mut mapped)?;
+    if let Some(table) = keys.map {
+        channels(&table.reader(), map, &mut mapped)?;
     }
-    let settings = match table.node("parameters") {
-        Some(Node { value: Value::Table(values), .. }) => {
-            ports::settings(values, &table.join("parameters"))?
-        }
-        _ => Vec::new(),
-    };
-    let uri = parent.problem("uri", "");
+    let settings = keys.parameters.map(|raw| ports::settings(&raw.table, &raw.path)).transpose()?;
     Ok(Fmu {
         file: FileName(file.to_owned()),
-        interface: match table.text("interface")? {
-            "co-simulation" => InterfaceChoice::CoSimulation,
-            "model-exchange" => InterfaceChoice::ModelExchange,
-            _ => InterfaceChoice::Auto,
-        },
-        process: match table.text("process")? {
-            "shared" => Process::Shared,
-            _ => Process::Own,
-        },
+        interface: keys.interface,
+        process: keys.process,
         // In the shared process a call can't be interrupted.
-        time_limit_s: table.optional_si("time_limit").unwrap_or(f64::INFINITY),
+        time_limit_s: keys.time_limit.unwrap_or(f64::INFINITY),
         step_ns: sample_period_ns,
-        tolerance: table.node("tolerance").map(|_| table.number("tolerance")).transpose()?,
-        settings,
+        tolerance: keys.tolerance,
+        settings: settings.unwrap_or_default(),
         map: mapped,
         modes: Vec::new(),
-        at: Written { place: uri.place, path: uri.path },
+        at: Written { place: uri.place.clone(), path: uri.path.clone() },
     })
 }
 
@@ -133,10 +118,9 @@ fn channels(
     Ok(())
 }
 
-fn modes(table: &Reader<'_>) -> Vec<(Mode, Vec<Code>)> {
-    let Some(modes) = table.optional_table("modes") else { return Vec::new() };
+fn modes(modes: &Raw) -> Vec<(Mode, Vec<Code>)> {
     let codes = |mode: Mode| {
-        let codes = ports::codes(&modes.node(mode.name())?.value)?;
+        let codes = ports::codes(&modes.table.get(mode.name())?.value)?;
         Some((mode, codes))
     };
     Mode::ALL.into_iter().filter_map(codes).collect()

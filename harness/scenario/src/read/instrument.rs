@@ -1,182 +1,135 @@
 //! The sensors, the gimbals and the motion of the case.
 
-use super::reader::Reader;
 use crate::error::Problem;
-use crate::model::{Component, Distribution, Dockside, MOTIONS, Motion, ShipSpectrum};
+use crate::keys::{At, ExtensionsKeys, ImuKeys, MotionKeys, MotionKind, TurntableKeys};
+use crate::model::{Component, Distribution, Dockside, Motion, ShipSpectrum};
 use octant_earth::units::DEG;
 use octant_plant::config as plant;
-use octant_sample::parameters::Group;
 
 /// Sample period of a rate: whole nanoseconds.
-pub(super) fn sample_period_ns(imu: &Reader<'_>) -> Result<u64, Problem> {
-    let rate_hz = imu.si("rate")?;
-    let period_ns = 1e9 / rate_hz;
+pub(super) fn sample_period_ns(rate: &At<f64>) -> Result<u64, Problem> {
+    let period_ns = 1e9 / **rate;
     if (period_ns - period_ns.round()).abs() > 1e-6 {
-        let found = imu.text("rate")?;
-        return Err(imu.problem(
-            "rate",
-            format!("found {found:?}, a period of {period_ns} ns, expected a whole number of ns"),
-        ));
+        let found = &rate.text;
+        return Err(rate.problem(format!(
+            "found {found:?}, a period of {period_ns} ns, expected a whole number of ns"
+        )));
     }
     Ok(period_ns.round() as u64)
 }
 
-pub(super) fn parameters(imu: &Reader<'_>) -> Result<[Distribution; 7], Problem> {
-    let mut all = [const { Distribution::Normal(0.0) }; 7];
-    for (distribution, group) in all.iter_mut().zip(Group::ALL) {
-        let table = imu.table(group.name())?;
-        *distribution = if let Some(sigma) = table.optional_si("normal") {
-            Distribution::Normal(sigma)
-        } else if let Some(half_width) = table.optional_si("uniform") {
-            Distribution::Uniform(half_width)
-        } else if let Some(values) = table.optional_si_vec("constant") {
-            Distribution::Constant(values)
-        } else {
-            return Err(imu.problem(group.name(), "expected one of normal, uniform, constant"));
-        };
-    }
-    Ok(all)
+pub(super) fn parameters(imu: &ImuKeys) -> [Distribution; 7] {
+    [
+        imu.gyro_bias.distribution(),
+        imu.gyro_scale.distribution(),
+        imu.gyro_misalignment.distribution(),
+        imu.g_dependent.distribution(),
+        imu.accel_bias.distribution(),
+        imu.accel_scale.distribution(),
+        imu.accel_misalignment.distribution(),
+    ]
 }
 
-pub(super) fn imu(imu: &Reader<'_>) -> Result<plant::Imu, Problem> {
-    let more = imu.table("extensions")?;
-    let gauss_markov = |key: &str| -> Result<Option<plant::GaussMarkov>, Problem> {
-        let Some(table) = more.optional_table(key) else { return Ok(None) };
-        Ok(Some(plant::GaussMarkov {
-            sigma: table.si("sigma")?,
-            correlation_time_s: table.si("correlation_time")?,
-        }))
-    };
-    let arm = more.table("lever_arm")?;
+pub(super) fn imu(imu: &ImuKeys) -> Result<plant::Imu, Problem> {
+    let more = &imu.extensions;
+    let gauss_markov = |sigma, correlation_time_s| plant::GaussMarkov { sigma, correlation_time_s };
+    let gyro = more.gyro_gauss_markov.as_ref();
+    let accel = more.accel_gauss_markov.as_ref();
     Ok(plant::Imu {
         parameters: octant_sample::Parameters::default(),
-        angle_random_walk: imu.si("angle_random_walk")?,
-        velocity_random_walk: imu.si("velocity_random_walk")?,
+        angle_random_walk: imu.angle_random_walk,
+        velocity_random_walk: imu.velocity_random_walk,
         extensions: plant::Extensions {
-            gyro_gauss_markov: gauss_markov("gyro_gauss_markov")?,
-            accel_gauss_markov: gauss_markov("accel_gauss_markov")?,
-            gyro_rate_random_walk: more.si("gyro_rate_random_walk")?,
-            gyro_quantization_rad: more.si("gyro_quantization")?,
-            accel_quantization_mps: more.si("accel_quantization")?,
-            gyro_range_radps: more.si("gyro_range")?,
-            accel_range_mps2: more.si("accel_range")?,
-            temperature: temperature(&more)?,
-            vibration: vibration(&more)?,
-            lever_arm_m: [arm.si_array("x")?, arm.si_array("y")?, arm.si_array("z")?],
-            time_skew_s: more.si("time_skew")?,
+            gyro_gauss_markov: gyro.map(|keys| gauss_markov(keys.sigma, keys.correlation_time)),
+            accel_gauss_markov: accel.map(|keys| gauss_markov(keys.sigma, keys.correlation_time)),
+            gyro_rate_random_walk: more.gyro_rate_random_walk,
+            gyro_quantization_rad: more.gyro_quantization,
+            accel_quantization_mps: more.accel_quantization,
+            gyro_range_radps: more.gyro_range,
+            accel_range_mps2: more.accel_range,
+            temperature: temperature(more)?,
+            vibration: more.vibration.as_ref().map(|keys| plant::Vibration {
+                frequency_hz: keys.frequency,
+                displacement_m: keys.displacement,
+                angle_rad: keys.angle,
+                phase_rad: keys.phase,
+            }),
+            lever_arm_m: [more.lever_arm.x, more.lever_arm.y, more.lever_arm.z],
+            time_skew_s: more.time_skew,
         },
     })
 }
 
-fn temperature(more: &Reader<'_>) -> Result<Option<plant::Temperature>, Problem> {
-    let Some(table) = more.optional_table("temperature") else { return Ok(None) };
-    let (ramp_kps, plateau_k) = (table.si("ramp")?, table.si("plateau")?);
+fn temperature(more: &ExtensionsKeys) -> Result<Option<plant::Temperature>, Problem> {
+    let Some(keys) = &more.temperature else { return Ok(None) };
+    let (ramp_kps, plateau_k) = (*keys.ramp, *keys.plateau);
     if ramp_kps * plateau_k < 0.0 || (ramp_kps == 0.0) != (plateau_k == 0.0) {
-        let (ramp, plateau) = (table.text("ramp")?, table.text("plateau")?);
-        return Err(table.problem(
-            "plateau",
-            format!("found {plateau:?} with a ramp of {ramp:?}, which never gets there"),
-        ));
+        return Err(keys.plateau.problem(format!(
+            "found {:?} with a ramp of {:?}, which never gets there",
+            keys.plateau.text, keys.ramp.text
+        )));
     }
     Ok(Some(plant::Temperature {
         ramp_kps,
         plateau_k,
-        gyro_bias_per_k: table.si_array("gyro_bias")?,
-        accel_bias_per_k: table.si_array("accel_bias")?,
-        gyro_scale_per_k: table.si_array("gyro_scale")?,
-        accel_scale_per_k: table.si_array("accel_scale")?,
+        gyro_bias_per_k: keys.gyro_bias,
+        accel_bias_per_k: keys.accel_bias,
+        gyro_scale_per_k: keys.gyro_scale,
+        accel_scale_per_k: keys.accel_scale,
     }))
 }
 
-fn vibration(more: &Reader<'_>) -> Result<Option<plant::Vibration>, Problem> {
-    let Some(table) = more.optional_table("vibration") else { return Ok(None) };
-    Ok(Some(plant::Vibration {
-        frequency_hz: table.si("frequency")?,
-        displacement_m: table.si_array("displacement")?,
-        angle_rad: table.si_array("angle")?,
-        phase_rad: table.si("phase")?,
-    }))
+pub(super) fn turntable(keys: &TurntableKeys) -> plant::Turntable {
+    plant::Turntable {
+        rate_radps: keys.rate,
+        acceleration_radps2: keys.acceleration,
+        encoder_sigma_rad: keys.encoder_error,
+        non_orthogonality_rad: keys.non_orthogonality,
+        backlash_rad: keys.backlash,
+    }
 }
 
-pub(super) fn turntable(table: &Reader<'_>) -> Result<plant::Turntable, Problem> {
-    Ok(plant::Turntable {
-        rate_radps: table.si("rate")?,
-        acceleration_radps2: table.si("acceleration")?,
-        encoder_sigma_rad: table.si("encoder_error")?,
-        non_orthogonality_rad: table.si("non_orthogonality")?,
-        backlash_rad: table.si("backlash")?,
+pub(super) fn motion(keys: &MotionKeys) -> Motion {
+    let mean = plant::CaseAttitude {
+        heading_rad: keys.heading,
+        pitch_rad: keys.pitch,
+        roll_rad: keys.roll,
+    };
+    let ship = match (keys.kind, &keys.ship) {
+        (MotionKind::Dockside, Some(ship)) => ship,
+        (MotionKind::Static, _) | (MotionKind::Dockside, None) => return Motion::Static(mean),
+    };
+    let mut components = [
+        given(&ship.roll),
+        given(&ship.pitch),
+        given(&ship.yaw),
+        given(&ship.surge),
+        given(&ship.sway),
+        given(&ship.heave),
+    ];
+    if let Some(preset) = ship.preset {
+        for (index, (amplitude, period_s)) in preset.into_iter().enumerate() {
+            let amplitude = amplitude * if index < 3 { DEG } else { 1.0 };
+            components[index]
+                .get_or_insert_with(|| vec![Component { amplitude, period_s, phase_rad: None }]);
+        }
+    }
+    let spectrum = ship.spectrum.as_ref().map(|keys| ShipSpectrum {
+        peak_period_s: keys.peak_period,
+        sigma: [keys.roll, keys.pitch, keys.yaw, keys.surge, keys.sway, keys.heave],
+        components: keys.components as usize,
+    });
+    Motion::Dockside(Dockside {
+        mean,
+        components: components.map(Option::unwrap_or_default),
+        spectrum,
+        mooring_offset_m: ship.mooring_offset,
     })
 }
 
-/// Amplitude (deg or m) and period (s) of the presets, in the order of [`MOTIONS`].
-const DEFAULT_SWAY: [(f64, f64); 6] =
-    [(3.0, 8.0), (1.5, 6.0), (1.0, 10.0), (0.2, 6.0), (0.2, 7.0), (0.2, 8.0)];
-/// The dynamic condition of ISO 8728: harmonic roll and pitch of 5°, horizontal acceleration up to
-/// 0.22 m/s², periods from 6 to 15 s.
-const SEVERE_SWAY: [(f64, f64); 6] =
-    [(5.0, 10.0), (5.0, 8.0), (1.0, 12.0), (0.25, 8.5), (0.25, 8.0), (0.3, 8.0)];
-
-pub(super) fn motion(motion: &Reader<'_>) -> Result<Motion, Problem> {
-    let mean = plant::CaseAttitude {
-        heading_rad: motion.si("heading")?,
-        pitch_rad: motion.si("pitch")?,
-        roll_rad: motion.si("roll")?,
-    };
-    if motion.text("kind")? == "static" {
-        return Ok(Motion::Static(mean));
-    }
-    let ship = motion.table("ship")?;
-    let preset = match ship.text("preset")? {
-        "default" => Some(DEFAULT_SWAY),
-        "severe" => Some(SEVERE_SWAY),
-        _ => None,
-    };
-    let mut components: [Vec<Component>; 6] = Default::default();
-    for (index, key) in MOTIONS.into_iter().enumerate() {
-        if ship.given(key) {
-            for table in ship.tables(key) {
-                components[index].push(Component {
-                    amplitude: table.si("amplitude")?,
-                    period_s: table.si("period")?,
-                    phase_rad: table.optional_si("phase"),
-                });
-            }
-        } else if let Some(preset) = preset {
-            let (amplitude, period_s) = preset[index];
-            let unit = if index < 3 { DEG } else { 1.0 };
-            let amplitude = amplitude * unit;
-            components[index].push(Component { amplitude, period_s, phase_rad: None });
-        }
-    }
-    let spectrum = match ship.optional_table("spectrum") {
-        None => None,
-        Some(spectrum) => {
-            let mut sigma = [0.0; 6];
-            for (sigma, key) in sigma.iter_mut().zip(MOTIONS) {
-                *sigma = spectrum.si(key)?;
-            }
-            let components: u32 = spectrum.integer("components")?;
-            Some(ShipSpectrum {
-                peak_period_s: spectrum.si("peak_period")?,
-                sigma,
-                components: components as usize,
-            })
-        }
-    };
-    let mooring_offset_m = ship.si_array("mooring_offset")?;
-    Ok(Motion::Dockside(Dockside { mean, components, spectrum, mooring_offset_m }))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_severe_preset_keeps_the_horizontal_acceleration_of_iso_8728() {
-        let acceleration =
-            |(amplitude, period): (f64, f64)| amplitude * (std::f64::consts::TAU / period).powi(2);
-        let [.., surge, sway, _] = SEVERE_SWAY;
-        let horizontal = acceleration(surge).hypot(acceleration(sway));
-        assert!((0.19..=0.22).contains(&horizontal), "{horizontal} m/s²");
-    }
+fn given<'a, K>(components: &'a Option<Vec<K>>) -> Option<Vec<Component>>
+where
+    Component: From<&'a K>,
+{
+    components.as_ref().map(|all| all.iter().map(Component::from).collect())
 }

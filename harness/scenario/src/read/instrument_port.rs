@@ -1,40 +1,39 @@
 //! Reads a real instrument on a port from `source.uri` and `[source.live]`.
 
-use super::reader::Reader;
 use crate::error::Problem;
+use crate::keys::{At, SourceKeys};
 use crate::model::{FileName, Instrument, Messages, Speaks};
 use octant_instruments::{Axes, Protocol};
 use octant_link::Uri;
 
 /// Reads a port and `[source.live]`.
-pub(super) fn instrument(source: &Reader<'_>, uri: &str) -> Result<Instrument, Problem> {
-    let uri: Uri = uri
-        .parse()
-        .map_err(|error: octant_link::uri::UriError| source.problem("uri", error.to_string()))?;
+pub(super) fn instrument(keys: &SourceKeys) -> Result<Instrument, Problem> {
+    let uri: Uri = (keys.uri.parse())
+        .map_err(|error: octant_link::uri::UriError| keys.uri.problem(error.to_string()))?;
     let bus = matches!(uri, Uri::Can(_) | Uri::Slcan(_));
     if !bus && !matches!(uri, Uri::Serial(_) | Uri::Udp(_)) {
         let message =
             format!("found {uri}, expected an instrument at serial:, udp:, can: or slcan:");
-        return Err(source.problem("uri", message));
+        return Err(keys.uri.problem(message));
     }
-    let live = source.table("live")?;
-    let name = live.text("protocol")?;
+    let live = keys.live.as_ref().ok_or_else(|| keys.uri.problem("source.live is missing"))?;
+    let name = live.protocol.as_str();
     if bus != (name == "dbc") {
         let expected = if bus { "\"dbc\" on a CAN bus" } else { "the protocol of a line of bytes" };
-        return Err(live.problem("protocol", format!("found {name:?}, expected {expected}")));
+        return Err(live.protocol.problem(format!("found {name:?}, expected {expected}")));
     }
-    let file = |key: &str| match live.optional_text(key) {
+    let file = |key: &At<Option<String>>| match key.as_deref() {
         Some(file) if !file.is_empty() => Ok(FileName(file.to_owned())),
-        _ => Err(live.problem(key, "missing, expected a file: protocol is \"dbc\"")),
+        _ => Err(key.problem("missing, expected a file: protocol is \"dbc\"")),
     };
     let speaks = if bus {
-        Speaks::Can(Messages { database: file("database")?, mapping: file("mapping")? })
+        Speaks::Can(Messages { database: file(&live.database)?, mapping: file(&live.mapping)? })
     } else {
         Speaks::Bytes(Protocol::of_name(name).ok_or_else(|| {
-            live.problem("protocol", format!("found {name:?}, which no codec reads"))
+            live.protocol.problem(format!("found {name:?}, which no codec reads"))
         })?)
     };
-    let axes = Axes::parse(live.text("axes")?)
-        .map_err(|error| live.problem("axes", format!("it says no mounting: {error}")))?;
-    Ok(Instrument { uri, speaks, axes, silence_s: live.si("silence")? })
+    let axes = Axes::parse(&live.axes)
+        .map_err(|error| live.axes.problem(format!("it says no mounting: {error}")))?;
+    Ok(Instrument { uri, speaks, axes, silence_s: live.silence })
 }

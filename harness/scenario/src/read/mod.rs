@@ -8,7 +8,7 @@ mod instrument;
 mod instrument_port;
 mod live;
 mod procedure;
-mod reader;
+pub(crate) mod reader;
 pub mod requirement;
 mod source;
 
@@ -16,28 +16,25 @@ pub use reader::Reader;
 
 use super::document::Table;
 use super::error::Problem;
+use super::keys::{Keys, RealtimeKeys, RecordKeys, ScenarioKeys};
 use super::model::{Motion, Realtime, Record, Scenario, Source};
 use octant_plant::config as plant;
 use std::path::Path;
 
 /// Reads a completed document.
 pub fn scenario(document: Table, folder: &Path) -> Result<Scenario, Problem> {
-    let root = Reader::root(&document);
-
-    let imu = root.table("imu")?;
-    let sample_period_ns = instrument::sample_period_ns(&imu)?;
-    let source = source::read(&root.table("source")?, sample_period_ns)?;
-    let site = root.table("site")?;
+    let keys = ScenarioKeys::of(&Reader::root(&document))?;
+    let sample_period_ns = instrument::sample_period_ns(&keys.imu.rate)?;
+    let source = source::read(&keys.source, sample_period_ns)?;
     let site = plant::Site {
-        latitude_rad: site.si("latitude")?,
-        longitude_rad: site.si("longitude")?,
-        height_m: site.si("height")?,
+        latitude_rad: keys.site.latitude,
+        longitude_rad: keys.site.longitude,
+        height_m: keys.site.height,
     };
-    let motion = instrument::motion(&root.table("motion")?)?;
-    let turntable_table = root.table("turntable")?;
-    let turntable = instrument::turntable(&turntable_table)?;
-    let drive = drive::drive(&turntable_table, &turntable)?;
-    let screening = procedure::screening(&root.table("screening")?)?;
+    let motion = instrument::motion(&keys.motion);
+    let turntable = instrument::turntable(&keys.turntable);
+    let drive = keys.turntable.drive.as_ref();
+    let drive = drive.map(|keys| drive::drive(keys, &turntable)).transpose()?;
     let setting = procedure::Setting {
         sample_period_ns,
         motion: &motion,
@@ -45,18 +42,17 @@ pub fn scenario(document: Table, folder: &Path) -> Result<Scenario, Problem> {
         endless: !source.is_recorded(),
         folder,
     };
-    let procedure_table = root.table("procedure")?;
-    let procedure = procedure::procedure(&procedure_table, &setting)?;
-    let baseline = procedure::baseline(&root, &setting)?;
-    let endpoint = fmu::endpoint(&root.table("endpoint")?, sample_period_ns)?;
+    let procedure = procedure::procedure(&keys.procedure, &setting)?;
+    let baseline = procedure::baseline(&keys.baseline, &document, &setting)?;
+    let endpoint = fmu::endpoint(&keys.endpoint, sample_period_ns)?;
     check_motion(&source, &motion)?;
     let scenario = Scenario {
-        title: root.text("title")?.to_owned(),
-        seed: root.integer("seed")?,
+        title: keys.title.clone(),
+        seed: keys.seed,
         sample_period_ns,
         site,
-        parameters: instrument::parameters(&imu)?,
-        imu: instrument::imu(&imu)?,
+        parameters: instrument::parameters(&keys.imu),
+        imu: instrument::imu(&keys.imu)?,
         turntable,
         drive,
         alignment: procedure.alignment,
@@ -65,51 +61,51 @@ pub fn scenario(document: Table, folder: &Path) -> Result<Scenario, Problem> {
         baseline,
         aiding: procedure.aiding,
         navigation: procedure.navigation,
-        screening,
+        screening: procedure::screening(&keys.screening),
         faults: Vec::new(),
-        requirements: requirement::read(&root)?,
-        decision: requirement::decision(&root.table("decision")?)?,
-        equipment: requirement::equipment(&root)?,
-        record: record(&root.table("record")?, sample_period_ns)?,
+        requirements: requirement::read(keys.requirements.as_deref().unwrap_or_default())?,
+        decision: requirement::decision(&keys.decision)?,
+        equipment: requirement::equipment(keys.equipment.as_deref().unwrap_or_default())?,
+        record: record(&keys.record, sample_period_ns)?,
         source,
         endpoint,
-        realtime: realtime(&root.table("realtime")?)?,
+        realtime: realtime(&keys.realtime),
         motion,
         file: String::new(),
         folder: folder.to_owned(),
         document: Table::default(),
     };
-    check_once(&root, &scenario)?;
-    drive::check_reach(&root, &scenario)?;
-    let faults = faults::read(&root, &scenario)?;
+    check_once(&keys, &scenario)?;
+    if let Some(keys) = &keys.turntable.drive {
+        drive::check_reach(keys, &scenario)?;
+    }
+    let faults = faults::read(&keys.faults, &scenario)?;
     Ok(Scenario { document, faults, ..scenario })
 }
 
 /// Refuses a repetition of samples that exist only once, and pacing of instruments and ports that have
 /// their own timing.
-fn check_once(root: &Reader<'_>, scenario: &Scenario) -> Result<(), Problem> {
+fn check_once(keys: &ScenarioKeys, scenario: &Scenario) -> Result<(), Problem> {
     let by_clock = scenario.realtime.by_clock;
     if scenario.source.instrument().is_some() {
         if scenario.baseline.is_some() {
-            return Err(root.problem(
-                "baseline",
+            return Err(keys.baseline.problem(
                 "a second method needs the same samples again, which a real instrument doesn't \
                  give: expected it on the recording of the first, with source.uri = \"replay:FILE\"",
             ));
         }
         if by_clock {
-            return Err(root.table("realtime")?.problem(
-                "pace",
-                "a real instrument sends by a clock of its own: expected \"free\"",
-            ));
+            return Err(keys
+                .realtime
+                .pace
+                .problem("a real instrument sends by a clock of its own: expected \"free\""));
         }
     }
-    if let Some(live) = scenario.endpoint.device()
+    if let (Some(live), Some(link)) = (scenario.endpoint.device(), &keys.endpoint.link)
         && by_clock
         && live.reconnect_s > 0.0
     {
-        return Err(root.table("endpoint")?.table("link")?.problem(
-            "reconnect",
+        return Err(link.reconnect.problem(
             "by the clock a port that goes away ends the run: expected \"0 s\" with realtime.pace \
              = \"clock\"",
         ));
@@ -128,39 +124,38 @@ fn check_motion(source: &Source, motion: &Motion) -> Result<(), Problem> {
     }
 }
 
-fn record(record: &Reader<'_>, sample_period_ns: u64) -> Result<Record, Problem> {
-    let samples = 1e9 / record.si("rate")? / sample_period_ns as f64;
+fn record(keys: &RecordKeys, sample_period_ns: u64) -> Result<Record, Problem> {
+    let samples = 1e9 / *keys.rate / sample_period_ns as f64;
     let every_samples = samples.round();
     if every_samples < 1.0 || (samples - every_samples).abs() > 1e-6 * samples {
-        return Err(record.problem(
-            "rate",
-            format!(
-                "found {:?}, which is {samples} samples of {} ns apart, expected a whole number",
-                record.text("rate")?,
-                sample_period_ns
-            ),
-        ));
+        return Err(keys.rate.problem(format!(
+            "found {:?}, which is {samples} samples of {sample_period_ns} ns apart, expected a whole \
+             number",
+            keys.rate.text
+        )));
     }
     Ok(Record {
         every_samples: every_samples as u64,
-        full_samples: record.text("samples")? == "full",
-        parameters_period_ns: (record.si("parameters")? * 1e9).round() as u64,
+        full_samples: keys.samples,
+        parameters_period_ns: ns(keys.parameters),
     })
 }
 
-fn realtime(realtime: &Reader<'_>) -> Result<Realtime, Problem> {
-    let ns = |key: &str| realtime.si(key).map(|s| (s * 1e9).round() as u64);
-    let priority: u8 = realtime.integer("priority")?;
-    Ok(Realtime {
-        by_clock: realtime.text("pace")? == "clock",
-        overrun_ns: ns("overrun")?,
-        overruns: realtime.integer("overruns")?,
-        lateness_p99_ns: realtime.optional_si("lateness_p99").map(|s| (s * 1e9).round() as u64),
-        late_answers: realtime.integer("late_answers")?,
-        silence_ns: ns("silence")?,
-        priority: (priority > 0).then_some(priority),
-        cpu: if realtime.node("cpu").is_some() { Some(realtime.integer("cpu")?) } else { None },
-        lock_memory: realtime.boolean("lock_memory")?,
-        spin_ns: ns("spin")?,
-    })
+fn ns(time_s: f64) -> u64 {
+    (time_s * 1e9).round() as u64
+}
+
+fn realtime(keys: &RealtimeKeys) -> Realtime {
+    Realtime {
+        by_clock: *keys.pace,
+        overrun_ns: ns(keys.overrun),
+        overruns: keys.overruns,
+        lateness_p99_ns: keys.lateness_p99.map(ns),
+        late_answers: keys.late_answers,
+        silence_ns: ns(keys.silence),
+        priority: Some(keys.priority).filter(|priority| *priority > 0),
+        cpu: keys.cpu,
+        lock_memory: keys.lock_memory,
+        spin_ns: ns(keys.spin),
+    }
 }

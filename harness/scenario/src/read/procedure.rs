@@ -3,6 +3,11 @@
 use super::reader::Reader;
 use crate::document::{Node, Table, Value};
 use crate::error::Problem;
+use crate::keys::{
+    AidingKeys, AlignmentKeys, AlignmentMethod, At, CalibrationKeys, EstimatorName, GateKeys,
+    InitialKeys, Intervals, Keys, LeastSquaresKeys, NavigationKeys, ProcedureKeys, Raw, Reference,
+    Rotation, ScreeningKeys, StopKeys,
+};
 use crate::model::{Alignment, Calibration, Motion, case_attitude};
 use crate::quantity::{self, Dimension};
 use octant_calibration::config as core;
@@ -12,7 +17,7 @@ use octant_calibration::table::CalibrationTable;
 use octant_earth::units::DEG;
 use octant_plant::config as plant;
 use octant_sample::Parameters;
-use octant_sample::parameters::Group;
+use octant_sample::parameters::{Group, PARAMETER_COUNT};
 use std::path::Path;
 
 /// Properties of the run that the procedure must fit.
@@ -34,49 +39,50 @@ pub(super) struct Procedure {
     pub(super) navigation: Option<core::NavigationPlan>,
 }
 
-pub(super) fn procedure(table: &Reader<'_>, setting: &Setting<'_>) -> Result<Procedure, Problem> {
-    let calibration_table = table.optional_table("calibration");
-    let calibration = match &calibration_table {
-        Some(table) => Some(calibration(table, setting)?),
-        None => None,
-    };
-    let aiding = match &calibration_table {
-        Some(table) => aiding(&table.table("aiding")?, setting)?.source,
+pub(super) fn procedure(keys: &ProcedureKeys, setting: &Setting<'_>) -> Result<Procedure, Problem> {
+    let of_calibration = keys.calibration.as_ref();
+    let calibration = of_calibration.map(|keys| calibration(keys, setting)).transpose()?;
+    let aiding = match of_calibration {
+        Some(keys) => aiding(&keys.aiding, setting)?.source,
         None => plant::AidingSource {
             kind: plant::AidingKind::ZeroVelocity { sigma_mps: 1e-3 },
             period_ns: setting.sample_period_ns,
         },
     };
-    let navigation = match table.optional_table("navigation") {
-        Some(table) => Some(navigation(&table, setting)?),
-        None => None,
-    };
+    let navigation = keys.navigation.as_ref();
+    let navigation = navigation.map(|keys| self::navigation(keys, setting)).transpose()?;
     if calibration.is_none() && navigation.is_none() {
-        return Err(table.problem(
-            "calibration",
+        return Err(keys.calibration.problem(
             "found neither procedure.calibration nor procedure.navigation, expected one at least",
         ));
     }
+    let initial = keys.initial_parameters.as_ref();
     Ok(Procedure {
-        alignment: alignment(&table.table("alignment")?, calibration.as_ref())?,
-        initial_parameters: initial_parameters(table, setting.folder)?,
+        alignment: alignment(&keys.alignment, calibration.as_ref())?,
+        initial_parameters: initial.map_or_else(
+            || Ok(Parameters::default()),
+            |keys| initial_parameters(keys, setting.folder),
+        )?,
         calibration,
         aiding,
         navigation,
     })
 }
 
-fn alignment(table: &Reader<'_>, calibration: Option<&Calibration>) -> Result<Alignment, Problem> {
-    if table.text("method")? == "given" {
+fn alignment(
+    keys: &AlignmentKeys,
+    calibration: Option<&Calibration>,
+) -> Result<Alignment, Problem> {
+    if keys.method == AlignmentMethod::Given {
         return Ok(Alignment::Given {
-            tilt_rad: table.si("tilt")?,
-            azimuth_rad: table.si("azimuth")?,
-            velocity_mps: table.si("velocity")?,
-            attitude_error_rad: table.optional_si_array("attitude_error"),
-            velocity_error_mps: table.optional_si_array("velocity_error"),
+            tilt_rad: keys.tilt,
+            azimuth_rad: keys.azimuth,
+            velocity_mps: keys.velocity,
+            attitude_error_rad: keys.attitude_error,
+            velocity_error_mps: keys.velocity_error,
         });
     }
-    let duration_s = table.si("duration")?;
+    let duration_s = *keys.duration;
     // With intervals detected in recorded data no first stop is commanded: the first interval tells where
     // the instrument stands.
     let commanded = calibration.filter(|calibration| {
@@ -91,37 +97,39 @@ fn alignment(table: &Reader<'_>, calibration: Option<&Calibration>) -> Result<Al
     if let Some(calibration) = commanded {
         let first_s = calibration.dwell_s * calibration.sequence.stops()[0].weight;
         if duration_s > first_s {
-            return Err(table.problem(
-                "duration",
-                format!(
-                    "found {duration_s} s, but the first stop is held for {first_s:.1} s alone"
-                ),
-            ));
+            return Err(keys.duration.problem(format!(
+                "found {duration_s} s, but the first stop is held for {first_s:.1} s alone"
+            )));
         }
     }
     Ok(Alignment::Coarse { duration_s })
 }
 
-fn initial_parameters(procedure: &Reader<'_>, folder: &Path) -> Result<Parameters, Problem> {
-    let mut all = [0.0; octant_sample::parameters::PARAMETER_COUNT];
-    let Some(table) = procedure.optional_table("initial_parameters") else {
-        return Ok(Parameters::from_array(&all));
-    };
-    if let Some(file) = table.optional_text("table") {
-        if let Some(group) = Group::ALL.iter().find(|group| table.node(group.name()).is_some()) {
-            let message = "found beside table, expected one of them";
-            return Err(table.problem(group.name(), message));
+fn initial_parameters(keys: &InitialKeys, folder: &Path) -> Result<Parameters, Problem> {
+    let groups = [
+        &keys.gyro_bias,
+        &keys.gyro_scale,
+        &keys.gyro_misalignment,
+        &keys.g_dependent,
+        &keys.accel_bias,
+        &keys.accel_scale,
+        &keys.accel_misalignment,
+    ];
+    if let Some(file) = &*keys.table {
+        if let Some(group) = groups.into_iter().find(|group| group.is_some()) {
+            return Err(group.problem("found beside table, expected one of them"));
         }
         let path = folder.join(file);
         let bytes = std::fs::read(&path)
-            .map_err(|error| table.problem("table", format!("read {}: {error}", path.display())))?;
+            .map_err(|error| keys.table.problem(format!("read {}: {error}", path.display())))?;
         let read = CalibrationTable::from_bytes(&bytes)
-            .map_err(|error| table.problem("table", format!("read {}: {error}", path.display())))?;
+            .map_err(|error| keys.table.problem(format!("read {}: {error}", path.display())))?;
         return Ok(read.parameters);
     }
-    for group in Group::ALL {
-        if let Some(values) = table.optional_si_vec(group.name()) {
-            all[group.range()].copy_from_slice(&values);
+    let mut all = [0.0; PARAMETER_COUNT];
+    for (group, values) in Group::ALL.into_iter().zip(groups) {
+        if let Some(values) = &**values {
+            all[group.range()].copy_from_slice(values);
         }
     }
     Ok(Parameters::from_array(&all))
@@ -129,18 +137,18 @@ fn initial_parameters(procedure: &Reader<'_>, folder: &Path) -> Result<Parameter
 
 /// Reads the second method: the keys of the first one, replaced by those of `[baseline]`.
 pub(super) fn baseline(
-    root: &Reader<'_>,
+    baseline: &At<Option<Raw>>,
+    document: &Table,
     setting: &Setting<'_>,
 ) -> Result<Option<Calibration>, Problem> {
-    let Some(baseline) = root.node("baseline") else { return Ok(None) };
-    let Value::Table(overrides) = &baseline.value else { return Ok(None) };
-    let procedure = root.table("procedure")?;
-    let Some(Node { value: Value::Table(primary), .. }) = procedure.node("calibration") else {
+    let Some(Raw { table: overrides, .. }) = &**baseline else { return Ok(None) };
+    let Some(Node { value: Value::Table(primary), .. }) = document.at("procedure.calibration")
+    else {
         let message = "found without procedure.calibration, which it is compared with";
-        return Err(root.problem("baseline", message));
+        return Err(baseline.problem(message));
     };
     if overrides.get("positions").is_some() && overrides.get("stops").is_some() {
-        return Err(root.problem("baseline", "found positions and stops, expected one of them"));
+        return Err(baseline.problem("found positions and stops, expected one of them"));
     }
     let mut merged: Table = primary.clone();
     for entry in &overrides.entries {
@@ -153,34 +161,42 @@ pub(super) fn baseline(
     }
     // The shared keys were already read with the first method, so a problem here belongs to the
     // baseline.
-    let second = calibration(&Reader::new(&merged, "baseline", &baseline.place), setting)?;
-    Ok(Some(second))
+    let second = CalibrationKeys::of(&Reader::new(&merged, &baseline.path, &baseline.place))?;
+    calibration(&second, setting).map(Some)
 }
 
-fn calibration(table: &Reader<'_>, setting: &Setting<'_>) -> Result<Calibration, Problem> {
-    let passes: u32 = table.integer("passes")?;
-    if table.given("positions") && table.node("stops").is_some() {
-        return Err(table.problem("stops", "found stops beside positions, expected one of them"));
+fn calibration(keys: &CalibrationKeys, setting: &Setting<'_>) -> Result<Calibration, Problem> {
+    let passes = keys.passes;
+    if keys.positions.given && keys.stops.is_some() {
+        return Err(keys.stops.problem("found stops beside positions, expected one of them"));
     }
-    let (name, key, stops) = if table.node("stops").is_some() {
-        ("own stops", "stops", stops(table, "stops")?)
-    } else {
-        let name = table.text("positions")?;
-        let stops = positions::named(name)
-            .ok_or_else(|| table.problem("positions", format!("found {name:?}")))?;
-        (name, "positions", from_degrees(stops))
+    let positions = &keys.positions;
+    let (name, sequence) = match (&*keys.stops, &**positions) {
+        (Some(own), _) => {
+            let sequence = Sequence::new(&stops(own), passes);
+            ("own stops", sequence.map_err(|error| keys.stops.problem(error.to_string()))?)
+        }
+        (None, name) => {
+            let name = name.as_deref().unwrap_or_default();
+            let stops = positions::named(name)
+                .ok_or_else(|| positions.problem(format!("found {name:?}")))?;
+            let sequence = Sequence::new(&from_degrees(stops), passes);
+            (name, sequence.map_err(|error| positions.problem(error.to_string()))?)
+        }
     };
-    let sequence =
-        Sequence::new(&stops, passes).map_err(|error| table.problem(key, error.to_string()))?;
-    let duration_s = table.si("duration")?;
+    let duration_s = *keys.duration;
     if samples_of(duration_s, setting.sample_period_ns).is_none() {
-        return Err(not_whole(table, "duration", setting));
+        return Err(not_whole(&keys.duration, setting));
     }
-    let aiding = aiding(&table.table("aiding")?, setting)?;
-    let estimator = match table.text("estimator")? {
-        "kalman" => core::Estimator::Kalman(kalman(table, &aiding)?),
-        "least-squares" => core::Estimator::LeastSquares(least_squares(table)?),
-        _ => core::Estimator::ExternalTurntable(external_turntable(table, setting)?),
+    let aiding = aiding(&keys.aiding, setting)?;
+    let estimator = match *keys.estimator {
+        EstimatorName::Kalman => core::Estimator::Kalman(kalman(keys, &aiding)?),
+        EstimatorName::LeastSquares => {
+            core::Estimator::LeastSquares(least_squares(&keys.least_squares))
+        }
+        EstimatorName::ExternalTurntable => {
+            core::Estimator::ExternalTurntable(external_turntable(keys, setting)?)
+        }
     };
     let moves_s = moves_s(&sequence, setting.turntable);
     let weights: f64 =
@@ -188,29 +204,24 @@ fn calibration(table: &Reader<'_>, setting: &Setting<'_>) -> Result<Calibration,
     let dwell_s = (duration_s - moves_s) / weights;
     let shortest_s = aiding.source.period_ns as f64 * 1e-9;
     if dwell_s < shortest_s {
-        return Err(table.problem(
-            "duration",
-            format!(
-                "found {duration_s} s, of which the moves of {passes} pass(es) of {} stops take \
-                 {moves_s:.1} s: {:.1} s is left for dwells of {weights} weights, {dwell_s:.2} s \
-                 each; expected {shortest_s} s each at least, the period of the aiding, that is a \
-                 duration of {} s or more",
-                sequence.stops().len(),
-                duration_s - moves_s,
-                (moves_s + weights * shortest_s).ceil(),
-            ),
-        ));
+        return Err(keys.duration.problem(format!(
+            "found {duration_s} s, of which the moves of {passes} pass(es) of {} stops take \
+             {moves_s:.1} s: {:.1} s is left for dwells of {weights} weights, {dwell_s:.2} s \
+             each; expected {shortest_s} s each at least, the period of the aiding, that is a \
+             duration of {} s or more",
+            sequence.stops().len(),
+            duration_s - moves_s,
+            (moves_s + weights * shortest_s).ceil(),
+        )));
     }
     Ok(Calibration { name: name.to_owned(), sequence, duration_s, dwell_s, estimator })
 }
 
-fn not_whole(table: &Reader<'_>, key: &str, setting: &Setting<'_>) -> Problem {
-    let found = table.text(key).unwrap_or_default();
-    let period_ns = setting.sample_period_ns;
-    table.problem(
-        key,
-        format!("found {found:?}, expected a multiple of the sample period, {period_ns} ns"),
-    )
+fn not_whole<T>(time: &At<T>, setting: &Setting<'_>) -> Problem {
+    let (found, period_ns) = (&time.text, setting.sample_period_ns);
+    time.problem(format!(
+        "found {found:?}, expected a multiple of the sample period, {period_ns} ns"
+    ))
 }
 
 fn from_degrees(stops: &[positions::Degrees]) -> Vec<Stop> {
@@ -222,15 +233,13 @@ fn from_degrees(stops: &[positions::Degrees]) -> Vec<Stop> {
     stops.iter().map(stop).collect()
 }
 
-fn stops(table: &Reader<'_>, key: &str) -> Result<Vec<Stop>, Problem> {
-    let stop = |table: Reader<'_>| {
-        Ok(Stop {
-            azimuth_rad: table.si("azimuth")?,
-            roll_rad: table.si("roll")?,
-            weight: table.number("weight")?,
-        })
+fn stops(keys: &[StopKeys]) -> Vec<Stop> {
+    let stop = |keys: &StopKeys| Stop {
+        azimuth_rad: keys.azimuth,
+        roll_rad: keys.roll,
+        weight: keys.weight,
     };
-    table.tables(key).into_iter().map(stop).collect()
+    keys.iter().map(stop).collect()
 }
 
 /// Number of samples in a time, if it is a multiple of the sample period.
@@ -266,37 +275,34 @@ struct Aiding {
     mode: core::AidingMode,
 }
 
-fn aiding(table: &Reader<'_>, setting: &Setting<'_>) -> Result<Aiding, Problem> {
-    let period_ns = (table.si("period")? * 1e9).round() as u64;
-    if samples_of(table.si("period")?, setting.sample_period_ns).is_none() {
-        return Err(not_whole(table, "period", setting));
+fn aiding(keys: &AidingKeys, setting: &Setting<'_>) -> Result<Aiding, Problem> {
+    let period_ns = (*keys.period * 1e9).round() as u64;
+    if samples_of(*keys.period, setting.sample_period_ns).is_none() {
+        return Err(not_whole(&keys.period, setting));
     }
-    let reference = table.text("reference")?;
-    let dimension =
-        if reference == "dock-position" { Dimension::LENGTH } else { Dimension::VELOCITY };
-    for key in ["sigma", "noise"] {
-        let text = table.text(key)?;
-        if !quantity::parse(text).is_ok_and(|quantity| quantity.is(dimension)) {
-            return Err(table.problem(
-                key,
-                format!(
-                    "found {text:?}, expected {} such as \"{}\" with reference = {reference:?}",
-                    dimension.name, dimension.example
-                ),
-            ));
+    let dimension = match *keys.reference {
+        Reference::DockPosition => Dimension::LENGTH,
+        Reference::ZeroVelocity | Reference::Velocity => Dimension::VELOCITY,
+    };
+    for key in [&keys.sigma, &keys.noise] {
+        if !quantity::parse(&key.text).is_ok_and(|quantity| quantity.is(dimension)) {
+            return Err(key.problem(format!(
+                "found {:?}, expected {} such as \"{}\" with reference = {:?}",
+                key.text, dimension.name, dimension.example, keys.reference.text
+            )));
         }
     }
-    let (sigma, noise) = (table.si("sigma")?, table.si("noise")?);
-    let (kind, mode) = match reference {
-        "dock-position" => (
+    let (sigma, noise) = (*keys.sigma, *keys.noise);
+    let (kind, mode) = match *keys.reference {
+        Reference::DockPosition => (
             plant::AidingKind::DockPosition { sigma_m: noise },
             core::AidingMode::Position { sigma_m: sigma },
         ),
-        "velocity" => (
+        Reference::Velocity => (
             plant::AidingKind::Velocity { sigma_mps: noise },
             core::AidingMode::Velocity { sigma_mps: sigma },
         ),
-        _ => (
+        Reference::ZeroVelocity => (
             plant::AidingKind::ZeroVelocity { sigma_mps: noise },
             core::AidingMode::Velocity { sigma_mps: sigma },
         ),
@@ -304,66 +310,60 @@ fn aiding(table: &Reader<'_>, setting: &Setting<'_>) -> Result<Aiding, Problem> 
     Ok(Aiding { source: plant::AidingSource { kind, period_ns }, mode })
 }
 
-fn kalman(table: &Reader<'_>, aiding: &Aiding) -> Result<core::Kalman, Problem> {
-    let prior = table.table("prior")?;
-    let mut parameters = [0.0; 7];
-    let mut estimated = [true; 7];
-    let excluded = table.texts("not_estimated");
-    let g_states = table.boolean("g_states")?;
-    for (index, group) in Group::ALL.into_iter().enumerate() {
-        parameters[index] = prior.si(group.name())?;
-        estimated[index] =
-            !excluded.contains(&group.name()) && (g_states || group != Group::GDependent);
-    }
-    let attitude_rad: [f64; 3] = prior.si_array("attitude")?;
-    if attitude_rad.iter().any(|sigma| *sigma <= 0.0) {
-        return Err(prior.problem("attitude", "found a σ of 0 or less, expected values above 0"));
+fn kalman(keys: &CalibrationKeys, aiding: &Aiding) -> Result<core::Kalman, Problem> {
+    let prior = &keys.prior;
+    let estimated = Group::ALL.map(|group| {
+        !keys.not_estimated.iter().any(|name| name == group.name())
+            && (keys.g_states || group != Group::GDependent)
+    });
+    if prior.attitude.iter().any(|sigma| *sigma <= 0.0) {
+        return Err(prior.attitude.problem("found a σ of 0 or less, expected values above 0"));
     }
     Ok(core::Kalman {
-        error_model: match table.text("error_model")? {
-            "psi" => core::ErrorModel::Psi,
-            _ => core::ErrorModel::Phi,
-        },
+        error_model: keys.error_model,
         estimated,
         prior: core::Prior {
-            attitude_rad,
-            velocity_mps: prior.si("velocity")?,
-            position_m: prior.si("position")?,
-            parameters,
+            attitude_rad: *prior.attitude,
+            velocity_mps: prior.velocity,
+            position_m: prior.position,
+            parameters: [
+                prior.gyro_bias,
+                prior.gyro_scale,
+                prior.gyro_misalignment,
+                prior.g_dependent,
+                prior.accel_bias,
+                prior.accel_scale,
+                prior.accel_misalignment,
+            ],
         },
         aiding: aiding.mode,
         aiding_period_ns: aiding.source.period_ns,
-        refuse_above_mean_nis: table.number("refuse_above_mean_nis")?,
+        refuse_above_mean_nis: keys.refuse_above_mean_nis,
     })
 }
 
-fn least_squares(table: &Reader<'_>) -> Result<core::LeastSquares, Problem> {
-    let table = table.table("least_squares")?;
-    Ok(core::LeastSquares {
-        gravity_mps2: table.optional_si("gravity"),
-        gyro: match table.text("gyro")? {
-            "earth-rate" => core::GyroReference::EarthRate,
-            _ => core::GyroReference::RotatedGravity,
-        },
-        intervals: match table.text("intervals")? {
-            "commanded" => core::StaticIntervals::Commanded,
-            _ => core::StaticIntervals::Detected {
-                initial_s: table.si("initial")?,
-                window_s: table.si("window")?,
-                threshold: table.number("threshold")?,
-                shortest_s: table.si("shortest")?,
+fn least_squares(keys: &LeastSquaresKeys) -> core::LeastSquares {
+    core::LeastSquares {
+        gravity_mps2: keys.gravity,
+        gyro: keys.gyro,
+        intervals: match keys.intervals {
+            Intervals::Commanded => core::StaticIntervals::Commanded,
+            Intervals::Detected => core::StaticIntervals::Detected {
+                initial_s: keys.initial,
+                window_s: keys.window,
+                threshold: keys.threshold,
+                shortest_s: keys.shortest,
             },
         },
-    })
+    }
 }
 
 fn external_turntable(
-    table: &Reader<'_>,
+    keys: &CalibrationKeys,
     setting: &Setting<'_>,
 ) -> Result<core::ExternalTurntable, Problem> {
     let Motion::Static(mean) = setting.motion else {
-        return Err(table.problem(
-            "estimator",
+        return Err(keys.estimator.problem(
             "found \"external-turntable\" with motion.kind = \"dockside\", expected \"static\": a \
              turntable's base is surveyed on the ground",
         ));
@@ -374,63 +374,55 @@ fn external_turntable(
     })
 }
 
-fn navigation(table: &Reader<'_>, setting: &Setting<'_>) -> Result<core::NavigationPlan, Problem> {
-    let duration_s = table.optional_si("duration");
+fn navigation(
+    keys: &NavigationKeys,
+    setting: &Setting<'_>,
+) -> Result<core::NavigationPlan, Problem> {
+    let duration_s = *keys.duration;
     match duration_s {
         None if setting.endless => {
             let message = "missing, expected a time such as \"24 h\": the source never ends";
-            return Err(table.problem("duration", message));
+            return Err(keys.duration.problem(message));
         }
         Some(duration_s) if samples_of(duration_s, setting.sample_period_ns).is_none() => {
-            return Err(not_whole(table, "duration", setting));
+            return Err(not_whole(&keys.duration, setting));
         }
         _ => {}
     }
-    let stops = match table.optional_text("rotation") {
-        Some("none") => vec![Stop { azimuth_rad: 0.0, roll_rad: 0.0, weight: 1.0 }],
-        Some(_) => from_degrees(positions::SIXTEEN),
-        None => stops(table, "rotation")?,
+    let stops = match &*keys.rotation {
+        Rotation::None => vec![Stop { azimuth_rad: 0.0, roll_rad: 0.0, weight: 1.0 }],
+        Rotation::Sixteen => from_degrees(positions::SIXTEEN),
+        Rotation::Stops(own) => stops(own),
     };
     let rotation =
-        Sequence::new(&stops, 1).map_err(|error| table.problem("rotation", error.to_string()))?;
-    Ok(core::NavigationPlan { duration_s, rotation, dwell_s: table.si("dwell")? })
+        Sequence::new(&stops, 1).map_err(|error| keys.rotation.problem(error.to_string()))?;
+    Ok(core::NavigationPlan { duration_s, rotation, dwell_s: keys.dwell })
 }
 
 /// Reads the screening. Its bounds by base and instrument are added with the draws: see
 /// [`super::super::resolve`].
-pub(super) fn screening(table: &Reader<'_>) -> Result<core::Screening, Problem> {
-    let gate = match table.optional_table("gate") {
-        None => None,
-        Some(gate) => Some(core::Gate {
-            nis: gate.number("nis")?,
-            rejections: gate.integer("rejections")?,
-            recovery: match gate.optional_table("recovery") {
-                None => core::Recovery::Widening,
-                Some(reset) => core::Recovery::Reset {
-                    attitude_rad: reset.si("attitude")?,
-                    velocity_mps: reset.si("velocity")?,
-                    position_m: reset.si("position")?,
-                },
+pub(super) fn screening(keys: &ScreeningKeys) -> core::Screening {
+    let gate = |gate: &GateKeys| core::Gate {
+        nis: gate.nis,
+        rejections: gate.rejections,
+        recovery: match &gate.recovery {
+            None => core::Recovery::Widening,
+            Some(reset) => core::Recovery::Reset {
+                attitude_rad: reset.attitude,
+                velocity_mps: reset.velocity,
+                position_m: reset.position,
             },
-        }),
-    };
-    let stuck_samples = match table.optional_text("stuck_samples") {
-        Some(_) => None,
-        None => Some(table.integer("stuck_samples")?),
-    };
-    let on = |key: &str| table.text(key).map(|text| text == "on");
-    Ok(core::Screening {
-        gate,
-        stuck_samples,
-        jumps: on("jumps")?,
-        bridging: on("bridging")?,
-        gimbals: on("gimbals")?,
-        drift_sigmas: match table.optional_text("drift") {
-            Some(_) => None,
-            None => Some(table.number("drift")?),
         },
-        checkpoints: on("checkpoints")?,
-        aiding_stamps: on("aiding_stamps")?,
+    };
+    core::Screening {
+        gate: keys.gate.as_ref().map(gate),
+        stuck_samples: keys.stuck_samples,
+        jumps: keys.jumps,
+        bridging: keys.bridging,
+        gimbals: keys.gimbals,
+        drift_sigmas: keys.drift,
+        checkpoints: keys.checkpoints,
+        aiding_stamps: keys.aiding_stamps,
         ..core::Screening::none()
-    })
+    }
 }

@@ -8,9 +8,9 @@ use crate::quantity;
 /// values; an accessor that meets anything else still reports a problem.
 #[derive(Clone)]
 pub struct Reader<'a> {
-    table: &'a Table,
-    pub(super) path: String,
-    pub(super) place: Place,
+    pub(crate) table: &'a Table,
+    pub(crate) path: String,
+    pub(crate) place: Place,
 }
 
 impl<'a> Reader<'a> {
@@ -183,13 +183,5 @@ impl<'a> Reader<'a> {
     /// Quantities of an array of known length in SI, if it is given.
     pub fn optional_si_array<const N: usize>(&self, key: &str) -> Option<[f64; N]> {
         self.optional_si_vec(key)?.try_into().ok()
-    }
-
-    /// Quantities of an array of known length in SI.
-    ///
-    /// # Errors
-    /// If it is missing.
-    pub fn si_array<const N: usize>(&self, key: &str) -> Result<[f64; N], Problem> {
-        self.optional_si_array(key).ok_or_else(|| self.missing(key))
     }
 }

@@ -1,13 +1,11 @@
 //! Limits on results.
 
-use super::reader::Reader;
-use crate::document::Value;
 use crate::error::Problem;
+use crate::keys::{At, DecisionKeys, EquipmentKeys, RequirementKeys};
 use crate::model::Requirement;
 use crate::quantity::{self, Quantity};
 use octant_base::names::suggestion;
-use octant_requirements::Comparison;
-use octant_requirements::decision::{Decision, Rule, Uncertainty};
+use octant_requirements::decision::{Decision, Uncertainty};
 use octant_requirements::equipment::{Day, Equipment};
 use octant_requirements::verdict::LimitCheck;
 use octant_requirements::{measures, signed};
@@ -26,113 +24,95 @@ const SUFFIXES: [(&str, &str); 9] = [
     ("_m", "m"),
 ];
 
-pub(super) fn read(root: &Reader<'_>) -> Result<Vec<Requirement>, Problem> {
+pub(super) fn read(keys: &[RequirementKeys]) -> Result<Vec<Requirement>, Problem> {
     let mut all: Vec<Requirement> = Vec::new();
-    for table in root.tables("requirements") {
-        let id = table.text("id")?.to_owned();
+    for RequirementKeys { id, text, measure, limit, comparison, clause } in keys {
         if id.trim().is_empty() {
-            return Err(table.problem("id", "found an empty text, expected an identifier"));
+            return Err(id.problem("found an empty text, expected an identifier"));
         }
-        if all.iter().any(|other| other.check.id == id) {
-            return Err(
-                table.problem("id", format!("found {id:?} a second time, expected unique ids"))
-            );
+        if all.iter().any(|other| other.check.id == **id) {
+            let message = format!("found {:?} a second time, expected unique ids", **id);
+            return Err(id.problem(message));
         }
-        let measure = table.text("measure")?;
-        let bare = path_of(measure).map_err(|error| table.problem("measure", error.to_string()))?;
-        let (limit, limit_text) = limit(&table, bare)?;
+        let bare = path_of(measure).map_err(|error| measure.problem(error.to_string()))?;
+        let (limit, limit_text) = self::limit(limit, bare)?;
         all.push(Requirement {
             check: LimitCheck {
-                id,
-                measure: measure.to_owned(),
-                comparison: match table.text("comparison")? {
-                    "<" => Comparison::Below,
-                    ">=" => Comparison::AtLeast,
-                    ">" => Comparison::Above,
-                    _ => Comparison::AtMost,
-                },
+                id: id.to_string(),
+                measure: measure.to_string(),
+                comparison: *comparison,
                 limit,
             },
-            text: table.text("text")?.to_owned(),
+            text: text.clone(),
             limit_text,
-            clause: table.optional_text("clause").map(str::to_owned),
+            clause: clause.clone(),
         });
     }
-    for (table, requirement) in root.tables("requirements").into_iter().zip(&all) {
+    for (keys, requirement) in keys.iter().zip(&all) {
         let side = |requirement: &Requirement| requirement.check.comparison;
         let both = all.iter().map(|other| (other.check.measure.as_str(), side(other)));
         let this = (requirement.check.measure.as_str(), side(requirement));
         if let Some(message) = signed::one_sided(this, both) {
-            return Err(table.problem("measure", message));
+            return Err(keys.measure.problem(message));
         }
     }
     Ok(all)
 }
 
 /// Reads the decision rule.
-pub(super) fn decision(table: &Reader<'_>) -> Result<Decision, Problem> {
-    let rule = table.optional_text("rule").map(|rule| match rule {
-        "simple-acceptance" => Rule::SimpleAcceptance,
-        _ => Rule::GuardBand,
-    });
+pub(super) fn decision(keys: &DecisionKeys) -> Result<Decision, Problem> {
     let mut uncertainties: Vec<Uncertainty> = Vec::new();
-    for stated in table.tables("uncertainties") {
-        let measure = stated.text("measure")?;
+    for stated in keys.uncertainties.iter().flatten() {
         let bare =
-            path_of(measure).map_err(|error| stated.problem("measure", error.to_string()))?;
+            path_of(&stated.measure).map_err(|error| stated.measure.problem(error.to_string()))?;
         if uncertainties.iter().any(|other| other.measure == bare) {
             let message = format!("found {bare:?} a second time, expected one uncertainty of each");
-            return Err(stated.problem("measure", message));
+            return Err(stated.measure.problem(message));
         }
-        let (uncertainty, _) = limit_at(&stated, "uncertainty", bare)?;
+        let (uncertainty, _) = limit(&stated.uncertainty, bare)?;
         if !(uncertainty >= 0.0 && uncertainty.is_finite()) {
             let message = format!("found {uncertainty}, expected a number from 0 on");
-            return Err(stated.problem("uncertainty", message));
+            return Err(stated.uncertainty.problem(message));
         }
         uncertainties.push(Uncertainty { measure: bare.to_owned(), uncertainty });
     }
-    Ok(Decision { rule, position_m: table.optional_si("position"), uncertainties })
+    Ok(Decision { rule: keys.rule, position_m: keys.position, uncertainties })
 }
 
 /// Reads the equipment of the bench.
-pub(super) fn equipment(root: &Reader<'_>) -> Result<Vec<Equipment>, Problem> {
+pub(super) fn equipment(keys: &[EquipmentKeys]) -> Result<Vec<Equipment>, Problem> {
     let mut all: Vec<Equipment> = Vec::new();
-    for table in root.tables("equipment") {
-        let filled = |key: &str| {
-            let text = table.text(key)?;
-            if text.trim().is_empty() {
-                return Err(table.problem(key, "found an empty text, expected one that names it"));
+    for EquipmentKeys { name, serial, certificate, expires } in keys {
+        let filled = |key: &At<String>| {
+            if key.trim().is_empty() {
+                return Err(key.problem("found an empty text, expected one that names it"));
             }
-            Ok(text.to_owned())
+            Ok(key.to_string())
         };
-        let expires = Day::parse(table.text("expires")?)
-            .map_err(|error| table.problem("expires", error.to_string()))?;
+        let expires = Day::parse(expires).map_err(|error| expires.problem(error.to_string()))?;
         let one = Equipment {
-            name: filled("name")?,
-            serial: table.optional_text("serial").map(str::to_owned),
-            certificate: filled("certificate")?,
+            name: filled(name)?,
+            serial: serial.clone(),
+            certificate: filled(certificate)?,
             expires,
         };
         if all.iter().any(|other| other.name == one.name && other.serial == one.serial) {
             let message = format!("found {:?} a second time, expected each piece once", one.name);
-            return Err(table.problem("name", message));
+            return Err(name.problem(message));
         }
         all.push(one);
     }
     Ok(all)
 }
 
-fn limit(table: &Reader<'_>, measure: &str) -> Result<(f64, String), Problem> {
-    limit_at(table, "limit", measure)
-}
-
-fn limit_at(table: &Reader<'_>, key: &str, measure: &str) -> Result<(f64, String), Problem> {
-    let Some(Value::Text(text)) = table.node(key).map(|node| &node.value) else {
-        let number = table.number(key)?;
-        return Ok((number, number.to_string()));
-    };
-    let number = limit_of(measure, text).map_err(|error| table.problem(key, error.to_string()))?;
-    Ok((number, text.to_owned()))
+/// Limit in the unit of its measure, and as it was written.
+fn limit(limit: &At<f64>, measure: &str) -> Result<(f64, String), Problem> {
+    if limit.text.is_empty() {
+        return Ok((**limit, limit.to_string()));
+    }
+    let number =
+        limit_of(measure, &limit.text).map_err(|error| limit.problem(error.to_string()))?;
+    Ok((number, limit.text.clone()))
 }
 
 /// Reason why a text is no measure of a run, or no limit of one.
