@@ -1,10 +1,11 @@
 //! `octant watch`.
 
-use super::progress::interrupts;
+use super::progress::watch_interrupts;
 use crate::failure::Failure;
 use crate::followed::{unreadable, verdict};
 use crate::terminal::print;
 use clap::Args;
+use octant_base::interrupt;
 use octant_requirements::Verdict;
 use octant_watch::dashboard::{self, Page};
 use octant_watch::follow::{Follow, Stage};
@@ -109,7 +110,7 @@ fn screen(mut follow: Follow) -> Result<Verdict, Failure> {
     let mut terminal = ratatui::try_init()
         .map_err(|error| Failure::bench(format!("failed to set up the terminal: {error}")))?;
     // An interrupt restores the terminal too.
-    interrupts::watch();
+    watch_interrupts();
     let shown = show(&mut terminal, &mut follow);
     ratatui::restore();
     shown?;
@@ -125,7 +126,7 @@ fn show(terminal: &mut ratatui::DefaultTerminal, follow: &mut Follow) -> Result<
     // A killed program may have left content there.
     terminal.clear().map_err(failed)?;
     let events = events().map_err(failed)?;
-    while !interrupts::seen() {
+    while !interrupt::seen() {
         // One poll per frame: a long recording fills the screen while it is read.
         let more = follow.look(|_, _, _| {}).map_err(unreadable)?;
         terminal.draw(|frame| dashboard::draw(frame, follow, page)).map_err(failed)?;
