@@ -1,4 +1,8 @@
-//! Child processes that don't inherit the signing key.
+//! Child processes that don't inherit the signing key, and time limits for them.
+
+mod limited;
+
+pub use limited::{ChildEnded, ChildOutcome, finish};
 
 use std::ffi::OsStr;
 use std::process::Command;

@@ -7,11 +7,13 @@
 //! | [`control`] | progress of a run, and the request to end it |
 //! | [`pool`] | tasks on several threads, their results in order |
 //! | [`hash`] | SHA-256 of files |
-//! | [`child`] | processes that hear nothing of keys |
+//! | [`child`] | processes that hear nothing of keys, with time limits |
+//! | [`interrupt`] | signals that end the program |
 
 pub mod child;
 pub mod control;
 pub mod hash;
+pub mod interrupt;
 pub mod names;
 pub mod number;
 pub mod pool;

@@ -5,11 +5,11 @@ pub use super::shard::{Shard, ShardError};
 
 use super::case::{self, CaseResult, Job, Kept, differing};
 use super::plan::{Case, Plan, PlanError};
-use super::process::{Ended, TRIES, command, wait};
+use super::process::{TRIES, command};
 use super::status::StatusError;
+use octant_base::child::{ChildEnded, finish};
 use octant_base::pool::in_order;
 use octant_requirements::Verdict;
-use std::io::{Read, Write};
 use std::path::{Path, PathBuf};
 use std::process::{ExitStatus, Stdio};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -223,51 +223,37 @@ fn try_one(plan: &Plan, case: &Case, options: &Options<'_>) -> Result<Tried, Exe
         memory_mib: plan.limits.memory_mib,
         folder: options.folder.to_owned(),
     };
-    let mut child = command(options.program)
+    let job = serde_json::to_vec(&job)
+        .map_err(|error| system("describe the case to", options.program, error.into()))?;
+    let child = command(options.program)
         .args(["campaign", "one"])
         .stdin(Stdio::piped())
         .stdout(Stdio::null())
         .stderr(Stdio::piped())
         .spawn()
         .map_err(|error| system("start", options.program, error))?;
-    let input = child.stdin.take();
-    let words = child.stderr.take();
-    // Standard error is read at the same time: a full pipe would block the process.
-    let (status, words) = std::thread::scope(|scope| {
-        let words = scope.spawn(move || {
-            let mut text = String::new();
-            if let Some(mut words) = words {
-                // Output that isn't text, or that is cut off, is read up to that point.
-                let _ = words.by_ref().take(WORDS).read_to_string(&mut text);
-                let _ = std::io::copy(&mut words, &mut std::io::sink());
-            }
-            text
-        });
-        if let Some(mut input) = input {
-            // If the process has ended already, its status tells.
-            let _ = serde_json::to_writer(&mut input, &job);
-            let _ = input.flush();
-        }
-        // A limit that isn't a number counts as no limit.
-        let limit = Duration::try_from_secs_f64(plan.limits.time_s).unwrap_or(Duration::MAX);
-        let status = wait(&mut child, limit, options.cancel);
-        (status, words.join().unwrap_or_default())
-    });
-    let error = match status.map_err(|error| system("wait for", options.program, error))? {
-        Ended::Cancelled => return Ok(Tried::Cancelled),
+    // A limit that isn't a number counts as no limit.
+    let limit = Duration::try_from_secs_f64(plan.limits.time_s).unwrap_or(Duration::MAX);
+    let outcome = finish(child, &job, WORDS, limit, options.cancel)
+        .map_err(|error| system("wait for", options.program, error))?;
+    let words = outcome.err;
+    let error = match outcome.ended {
+        ChildEnded::Cancelled => return Ok(Tried::Cancelled),
         // The process may have been ended after it stored the result.
-        Ended::Outside(_) | Ended::TooLong if case::file(options.folder, &case.id).exists() => {
+        ChildEnded::Outside(_) | ChildEnded::TooLong
+            if case::file(options.folder, &case.id).exists() =>
+        {
             return Ok(Tried::Done(kept(case, options)?));
         }
-        Ended::Outside(by) => return Ok(Tried::Outside(by)),
-        Ended::Status(status) if status.code() == Some(KEPT) => {
+        ChildEnded::Outside(by) => return Ok(Tried::Outside(by)),
+        ChildEnded::Status(status) if status.code() == Some(KEPT) => {
             return Ok(Tried::Done(kept(case, options)?));
         }
-        Ended::Status(status) if status.code() == Some(i32::from(NOT_KEPT)) => {
+        ChildEnded::Status(status) if status.code() == Some(i32::from(NOT_KEPT)) => {
             return Err(ExecuteError::NotKept(said(&words).to_owned()));
         }
-        Ended::Status(status) => failure(status, &words, plan.limits.memory_mib),
-        Ended::TooLong => format!("it took more than its {} s", plan.limits.time_s),
+        ChildEnded::Status(status) => failure(status, &words, plan.limits.memory_mib),
+        ChildEnded::TooLong => format!("it took more than its {} s", plan.limits.time_s),
     };
     let result = CaseResult::broken(&case.id, error);
     let bytes = result.to_json().map_err(|error| system("write", options.folder, error.into()))?;

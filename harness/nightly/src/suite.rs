@@ -2,13 +2,13 @@
 
 use super::error::NightError;
 use super::file::write;
+use octant_base::child::{ChildEnded, finish};
 use octant_base::pool::in_order;
-use octant_campaign::process::{self, Ended, TRIES};
+use octant_campaign::process::{self, TRIES};
 use octant_requirements::Verdict;
 use octant_scenario::suite::{Case, Suite};
 use octant_score::summary::Summary;
 use serde::{Deserialize, Serialize};
-use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::process::Stdio;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -228,7 +228,7 @@ fn start(
     cancel: &AtomicBool,
 ) -> Result<Tried, NightError> {
     let system = NightError::of("start", program);
-    let mut child = process::command(program)
+    let child = process::command(program)
         .arg("run")
         .arg(scenario)
         .arg("--out")
@@ -239,27 +239,13 @@ fn start(
         .stderr(Stdio::piped())
         .spawn()
         .map_err(&system)?;
-    let (printed, words) = (child.stdout.take(), child.stderr.take());
-    std::thread::scope(|scope| {
-        let printed = scope.spawn(|| all(printed));
-        let words = scope.spawn(|| all(words));
-        let status = match process::wait(&mut child, LIMIT, cancel).map_err(&system)? {
-            Ended::Cancelled => return Ok(Tried::Cancelled),
-            Ended::Outside(by) => return Ok(Tried::Outside(by)),
-            Ended::TooLong => None,
-            Ended::Status(status) => status.code(),
-        };
-        let printed = printed.join().unwrap_or_default();
-        let summary = Summary::from_json(&printed).ok();
-        Ok(Tried::Said(Box::new((status, summary, words.join().unwrap_or_default()))))
-    })
-}
-
-fn all(pipe: Option<impl Read>) -> String {
-    let mut bytes = Vec::new();
-    if let Some(mut pipe) = pipe {
-        // An unreadable value counts as absent.
-        let _ = pipe.read_to_end(&mut bytes);
-    }
-    String::from_utf8_lossy(&bytes).into_owned()
+    let outcome = finish(child, &[], u64::MAX, LIMIT, cancel).map_err(&system)?;
+    let status = match outcome.ended {
+        ChildEnded::Cancelled => return Ok(Tried::Cancelled),
+        ChildEnded::Outside(by) => return Ok(Tried::Outside(by)),
+        ChildEnded::TooLong => None,
+        ChildEnded::Status(status) => status.code(),
+    };
+    let summary = Summary::from_json(&outcome.out).ok();
+    Ok(Tried::Said(Box::new((status, summary, outcome.err))))
 }

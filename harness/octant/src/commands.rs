@@ -114,7 +114,7 @@ pub fn main() -> ExitCode {
     });
     let cli = Cli::parse();
     if let Some(parent) = cli.parent
-        && let Err(error) = progress::interrupts::leave_to(parent)
+        && let Err(error) = progress::leave_interrupts_to(parent)
     {
         note!("octant: failed to follow process {parent}: {error}");
         return ExitCode::from(Verdict::Error.exit_code());

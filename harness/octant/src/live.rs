@@ -12,8 +12,9 @@ pub(super) use without_server::{Live, serve};
 mod with_server {
     use crate::failure::Failure;
     use crate::followed::{unreadable, verdict};
-    use crate::progress::interrupts;
+    use crate::progress::watch_interrupts;
     use crate::terminal::note;
+    use octant_base::interrupt;
     use octant_requirements::Verdict;
     use octant_watch::follow::Follow;
     use octant_watch::foxglove::{ServeError, Server};
@@ -41,9 +42,9 @@ mod with_server {
     /// Serves a run until it is interrupted, even after the run has ended.
     pub(crate) fn serve(mut follow: Follow, address: &str) -> Result<Verdict, Failure> {
         let mut server = start(address)?;
-        interrupts::watch();
+        watch_interrupts();
         let mut told = false;
-        while !interrupts::seen() {
+        while !interrupt::seen() {
             if server.look(&mut follow).map_err(unreadable)? {
                 continue;
             }

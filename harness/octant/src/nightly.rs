@@ -2,11 +2,12 @@
 //! baseline.
 
 use super::campaign::run::in_rounds;
-use super::progress::interrupts;
+use super::progress::watch_interrupts;
 use crate::failure::Failure;
 use crate::terminal::note;
 use crate::terminal::{print, write};
 use clap::{Args, Subcommand};
+use octant_base::interrupt;
 use octant_campaign::case;
 use octant_campaign::execute::{Done, Event, Options, Shard, execute};
 use octant_campaign::plan::Plan;
@@ -23,7 +24,7 @@ use octant_requirements::Verdict;
 use octant_scenario::suite::Suite;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::{Duration, SystemTime};
+use std::time::SystemTime;
 
 #[derive(Debug, Args)]
 #[command(args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
@@ -100,7 +101,7 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     if arguments.campaigns.is_empty() && arguments.suite.is_none() {
         return Err(Failure::input("found neither a campaign nor --suite, expected one or both"));
     }
-    interrupts::watch();
+    watch_interrupts();
     // Inputs that can't be compared or stored are reported before anything runs.
     let mut all = History::read(history).map_err(|error| Failure::input(error).failed())?;
     let baseline = accept::read(history).map_err(Failure::input)?;
@@ -114,8 +115,7 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     let inputs = inputs(arguments)?;
     let mut night = begin(history, &inputs, &all)?;
     let folder = night::nights(history).join(&night.id);
-    let cancel = AtomicBool::new(false);
-    if !run_all(&inputs, &mut night, &folder, &cancel)? {
+    if !run_all(&inputs, &mut night, &folder, interrupt::flag())? {
         print(&format!("night {} was interrupted: the same command resumes it\n", night.id))?;
         return Ok(Verdict::Inconclusive);
     }
@@ -304,28 +304,6 @@ fn remove_begun(history: &Path) -> Result<(), Failure> {
 
 /// Runs everything without a result; returns whether all have one now.
 fn run_all(
-    inputs: &Inputs,
-    night: &mut Night,
-    folder: &Path,
-    cancel: &AtomicBool,
-) -> Result<bool, Failure> {
-    let over = AtomicBool::new(false);
-    std::thread::scope(|scope| {
-        scope.spawn(|| {
-            while !over.load(Ordering::Relaxed) {
-                std::thread::sleep(Duration::from_millis(20));
-                if interrupts::seen() {
-                    cancel.store(true, Ordering::Relaxed);
-                }
-            }
-        });
-        let whole = run_parts(inputs, night, folder, cancel);
-        over.store(true, Ordering::Relaxed);
-        whole
-    })
-}
-
-fn run_parts(
     inputs: &Inputs,
     night: &mut Night,
     folder: &Path,

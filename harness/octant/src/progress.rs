@@ -2,6 +2,7 @@
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use octant_base::control::Control;
+use octant_base::interrupt;
 use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 
@@ -14,7 +15,7 @@ pub(super) fn with_progress<T>(
     sample_s: f64,
     work: impl FnOnce() -> T,
 ) -> T {
-    interrupts::watch();
+    watch_interrupts();
     let done = std::sync::atomic::AtomicBool::new(false);
     std::thread::scope(|scope| {
         scope.spawn(|| show(controls, epochs, sample_s, &done));
@@ -38,7 +39,7 @@ fn show(
     let mut stopped = false;
     while !done.load(Ordering::Relaxed) {
         std::thread::sleep(Duration::from_millis(20));
-        if interrupts::seen() {
+        if interrupt::seen() {
             for control in controls {
                 control.cancel.store(true, Ordering::Relaxed);
             }
@@ -68,34 +69,17 @@ fn show(
 }
 
 /// Handles Ctrl-C: the first one ends the run in order, the second one at once.
-pub(super) mod interrupts {
-    use octant_campaign::process;
-    use std::sync::Once;
-    use std::sync::atomic::{AtomicBool, Ordering};
+pub(super) fn watch_interrupts() {
+    // If no handler can be set, Ctrl-C ends the program at once; the recording survives.
+    let _ = interrupt::watch(|| {
+        octant_turntable::stop_all("the program was interrupted");
+        std::process::exit(i32::from(octant_requirements::Verdict::Error.exit_code()));
+    });
+}
 
-    static SEEN: AtomicBool = AtomicBool::new(false);
-    static WATCHING: Once = Once::new();
-
-    /// Leaves interrupts to the process that started this one: a signal ends this one at once,
-    /// which tells the other that there is no result.
-    pub(crate) fn leave_to(parent: u32) -> std::io::Result<()> {
-        WATCHING.call_once(|| {});
-        process::end_with(parent)
-    }
-
-    pub(crate) fn watch() {
-        WATCHING.call_once(|| {
-            // If no handler can be set, Ctrl-C ends the program at once; the recording survives.
-            let _ = ctrlc::set_handler(|| {
-                if SEEN.swap(true, Ordering::Relaxed) {
-                    octant_turntable::stop_all("the program was interrupted");
-                    std::process::exit(i32::from(octant_requirements::Verdict::Error.exit_code()));
-                }
-            });
-        });
-    }
-
-    pub(crate) fn seen() -> bool {
-        SEEN.load(Ordering::Relaxed)
-    }
+/// Leaves interrupts to the process that started this one: a signal ends this one at once,
+/// which tells the other that there is no result.
+pub(super) fn leave_interrupts_to(parent: u32) -> std::io::Result<()> {
+    interrupt::leave();
+    octant_campaign::process::end_with(parent)
 }

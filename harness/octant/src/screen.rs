@@ -2,9 +2,10 @@
 
 use crate::failure::Failure;
 use crate::followed::{unreadable, verdict};
-use crate::progress::interrupts;
+use crate::progress::watch_interrupts;
 use crate::terminal::print;
 use crate::watch::LOOK;
+use octant_base::interrupt;
 use octant_requirements::Verdict;
 use octant_watch::dashboard::{self, Page};
 use octant_watch::follow::Follow;
@@ -18,7 +19,7 @@ pub(super) fn show(mut follow: Follow) -> Result<Verdict, Failure> {
     let mut terminal = ratatui::try_init()
         .map_err(|error| Failure::bench(format!("failed to set up the terminal: {error}")))?;
     // An interrupt restores the terminal too.
-    interrupts::watch();
+    watch_interrupts();
     let shown = frames(&mut terminal, &mut follow);
     ratatui::restore();
     shown?;
@@ -34,7 +35,7 @@ fn frames(terminal: &mut ratatui::DefaultTerminal, follow: &mut Follow) -> Resul
     // A killed program may have left content there.
     terminal.clear().map_err(failed)?;
     let events = events().map_err(failed)?;
-    while !interrupts::seen() {
+    while !interrupt::seen() {
         // One poll per frame: a long recording fills the screen while it is read.
         let more = follow.look(|_, _, _| {}).map_err(unreadable)?;
         terminal.draw(|frame| dashboard::draw(frame, follow, page)).map_err(failed)?;

@@ -1,19 +1,19 @@
 //! `octant selftest`: runs known-answer tests through this program itself.
 
-use super::progress::interrupts;
+use super::progress::watch_interrupts;
 use crate::failure::Failure;
 use crate::terminal::note;
 use crate::terminal::print;
 use clap::Args;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use octant_base::interrupt;
 use octant_campaign::plan;
 use octant_requirements::Verdict;
 use octant_selftest::judge::Judged;
 use octant_selftest::record::{CaseRecord, FILE_NAME, Record, write};
 use octant_selftest::{answers, cases, run};
 use std::path::PathBuf;
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::{Duration, SystemTime};
+use std::time::SystemTime;
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
@@ -59,29 +59,16 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     if let Ok(style) = ProgressStyle::with_template("{wide_bar} {pos} of {len} cases, {msg}") {
         bar.set_style(style);
     }
-    interrupts::watch();
-    let (cancel, over) = (AtomicBool::new(false), AtomicBool::new(false));
-    let done = std::thread::scope(|scope| {
-        scope.spawn(|| {
-            while !over.load(Ordering::Relaxed) {
-                std::thread::sleep(Duration::from_millis(20));
-                if interrupts::seen() {
-                    cancel.store(true, Ordering::Relaxed);
-                }
-            }
-        });
-        let tell = |case: &CaseRecord| {
-            bar.inc(1);
-            bar.set_message(case.id);
-            if case.verdict == Judged::Alarm {
-                let line = format!("ALARM: {}: {}", case.id, case.found);
-                if bar.is_hidden() { note!("{line}") } else { bar.println(line) }
-            }
-        };
-        let done = run(&program, &cases, jobs, &cancel, &tell);
-        over.store(true, Ordering::Relaxed);
-        done
-    });
+    watch_interrupts();
+    let tell = |case: &CaseRecord| {
+        bar.inc(1);
+        bar.set_message(case.id);
+        if case.verdict == Judged::Alarm {
+            let line = format!("ALARM: {}: {}", case.id, case.found);
+            if bar.is_hidden() { note!("{line}") } else { bar.println(line) }
+        }
+    };
+    let done = run(&program, &cases, jobs, interrupt::flag(), &tell);
     bar.finish_and_clear();
     let failed = |reason: &dyn std::fmt::Display| Failure::bench(reason).failed();
     let record = Record::new(&program, started, cases.len(), done.map_err(|error| failed(&error))?);

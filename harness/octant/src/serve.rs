@@ -4,6 +4,7 @@ use crate::arguments::{ScenarioArguments, load};
 use crate::failure::Failure;
 use crate::terminal::note;
 use clap::Args;
+use octant_base::interrupt;
 use octant_endpoint::ServedCore;
 use octant_link::Uri;
 use octant_link::device::{Notice, serve};
@@ -13,8 +14,6 @@ use octant_run::method::{MethodError, SetupError, core_of};
 use octant_scenario::{Method, Scenario};
 use octant_wire::message::Pacing;
 use std::path::PathBuf;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
@@ -49,9 +48,8 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         core_of(&scenario, Method::Primary, seed).map_err(|error| Failure::from(error).failed())?;
     let mut served = ServedCore::new(&core)
         .map_err(|error| Failure::from(MethodError::from(SetupError::Core(error))).failed())?;
-    let stop = Arc::new(AtomicBool::new(false));
-    let until = Arc::clone(&stop);
-    ctrlc::set_handler(move || until.store(true, Ordering::Relaxed))
+    // However often it is interrupted, it ends in order.
+    interrupt::watch(|| {})
         .map_err(|error| Failure::bench(format!("failed to wait for Ctrl-C: {error}")))?;
     // Called on the serving thread: for a session by the clock, this thread requests the real-time
     // settings of the harness's sample thread, at a slightly lower priority.
@@ -68,7 +66,7 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         }
     };
     let facts = served.facts(silence_ms);
-    serve(&uri, facts, &mut served, &mut notice, &stop)
+    serve(&uri, facts, &mut served, &mut notice, interrupt::flag())
         .map_err(|error| Failure::bench(format!("failed to {error}")))?;
     note!("octant: stopped");
     Ok(Verdict::Pass)

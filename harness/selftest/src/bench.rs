@@ -2,9 +2,9 @@
 
 use super::error::{BenchError, FileError};
 use super::judge::Outcome;
-use octant_campaign::process::{self, Ended};
+use octant_base::child::{ChildEnded, finish};
+use octant_campaign::process;
 use octant_score::summary::Summary;
-use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::process::Stdio;
 use std::sync::atomic::AtomicBool;
@@ -119,21 +119,16 @@ impl<'a> Bench<'a> {
             command.env_remove(name);
         }
         command.envs(more.iter().copied());
-        let mut child = command.spawn().map_err(&system)?;
-        let (out, err) = (child.stdout.take(), child.stderr.take());
-        std::thread::scope(|scope| {
-            let out = scope.spawn(|| all(out));
-            let err = scope.spawn(|| all(err));
-            let status = match process::wait(&mut child, LIMIT, self.cancel).map_err(&system)? {
-                Ended::Status(status) => status.code(),
-                Ended::TooLong | Ended::Cancelled => None,
-                Ended::Outside(by) => {
-                    return Err(BenchError::Outside { program: self.program.to_owned(), by });
-                }
-            };
-            let (out, err) = (out.join().unwrap_or_default(), err.join().unwrap_or_default());
-            Ok(Said { status, out, err })
-        })
+        let child = command.spawn().map_err(&system)?;
+        let outcome = finish(child, &[], u64::MAX, LIMIT, self.cancel).map_err(&system)?;
+        let status = match outcome.ended {
+            ChildEnded::Status(status) => status.code(),
+            ChildEnded::TooLong | ChildEnded::Cancelled => None,
+            ChildEnded::Outside(by) => {
+                return Err(BenchError::Outside { program: self.program.to_owned(), by });
+            }
+        };
+        Ok(Said { status, out: outcome.out, err: outcome.err })
     }
 
     /// Runs a scenario, given as text, into the folder `run`; returns its summary if it was
@@ -149,15 +144,6 @@ impl<'a> Bench<'a> {
         let summary = Summary::from_json(&said.out).ok();
         Ok(Ran { said, summary })
     }
-}
-
-fn all(pipe: Option<impl Read>) -> String {
-    let mut bytes = Vec::new();
-    if let Some(mut pipe) = pipe {
-        // An unreadable value counts as absent.
-        let _ = pipe.read_to_end(&mut bytes);
-    }
-    String::from_utf8_lossy(&bytes).into_owned()
 }
 
 impl From<Said> for Outcome {

@@ -153,26 +153,8 @@ pub fn on_panic() {
 ///
 /// # Errors
 /// If the signals can't be caught.
-#[cfg(unix)]
 pub fn on_signals() -> std::io::Result<()> {
-    use signal_hook::consts::{SIGHUP, SIGINT, SIGQUIT, SIGTERM};
-    let mut signals = signal_hook::iterator::Signals::new([SIGHUP, SIGINT, SIGQUIT, SIGTERM])?;
-    std::thread::Builder::new().name("table stop".into()).spawn(move || {
-        for signal in signals.forever() {
-            stop_all("the harness was ended by a signal");
-            let _ = signal_hook::low_level::emulate_default_handler(signal);
-        }
-    })?;
-    Ok(())
-}
-
-/// Does nothing, because there are no signals to catch on this system: guard and watchdog remain.
-///
-/// # Errors
-/// Never.
-#[cfg(not(unix))]
-pub fn on_signals() -> std::io::Result<()> {
-    Ok(())
+    octant_base::interrupt::before_end(|| stop_all("the harness was ended by a signal"))
 }
 
 /// Stops a table by hand, whichever program drives it: through a driving program of this host, and on

@@ -2,10 +2,11 @@
 
 use super::planned::read;
 use crate::failure::Failure;
-use crate::progress::interrupts;
+use crate::progress::watch_interrupts;
 use crate::terminal::note;
 use clap::Args;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use octant_base::interrupt;
 use octant_base::number::counted;
 use octant_campaign::execute::{Done, Event, ExecuteError, Options, Outcome, Shard, execute};
 use octant_campaign::plan::Plan;
@@ -13,8 +14,6 @@ use octant_campaign::stop::Decision;
 use octant_campaign::{merge, results, status};
 use octant_requirements::Verdict;
 use std::path::PathBuf;
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::Duration;
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
@@ -34,7 +33,7 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
-    interrupts::watch();
+    watch_interrupts();
     let plan = read(&arguments.folder)?;
     let shard = match arguments.shard {
         Some(shard) => shard,
@@ -43,7 +42,6 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     let program = std::env::current_exe()
         .map_err(|error| Failure::bench(format!("failed to find this program: {error}")))?;
     let processors = || std::thread::available_parallelism().map_or(1, usize::from);
-    let cancel = AtomicBool::new(false);
     let mut options = Options {
         folder: &arguments.folder,
         program: &program,
@@ -51,7 +49,7 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         shard,
         end: plan.cases.len(),
         again: arguments.again,
-        cancel: &cancel,
+        cancel: interrupt::flag(),
     };
     let mine = (0..plan.cases.len()).filter(|index| shard.has(*index)).count();
     let bar =
@@ -64,29 +62,16 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         // Above the bar on a terminal, as a plain line elsewhere.
         if bar.is_hidden() { note!("{line}") } else { bar.println(line) }
     };
-    let over = AtomicBool::new(false);
-    let outcome = std::thread::scope(|scope| {
-        scope.spawn(|| {
-            while !over.load(Ordering::Relaxed) {
-                std::thread::sleep(Duration::from_millis(20));
-                if interrupts::seen() {
-                    cancel.store(true, Ordering::Relaxed);
-                }
+    let tell = |event: &Event| match event {
+        Event::There(count) => bar.inc(*count as u64),
+        Event::Done(done) => {
+            bar.inc(1);
+            if let Some(line) = failure(&plan.cases[done.index].id, done) {
+                told(line);
             }
-        });
-        let tell = |event: &Event| match event {
-            Event::There(count) => bar.inc(*count as u64),
-            Event::Done(done) => {
-                bar.inc(1);
-                if let Some(line) = failure(&plan.cases[done.index].id, done) {
-                    told(line);
-                }
-            }
-        };
-        let outcome = in_rounds(&plan, &mut options, &tell);
-        over.store(true, Ordering::Relaxed);
-        outcome
-    });
+        }
+    };
+    let outcome = in_rounds(&plan, &mut options, &tell);
     bar.finish_and_clear();
     let outcome = outcome?;
     conclude(arguments, &plan, shard, &outcome)
