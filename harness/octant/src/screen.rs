@@ -4,7 +4,6 @@ use crate::failure::Failure;
 use crate::followed::{unreadable, verdict};
 use crate::progress::watch_interrupts;
 use crate::terminal::print;
-use crate::watch::LOOK;
 use octant_base::interrupt;
 use octant_requirements::Verdict;
 use octant_watch::dashboard::{self, Page};
@@ -14,13 +13,14 @@ use ratatui::crossterm::event::{self, Event, KeyCode, KeyEventKind, KeyModifiers
 use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
 use std::time::Duration;
 
-/// Shows a run on the whole terminal, which is restored afterwards, even after a panic.
-pub(super) fn show(mut follow: Follow) -> Result<Verdict, Failure> {
+/// Shows a run on the whole terminal, looking at it after so long; the terminal is restored
+/// afterwards, even after a panic.
+pub(super) fn show(mut follow: Follow, look: Duration) -> Result<Verdict, Failure> {
     let mut terminal = ratatui::try_init()
         .map_err(|error| Failure::bench(format!("failed to set up the terminal: {error}")))?;
     // An interrupt restores the terminal too.
     watch_interrupts();
-    let shown = frames(&mut terminal, &mut follow);
+    let shown = frames(&mut terminal, &mut follow, look);
     ratatui::restore();
     shown?;
     // The content of the screen is gone with it.
@@ -28,7 +28,11 @@ pub(super) fn show(mut follow: Follow) -> Result<Verdict, Failure> {
     verdict(&follow)
 }
 
-fn frames(terminal: &mut ratatui::DefaultTerminal, follow: &mut Follow) -> Result<(), Failure> {
+fn frames(
+    terminal: &mut ratatui::DefaultTerminal,
+    follow: &mut Follow,
+    look: Duration,
+) -> Result<(), Failure> {
     let failed =
         |error: std::io::Error| Failure::bench(format!("failed to use the terminal: {error}"));
     let mut page = Page::default();
@@ -39,7 +43,7 @@ fn frames(terminal: &mut ratatui::DefaultTerminal, follow: &mut Follow) -> Resul
         // One poll per frame: a long recording fills the screen while it is read.
         let more = follow.look(|_, _, _| {}).map_err(unreadable)?;
         terminal.draw(|frame| dashboard::draw(frame, follow, page)).map_err(failed)?;
-        let wait = if more { Duration::ZERO } else { LOOK };
+        let wait = if more { Duration::ZERO } else { look };
         let event = match events.recv_timeout(wait) {
             Ok(event) => event.map_err(failed)?,
             Err(RecvTimeoutError::Timeout) => continue,

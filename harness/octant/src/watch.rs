@@ -17,7 +17,7 @@ use std::time::{Duration, Instant};
 /// Default folder of runs.
 const RUNS: &str = "runs";
 /// Interval of the polls: the recording grows four times a second.
-pub(super) const LOOK: Duration = Duration::from_millis(125);
+const LOOK: Duration = Duration::from_millis(125);
 /// Interval of the lines.
 const LINE: Duration = Duration::from_secs(1);
 
@@ -61,7 +61,7 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         return lines(follow);
     }
     #[cfg(feature = "dashboard")]
-    return crate::screen::show(follow);
+    return crate::screen::show(follow, LOOK);
     #[cfg(not(feature = "dashboard"))]
     {
         note!(
