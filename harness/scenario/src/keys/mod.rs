@@ -2,7 +2,7 @@
 //! default and meaning.
 //!
 //! Check, defaults, error messages, the JSON Schema and the test of the tour all use it. A table of a
-//! scenario is declared with [`keys!`](table::keys), which also gives the struct that it is read into.
+//! scenario is declared with `keys!`, which also gives the struct that it is read into.
 
 mod calibration;
 mod campaign;
