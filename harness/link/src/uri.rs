@@ -336,7 +336,8 @@ mod tests {
     fn what_is_not_known_is_refused_with_the_nearest() {
         assert!(refused("/dev/ttyUSB0").contains("expected SCHEME:NAME"));
         assert!(refused("seral:/dev/ttyUSB0").contains("expected serial?"));
-        assert!(refused("usb:1").contains("known are serial, can, slcan, udp, pty"));
+        let known = format!("known are {}", schemes().join(", "));
+        assert!(refused("carrier-pigeon:1").contains(&known));
         assert!(refused("serial:/dev/ttyUSB0?bauds=1").contains("expected baud?"));
         assert!(refused("can:can0?bit_rate=500000").contains("expected bitrate?"));
         assert!(refused("udp:localhost:5005?baud=1").contains("it has no options"));
