@@ -49,7 +49,7 @@ pub fn watch(again: fn()) -> io::Result<()> {
     #[cfg(not(unix))]
     {
         use signal_hook::consts::{SIGINT, SIGTERM};
-        // There is no thread to call `again` on: a second interrupt ends the program.
+        // Without a thread to call `again` on, a second interrupt ends the program.
         let _ = again;
         for signal in [SIGINT, SIGTERM] {
             signal_hook::flag::register_conditional_default(signal, Arc::clone(&SEEN))?;

@@ -365,7 +365,7 @@ impl PlannedScenario {
 /// Outcome of writing a plan.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Written {
-    /// There was no plan.
+    /// Plan written where none was.
     New,
     /// The same plan was there already.
     There,

@@ -53,13 +53,14 @@ pub fn finish(
     cancel: &AtomicBool,
 ) -> io::Result<ChildOutcome> {
     let (stdin, out, err) = (child.stdin.take(), child.stdout.take(), child.stderr.take());
-    // The pipes are read at the same time: a full one would block the process.
+    // The pipes are served at the same time: a full one would block the process, or this one if the
+    // process doesn't read its input.
     std::thread::scope(|scope| {
         let out = scope.spawn(|| all(out, most));
         let err = scope.spawn(|| all(err, most));
         if let Some(mut stdin) = stdin {
             // If the process has ended already, its status tells.
-            let _ = stdin.write_all(input);
+            scope.spawn(move || stdin.write_all(input));
         }
         let ended = wait(&mut child, limit, cancel)?;
         let (out, err) = (out.join().unwrap_or_default(), err.join().unwrap_or_default());
@@ -151,7 +152,7 @@ fn outside(_: ExitStatus) -> Option<String> {
 mod tests {
     use super::*;
     use rustix::process::{Pid, Signal, kill_process};
-    use std::process::Command;
+    use std::process::{Command, Stdio};
 
     fn started() -> (Child, Pid) {
         let child = Command::new("sleep").arg("1000").spawn().unwrap();
@@ -177,6 +178,16 @@ mod tests {
         kill_process(pid, Signal::CONT).unwrap();
         let ended = wait(&mut child, limit, &AtomicBool::new(false)).unwrap();
         assert!(matches!(ended, ChildEnded::TooLong), "{ended:?}");
+    }
+
+    #[test]
+    fn input_that_is_not_read_does_not_outlast_the_limit() {
+        let child = Command::new("sleep").arg("1000").stdin(Stdio::piped()).spawn().unwrap();
+        // More than a pipe holds.
+        let input = vec![0; 1 << 20];
+        let never = AtomicBool::new(false);
+        let outcome = finish(child, &input, 0, Duration::from_millis(100), &never).unwrap();
+        assert!(matches!(outcome.ended, ChildEnded::TooLong), "{outcome:?}");
     }
 
     #[test]

@@ -12,7 +12,7 @@ use crate::{Unreadable, VERSION};
 /// Cause of a dropped message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Cause {
-    /// That many segments are missing.
+    /// Number of missing segments.
     #[error("{0} segments are missing")]
     Missing(u8),
     /// A segment came after a later one.

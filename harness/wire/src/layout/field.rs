@@ -17,11 +17,11 @@ pub enum Type {
     F64,
     /// Step in bits 0 to 14 of 2 bytes; bit 15 is the flag of this name, or zero.
     Step(Option<&'static str>),
-    /// That many bytes.
+    /// Bytes, by their number.
     Bytes(usize),
-    /// UTF-8, padded with zeros to that many bytes.
+    /// UTF-8, padded with zeros to this number of bytes.
     Text(usize),
-    /// That many bytes that are sent as zero and ignored.
+    /// Bytes sent as zero and ignored, by their number.
     Zero(usize),
 }
 

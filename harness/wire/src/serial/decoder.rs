@@ -12,9 +12,9 @@ pub enum Order {
     First,
     /// Frame after the last one.
     Next,
-    /// That many frames are missing before it.
+    /// Frame after a gap of this number of frames.
     Missing(u16),
-    /// That many frames behind the next expected one: repeated or too late.
+    /// Frame behind the next expected one by this number: repeated or too late.
     Behind(u16),
 }
 

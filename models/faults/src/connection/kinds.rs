@@ -399,8 +399,7 @@ impl Rule {
                     return 0.0;
                 }
                 if now.epoch == 1 && !again {
-                    // There is no earlier value: the input keeps its start value, which is this
-                    // one.
+                    // Without an earlier value the input keeps its start value, which is this one.
                     *delivered = value;
                 }
                 *delivered
