@@ -123,8 +123,8 @@ pub enum SourceError {
     },
     /// This program was built without instruments on a CAN bus.
     #[error(
-        "use protocol \"dbc\": this program was built without instruments on a CAN bus, expected one built with \
-         cargo build --release --features octant/can"
+        "use source.live.protocol = \"dbc\": this program was built without instruments on a CAN bus, \
+         expected one built with cargo build --release --features octant/can"
     )]
     WithoutCan,
 }
