@@ -9,6 +9,7 @@
 //! | [`hash`] | SHA-256 of files |
 //! | [`child`] | processes that hear nothing of keys, with time limits |
 //! | [`interrupt`] | signals that end the program |
+//! | [`serial`] | serial ports and pseudo terminals |
 
 pub mod child;
 pub mod control;
@@ -17,3 +18,4 @@ pub mod interrupt;
 pub mod names;
 pub mod number;
 pub mod pool;
+pub mod serial;

@@ -22,13 +22,23 @@ impl Host {
     #[must_use]
     pub fn this() -> Self {
         Self {
-            name: gethostname::gethostname().to_string_lossy().into_owned(),
+            name: name(),
             os: std::env::consts::OS.into(),
             arch: std::env::consts::ARCH.into(),
             cpu: cpu_model(),
             cpus: std::thread::available_parallelism().map_or(1, usize::from),
         }
     }
+}
+
+#[cfg(target_os = "linux")]
+fn name() -> String {
+    rustix::system::uname().nodename().to_string_lossy().into_owned()
+}
+
+#[cfg(not(target_os = "linux"))]
+fn name() -> String {
+    gethostname::gethostname().to_string_lossy().into_owned()
 }
 
 /// Reads the processor's model from `/proc/cpuinfo` on Linux; other systems would need a library,

@@ -1,7 +1,7 @@
 //! Commands of the program, and its entry point.
 
 use crate::failure::Failure;
-use crate::terminal::{note, print};
+use crate::terminal::{note, print, styled};
 use crate::{
     campaign, compare, doctor, faults, fmu, nightly, observe, progress, rejudge, replay, report,
     requirements, run, score, selftest, serve, turntable, verify, watch,
@@ -9,6 +9,7 @@ use crate::{
 use clap::{Parser, Subcommand};
 use octant_requirements::Verdict;
 use std::ffi::OsString;
+use std::io::Write;
 use std::process::ExitCode;
 
 /// Test harness for the self-calibration of dual-axis rotational inertial navigation systems.
@@ -103,6 +104,17 @@ impl std::fmt::Display for RefusedCommand {
 
 impl std::error::Error for RefusedCommand {}
 
+/// Prints help, the version, or the error of a command line, as clap does it.
+fn help(told: &clap::Error) -> ExitCode {
+    let text = told.render().to_string();
+    // A reader that has gone (`| head`) is no failure.
+    let _ = match told.use_stderr() {
+        true => std::io::stderr().write_all(styled(&text, &std::io::stderr()).as_bytes()),
+        false => std::io::stdout().write_all(styled(&text, &std::io::stdout()).as_bytes()),
+    };
+    ExitCode::from(u8::try_from(told.exit_code()).unwrap_or(2))
+}
+
 /// Runs the program and returns its exit status.
 #[must_use]
 pub fn main() -> ExitCode {
@@ -112,7 +124,10 @@ pub fn main() -> ExitCode {
         rustc: env!("OCTANT_RUSTC"),
         lock_file_sha256: env!("OCTANT_LOCK_FILE"),
     });
-    let cli = Cli::parse();
+    let cli = match Cli::try_parse() {
+        Ok(cli) => cli,
+        Err(told) => return help(&told),
+    };
     if let Some(parent) = cli.parent
         && let Err(error) = progress::leave_interrupts_to(parent)
     {

@@ -21,6 +21,7 @@ mod minimise;
 mod nightly;
 mod observe;
 mod progress;
+mod progress_bar;
 mod reexecute;
 mod rejudge;
 mod replay;

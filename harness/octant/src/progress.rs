@@ -1,6 +1,6 @@
 //! Progress on a terminal: simulated time, speed and time left. Silent elsewhere.
 
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use crate::progress_bar::ProgressBar;
 use octant_base::control::Control;
 use octant_base::interrupt;
 use std::sync::atomic::Ordering;
@@ -31,10 +31,13 @@ fn show(
     sample_s: f64,
     done: &std::sync::atomic::AtomicBool,
 ) {
-    let bar = ProgressBar::with_draw_target(epochs, ProgressDrawTarget::stderr_with_hz(10));
-    if let Ok(style) = ProgressStyle::with_template("{wide_bar} {percent:>3} %  {msg}") {
-        bar.set_style(style);
-    }
+    let bar = ProgressBar::new(epochs, |progress| match progress.total {
+        Some(total) => {
+            let percent = 100 * progress.done.min(total) / total.max(1);
+            format!("{percent:>3} %  {}", progress.message)
+        }
+        None => progress.message.clone(),
+    });
     let started = Instant::now();
     let mut stopped = false;
     while !done.load(Ordering::Relaxed) {
@@ -58,14 +61,14 @@ fn show(
             }
             _ => String::new(),
         };
-        bar.set_position(passed);
-        bar.set_message(format!(
-            "{:.1} h simulated, {:.0} times real time{left}",
-            simulated_s / 3600.0,
-            simulated_s / wall_s.max(1e-3)
-        ));
+        let speed = simulated_s / wall_s.max(1e-3);
+        bar.update(|progress| {
+            progress.done = passed;
+            let hours = simulated_s / 3600.0;
+            progress.message = format!("{hours:.1} h simulated, {speed:.0} times real time{left}");
+        });
     }
-    bar.finish_and_clear();
+    bar.finish();
 }
 
 /// Handles Ctrl-C: the first one ends the run in order, the second one at once.

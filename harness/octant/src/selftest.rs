@@ -2,10 +2,9 @@
 
 use super::progress::watch_interrupts;
 use crate::failure::Failure;
-use crate::terminal::note;
+use crate::progress_bar::ProgressBar;
 use crate::terminal::print;
 use clap::Args;
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use octant_base::interrupt;
 use octant_campaign::plan;
 use octant_requirements::Verdict;
@@ -52,24 +51,22 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     let cases = if arguments.answers { answers::with_runs() } else { cases() };
     let processors = || std::thread::available_parallelism().map_or(1, usize::from);
     let jobs = arguments.jobs.map_or_else(processors, usize::from);
-    let bar = ProgressBar::with_draw_target(
-        Some(cases.len() as u64),
-        ProgressDrawTarget::stderr_with_hz(5),
-    );
-    if let Ok(style) = ProgressStyle::with_template("{wide_bar} {pos} of {len} cases, {msg}") {
-        bar.set_style(style);
-    }
+    let bar = ProgressBar::new(Some(cases.len() as u64), |progress| {
+        let (done, total) = (progress.done, progress.total.unwrap_or_default());
+        format!("{done} of {total} cases, {}", progress.message)
+    });
     watch_interrupts();
     let tell = |case: &CaseRecord| {
-        bar.inc(1);
-        bar.set_message(case.id);
+        bar.update(|progress| {
+            progress.done += 1;
+            progress.message = case.id.to_string();
+        });
         if case.verdict == Judged::Alarm {
-            let line = format!("ALARM: {}: {}", case.id, case.found);
-            if bar.is_hidden() { note!("{line}") } else { bar.println(line) }
+            bar.note(&format!("ALARM: {}: {}", case.id, case.found));
         }
     };
     let done = run(&program, &cases, jobs, interrupt::flag(), &tell);
-    bar.finish_and_clear();
+    bar.finish();
     let failed = |reason: &dyn std::fmt::Display| Failure::bench(reason).failed();
     let record = Record::new(&program, started, cases.len(), done.map_err(|error| failed(&error))?);
     let record = record.map_err(|error| failed(&error))?;

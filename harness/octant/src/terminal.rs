@@ -29,6 +29,38 @@ pub(crate) fn printable(text: &str) -> std::borrow::Cow<'_, str> {
     all.into()
 }
 
+/// Returns whether a stream shows styles: it is a terminal, and neither `NO_COLOR` nor `TERM=dumb` is set.
+/// Consoles of Windows get none, because some show the codes.
+pub(crate) fn shows_styles(stream: &impl std::io::IsTerminal) -> bool {
+    let is_set = |name| std::env::var_os(name).is_some_and(|value| !value.is_empty());
+    let is_dumb = std::env::var_os("TERM").is_none_or(|term| term == "dumb");
+    cfg!(unix) && stream.is_terminal() && !is_set("NO_COLOR") && !is_dumb
+}
+
+/// Sets off the headings of help, where the stream shows styles.
+pub(crate) fn styled<'a>(
+    help: &'a str,
+    stream: &impl std::io::IsTerminal,
+) -> std::borrow::Cow<'a, str> {
+    if shows_styles(stream) { with_headings(help).into() } else { help.into() }
+}
+
+/// Underlines headings, and makes the word before an error red.
+fn with_headings(help: &str) -> String {
+    let line = |line: &str| {
+        let (text, end) = line.split_at(line.trim_end().len());
+        let is_heading = !text.starts_with(' ') && text.ends_with(':');
+        let (head, rest) = match text.split_once(": ") {
+            Some((head @ ("Usage" | "error"), _)) => text.split_at(head.len() + 1),
+            _ if is_heading => (text, ""),
+            _ => return line.to_owned(),
+        };
+        let style = if head == "error:" { "1;31" } else { "1;4" };
+        format!("\u{1b}[{style}m{head}\u{1b}[0m{rest}{end}")
+    };
+    help.split_inclusive('\n').map(line).collect()
+}
+
 /// Writes a result to stdout. A reader that has gone (`| head`) is no failure.
 pub(crate) fn print(text: &str) -> Result<(), Failure> {
     use std::io::Write;
@@ -56,4 +88,26 @@ pub(crate) fn print_json(value: &impl serde::Serialize) -> Result<(), Failure> {
     let text = serde_json::to_string_pretty(value)
         .map_err(|error| Failure::bench(format!("failed to write the result as JSON: {error}")))?;
     print(&(text + "\n"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_headings_are_set_off() {
+        let help = "Runs.\n\nUsage: octant run\n\nOptions:\n  -h  a: b\n  note:\n";
+        let styled = with_headings(help);
+        let plain = styled.replace("\u{1b}[1;4m", "").replace("\u{1b}[0m", "");
+        assert_eq!(plain, help);
+        assert_eq!(styled.matches("\u{1b}[1;4m").count(), 2);
+        assert!(styled.contains("\u{1b}[1;4mUsage:\u{1b}[0m octant run\n"), "{styled:?}");
+        assert!(with_headings("error: no\n").starts_with("\u{1b}[1;31merror:\u{1b}[0m no"));
+    }
+
+    #[test]
+    fn what_is_no_terminal_shows_no_styles() {
+        let file = std::fs::File::open(env!("CARGO_MANIFEST_DIR")).expect("is there");
+        assert_eq!(styled("Usage: a", &file), "Usage: a");
+    }
 }

@@ -112,10 +112,6 @@ mod system {
     };
     use std::cell::Cell;
     use std::num::NonZeroU64;
-    use thread_priority::{
-        Error, NormalThreadSchedulePolicy, RealtimeThreadSchedulePolicy, ThreadPriority,
-        ThreadSchedulePolicy, set_thread_priority_and_policy, thread_native_id,
-    };
 
     thread_local! {
         /// Processors of this thread before it was pinned.
@@ -140,33 +136,48 @@ mod system {
         capabilities(None).is_ok_and(|sets| sets.effective.contains(capability))
     }
 
+    /// Sets the scheduling policy of the calling thread, which rustix has no function for.
+    #[allow(unsafe_code, reason = "a function of C is called")]
+    fn set_policy(policy: libc::c_int, priority: u8) -> std::io::Result<()> {
+        // SAFETY: all fields are numbers; musl has more of them than `sched_priority`.
+        let mut parameters: libc::sched_param = unsafe { std::mem::zeroed() };
+        parameters.sched_priority = priority.into();
+        // SAFETY: the thread is the calling one, and the pointer is valid during the call, which
+        // writes nothing.
+        let refused =
+            unsafe { libc::pthread_setschedparam(libc::pthread_self(), policy, &raw const parameters) };
+        match refused {
+            0 => Ok(()),
+            number => Err(std::io::Error::from_raw_os_error(number)),
+        }
+    }
+
     pub(super) fn fifo(priority: u8) -> Outcome {
         let what = format!("SCHED_FIFO with priority {priority}");
-        let policy = ThreadSchedulePolicy::Realtime(RealtimeThreadSchedulePolicy::Fifo);
-        let why = match ThreadPriority::try_from(priority) {
-            Err(reason) => reason.to_owned(),
-            Ok(asked) => match set_thread_priority_and_policy(thread_native_id(), asked, policy) {
-                Ok(()) => return Outcome::Granted { what },
-                Err(Error::OS(number)) if number == rustix::io::Errno::PERM.raw_os_error() => {
-                    let limit = getrlimit(Resource::Rtprio).current.unwrap_or(99);
-                    format!(
-                        "the limit of real-time priorities is {limit} (`ulimit -r`) and the \
-                         process has no CAP_SYS_NICE; \"@realtime - rtprio 99\" in \
-                         /etc/security/limits.conf raises it for a group"
-                    )
-                }
-                Err(Error::OS(number)) => std::io::Error::from_raw_os_error(number).to_string(),
-                Err(error) => error.to_string(),
-            },
+        let range = 1..=99;
+        if !range.contains(&priority) {
+            let why = format!("priorities are from {} to {}", range.start(), range.end());
+            return Outcome::Refused { what, why };
+        }
+        let why = match set_policy(libc::SCHED_FIFO, priority) {
+            Ok(()) => return Outcome::Granted { what },
+            Err(error) if error.raw_os_error() == Some(libc::EPERM) => {
+                let limit = getrlimit(Resource::Rtprio).current.unwrap_or(99);
+                format!(
+                    "the limit of real-time priorities is {limit} (`ulimit -r`) and the process \
+                     has no CAP_SYS_NICE; \"@realtime - rtprio 99\" in \
+                     /etc/security/limits.conf raises it for a group"
+                )
+            }
+            Err(error) => error.to_string(),
         };
         Outcome::Refused { what, why }
     }
 
     pub(super) fn release(granted: &super::Granted) {
         if granted.scheduling.is_granted() {
-            let policy = ThreadSchedulePolicy::Normal(NormalThreadSchedulePolicy::Other);
             // Returning from a real-time policy is always permitted.
-            let _ = set_thread_priority_and_policy(thread_native_id(), ThreadPriority::Min, policy);
+            let _ = set_policy(libc::SCHED_OTHER, 0);
         }
         if granted.cpu.is_granted() {
             // The former set may be less than all processors: `taskset`, a container.

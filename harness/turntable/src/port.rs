@@ -1,6 +1,7 @@
 //! Ports of a table's controller.
 
 use crate::Error;
+use octant_base::serial::SerialPort;
 use std::io::{self, Read, Write};
 use std::net::TcpStream;
 use std::time::Duration;
@@ -44,33 +45,19 @@ impl Port for TcpStream {
     }
 }
 
-#[cfg(unix)]
-impl Port for serialport::TTYPort {
+impl Port for SerialPort {
     fn writer(&self) -> io::Result<Box<dyn Write + Send>> {
-        Ok(Box::new(self.try_clone_native()?))
+        Ok(Box::new(self.try_clone()?))
     }
 
     fn set_wait(&mut self, wait: Duration) -> io::Result<()> {
-        Ok(serialport::SerialPort::set_timeout(self, wait)?)
+        Self::set_wait(self, wait);
+        Ok(())
     }
 
-    #[allow(unsafe_code, reason = "the serial port gives its handle as a number only")]
+    #[cfg(unix)]
     fn duplicate(&self) -> io::Result<std::os::fd::OwnedFd> {
-        use std::os::fd::{FromRawFd, IntoRawFd};
-        let raw = self.try_clone_native()?.into_raw_fd();
-        // SAFETY: the clone released its handle with `into_raw_fd`: it is open, and has no other owner.
-        Ok(unsafe { std::os::fd::OwnedFd::from_raw_fd(raw) })
-    }
-}
-
-#[cfg(windows)]
-impl Port for serialport::COMPort {
-    fn writer(&self) -> io::Result<Box<dyn Write + Send>> {
-        Ok(Box::new(serialport::SerialPort::try_clone(self)?))
-    }
-
-    fn set_wait(&mut self, wait: Duration) -> io::Result<()> {
-        Ok(serialport::SerialPort::set_timeout(self, wait)?)
+        std::os::fd::AsFd::as_fd(self).try_clone_to_owned()
     }
 }
 
@@ -144,13 +131,7 @@ pub fn open(uri: &str) -> Result<Box<dyn Port>, Error> {
         }
         Address::Serial(device, baud) => (device, baud),
     };
-    let builder = serialport::new(device, baud).timeout(Duration::from_millis(20));
-    let port = builder.open_native().map_err(|error| failed(error.to_string()))?;
-    // Some drivers silently set another rate.
-    match serialport::SerialPort::baud_rate(&port) {
-        Ok(found) if found != baud => {
-            Err(failed(format!("the line runs at {found} baud, expected {baud}")))
-        }
-        _ => Ok(Box::new(port)),
-    }
+    let mut port = SerialPort::open(device, baud).map_err(|error| failed(error.to_string()))?;
+    port.set_wait(Duration::from_millis(20));
+    Ok(Box::new(port))
 }

@@ -77,9 +77,9 @@ fn supervised() {
 #[test]
 fn two_languages_over_a_pseudo_terminal() {
     for dialect in [ensemble(), invented()] {
-        let (master, slave) = serialport::TTYPort::pair().unwrap();
-        let server = Server::line(controller(dialect.clone()), master, 10.0).unwrap();
-        let driver = Driver::new(slave, "pty", dialect, settings()).unwrap();
+        let (near, far, _) = octant_base::serial::SerialPort::pair().unwrap();
+        let server = Server::line(controller(dialect.clone()), near, 10.0).unwrap();
+        let driver = Driver::new(far, "pty", dialect, settings()).unwrap();
         all_it_does(&server, driver);
     }
 }

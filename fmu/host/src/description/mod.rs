@@ -15,6 +15,7 @@
 //! | [`units`] | conversion between units, with a check of their dimension |
 
 mod attributes;
+mod encoding;
 mod fmi2;
 mod fmi3;
 mod read;

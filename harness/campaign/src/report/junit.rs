@@ -1,52 +1,51 @@
-//! `junit.xml` of a campaign, in the form of nextest: a suite for each combination, with a test
-//! case for each requirement that a case checks, and one for the case itself.
+//! `junit.xml` of a campaign: a suite for each combination, with a test case for each requirement that
+//! a case checks, and one for the case itself.
 
 use super::contents::Report;
 use super::discrepancy::checks_of;
 use super::rows::Row;
 use octant_requirements::Verdict;
-use octant_score::junit::status;
-use quick_junit::{TestCase, TestSuite};
+use octant_score::junit::{JunitCase, JunitSuite, document};
 
 /// Renders the campaign as JUnit XML. Only a pass is a success; a case that hasn't run isn't.
 ///
 /// # Errors
 /// If the XML can't be written.
-pub fn junit(report: &Report<'_>) -> Result<String, quick_junit::SerializeError> {
-    let mut all = quick_junit::Report::new("octant campaign");
-    let mut suite = TestSuite::new(report.plan.title.clone());
-    suite.add_property(("plan", report.plan.id.as_str()));
-    suite.add_property(("results_blake3", report.statistics.results_blake3.as_str()));
-    suite.add_property(("octant", env!("CARGO_PKG_VERSION")));
+pub fn junit(report: &Report<'_>) -> std::io::Result<String> {
+    let class = &report.plan.title;
+    let mut cases = Vec::new();
     for requirement in &report.statistics.requirements {
-        let mut case = TestCase::new(
-            format!("{}: all cases together", requirement.id),
-            status(requirement.verdict, &requirement.reason),
-        );
-        case.set_classname(report.plan.title.clone());
-        case.add_property(("verifies", requirement.id.as_str()));
-        suite.add_test_case(case);
+        cases.push(JunitCase {
+            name: format!("{}: all cases together", requirement.id),
+            class: class.clone(),
+            properties: vec![("verifies", requirement.id.clone())],
+            verdict: requirement.verdict,
+            message: requirement.reason.clone(),
+        });
     }
-    let reasons = report.reasons().join("; ");
-    let mut campaign = TestCase::new("campaign", status(report.statistics.verdict, &reasons));
-    campaign.set_classname(report.plan.title.clone());
-    suite.add_test_case(campaign);
-    all.add_test_suite(suite);
+    cases.push(JunitCase {
+        name: "campaign".to_owned(),
+        class: class.clone(),
+        properties: Vec::new(),
+        verdict: report.statistics.verdict,
+        message: report.reasons().join("; "),
+    });
+    let properties = vec![
+        ("plan", report.plan.id.clone()),
+        ("results_blake3", report.statistics.results_blake3.clone()),
+        ("octant", env!("CARGO_PKG_VERSION").to_owned()),
+    ];
+    let mut suites = vec![JunitSuite { name: class.clone(), properties, cases }];
     for combination in &report.combinations {
         let name = combination.name();
-        let mut suite = TestSuite::new(name.clone());
-        for row in combination.cases.iter().filter_map(|case| report.rows.get(*case)) {
-            for mut case in of_case(report, row) {
-                case.set_classname(name.clone());
-                suite.add_test_case(case);
-            }
-        }
-        all.add_test_suite(suite);
+        let rows = combination.cases.iter().filter_map(|case| report.rows.get(*case));
+        let cases = rows.flat_map(|row| of_case(report, row, &name)).collect();
+        suites.push(JunitSuite { name, properties: Vec::new(), cases });
     }
-    all.to_string()
+    document("octant campaign", &suites)
 }
 
-fn of_case(report: &Report<'_>, row: &Row<'_>) -> Vec<TestCase> {
+fn of_case(report: &Report<'_>, row: &Row<'_>, class: &str) -> Vec<JunitCase> {
     let id = &row.case.id;
     let mut all = Vec::new();
     for requirement in &report.statistics.requirements {
@@ -58,10 +57,13 @@ fn of_case(report: &Report<'_>, row: &Row<'_>) -> Vec<TestCase> {
             (None, None) => "the case has not run".to_owned(),
             (None, Some(_)) => "it was not checked".to_owned(),
         };
-        let verdict = verdict.unwrap_or(Verdict::Inconclusive);
-        let mut case = TestCase::new(format!("{id}: {}", requirement.id), status(verdict, &found));
-        case.add_property(("verifies", requirement.id.as_str()));
-        all.push(case);
+        all.push(JunitCase {
+            name: format!("{id}: {}", requirement.id),
+            class: class.to_owned(),
+            properties: vec![("verifies", requirement.id.clone())],
+            verdict: verdict.unwrap_or(Verdict::Inconclusive),
+            message: found,
+        });
     }
     let (verdict, message) = match &row.outcome {
         None => (Verdict::Inconclusive, "the case has not run".to_owned()),
@@ -70,8 +72,12 @@ fn of_case(report: &Report<'_>, row: &Row<'_>) -> Vec<TestCase> {
             outcome.error.clone().unwrap_or_else(|| outcome.reasons.join("; ")),
         ),
     };
-    let mut case = TestCase::new(format!("{id}: case"), status(verdict, &message));
-    case.add_property(("seed", row.case.seed.to_string().as_str()));
-    all.push(case);
+    all.push(JunitCase {
+        name: format!("{id}: case"),
+        class: class.to_owned(),
+        properties: vec![("seed", row.case.seed.to_string())],
+        verdict,
+        message,
+    });
     all
 }

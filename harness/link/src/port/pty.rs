@@ -15,15 +15,15 @@ pub struct Pty {
 #[cfg(unix)]
 mod unix {
     use super::PortError;
-    use serialport::{SerialPort, TTYPort};
+    use octant_base::serial::SerialPort;
     use std::path::PathBuf;
 
     #[derive(Debug)]
     pub(super) struct Pair {
-        pub(super) near: TTYPort,
+        pub(super) near: SerialPort,
         /// The far end is held open: reading fails at a near end whose far end was closed by its last
         /// user.
-        _far: TTYPort,
+        _far: SerialPort,
         pub(super) name: String,
         /// Link to the far end, removed on drop.
         link: Option<PathBuf>,
@@ -32,9 +32,8 @@ mod unix {
     impl Pair {
         pub(super) fn open(link: &str) -> Result<Self, PortError> {
             let refused = |reason: String| PortError::open(format!("pty:{link}"), reason);
-            // The far end of a new pair isn't locked; the user who opens it locks it.
-            let (near, far) = TTYPort::pair().map_err(|error| refused(error.to_string()))?;
-            let name = far.name().ok_or_else(|| refused("it has no name".to_owned()))?;
+            let (near, far, name) =
+                SerialPort::pair().map_err(|error| refused(error.to_string()))?;
             let link = match link {
                 "" => None,
                 link => {

@@ -3,8 +3,8 @@
 use super::{Bytes, PortError};
 use crate::Uri;
 use crate::uri::Serial;
-use serialport::{DataBits, FlowControl, Parity, SerialPort, StopBits};
-use std::io::ErrorKind;
+use octant_base::serial::SerialPort;
+use std::io::{ErrorKind, Read, Write};
 use std::time::Duration;
 
 /// A serial line: 8 data bits, no parity, 1 stop bit, no flow control, opened exclusively.
@@ -12,7 +12,7 @@ pub struct SerialLine {
     serial: Serial,
     uri: String,
     /// `None` while the line is closed.
-    port: Option<Box<dyn SerialPort>>,
+    port: Option<SerialPort>,
 }
 
 impl std::fmt::Debug for SerialLine {
@@ -28,57 +28,39 @@ impl SerialLine {
     /// If the port isn't there or is in use, or if its driver sets another rate than requested.
     pub fn open(serial: &Serial) -> Result<Self, PortError> {
         let uri = Uri::Serial(serial.clone()).to_string();
-        let refused = |reason: String| PortError::open(&uri, reason);
-        let port = serialport::new(&serial.path, serial.baud)
-            .data_bits(DataBits::Eight)
-            .parity(Parity::None)
-            .stop_bits(StopBits::One)
-            .flow_control(FlowControl::None)
-            .timeout(Duration::ZERO)
-            .open()
-            .map_err(|error| refused(explain(&error)))?;
-        // A driver that can't set a rate may silently take another one.
-        let found = port.baud_rate().map_err(|error| refused(error.to_string()))?;
-        if found != serial.baud {
-            return Err(refused(format!(
-                "the driver gave {found} baud, expected {}: this port can't do that rate",
-                serial.baud
-            )));
-        }
-        // Bytes from before the opening belong to no session.
-        port.clear(serialport::ClearBuffer::Input).map_err(|error| refused(error.to_string()))?;
+        let port = SerialPort::open(&serial.path, serial.baud)
+            .map_err(|error| PortError::open(&uri, explain(&error)))?;
         Ok(Self { serial: serial.clone(), uri, port: Some(port) })
     }
 }
 
 /// Error text with a remedy for the user.
-fn explain(error: &serialport::Error) -> String {
-    let what = error.to_string();
-    match error.kind {
-        serialport::ErrorKind::Io(ErrorKind::PermissionDenied) => {
-            format!("{what}; on Linux the user has to be in the group of the port, often dialout")
+fn explain(error: &std::io::Error) -> String {
+    match error.kind() {
+        ErrorKind::PermissionDenied => {
+            format!("{error}; on Linux the user has to be in the group of the port, often dialout")
         }
-        serialport::ErrorKind::NoDevice | serialport::ErrorKind::Io(ErrorKind::NotFound) => {
-            format!("{what}; expected a serial port that is there, and that no other program has")
+        ErrorKind::NotFound => {
+            format!("{error}; expected a serial port that is there, and that no other program has")
         }
-        serialport::ErrorKind::Io(ErrorKind::WouldBlock | ErrorKind::ResourceBusy) => {
-            format!("{what}; another program has it")
+        ErrorKind::WouldBlock | ErrorKind::ResourceBusy => {
+            format!("{error}; another program has it")
         }
-        _ => what,
+        _ => error.to_string(),
     }
 }
 
 impl Bytes for SerialLine {
     fn send(&mut self, bytes: &[u8], wait: Duration) -> Result<bool, PortError> {
         match &mut self.port {
-            Some(port) => write(port.as_mut(), &self.uri, bytes, wait),
+            Some(port) => write(port, &self.uri, bytes, wait),
             None => Err(closed(&self.uri)),
         }
     }
 
     fn receive(&mut self, buffer: &mut [u8], wait: Duration) -> Result<usize, PortError> {
         match &mut self.port {
-            Some(port) => read(port.as_mut(), &self.uri, buffer, wait),
+            Some(port) => read(port, &self.uri, buffer, wait),
             None => Err(closed(&self.uri)),
         }
     }
@@ -113,13 +95,13 @@ pub(super) fn closed(uri: &str) -> PortError {
 
 /// Writes all bytes within a time.
 pub(super) fn write(
-    port: &mut dyn SerialPort,
+    port: &mut SerialPort,
     uri: &str,
     bytes: &[u8],
     wait: Duration,
 ) -> Result<bool, PortError> {
     let gone = |reason: &dyn std::fmt::Display| PortError::gone(uri, reason);
-    port.set_timeout(wait).map_err(|error| gone(&error))?;
+    port.set_wait(wait);
     let mut rest = bytes;
     while !rest.is_empty() {
         match port.write(rest) {
@@ -135,19 +117,13 @@ pub(super) fn write(
 
 /// Reads the bytes available, or waits for some.
 pub(super) fn read(
-    port: &mut dyn SerialPort,
+    port: &mut SerialPort,
     uri: &str,
     buffer: &mut [u8],
     wait: Duration,
 ) -> Result<usize, PortError> {
     let gone = |reason: &dyn std::fmt::Display| PortError::gone(uri, reason);
-    if wait.is_zero() {
-        // Without this check, each read of an empty line would allocate an error.
-        if port.bytes_to_read().map_err(|error| gone(&error))? == 0 {
-            return Ok(0);
-        }
-    }
-    port.set_timeout(wait).map_err(|error| gone(&error))?;
+    port.set_wait(wait);
     match port.read(buffer) {
         Ok(0) => Err(gone(&"the other end hung up")),
         Ok(count) => Ok(count),

@@ -3,9 +3,8 @@
 use super::planned::read;
 use crate::failure::Failure;
 use crate::progress::watch_interrupts;
-use crate::terminal::note;
+use crate::progress_bar::ProgressBar;
 use clap::Args;
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use octant_base::interrupt;
 use octant_base::number::counted;
 use octant_campaign::execute::{Done, Event, ExecuteError, Options, Outcome, Shard, execute};
@@ -52,27 +51,23 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         cancel: interrupt::flag(),
     };
     let mine = (0..plan.cases.len()).filter(|index| shard.has(*index)).count();
-    let bar =
-        ProgressBar::with_draw_target(Some(mine as u64), ProgressDrawTarget::stderr_with_hz(5));
-    let style = "{wide_bar} {pos} of {len} cases, {per_sec}, {eta} left{msg}";
-    if let Ok(style) = ProgressStyle::with_template(style) {
-        bar.set_style(style);
-    }
-    let told = |line: String| {
-        // Above the bar on a terminal, as a plain line elsewhere.
-        if bar.is_hidden() { note!("{line}") } else { bar.println(line) }
-    };
+    let bar = ProgressBar::new(Some(mine as u64), |progress| {
+        let left = progress.left_s().map(|left_s| format!(", {left_s:.0} s left"));
+        let (done, total) = (progress.done, progress.total.unwrap_or_default());
+        let left = left.unwrap_or_default();
+        format!("{done} of {total} cases, {:.1} per second{left}", progress.per_s())
+    });
     let tell = |event: &Event| match event {
-        Event::There(count) => bar.inc(*count as u64),
+        Event::There(count) => bar.skip(*count as u64),
         Event::Done(done) => {
-            bar.inc(1);
+            bar.update(|progress| progress.done += 1);
             if let Some(line) = failure(&plan.cases[done.index].id, done) {
-                told(line);
+                bar.note(&line);
             }
         }
     };
     let outcome = in_rounds(&plan, &mut options, &tell);
-    bar.finish_and_clear();
+    bar.finish();
     let outcome = outcome?;
     conclude(arguments, &plan, shard, &outcome)
 }

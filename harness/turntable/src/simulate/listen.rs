@@ -39,10 +39,9 @@ pub fn listen(at: &str, dialect: Dialect) -> Result<(Server, String), Error> {
 
 #[cfg(unix)]
 fn on_pty(controller: Controller, link: &str) -> Result<(Server, String), Error> {
-    use serialport::SerialPort;
     let failed = |reason: String| Error::Listen { port: format!("pty:{link}"), reason };
-    let (master, slave) = serialport::TTYPort::pair().map_err(|error| failed(error.to_string()))?;
-    let name = slave.name().ok_or_else(|| failed("the pseudo-terminal has no name".to_owned()))?;
+    let (near, _far, name) =
+        octant_base::serial::SerialPort::pair().map_err(|error| failed(error.to_string()))?;
     let is_link = |about: std::fs::Metadata| about.file_type().is_symlink();
     if std::fs::symlink_metadata(link).is_ok_and(is_link) {
         std::fs::remove_file(link).map_err(|error| failed(error.to_string()))?;
@@ -50,7 +49,7 @@ fn on_pty(controller: Controller, link: &str) -> Result<(Server, String), Error>
     std::os::unix::fs::symlink(&name, link)
         .map_err(|error| failed(format!("link to {name}: {error}")))?;
     let server =
-        Server::line(controller, master, 1.0).map_err(|error| failed(error.to_string()))?;
+        Server::line(controller, near, 1.0).map_err(|error| failed(error.to_string()))?;
     Ok((server, format!("serial:{link}")))
 }
 

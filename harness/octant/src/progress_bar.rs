@@ -1,0 +1,173 @@
+//! A bar of progress on the last line of a terminal; nothing where stderr is none.
+
+use crate::terminal::{note, printable};
+use std::io::{IsTerminal, Write};
+use std::sync::{Mutex, PoisonError};
+use std::time::{Duration, Instant};
+
+/// Shortest time between two drawings.
+const REDRAW: Duration = Duration::from_millis(100);
+/// Columns of a terminal that doesn't tell its width.
+const COLUMNS: usize = 80;
+
+/// Progress of some work.
+#[derive(Debug)]
+pub(crate) struct Progress {
+    /// Units of work done.
+    pub(crate) done: u64,
+    /// Units of work in all, if known.
+    pub(crate) total: Option<u64>,
+    /// Units that were done before this work began: no measure of its speed.
+    before: u64,
+    /// What is being done.
+    pub(crate) message: String,
+    begun: Instant,
+    drawn: Option<Instant>,
+}
+
+impl Progress {
+    /// Units of work done per second.
+    pub(crate) fn per_s(&self) -> f64 {
+        (self.done - self.before) as f64 / self.begun.elapsed().as_secs_f64().max(1e-3)
+    }
+
+    /// Seconds until the end at the mean speed so far; `None` before there is one.
+    pub(crate) fn left_s(&self) -> Option<f64> {
+        let (left, per_s) = (self.total?.saturating_sub(self.done), self.per_s());
+        (per_s > 0.0).then(|| left as f64 / per_s)
+    }
+
+    /// Renders a line of at most this many columns: the bar, and the words after it.
+    fn line(&self, words: &str, columns: usize) -> String {
+        let words: String = printable(words).chars().take(columns).collect();
+        let room = columns.saturating_sub(words.chars().count() + 1);
+        let (Some(total), 1..) = (self.total, room) else { return words };
+        let share = self.done.min(total) as f64 / total.max(1) as f64;
+        let full = (share * room as f64) as usize;
+        format!("{}{} {words}", "█".repeat(full), "░".repeat(room - full))
+    }
+}
+
+/// A bar that threads may share.
+#[derive(Debug)]
+pub(crate) struct ProgressBar {
+    progress: Mutex<Progress>,
+    words: fn(&Progress) -> String,
+    shown: bool,
+}
+
+impl ProgressBar {
+    /// Makes a bar, with the text after it.
+    pub(crate) fn new(total: Option<u64>, words: fn(&Progress) -> String) -> Self {
+        let progress = Progress {
+            done: 0,
+            total,
+            before: 0,
+            message: String::new(),
+            begun: Instant::now(),
+            drawn: None,
+        };
+        Self { progress: Mutex::new(progress), words, shown: std::io::stderr().is_terminal() }
+    }
+
+    /// Changes the progress, and draws it if the last drawing is old.
+    pub(crate) fn update(&self, change: impl FnOnce(&mut Progress)) {
+        let mut progress = self.progress.lock().unwrap_or_else(PoisonError::into_inner);
+        change(&mut progress);
+        if self.shown && progress.drawn.is_none_or(|at| at.elapsed() >= REDRAW) {
+            self.draw(&mut progress);
+        }
+    }
+
+    /// Counts units that were done before.
+    pub(crate) fn skip(&self, count: u64) {
+        self.update(|progress| {
+            progress.done += count;
+            progress.before += count;
+        });
+    }
+
+    /// Prints a line on stderr, above the bar.
+    pub(crate) fn note(&self, line: &str) {
+        let mut progress = self.progress.lock().unwrap_or_else(PoisonError::into_inner);
+        clear(&mut progress);
+        note!("{line}");
+        if self.shown {
+            self.draw(&mut progress);
+        }
+    }
+
+    /// Takes the bar off the terminal.
+    pub(crate) fn finish(&self) {
+        clear(&mut self.progress.lock().unwrap_or_else(PoisonError::into_inner));
+    }
+
+    fn draw(&self, progress: &mut Progress) {
+        // The last column stays free: some terminals break the line after it.
+        let columns = columns().saturating_sub(1);
+        let line = progress.line(&(self.words)(progress), columns);
+        progress.drawn = Some(Instant::now());
+        write(&format!("\r{line:columns$}"));
+    }
+}
+
+/// Clears the line, if something was drawn on it.
+fn clear(progress: &mut Progress) {
+    if progress.drawn.take().is_some() {
+        write(&format!("\r{:1$}\r", "", columns().saturating_sub(1)));
+    }
+}
+
+fn write(text: &str) {
+    // A terminal that has gone is no failure of the work.
+    let mut terminal = std::io::stderr().lock();
+    let _ = terminal.write_all(text.as_bytes()).and_then(|()| terminal.flush());
+}
+
+#[cfg(target_os = "linux")]
+fn columns() -> usize {
+    let size = rustix::termios::tcgetwinsize(std::io::stderr());
+    size.map_or(COLUMNS, |size| match size.ws_col {
+        0 => COLUMNS,
+        columns => columns.into(),
+    })
+}
+
+#[cfg(not(target_os = "linux"))]
+fn columns() -> usize {
+    COLUMNS
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn progress(done: u64, total: Option<u64>) -> Progress {
+        let begun = Instant::now() - Duration::from_secs(10);
+        Progress { done, total, before: 0, message: String::new(), begun, drawn: None }
+    }
+
+    #[test]
+    fn a_line_has_the_share_that_is_done_and_fits() {
+        let line = |done, total, columns| progress(done, total).line("1 of 4", columns);
+        assert_eq!(line(1, Some(4), 15), "██░░░░░░ 1 of 4");
+        assert_eq!(line(4, Some(4), 15), "████████ 1 of 4");
+        assert_eq!(line(9, Some(4), 15), "████████ 1 of 4");
+        assert_eq!(line(0, Some(0), 9), "░░ 1 of 4");
+        assert_eq!(line(1, None, 15), "1 of 4");
+        assert_eq!(line(1, Some(4), 3), "1 o");
+        assert_eq!(progress(1, Some(4)).line("a\u{1b}b", 40).matches('\u{1b}').count(), 0);
+    }
+
+    #[test]
+    fn the_time_left_follows_from_the_speed_of_this_work() {
+        let mut half = progress(60, Some(100));
+        half.before = 20;
+        // 40 in 10 s; 40 are left.
+        assert!((half.per_s() - 4.0).abs() < 0.1, "{}", half.per_s());
+        let left_s = half.left_s().expect("has a speed");
+        assert!((left_s - 10.0).abs() < 0.3, "{left_s}");
+        assert_eq!(progress(0, Some(4)).left_s(), None);
+        assert_eq!(progress(2, None).left_s(), None);
+    }
+}
