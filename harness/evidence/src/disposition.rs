@@ -172,8 +172,18 @@ impl Dispositions {
     }
 }
 
+/// Quotes a text of one line for TOML: as it is where it has quotation marks or backslashes only, and
+/// otherwise as JSON does, whose escapes are TOML's too.
+fn quoted(text: &str) -> String {
+    let is_plain = !text.contains(|c: char| c == '\'' || c.is_control());
+    if is_plain && text.contains(['"', '\\']) {
+        return format!("'{text}'");
+    }
+    // TOML forbids DEL in a text, which JSON has no escape of its own for.
+    serde_json::Value::from(text).to_string().replace('\u{7f}', "\\u007f")
+}
+
 fn entry(found: &Discrepancy) -> String {
-    let quoted = |text: &str| toml::Value::String(text.to_owned()).to_string();
     // On one line: the full text is in the report.
     let what = found.what.split_whitespace().collect::<Vec<_>>().join(" ");
     let mut text =
@@ -208,4 +218,22 @@ fn parse(text: &str) -> Result<Vec<Entry>, String> {
         return Err(format!("{:?} is there a second time, expected it once", twice.id));
     }
     Ok(file.discrepancies)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_text_is_quoted_so_that_toml_reads_it() {
+        assert_eq!(quoted("longitude: found 3"), "\"longitude: found 3\"");
+        assert_eq!(quoted("found \"3\" in C:\\x"), "'found \"3\" in C:\\x'");
+        assert_eq!(quoted("isn't \"3\""), "\"isn't \\\"3\\\"\"");
+        for text in
+            ["", "a\"b", "a'b", "'\"\\", "\t\r\n\u{0}\u{8}\u{1b}\u{7f}\u{85}", "°\u{2028}😀"]
+        {
+            let table: toml::Table = format!("a = {}", quoted(text)).parse().expect(text);
+            assert_eq!(table["a"].as_str(), Some(text));
+        }
+    }
 }

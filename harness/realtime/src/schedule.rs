@@ -144,8 +144,9 @@ mod system {
         parameters.sched_priority = priority.into();
         // SAFETY: the thread is the calling one, and the pointer is valid during the call, which
         // writes nothing.
-        let refused =
-            unsafe { libc::pthread_setschedparam(libc::pthread_self(), policy, &raw const parameters) };
+        let refused = unsafe {
+            libc::pthread_setschedparam(libc::pthread_self(), policy, &raw const parameters)
+        };
         match refused {
             0 => Ok(()),
             number => Err(std::io::Error::from_raw_os_error(number)),

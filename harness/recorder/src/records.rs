@@ -19,6 +19,17 @@ pub enum RecordsError {
     /// The file doesn't begin like an MCAP file.
     #[error("not an MCAP file: it does not begin with the magic bytes of MCAP")]
     NotMcap,
+    /// A chunk is compressed in a way that this program doesn't read.
+    #[error(
+        "the chunk before byte {offset} is compressed with {name:?}, expected zstd or none; octant reads \
+         lz4 when it is built with the feature `lz4`"
+    )]
+    Compression {
+        /// Number of bytes read up to the end of the chunk's head or later.
+        offset: u64,
+        /// Name of the compression.
+        name: String,
+    },
     /// A record is damaged.
     #[error("damaged after byte {offset}: {reason}")]
     Damaged {
@@ -148,6 +159,9 @@ impl<R: Read> Records<R> {
                             if !self.started =>
                         {
                             RecordsError::NotMcap
+                        }
+                        mcap::McapError::UnsupportedCompression(name) => {
+                            RecordsError::Compression { offset: self.offset, name }
                         }
                         error => {
                             RecordsError::Damaged { offset: self.offset, reason: error.to_string() }

@@ -11,7 +11,6 @@ use crate::wire::WireFault;
 use alloc::boxed::Box;
 use alloc::vec::Vec;
 use core::fmt::Debug;
-use dyn_clone::DynClone;
 use octant_random::normal::{Ziggurat, uniform};
 use octant_random::philox::block;
 use octant_random::stream::Phase;
@@ -38,12 +37,36 @@ pub enum Rule {
     Host(HostAction),
 }
 
-dyn_clone::clone_trait_object!(PlantRule);
-dyn_clone::clone_trait_object!(CommandRule);
-dyn_clone::clone_trait_object!(SampleRule);
-dyn_clone::clone_trait_object!(DeliveryRule);
-dyn_clone::clone_trait_object!(UnitRule);
-dyn_clone::clone_trait_object!(WireRule);
+/// Makes boxed rules of these traits `Clone`, by the `Clone` of the rule within.
+macro_rules! clone_boxed {
+    ($($rule:ident by $copy:ident)*) => {$(
+        #[doc = concat!("Copies a [`", stringify!($rule), "`] into a box. Each one that is `Clone` does it.")]
+        pub trait $copy {
+            /// Returns a copy in a box.
+            fn boxed(&self) -> Box<dyn $rule>;
+        }
+
+        impl<R: $rule + Clone + 'static> $copy for R {
+            fn boxed(&self) -> Box<dyn $rule> {
+                Box::new(self.clone())
+            }
+        }
+
+        impl Clone for Box<dyn $rule> {
+            fn clone(&self) -> Self {
+                (**self).boxed()
+            }
+        }
+    )*};
+}
+clone_boxed! {
+    PlantRule by CopyPlantRule
+    CommandRule by CopyCommandRule
+    SampleRule by CopySampleRule
+    DeliveryRule by CopyDeliveryRule
+    UnitRule by CopyUnitRule
+    WireRule by CopyWireRule
+}
 
 impl State for Rule {
     fn save(&self, to: &mut Writer) {
@@ -130,7 +153,7 @@ impl Context<'_> {
 }
 
 /// Acts on samples and aiding in place.
-pub trait SampleRule: Debug + Send + DynClone + State {
+pub trait SampleRule: Debug + Send + CopySampleRule + State {
     /// Acts on one epoch.
     fn on_epoch(&mut self, epoch: &mut Epoch, now: &Context<'_>);
 
@@ -150,7 +173,7 @@ pub trait SampleRule: Debug + Send + DynClone + State {
 }
 
 /// Acts on the delivery of epochs.
-pub trait DeliveryRule: Debug + Send + DynClone + State {
+pub trait DeliveryRule: Debug + Send + CopyDeliveryRule + State {
     /// Handles one step of the source: takes the epochs that come in (one, or none or several if
     /// faults before this one have delayed some), and puts those to be delivered now into `out`, in
     /// order. `active` is false in steps after the fault's end, in which a rule is called as long
@@ -171,26 +194,26 @@ pub trait DeliveryRule: Debug + Send + DynClone + State {
 }
 
 /// Acts on the set point that the turntable gets.
-pub trait CommandRule: Debug + Send + DynClone + State {
+pub trait CommandRule: Debug + Send + CopyCommandRule + State {
     /// Acts on the set point of one epoch.
     fn on_command(&mut self, command: &mut GimbalCommand, now: &Context<'_>);
 }
 
 /// Acts inside the plant.
-pub trait PlantRule: Debug + Send + DynClone + State {
+pub trait PlantRule: Debug + Send + CopyPlantRule + State {
     /// Returns the disturbance of the plant from now on; `motor` is the present state of the
     /// turntable.
     fn begin(&mut self, now: &Context<'_>, motor: &Motor) -> Disturbance;
 }
 
 /// Acts on the wire to the unit under test.
-pub trait WireRule: Debug + Send + DynClone + State {
+pub trait WireRule: Debug + Send + CopyWireRule + State {
     /// Returns the fault of the wire from now on, until the fault ends.
     fn begin(&mut self, now: &Context<'_>) -> WireFault;
 }
 
 /// Acts on the unit under test.
-pub trait UnitRule: Debug + Send + DynClone + State {
+pub trait UnitRule: Debug + Send + CopyUnitRule + State {
     /// Returns the event of the unit at this epoch, to happen before the unit gets the epoch;
     /// `None`: no event. Power is reported by [`Self::cuts_power`] instead.
     fn on_epoch(&mut self, now: &Context<'_>) -> Option<UnitEvent>;

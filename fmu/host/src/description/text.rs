@@ -32,8 +32,8 @@ pub fn decode(bytes: &[u8], file: &str) -> Result<(String, Vec<String>), Descrip
     }
     let declared = declared(bytes);
     let label = declared.as_deref().unwrap_or("UTF-8");
-    let encoding = Encoding::of_name(label)
-        .ok_or_else(|| fail(format!("{label:?} is declared"), EXPECTED))?;
+    let encoding =
+        Encoding::of_name(label).ok_or_else(|| fail(format!("{label:?} is declared"), EXPECTED))?;
     // A declaration that is legible as ASCII isn't in UTF-16: .NET writes this for strings that it
     // holds as UTF-16.
     let utf16 = matches!(encoding, Encoding::Utf16Le | Encoding::Utf16Be);
@@ -101,8 +101,15 @@ mod tests {
         assert_eq!(tolerated, ["line 2 isn't UTF-8; the file is read as Windows-1252"]);
         let error = decode(b"<?xml version='1.0' encoding='EBCDIC'?><a/>", "m.xml");
         let error = error.expect_err("unknown").to_string();
-        assert!(error.starts_with("m.xml: encoding: \"EBCDIC\" is declared, expected UTF-8"), "{error}");
-        assert_eq!(error.contains("the feature `encodings`"), !cfg!(feature = "encodings"), "{error}");
+        assert!(
+            error.starts_with("m.xml: encoding: \"EBCDIC\" is declared, expected UTF-8"),
+            "{error}"
+        );
+        assert_eq!(
+            error.contains("the feature `encodings`"),
+            !cfg!(feature = "encodings"),
+            "{error}"
+        );
         let error = decode(b"\xff\xfe<\0a\0/\0>", "m.xml").expect_err("half a character");
         assert!(error.to_string().contains("aren't UTF-16LE"), "{error}");
         assert_eq!(text(b""), (String::new(), 0));

@@ -48,8 +48,7 @@ fn on_pty(controller: Controller, link: &str) -> Result<(Server, String), Error>
     }
     std::os::unix::fs::symlink(&name, link)
         .map_err(|error| failed(format!("link to {name}: {error}")))?;
-    let server =
-        Server::line(controller, near, 1.0).map_err(|error| failed(error.to_string()))?;
+    let server = Server::line(controller, near, 1.0).map_err(|error| failed(error.to_string()))?;
     Ok((server, format!("serial:{link}")))
 }
 

@@ -46,7 +46,7 @@ impl<F> fmt::Debug for Mapped<F> {
     }
 }
 
-impl<F: Fn(usize, f64) -> f64 + Clone + Send> SampleRule for Mapped<F> {
+impl<F: Fn(usize, f64) -> f64 + Clone + Send + 'static> SampleRule for Mapped<F> {
     fn on_epoch(&mut self, epoch: &mut Epoch, now: &Context<'_>) {
         if self.onset.is_new(now) {
             self.adder.clear();
