@@ -156,7 +156,8 @@ fn meaning(value: &str) -> String {
                 let all: BTreeMap<&String, String> = all.iter().map(|(k, v)| (k, of(v))).collect();
                 format!("{all:?}")
             }
-            other => other.to_string(),
+            toml::Value::Boolean(value) => value.to_string(),
+            toml::Value::Datetime(value) => value.to_string(),
         }
     }
     let parsed = format!("value = {value}").parse::<toml::Table>();
