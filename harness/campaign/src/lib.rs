@@ -1,6 +1,6 @@
 //! Campaigns: many cases of scenarios, planned, run anywhere, merged and judged.
 //!
-//! [`mod@file`] is the user's file, [`plan`] the list of its cases, [`case`] runs one of them,
+//! [`Campaign`](octant_scenario::campaign::Campaign) is the user's file, [`plan`] the list of its cases, [`case`] runs one of them,
 //! [`execute`] all of them, each in a process of its own, [`results`] writes their tables,
 //! [`merge`] merges those of all shards, [`independence`] groups them into independent draws.
 
@@ -11,7 +11,6 @@ pub mod chain;
 mod draw;
 pub mod emit;
 pub mod execute;
-pub mod file;
 pub mod independence;
 pub mod inside;
 mod make;

@@ -10,7 +10,7 @@ use octant_base::names::{nearest, suggestion};
 pub const SCHEMA: i64 = 1;
 
 /// Definition of a key.
-#[derive(Debug)]
+#[derive(Clone, Copy, Debug)]
 pub struct Key {
     /// Name.
     pub name: &'static str,

@@ -2,7 +2,7 @@
 
 use crate::document::{Node, Table, Value, join, number};
 use crate::error::{Place, Problem};
-use crate::quantity;
+use crate::quantity::{self, Quantity};
 
 /// A table of the completed document with its path and place. The check guarantees the kinds of its
 /// values; an accessor that meets anything else still reports a problem.
@@ -75,11 +75,8 @@ impl<'a> Reader<'a> {
 
     /// Tables of an array.
     pub fn tables(&self, key: &str) -> Vec<Reader<'a>> {
-        let Some(Node { value: Value::Array(entries), .. }) = self.node(key) else {
-            return Vec::new();
-        };
         let path = join(&self.path, key);
-        entries
+        self.entries(key)
             .iter()
             .enumerate()
             .filter_map(|(index, node)| match &node.value {
@@ -107,16 +104,21 @@ impl<'a> Reader<'a> {
         self.optional_text(key).ok_or_else(|| self.missing(key))
     }
 
+    /// Entries of an array.
+    pub fn entries(&self, key: &str) -> &'a [Node] {
+        match self.node(key) {
+            Some(Node { value: Value::Array(entries), .. }) => entries,
+            _ => &[],
+        }
+    }
+
     /// Texts of an array.
     pub fn texts(&self, key: &str) -> Vec<&'a str> {
-        let Some(Node { value: Value::Array(entries), .. }) = self.node(key) else {
-            return Vec::new();
-        };
         let text = |node: &'a Node| match &node.value {
             Value::Text(text) => Some(text.as_str()),
             _ => None,
         };
-        entries.iter().filter_map(text).collect()
+        self.entries(key).iter().filter_map(text).collect()
     }
 
     /// Boolean under a key.
@@ -156,21 +158,19 @@ impl<'a> Reader<'a> {
     /// # Errors
     /// If there are more or fewer.
     pub fn numbers<const N: usize>(&self, key: &str) -> Result<[f64; N], Problem> {
-        let Some(Node { value: Value::Array(entries), .. }) = self.node(key) else {
-            return Err(self.missing(key));
-        };
-        let all: Vec<f64> = entries.iter().filter_map(|node| number(&node.value)).collect();
+        let all: Vec<f64> =
+            self.entries(key).iter().filter_map(|node| number(&node.value)).collect();
         all.try_into().map_err(|_| self.missing(key))
+    }
+
+    /// Quantity under a key, if it is given.
+    pub fn optional_quantity(&self, key: &str) -> Option<Quantity> {
+        quantity::parse(self.optional_text(key)?).ok()
     }
 
     /// Quantity under a key in SI, if it is given.
     pub fn optional_si(&self, key: &str) -> Option<f64> {
-        quantity::parse(self.optional_text(key)?).ok().map(|quantity| quantity.si)
-    }
-
-    /// Quantity under a key in SI.
-    pub fn si(&self, key: &str) -> Result<f64, Problem> {
-        self.optional_si(key).ok_or_else(|| self.missing(key))
+        self.optional_quantity(key).map(|quantity| quantity.si)
     }
 
     /// Quantities of an array in SI, if it is given.
