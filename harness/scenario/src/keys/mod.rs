@@ -27,7 +27,8 @@ pub(crate) use campaign::{
     CampaignKeys, CorrelationKeys, EarlyStopKeys, FactorKeys, LimitsKeys, MemberKeys,
 };
 pub(crate) use connection::{ConnectionFaultKeys, ConnectionsKeys, connection_section};
-pub use definition::{Bounds, Default, Key, Kind, SCHEMA, Section, Tag, Variants};
+pub use definition::SCHEMA;
+pub(crate) use definition::{Bounds, Default, Key, Kind, Section, Tag, Variants};
 pub(crate) use drive::DriveKeys;
 pub(crate) use faults::{FaultKeys, LastingKeys, RepeatKeys, TriggerKeys, dimension, kind_section};
 pub(crate) use fmu::{ENDPOINT_MAP, EndpointFmuKeys, FmuKeys, SOURCE_MAP, SourceFmuKeys};
