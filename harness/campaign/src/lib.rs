@@ -1,8 +1,9 @@
 //! Campaigns: many cases of scenarios, planned, run anywhere, merged and judged.
 //!
-//! [`Campaign`](octant_scenario::campaign::Campaign) is the user's file, [`plan`] the list of its cases, [`case`] runs one of them,
-//! [`execute`] all of them, each in a process of its own, [`results`] writes their tables,
-//! [`merge`] merges those of all shards, [`independence`] groups them into independent draws.
+//! [`Campaign`](octant_scenario::campaign::Campaign) is the user's file, [`plan`] the list of its
+//! cases, [`case`] runs one of them, [`execute`] all of them, each in a process of its own,
+//! [`results`] writes their tables, [`merge`] merges those of all shards, [`independence`] groups them
+//! into independent draws.
 
 pub mod against;
 mod besides;

@@ -1,8 +1,9 @@
-//! The table of keys, which defines everything that can be written in a scenario, with dimension,
-//! default and meaning.
+//! The table of keys, which defines everything that can be written in a scenario, a suite, a campaign
+//! or a list of faults on connections, with dimension, default and meaning.
 //!
-//! Check, defaults, error messages, the JSON Schema and the test of the tour all use it. A table of a
-//! scenario is declared with `keys!`, which also gives the struct that it is read into.
+//! Check, defaults, error messages, the JSON Schema and the test of the tour all use it. A table is
+//! declared with `keys!`, which also gives the struct that it is read into, and a table with several
+//! forms with `forms!`, which gives an enum.
 
 mod calibration;
 mod campaign;
