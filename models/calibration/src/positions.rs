@@ -128,53 +128,26 @@ pub enum Axis {
 
 use Axis::{X, Y, Z};
 
+/// Sequences of turns about body axes, each in degrees.
+macro_rules! turns {
+    ($($name:literal: $($axis:ident $degrees:literal),+;)+) => {
+        &[$(($name, &[$(($axis, $degrees)),+])),+]
+    };
+}
+
 /// Published sequences for a table that turns freely about the body axes: name, and turns in
 /// degrees. The first attitude is the one before the first turn.
 ///
 /// - `nineteen`: Xie Bo, 2011.
 /// - `twelve`: twelve turns, thirteen attitudes.
-pub const FREE_TABLE: &[(&str, &[(Axis, f64)])] = &[
-    (
-        "nineteen",
-        &[
-            (Y, 90.0),
-            (Y, 90.0),
-            (Y, 90.0),
-            (Y, -90.0),
-            (Y, -90.0),
-            (Y, -90.0),
-            (Z, 90.0),
-            (X, 90.0),
-            (X, 90.0),
-            (X, 90.0),
-            (X, -90.0),
-            (X, -90.0),
-            (X, -90.0),
-            (Z, 90.0),
-            (Z, 90.0),
-            (Z, -90.0),
-            (Z, -90.0),
-            (Z, -90.0),
-        ],
-    ),
-    (
-        "twelve",
-        &[
-            (X, 90.0),
-            (X, 90.0),
-            (Y, 90.0),
-            (Z, -90.0),
-            (Z, -90.0),
-            (Y, -90.0),
-            (X, -90.0),
-            (X, -90.0),
-            (Y, -90.0),
-            (Z, 90.0),
-            (Z, 90.0),
-            (Y, 90.0),
-        ],
-    ),
-];
+pub const FREE_TABLE: &[(&str, &[(Axis, f64)])] = turns! {
+    "nineteen":
+        Y 90.0, Y 90.0, Y 90.0, Y -90.0, Y -90.0, Y -90.0, Z 90.0, X 90.0, X 90.0, X 90.0,
+        X -90.0, X -90.0, X -90.0, Z 90.0, Z 90.0, Z -90.0, Z -90.0, Z -90.0;
+    "twelve":
+        X 90.0, X 90.0, Y 90.0, Z -90.0, Z -90.0, Y -90.0, X -90.0, X -90.0, Y -90.0, Z 90.0,
+        Z 90.0, Y 90.0;
+};
 
 fn about(axis: Axis, degrees: f64) -> Matrix3<f64> {
     let angle_rad = degrees.to_radians();
