@@ -1,6 +1,6 @@
 //! Draws of a campaign's replicates.
 
-use super::file::{Campaign, Design, Distribution, Levels};
+use octant_scenario::campaign::{Campaign, Design, Distribution, Levels};
 use octant_statistics::draw::{
     Correlation, Distribution as Drawn, Factor, Value, latin_hypercube, monte_carlo,
 };

@@ -1,8 +1,9 @@
 //! Campaigns: many cases of scenarios, planned, run anywhere, merged and judged.
 //!
-//! [`mod@file`] is the user's file, [`plan`] the list of its cases, [`case`] runs one of them,
-//! [`execute`] all of them, each in a process of its own, [`results`] writes their tables,
-//! [`merge`] merges those of all shards, [`independence`] groups them into independent draws.
+//! [`Campaign`](octant_scenario::campaign::Campaign) is the user's file, [`plan`] the list of its
+//! cases, [`case`] runs one of them, [`execute`] all of them, each in a process of its own,
+//! [`results`] writes their tables, [`merge`] merges those of all shards, [`independence`] groups them
+//! into independent draws.
 
 pub mod against;
 mod besides;
@@ -11,7 +12,6 @@ pub mod chain;
 mod draw;
 pub mod emit;
 pub mod execute;
-pub mod file;
 pub mod independence;
 pub mod inside;
 mod make;

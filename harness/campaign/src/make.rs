@@ -1,12 +1,12 @@
 //! Builds the plan of a campaign file: every combination of scenarios, factors and replicates.
 
 use super::draw::At;
-use super::file::{Campaign, Factor, Levels, Member};
 use super::plan::{
     CASES_MAX, Case, FactorValue, Plan, PlanError, PlannedScenario, SCHEMA, StopRule, system,
 };
 use super::requirements::{self, Planned};
 use octant_scenario::Scenario;
+use octant_scenario::campaign::{Campaign, Factor, Levels, Member};
 use std::collections::{BTreeMap, HashMap};
 use std::path::{Path, PathBuf};
 

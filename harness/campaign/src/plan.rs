@@ -3,11 +3,11 @@
 //! A plan never changes after it is made. A campaign that grows makes another plan, in which every
 //! earlier case keeps its id.
 
-use super::file::{Limits, Stop};
 use super::requirements::Planned;
 use octant_requirements::RequirementsError;
 use octant_requirements::requirement::Ensemble;
 use octant_requirements::verdict::LimitCheck;
+use octant_scenario::campaign::{Limits, Stop};
 use octant_scenario::{Scenario, ScenarioError};
 use octant_statistics::proportion::Demand;
 use serde::{Deserialize, Serialize};
@@ -78,7 +78,11 @@ pub struct StopRule {
 
 impl From<Stop> for StopRule {
     fn from(stop: Stop) -> Self {
-        Self { requirement: stop.requirement, demand: stop.demand, every: stop.every }
+        Self {
+            requirement: stop.requirement,
+            demand: Demand { pass: stop.pass, confidence: stop.confidence },
+            every: stop.every,
+        }
     }
 }
 

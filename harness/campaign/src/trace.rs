@@ -2,13 +2,13 @@
 
 use super::besides::besides;
 use super::case::{self, CaseResult, ResultError, differing};
-use super::file::Campaign;
 use super::independence;
 use super::plan::{Plan, PlanError};
 use super::requirements;
 use octant_requirements::requirement::{Check, Limit, Requirement, Requirements, Verification};
 use octant_requirements::trace::{Case, CaseResult as Traced, Trace};
 use octant_requirements::{Comparison, Verdict};
+use octant_scenario::campaign::Campaign;
 use std::path::Path;
 
 /// Reads the requirements of the campaign of a plan; empty if it names no file of them.

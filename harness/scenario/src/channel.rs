@@ -35,379 +35,177 @@ pub struct Channel {
     pub doc: &'static str,
 }
 
-const fn quantity(
-    name: &'static str,
-    dimension: Dimension,
-    elements: usize,
-    doc: &'static str,
-) -> Channel {
-    Channel { name, class: Class::Quantity(dimension), elements, doc }
-}
-
-const fn of(name: &'static str, class: Class, elements: usize, doc: &'static str) -> Channel {
-    Channel { name, class, elements, doc }
+/// Declares channels; the text of a channel is its documentation too.
+macro_rules! channels {
+    ($($item:ident = $name:literal, $class:expr, $elements:literal, $doc:literal;)+) => { $(
+        #[doc = $doc]
+        pub static $item: Channel =
+            Channel { name: $name, class: $class, elements: $elements, doc: $doc };
+    )+ };
 }
 
 /// Channels of samples and references: outputs of a source, and inputs of a core.
 pub mod sample {
-    use super::{Channel, Class, Dimension, of, quantity};
+    use super::{Channel, Class, Dimension};
 
-    /// Angular rate.
-    pub static RATE: Channel = quantity(
-        "gyro.rate",
-        Dimension::ANGULAR_RATE,
-        3,
-        "Angular rate of the body, x y z, taken as constant over the sample's interval.",
-    );
-    /// Angle increments.
-    pub static DELTA_THETA: Channel = quantity(
-        "gyro.delta_theta",
-        Dimension::ANGLE,
-        3,
-        "Angle increments over the sample's interval, x y z.",
-    );
-    /// Specific force.
-    pub static SPECIFIC_FORCE: Channel = quantity(
-        "accelerometer.specific_force",
-        Dimension::ACCELERATION,
-        3,
-        "Specific force, x y z (at rest it points up), taken as constant over the sample's interval.",
-    );
-    /// Velocity increments.
-    pub static DELTA_VELOCITY: Channel = quantity(
-        "accelerometer.delta_velocity",
-        Dimension::VELOCITY,
-        3,
-        "Velocity increments over the sample's interval, x y z.",
-    );
-    /// Inner gimbal.
-    pub static AZIMUTH: Channel = quantity(
-        "gimbal.azimuth",
-        Dimension::ANGLE,
-        1,
-        "Angle of the inner gimbal at the stamp, cumulative.",
-    );
-    /// Outer gimbal.
-    pub static ROLL: Channel = quantity(
-        "gimbal.roll",
-        Dimension::ANGLE,
-        1,
-        "Angle of the outer gimbal at the stamp, cumulative.",
-    );
-    /// Validity of the sample.
-    pub static VALID: Channel = of(
-        "imu.valid",
-        Class::Flag,
-        1,
-        "Whether there is a sample; without one none is delivered.",
-    );
-    /// Flags of the instrument.
-    pub static STATUS: Channel = of(
-        "imu.status",
-        Class::Whole,
-        1,
-        "Flags of the sample: 1 gyro saturated, 2 accelerometer saturated, 4 gimbal angles invalid, 8 inertial counts invalid.",
-    );
-    /// Number of the sample.
-    pub static SEQUENCE: Channel =
-        of("imu.sequence", Class::Whole, 1, "Number of the sample, from 1.");
-    /// Stamp.
-    pub static DEVICE_TIME: Channel = of(
-        "imu.device_time_ns",
-        Class::Nanoseconds,
-        1,
-        "Stamp of the sample, ns since the start of the first interval.",
-    );
-    /// Kind of the reference.
-    pub static REFERENCE_KIND: Channel = of(
-        "reference.kind",
-        Class::Code,
-        1,
-        "Whether a reference goes with the sample: 0 none, 1 velocity, 2 position.",
-    );
-    /// Validity of the reference.
-    pub static REFERENCE_VALID: Channel =
-        of("reference.valid", Class::Flag, 1, "Whether a reference goes with the sample.");
-    /// Velocity of the reference.
-    pub static REFERENCE_VELOCITY: Channel = quantity(
-        "reference.velocity",
-        Dimension::VELOCITY,
-        3,
-        "Velocity over ground that the reference measured: north, east, down.",
-    );
-    /// Latitude of the reference.
-    pub static REFERENCE_LATITUDE: Channel = quantity(
-        "reference.latitude",
-        Dimension::ANGLE,
-        1,
-        "Geodetic latitude that the reference measured.",
-    );
-    /// Longitude of the reference.
-    pub static REFERENCE_LONGITUDE: Channel = quantity(
-        "reference.longitude",
-        Dimension::ANGLE,
-        1,
-        "Longitude that the reference measured.",
-    );
-    /// Height of the reference.
-    pub static REFERENCE_HEIGHT: Channel = quantity(
-        "reference.height",
-        Dimension::LENGTH,
-        1,
-        "Height above the ellipsoid that the reference measured.",
-    );
-    /// Age of the reference.
-    pub static REFERENCE_AGE: Channel = of(
-        "reference.age_ns",
-        Class::Nanoseconds,
-        1,
-        "Stamp of the sample minus that of its reference, ns.",
-    );
-    /// Set point of the inner gimbal.
-    pub static COMMAND_AZIMUTH: Channel = quantity(
-        "gimbal_command.azimuth",
-        Dimension::ANGLE,
-        1,
-        "Set point of the inner gimbal, cumulative.",
-    );
-    /// Set point of the outer gimbal.
-    pub static COMMAND_ROLL: Channel = quantity(
-        "gimbal_command.roll",
-        Dimension::ANGLE,
-        1,
-        "Set point of the outer gimbal, cumulative.",
-    );
+    channels! {
+        RATE = "gyro.rate", Class::Quantity(Dimension::ANGULAR_RATE), 3,
+            "Angular rate of the body, x y z, taken as constant over the sample's interval.";
+        DELTA_THETA = "gyro.delta_theta", Class::Quantity(Dimension::ANGLE), 3,
+            "Angle increments over the sample's interval, x y z.";
+        SPECIFIC_FORCE = "accelerometer.specific_force", Class::Quantity(Dimension::ACCELERATION), 3,
+            "Specific force, x y z (at rest it points up), taken as constant over the sample's interval.";
+        DELTA_VELOCITY = "accelerometer.delta_velocity", Class::Quantity(Dimension::VELOCITY), 3,
+            "Velocity increments over the sample's interval, x y z.";
+        AZIMUTH = "gimbal.azimuth", Class::Quantity(Dimension::ANGLE), 1,
+            "Angle of the inner gimbal at the stamp, cumulative.";
+        ROLL = "gimbal.roll", Class::Quantity(Dimension::ANGLE), 1,
+            "Angle of the outer gimbal at the stamp, cumulative.";
+        VALID = "imu.valid", Class::Flag, 1,
+            "Whether there is a sample; without one none is delivered.";
+        STATUS = "imu.status", Class::Whole, 1,
+            "Flags of the sample: 1 gyro saturated, 2 accelerometer saturated, 4 gimbal angles invalid, 8 inertial counts invalid.";
+        SEQUENCE = "imu.sequence", Class::Whole, 1,
+            "Number of the sample, from 1.";
+        DEVICE_TIME = "imu.device_time_ns", Class::Nanoseconds, 1,
+            "Stamp of the sample, ns since the start of the first interval.";
+        REFERENCE_KIND = "reference.kind", Class::Code, 1,
+            "Whether a reference goes with the sample: 0 none, 1 velocity, 2 position.";
+        REFERENCE_VALID = "reference.valid", Class::Flag, 1,
+            "Whether a reference goes with the sample.";
+        REFERENCE_VELOCITY = "reference.velocity", Class::Quantity(Dimension::VELOCITY), 3,
+            "Velocity over ground that the reference measured: north, east, down.";
+        REFERENCE_LATITUDE = "reference.latitude", Class::Quantity(Dimension::ANGLE), 1,
+            "Geodetic latitude that the reference measured.";
+        REFERENCE_LONGITUDE = "reference.longitude", Class::Quantity(Dimension::ANGLE), 1,
+            "Longitude that the reference measured.";
+        REFERENCE_HEIGHT = "reference.height", Class::Quantity(Dimension::LENGTH), 1,
+            "Height above the ellipsoid that the reference measured.";
+        REFERENCE_AGE = "reference.age_ns", Class::Nanoseconds, 1,
+            "Stamp of the sample minus that of its reference, ns.";
+        COMMAND_AZIMUTH = "gimbal_command.azimuth", Class::Quantity(Dimension::ANGLE), 1,
+            "Set point of the inner gimbal, cumulative.";
+        COMMAND_ROLL = "gimbal_command.roll", Class::Quantity(Dimension::ANGLE), 1,
+            "Set point of the outer gimbal, cumulative.";
+    }
 }
 
 /// Channels of truth.
 pub mod truth {
-    use super::{Channel, Class, Dimension, of, quantity};
+    use super::{Channel, Class, Dimension};
 
-    /// True latitude.
-    pub static LATITUDE: Channel =
-        quantity("truth.latitude", Dimension::ANGLE, 1, "True geodetic latitude at the stamp.");
-    /// True longitude.
-    pub static LONGITUDE: Channel =
-        quantity("truth.longitude", Dimension::ANGLE, 1, "True longitude at the stamp.");
-    /// True height.
-    pub static HEIGHT: Channel =
-        quantity("truth.height", Dimension::LENGTH, 1, "True height above the ellipsoid.");
-    /// True velocity.
-    pub static VELOCITY: Channel = quantity(
-        "truth.velocity",
-        Dimension::VELOCITY,
-        3,
-        "True velocity over ground: north, east, down.",
-    );
-    /// True attitude.
-    pub static ATTITUDE: Channel = of(
-        "truth.attitude",
-        Class::Number,
-        4,
-        "True attitude of the body as a quaternion w x y z that takes a vector in body into north, east, down.",
-    );
-    /// True gimbal angle.
-    pub static AZIMUTH: Channel = quantity(
-        "truth.gimbal.azimuth",
-        Dimension::ANGLE,
-        1,
-        "True angle of the inner gimbal, without encoder error.",
-    );
-    /// True gimbal angle.
-    pub static ROLL: Channel = quantity(
-        "truth.gimbal.roll",
-        Dimension::ANGLE,
-        1,
-        "True angle of the outer gimbal, without encoder error.",
-    );
+    channels! {
+        LATITUDE = "truth.latitude", Class::Quantity(Dimension::ANGLE), 1,
+            "True geodetic latitude at the stamp.";
+        LONGITUDE = "truth.longitude", Class::Quantity(Dimension::ANGLE), 1,
+            "True longitude at the stamp.";
+        HEIGHT = "truth.height", Class::Quantity(Dimension::LENGTH), 1,
+            "True height above the ellipsoid.";
+        VELOCITY = "truth.velocity", Class::Quantity(Dimension::VELOCITY), 3,
+            "True velocity over ground: north, east, down.";
+        ATTITUDE = "truth.attitude", Class::Number, 4,
+            "True attitude of the body as a quaternion w x y z that takes a vector in body into north, east, down.";
+        AZIMUTH = "truth.gimbal.azimuth", Class::Quantity(Dimension::ANGLE), 1,
+            "True angle of the inner gimbal, without encoder error.";
+        ROLL = "truth.gimbal.roll", Class::Quantity(Dimension::ANGLE), 1,
+            "True angle of the outer gimbal, without encoder error.";
+    }
 }
 
 /// Channels of the motion of the case: of a ship, or of a turntable's base.
 pub mod case {
-    use super::{Channel, Dimension, quantity};
+    use super::{Channel, Class, Dimension};
 
-    /// Heading.
-    pub static HEADING: Channel =
-        quantity("case.heading", Dimension::ANGLE, 1, "Heading of the case, from north over east.");
-    /// Pitch.
-    pub static PITCH: Channel =
-        quantity("case.pitch", Dimension::ANGLE, 1, "Pitch of the case, bow up positive.");
-    /// Roll.
-    pub static ROLL: Channel =
-        quantity("case.roll", Dimension::ANGLE, 1, "Roll of the case, starboard down positive.");
-    /// Distance north of the site.
-    pub static NORTH: Channel =
-        quantity("case.north", Dimension::LENGTH, 1, "Distance of the case north of the site.");
-    /// Distance east of the site.
-    pub static EAST: Channel =
-        quantity("case.east", Dimension::LENGTH, 1, "Distance of the case east of the site.");
-    /// Distance below the site.
-    pub static DOWN: Channel =
-        quantity("case.down", Dimension::LENGTH, 1, "Distance of the case below the site.");
-    /// Latitude.
-    pub static LATITUDE: Channel = quantity(
-        "case.latitude",
-        Dimension::ANGLE,
-        1,
-        "Geodetic latitude of the case, instead of north.",
-    );
-    /// Longitude.
-    pub static LONGITUDE: Channel =
-        quantity("case.longitude", Dimension::ANGLE, 1, "Longitude of the case, instead of east.");
-    /// Height.
-    pub static HEIGHT: Channel = quantity(
-        "case.height",
-        Dimension::LENGTH,
-        1,
-        "Height of the case above the ellipsoid, instead of down.",
-    );
+    channels! {
+        HEADING = "case.heading", Class::Quantity(Dimension::ANGLE), 1,
+            "Heading of the case, from north over east.";
+        PITCH = "case.pitch", Class::Quantity(Dimension::ANGLE), 1,
+            "Pitch of the case, bow up positive.";
+        ROLL = "case.roll", Class::Quantity(Dimension::ANGLE), 1,
+            "Roll of the case, starboard down positive.";
+        NORTH = "case.north", Class::Quantity(Dimension::LENGTH), 1,
+            "Distance of the case north of the site.";
+        EAST = "case.east", Class::Quantity(Dimension::LENGTH), 1,
+            "Distance of the case east of the site.";
+        DOWN = "case.down", Class::Quantity(Dimension::LENGTH), 1,
+            "Distance of the case below the site.";
+        LATITUDE = "case.latitude", Class::Quantity(Dimension::ANGLE), 1,
+            "Geodetic latitude of the case, instead of north.";
+        LONGITUDE = "case.longitude", Class::Quantity(Dimension::ANGLE), 1,
+            "Longitude of the case, instead of east.";
+        HEIGHT = "case.height", Class::Quantity(Dimension::LENGTH), 1,
+            "Height of the case above the ellipsoid, instead of down.";
+    }
 }
 
 /// Channels of a core's outputs, beside its gimbal command.
 pub mod answer {
-    use super::{Channel, Class, Dimension, of, quantity};
+    use super::{Channel, Class, Dimension};
     use octant_sample::parameters::Group;
 
-    /// Mode.
-    pub static MODE: Channel = of(
-        "mode",
-        Class::Code,
-        1,
-        "Mode of the core: 0 aligning, 1 calibrating, 2 refused, 3 navigating, 4 done, or as the codes of modes say.",
-    );
-    /// Number of the stop.
-    pub static STOP: Channel =
-        of("stop", Class::Whole, 1, "Stop that the gimbals are at or move to, from 0.");
-    /// True while the gimbals move.
-    pub static MOVING: Channel =
-        of("moving", Class::Flag, 1, "Whether the gimbals are on their way.");
-    /// Latitude.
-    pub static LATITUDE: Channel = quantity(
-        "navigation.latitude",
-        Dimension::ANGLE,
-        1,
-        "Geodetic latitude of the navigation solution.",
-    );
-    /// Longitude.
-    pub static LONGITUDE: Channel = quantity(
-        "navigation.longitude",
-        Dimension::ANGLE,
-        1,
-        "Longitude of the navigation solution.",
-    );
-    /// Height.
-    pub static HEIGHT: Channel = quantity(
-        "navigation.height",
-        Dimension::LENGTH,
-        1,
-        "Height of the navigation solution above the ellipsoid.",
-    );
-    /// Velocity.
-    pub static VELOCITY: Channel = quantity(
-        "navigation.velocity",
-        Dimension::VELOCITY,
-        3,
-        "Velocity over ground of the navigation solution: north, east, down.",
-    );
-    /// Attitude.
-    pub static ATTITUDE: Channel = of(
-        "navigation.attitude",
-        Class::Number,
-        4,
-        "Attitude of the navigation solution as a quaternion w x y z that takes a vector in body into north, east, down.",
-    );
-    /// NIS.
-    pub static NIS: Channel = of(
-        "filter.nis",
-        Class::Number,
-        1,
-        "Normalized innovation squared of the measurement (three axes).",
-    );
-    /// True if there is a measurement.
-    pub static MEASURED: Channel =
-        of("filter.measured", Class::Flag, 1, "Whether there is a measurement with this sample.");
-    /// Health.
-    pub static HEALTH: Channel =
-        of("health", Class::Whole, 1, "Health flags in bits, as docs/recording.md numbers them.");
-    /// Sequence number of the answer.
-    pub static SEQUENCE: Channel =
-        of("answer.sequence", Class::Whole, 1, "Number of the sample that is answered.");
-    /// Stamp of the answer.
-    pub static DEVICE_TIME: Channel = of(
-        "answer.device_time_ns",
-        Class::Nanoseconds,
-        1,
-        "Stamp of the sample that is answered, ns.",
-    );
-    /// Revision of the parameters.
-    pub static REVISION: Channel = of(
-        "parameters.revision",
-        Class::Whole,
-        1,
-        "Number of times that the estimated parameters have changed; left out, they are looked at with every sample.",
-    );
+    channels! {
+        MODE = "mode", Class::Code, 1,
+            "Mode of the core: 0 aligning, 1 calibrating, 2 refused, 3 navigating, 4 done, or as the codes of modes say.";
+        STOP = "stop", Class::Whole, 1,
+            "Stop that the gimbals are at or move to, from 0.";
+        MOVING = "moving", Class::Flag, 1,
+            "Whether the gimbals are on their way.";
+        LATITUDE = "navigation.latitude", Class::Quantity(Dimension::ANGLE), 1,
+            "Geodetic latitude of the navigation solution.";
+        LONGITUDE = "navigation.longitude", Class::Quantity(Dimension::ANGLE), 1,
+            "Longitude of the navigation solution.";
+        HEIGHT = "navigation.height", Class::Quantity(Dimension::LENGTH), 1,
+            "Height of the navigation solution above the ellipsoid.";
+        VELOCITY = "navigation.velocity", Class::Quantity(Dimension::VELOCITY), 3,
+            "Velocity over ground of the navigation solution: north, east, down.";
+        ATTITUDE = "navigation.attitude", Class::Number, 4,
+            "Attitude of the navigation solution as a quaternion w x y z that takes a vector in body into north, east, down.";
+        NIS = "filter.nis", Class::Number, 1,
+            "Normalized innovation squared of the measurement (three axes).";
+        MEASURED = "filter.measured", Class::Flag, 1,
+            "Whether there is a measurement with this sample.";
+        HEALTH = "health", Class::Whole, 1,
+            "Health flags in bits, as docs/recording.md numbers them.";
+        SEQUENCE = "answer.sequence", Class::Whole, 1,
+            "Number of the sample that is answered.";
+        DEVICE_TIME = "answer.device_time_ns", Class::Nanoseconds, 1,
+            "Stamp of the sample that is answered, ns.";
+        REVISION = "parameters.revision", Class::Whole, 1,
+            "Number of times that the estimated parameters have changed; left out, they are looked at with every sample.";
+    }
 
-    /// Estimates, in the order of [`Group::ALL`].
-    pub static PARAMETERS: [Channel; 7] = [
-        quantity("parameters.gyro_bias", Dimension::GYRO_BIAS, 3, "Estimated gyro biases."),
-        of("parameters.gyro_scale", Class::Number, 3, "Estimated gyro scale factor errors."),
-        quantity(
-            "parameters.gyro_misalignment",
-            Dimension::SMALL_ANGLE,
-            6,
-            "Estimated gyro misalignments: xy, xz, yx, yz, zx, zy.",
-        ),
-        quantity(
-            "parameters.g_dependent",
-            Dimension::G_DEPENDENT,
-            9,
-            "Estimated g-dependent gyro biases by rows.",
-        ),
-        quantity(
-            "parameters.accel_bias",
-            Dimension::ACCEL_BIAS,
-            3,
-            "Estimated accelerometer biases.",
-        ),
-        of(
-            "parameters.accel_scale",
-            Class::Number,
-            3,
-            "Estimated accelerometer scale factor errors.",
-        ),
-        quantity(
-            "parameters.accel_misalignment",
-            Dimension::SMALL_ANGLE,
-            3,
-            "Estimated accelerometer misalignments: yx, zx, zy.",
-        ),
-    ];
+    /// Declares the channels of the groups of parameters: name, class, elements, meaning, order of the elements.
+    macro_rules! groups {
+        ($($name:literal, $class:expr, $elements:literal, $doc:literal, $order:literal;)+) => {
+            /// Estimates, in the order of [`Group::ALL`].
+            pub static PARAMETERS: [Channel; 7] = [$(Channel {
+                name: concat!("parameters.", $name),
+                class: $class,
+                elements: $elements,
+                doc: concat!("Estimated ", $doc, $order, "."),
+            }),+];
 
-    /// Standard deviations of the estimates, in the order of [`Group::ALL`].
-    pub static SIGMA: [Channel; 7] = [
-        quantity("sigma.gyro_bias", Dimension::GYRO_BIAS, 3, "1σ of the gyro biases."),
-        of("sigma.gyro_scale", Class::Number, 3, "1σ of the gyro scale factor errors."),
-        quantity(
-            "sigma.gyro_misalignment",
-            Dimension::SMALL_ANGLE,
-            6,
-            "1σ of the gyro misalignments.",
-        ),
-        quantity(
-            "sigma.g_dependent",
-            Dimension::G_DEPENDENT,
-            9,
-            "1σ of the g-dependent gyro biases.",
-        ),
-        quantity("sigma.accel_bias", Dimension::ACCEL_BIAS, 3, "1σ of the accelerometer biases."),
-        of("sigma.accel_scale", Class::Number, 3, "1σ of the accelerometer scale factor errors."),
-        quantity(
-            "sigma.accel_misalignment",
-            Dimension::SMALL_ANGLE,
-            3,
-            "1σ of the accelerometer misalignments.",
-        ),
-    ];
+            /// Standard deviations of the estimates, in the order of [`Group::ALL`].
+            pub static SIGMA: [Channel; 7] = [$(Channel {
+                name: concat!("sigma.", $name),
+                class: $class,
+                elements: $elements,
+                doc: concat!("1σ of the ", $doc, "."),
+            }),+];
+        };
+    }
+
+    groups! {
+        "gyro_bias", Class::Quantity(Dimension::GYRO_BIAS), 3, "gyro biases", "";
+        "gyro_scale", Class::Number, 3, "gyro scale factor errors", "";
+        "gyro_misalignment", Class::Quantity(Dimension::SMALL_ANGLE), 6, "gyro misalignments",
+            ": xy, xz, yx, yz, zx, zy";
+        "g_dependent", Class::Quantity(Dimension::G_DEPENDENT), 9, "g-dependent gyro biases", " by rows";
+        "accel_bias", Class::Quantity(Dimension::ACCEL_BIAS), 3, "accelerometer biases", "";
+        "accel_scale", Class::Number, 3, "accelerometer scale factor errors", "";
+        "accel_misalignment", Class::Quantity(Dimension::SMALL_ANGLE), 3, "accelerometer misalignments",
+            ": yx, zx, zy";
+    }
 
     /// Estimates of a group, with their standard deviations.
     #[must_use]

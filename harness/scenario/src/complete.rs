@@ -3,7 +3,7 @@
 //! Every problem of a single value is found here, so that all are reported at once; problems of several
 //! values together are found when the scenario is read.
 
-pub use super::document::join;
+use super::document::join;
 
 use super::condition;
 use super::document::{Node, Table, Value, number, parse_default};
@@ -15,7 +15,7 @@ use octant_base::names::suggestion;
 use octant_faults::Channels;
 
 /// Checks a table and adds its defaults; problems are added to `problems`.
-pub fn complete(
+pub(crate) fn complete(
     table: &mut Table,
     section: &'static Section,
     path: &str,
@@ -62,7 +62,7 @@ pub fn complete(
 }
 
 /// Checks one value against the kind of its key.
-pub fn check(
+pub(crate) fn check(
     node: &mut Node,
     key: &'static Key,
     kind: &'static Kind,
@@ -367,7 +367,7 @@ fn takes(kind: &Kind, value: &Value) -> bool {
 }
 
 /// Description of the values of a kind.
-pub fn expected(kind: &Kind) -> String {
+pub(crate) fn expected(kind: &Kind) -> String {
     let names = |choices: &[(&str, &str)]| {
         choices.iter().map(|(name, _)| format!("{name:?}")).collect::<Vec<_>>().join(", ")
     };

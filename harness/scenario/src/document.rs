@@ -13,6 +13,18 @@ pub struct Node {
     pub place: Place,
 }
 
+impl Node {
+    /// Texts of an array.
+    pub(crate) fn texts(&self) -> Vec<String> {
+        let Value::Array(entries) = &self.value else { return Vec::new() };
+        let text = |entry: &Node| match &entry.value {
+            Value::Text(text) => Some(text.clone()),
+            _ => None,
+        };
+        entries.iter().filter_map(text).collect()
+    }
+}
+
 /// A value of one of the kinds of TOML.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Value {
@@ -128,7 +140,7 @@ impl Table {
 }
 
 /// Parses TOML text.
-pub fn parse(text: &str) -> Result<Table, Vec<Problem>> {
+pub(crate) fn parse(text: &str) -> Result<Table, Vec<Problem>> {
     let lines = Lines::new(text);
     match DeTable::parse(text) {
         Ok(table) => {
@@ -191,7 +203,7 @@ fn control(text: &str, is_name: bool) -> Option<char> {
 }
 
 /// First problem of a control character in the value of an argument.
-pub fn controls_of_argument(path: &str, node: &Node) -> Option<Problem> {
+pub(crate) fn controls_of_argument(path: &str, node: &Node) -> Option<Problem> {
     let mut found = Vec::new();
     let name = path.rsplit('.').next().unwrap_or(path);
     controls_of(node, &path.escape_debug().to_string(), NAMES.contains(&name), &mut found);
@@ -199,7 +211,7 @@ pub fn controls_of_argument(path: &str, node: &Node) -> Option<Problem> {
 }
 
 /// Parses the value of a `--set KEY=VALUE`: TOML, or a text without quotes.
-pub fn parse_argument(value: &str, argument: &str) -> Node {
+pub(crate) fn parse_argument(value: &str, argument: &str) -> Node {
     let place = Place::Argument(argument.to_owned());
     let value = value.trim();
     let node = match parse_value(value) {
@@ -210,7 +222,7 @@ pub fn parse_argument(value: &str, argument: &str) -> Node {
 }
 
 /// Parses a default of the key table.
-pub fn parse_default(value: &str) -> Node {
+pub(crate) fn parse_default(value: &str) -> Node {
     let text = Value::Text(value.to_owned());
     let node = parse_value(value).unwrap_or(Node { value: text, place: Place::Default });
     replace_places(node, &Place::Default)
@@ -308,7 +320,7 @@ impl<'a> Lines<'a> {
 }
 
 /// Writes a value on one line.
-pub fn write_value(value: &Value, out: &mut String) {
+pub(crate) fn write_value(value: &Value, out: &mut String) {
     match value {
         Value::Text(text) => write_quoted(text, out),
         Value::Integer(number) => _ = write!(out, "{number}"),
@@ -357,7 +369,7 @@ fn write_key(key: &str, out: &mut String) {
 }
 
 /// Converts a value to JSON.
-pub fn json(value: &Value) -> serde_json::Value {
+pub(crate) fn json(value: &Value) -> serde_json::Value {
     match value {
         Value::Text(text) | Value::Date(text) => serde_json::Value::from(text.as_str()),
         Value::Integer(number) => serde_json::Value::from(*number),
@@ -371,7 +383,7 @@ pub fn json(value: &Value) -> serde_json::Value {
 }
 
 /// Value of a plain number, whole or not.
-pub fn number(value: &Value) -> Option<f64> {
+pub(crate) fn number(value: &Value) -> Option<f64> {
     match value {
         Value::Integer(number) => Some(*number as f64),
         Value::Number(number) => Some(*number),
@@ -380,6 +392,6 @@ pub fn number(value: &Value) -> Option<f64> {
 }
 
 /// Dotted path of a key.
-pub fn join(path: &str, key: &str) -> String {
+pub(crate) fn join(path: &str, key: &str) -> String {
     if path.is_empty() { key.to_owned() } else { format!("{path}.{key}") }
 }

@@ -6,14 +6,15 @@
 //! instrument.
 
 mod arguments;
+pub mod campaign;
 pub mod channel;
 mod choices;
-pub mod complete;
+mod complete;
 mod condition;
 mod derive;
-pub mod document;
+mod document;
 pub mod error;
-pub mod keys;
+mod keys;
 mod load;
 mod model;
 mod ports;

@@ -22,152 +22,72 @@ pub struct Dimension {
     si_unit: &'static str,
 }
 
-const fn dimension(
-    [m, s, rad, k, samples]: Powers,
-    name: &'static str,
-    example: &'static str,
-    unit: &'static str,
-    si_unit: &'static str,
-) -> Dimension {
-    Dimension { powers: [m, s, rad, k, samples], name, example, unit, si_unit }
+/// Declares the dimensions: powers of m, s, rad, K and samples in halves, name, example, unit, SI unit.
+macro_rules! dimensions {
+    ($($(#[$doc:meta])* $item:ident
+        = $powers:expr, $name:literal, $example:literal, $unit:literal, $si_unit:literal;)+) => {
+        impl Dimension {
+            $( $(#[$doc])* pub const $item: Self = Self {
+                powers: $powers, name: $name, example: $example, unit: $unit, si_unit: $si_unit,
+            }; )+
+
+            const ALL: &[Self] = &[$(Self::$item),+];
+        }
+    };
+}
+
+dimensions! {
+    /// Duration or period.
+    TIME = [0, 2, 0, 0, 0], "a time", "12 h", "s", "s";
+    /// Number of samples, distinguished from a ratio: `"20 samples"`.
+    SAMPLES = [0, 0, 0, 0, 2], "a number of samples", "20 samples", "samples", "samples";
+    /// Frequency or rate of samples.
+    FREQUENCY = [0, -2, 0, 0, 0], "a frequency", "200 Hz", "Hz", "Hz";
+    /// Angle.
+    ANGLE = [0, 0, 2, 0, 0], "an angle", "30.5 deg", "deg", "rad";
+    /// Small angle, written in arcsec.
+    SMALL_ANGLE = [0, 0, 2, 0, 0], "an angle", "40 arcsec", "arcsec", "rad";
+    /// Angular rate of a motion.
+    ANGULAR_RATE = [0, -2, 2, 0, 0], "an angular rate", "10 deg/s", "deg/s", "rad/s";
+    /// Angular rate of a gyro error.
+    GYRO_BIAS = [0, -2, 2, 0, 0], "an angular rate", "0.005 deg/h", "deg/h", "rad/s";
+    /// Angular acceleration.
+    ANGULAR_ACCELERATION = [0, -4, 2, 0, 0], "an angular acceleration", "10 deg/s^2", "deg/s^2", "rad/s^2";
+    /// Angle random walk.
+    ANGLE_RANDOM_WALK = [0, -1, 2, 0, 0], "an angle random walk", "0.0007 deg/sqrt(h)", "deg/sqrt(h)", "rad/sqrt(s)";
+    /// Rate random walk.
+    RATE_RANDOM_WALK = [0, -3, 2, 0, 0], "a rate random walk", "0.0001 deg/h/sqrt(h)", "deg/h/sqrt(h)", "rad/s/sqrt(s)";
+    /// Gyro bias per acceleration.
+    G_DEPENDENT = [-2, 2, 2, 0, 0], "a g-dependent gyro bias", "0.0005 deg/h/g", "deg/h/g", "rad/s/(m/s^2)";
+    /// Length.
+    LENGTH = [2, 0, 0, 0, 0], "a length", "0.15 m", "m", "m";
+    /// Velocity.
+    VELOCITY = [2, -2, 0, 0, 0], "a velocity", "1 mm/s", "m/s", "m/s";
+    /// Acceleration.
+    ACCELERATION = [2, -4, 0, 0, 0], "an acceleration", "9.81 m/s^2", "m/s^2", "m/s^2";
+    /// Acceleration of an accelerometer error.
+    ACCEL_BIAS = [2, -4, 0, 0, 0], "an acceleration", "100 ug", "ug", "m/s^2";
+    /// Accelerometer noise density.
+    VELOCITY_RANDOM_WALK = [2, -3, 0, 0, 0], "an accelerometer noise density", "50 ug/sqrt(Hz)", "ug/sqrt(Hz)", "m/s^2/sqrt(Hz)";
+    /// Ratio.
+    RATIO = [0, 0, 0, 0, 0], "a ratio", "30 ppm", "ppm", "m/m";
+    /// Temperature difference.
+    TEMPERATURE = [0, 0, 0, 2, 0], "a temperature difference", "20 K", "K", "K";
+    /// Temperature rate.
+    TEMPERATURE_RATE = [0, -2, 0, 2, 0], "a temperature rate", "5 K/h", "K/h", "K/s";
+    /// Gyro bias per kelvin.
+    GYRO_BIAS_PER_K = [0, -2, 2, -2, 0], "a gyro bias sensitivity", "0.0002 deg/h/K", "deg/h/K", "rad/s/K";
+    /// Accelerometer bias per kelvin.
+    ACCEL_BIAS_PER_K = [2, -4, 0, -2, 0], "an accelerometer bias sensitivity", "2 ug/K", "ug/K", "m/s^2/K";
+    /// Scale factor per kelvin.
+    SCALE_PER_K = [0, 0, 0, -2, 0], "a scale factor sensitivity", "0.5 ppm/K", "ppm/K", "1/K";
+    /// Random walk of an accelerometer bias.
+    ACCEL_RANDOM_WALK = [2, -5, 0, 0, 0], "a random walk of acceleration", "1 ug/sqrt(h)", "ug/sqrt(h)", "m/s^2/sqrt(s)";
+    /// Power spectral density of a vibration.
+    ACCELERATION_PSD = [4, -6, 0, 0, 0], "a spectral density of acceleration", "0.01 g^2/Hz", "g^2/Hz", "(m/s^2)^2/Hz";
 }
 
 impl Dimension {
-    /// Duration or period.
-    pub const TIME: Self = dimension([0, 2, 0, 0, 0], "a time", "12 h", "s", "s");
-    /// Number of samples, distinguished from a ratio: `"20 samples"`.
-    pub const SAMPLES: Self =
-        dimension([0, 0, 0, 0, 2], "a number of samples", "20 samples", "samples", "samples");
-    /// Frequency or rate of samples.
-    pub const FREQUENCY: Self = dimension([0, -2, 0, 0, 0], "a frequency", "200 Hz", "Hz", "Hz");
-    /// Angle.
-    pub const ANGLE: Self = dimension([0, 0, 2, 0, 0], "an angle", "30.5 deg", "deg", "rad");
-    /// Small angle, written in arcsec.
-    pub const SMALL_ANGLE: Self =
-        dimension([0, 0, 2, 0, 0], "an angle", "40 arcsec", "arcsec", "rad");
-    /// Angular rate of a motion.
-    pub const ANGULAR_RATE: Self =
-        dimension([0, -2, 2, 0, 0], "an angular rate", "10 deg/s", "deg/s", "rad/s");
-    /// Angular rate of a gyro error.
-    pub const GYRO_BIAS: Self =
-        dimension([0, -2, 2, 0, 0], "an angular rate", "0.005 deg/h", "deg/h", "rad/s");
-    /// Angular acceleration.
-    pub const ANGULAR_ACCELERATION: Self =
-        dimension([0, -4, 2, 0, 0], "an angular acceleration", "10 deg/s^2", "deg/s^2", "rad/s^2");
-    /// Angle random walk.
-    pub const ANGLE_RANDOM_WALK: Self = dimension(
-        [0, -1, 2, 0, 0],
-        "an angle random walk",
-        "0.0007 deg/sqrt(h)",
-        "deg/sqrt(h)",
-        "rad/sqrt(s)",
-    );
-    /// Rate random walk.
-    pub const RATE_RANDOM_WALK: Self = dimension(
-        [0, -3, 2, 0, 0],
-        "a rate random walk",
-        "0.0001 deg/h/sqrt(h)",
-        "deg/h/sqrt(h)",
-        "rad/s/sqrt(s)",
-    );
-    /// Gyro bias per acceleration.
-    pub const G_DEPENDENT: Self = dimension(
-        [-2, 2, 2, 0, 0],
-        "a g-dependent gyro bias",
-        "0.0005 deg/h/g",
-        "deg/h/g",
-        "rad/s/(m/s^2)",
-    );
-    /// Length.
-    pub const LENGTH: Self = dimension([2, 0, 0, 0, 0], "a length", "0.15 m", "m", "m");
-    /// Velocity.
-    pub const VELOCITY: Self = dimension([2, -2, 0, 0, 0], "a velocity", "1 mm/s", "m/s", "m/s");
-    /// Acceleration.
-    pub const ACCELERATION: Self =
-        dimension([2, -4, 0, 0, 0], "an acceleration", "9.81 m/s^2", "m/s^2", "m/s^2");
-    /// Acceleration of an accelerometer error.
-    pub const ACCEL_BIAS: Self =
-        dimension([2, -4, 0, 0, 0], "an acceleration", "100 ug", "ug", "m/s^2");
-    /// Accelerometer noise density.
-    pub const VELOCITY_RANDOM_WALK: Self = dimension(
-        [2, -3, 0, 0, 0],
-        "an accelerometer noise density",
-        "50 ug/sqrt(Hz)",
-        "ug/sqrt(Hz)",
-        "m/s^2/sqrt(Hz)",
-    );
-    /// Ratio.
-    pub const RATIO: Self = dimension([0, 0, 0, 0, 0], "a ratio", "30 ppm", "ppm", "m/m");
-    /// Temperature difference.
-    pub const TEMPERATURE: Self =
-        dimension([0, 0, 0, 2, 0], "a temperature difference", "20 K", "K", "K");
-    /// Temperature rate.
-    pub const TEMPERATURE_RATE: Self =
-        dimension([0, -2, 0, 2, 0], "a temperature rate", "5 K/h", "K/h", "K/s");
-    /// Gyro bias per kelvin.
-    pub const GYRO_BIAS_PER_K: Self = dimension(
-        [0, -2, 2, -2, 0],
-        "a gyro bias sensitivity",
-        "0.0002 deg/h/K",
-        "deg/h/K",
-        "rad/s/K",
-    );
-    /// Accelerometer bias per kelvin.
-    pub const ACCEL_BIAS_PER_K: Self = dimension(
-        [2, -4, 0, -2, 0],
-        "an accelerometer bias sensitivity",
-        "2 ug/K",
-        "ug/K",
-        "m/s^2/K",
-    );
-    /// Scale factor per kelvin.
-    pub const SCALE_PER_K: Self =
-        dimension([0, 0, 0, -2, 0], "a scale factor sensitivity", "0.5 ppm/K", "ppm/K", "1/K");
-
-    /// Random walk of an accelerometer bias.
-    pub const ACCEL_RANDOM_WALK: Self = dimension(
-        [2, -5, 0, 0, 0],
-        "a random walk of acceleration",
-        "1 ug/sqrt(h)",
-        "ug/sqrt(h)",
-        "m/s^2/sqrt(s)",
-    );
-    /// Power spectral density of a vibration.
-    pub const ACCELERATION_PSD: Self = dimension(
-        [4, -6, 0, 0, 0],
-        "a spectral density of acceleration",
-        "0.01 g^2/Hz",
-        "g^2/Hz",
-        "(m/s^2)^2/Hz",
-    );
-
-    const ALL: [Self; 24] = [
-        Self::TIME,
-        Self::SAMPLES,
-        Self::FREQUENCY,
-        Self::ANGLE,
-        Self::SMALL_ANGLE,
-        Self::ANGULAR_RATE,
-        Self::GYRO_BIAS,
-        Self::ANGULAR_ACCELERATION,
-        Self::ANGLE_RANDOM_WALK,
-        Self::RATE_RANDOM_WALK,
-        Self::G_DEPENDENT,
-        Self::LENGTH,
-        Self::VELOCITY,
-        Self::ACCELERATION,
-        Self::ACCEL_BIAS,
-        Self::VELOCITY_RANDOM_WALK,
-        Self::RATIO,
-        Self::TEMPERATURE,
-        Self::TEMPERATURE_RATE,
-        Self::GYRO_BIAS_PER_K,
-        Self::ACCEL_BIAS_PER_K,
-        Self::SCALE_PER_K,
-        Self::ACCEL_RANDOM_WALK,
-        Self::ACCELERATION_PSD,
-    ];
-
     /// Exponents of kg, m, s, A, K, mol, cd, rad in the unit of FMUs; `None` if they are not whole, or
     /// if it counts samples.
     #[must_use]
@@ -183,12 +103,15 @@ impl Dimension {
 
     /// Dimension of scenarios with these exponents, if there is one.
     pub fn with_exponents(exponents: &[i8; 8]) -> Option<Self> {
-        Self::ALL.into_iter().find(|dimension| dimension.exponents().as_ref() == Some(exponents))
+        Self::ALL
+            .iter()
+            .copied()
+            .find(|dimension| dimension.exponents().as_ref() == Some(exponents))
     }
 
     /// Dimension of a parsed quantity, if it is one of scenarios.
     pub fn of(quantity: Quantity) -> Option<Self> {
-        Self::ALL.into_iter().find(|d| d.powers == quantity.powers)
+        Self::ALL.iter().copied().find(|d| d.powers == quantity.powers)
     }
 
     /// Writes an SI value as a quantity that parses back to the same bits: in the user's unit with as

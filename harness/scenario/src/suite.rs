@@ -13,11 +13,8 @@
 //! because = "refused"
 //! ```
 
-use super::complete::complete;
-use super::document;
-use super::error::{Place, Problem, ScenarioError};
+use super::error::{Problem, ScenarioError};
 use super::keys::{CaseKeys, Keys, SuiteKeys};
-use super::read::Reader;
 use octant_requirements::Verdict;
 use std::path::{Path, PathBuf};
 
@@ -55,16 +52,7 @@ impl Suite {
     /// # Errors
     /// If it isn't TOML or not a suite: every problem with its place.
     pub fn parse(text: &str, file: &str, folder: &Path) -> Result<Self, ScenarioError> {
-        let with_file = |problems| ScenarioError { file: file.to_owned(), problems };
-        let mut document = document::parse(text).map_err(with_file)?;
-        let mut problems = Vec::new();
-        let start = Place::File { line: 1, column: 1 };
-        complete(&mut document, SuiteKeys::SECTION, "", &start, &mut problems);
-        if !problems.is_empty() {
-            return Err(with_file(problems));
-        }
-        let keys = SuiteKeys::of(&Reader::root(&document));
-        keys.and_then(|keys| cases(keys, folder)).map_err(|problem| with_file(vec![problem]))
+        SuiteKeys::parse(text, file, |_, _| (), |keys| cases(keys, folder))
     }
 }
 

@@ -14,168 +14,66 @@ use octant_earth::{frames, rotation};
 /// A stop: azimuth and roll in degrees, cumulative, and dwell relative to weight 1.
 pub type Degrees = (f64, f64, f64);
 
+/// Stops of weight 1: an azimuth, and the rolls that are visited there, in order.
+macro_rules! stops {
+    ($($azimuth:literal: $($roll:literal),+;)+) => { &[$($(($azimuth, $roll, 1.0)),+),+] };
+}
+
 /// The conventional six positions, visited forth and back in both planes: 17 stops.
-pub const SIX: &[Degrees] = &[
-    (0.0, 0.0, 1.0),
-    (0.0, 90.0, 1.0),
-    (0.0, 180.0, 1.0),
-    (0.0, 270.0, 1.0),
-    (0.0, 180.0, 1.0),
-    (0.0, 90.0, 1.0),
-    (90.0, 90.0, 1.0),
-    (180.0, 90.0, 1.0),
-    (270.0, 90.0, 1.0),
-    (180.0, 90.0, 1.0),
-    (90.0, 90.0, 1.0),
-    (90.0, 180.0, 1.0),
-    (90.0, 270.0, 1.0),
-    (90.0, 180.0, 1.0),
-    (90.0, 90.0, 1.0),
-    (90.0, 0.0, 1.0),
-    (0.0, 0.0, 1.0),
-];
+pub const SIX: &[Degrees] = stops! {
+    0.0: 0.0, 90.0, 180.0, 270.0, 180.0, 90.0; 90.0: 90.0; 180.0: 90.0; 270.0: 90.0;
+    180.0: 90.0; 90.0: 90.0, 180.0, 270.0, 180.0, 90.0, 0.0; 0.0: 0.0;
+};
+
+/// The six with two tilts on the way, as second and as seventeenth stop, held twice as long.
+const fn with_tilts(first: (f64, f64), second: (f64, f64)) -> [Degrees; SIX.len() + 2] {
+    let mut all = [(0.0, 0.0, 1.0); SIX.len() + 2];
+    let mut index = 0;
+    while index < SIX.len() {
+        let tilts = (index >= 1) as usize + (index >= 15) as usize;
+        all[index + tilts] = SIX[index];
+        index += 1;
+    }
+    all[1] = (first.0, first.1, 2.0);
+    all[16] = (second.0, second.1, 2.0);
+    all
+}
 
 /// Eight positions: the six with the tilts (0, 45) and (90, 45) on the way, held twice as long.
-pub const EIGHT: &[Degrees] = &[
-    (0.0, 0.0, 1.0),
-    (0.0, 45.0, 2.0),
-    (0.0, 90.0, 1.0),
-    (0.0, 180.0, 1.0),
-    (0.0, 270.0, 1.0),
-    (0.0, 180.0, 1.0),
-    (0.0, 90.0, 1.0),
-    (90.0, 90.0, 1.0),
-    (180.0, 90.0, 1.0),
-    (270.0, 90.0, 1.0),
-    (180.0, 90.0, 1.0),
-    (90.0, 90.0, 1.0),
-    (90.0, 180.0, 1.0),
-    (90.0, 270.0, 1.0),
-    (90.0, 180.0, 1.0),
-    (90.0, 90.0, 1.0),
-    (90.0, 45.0, 2.0),
-    (90.0, 0.0, 1.0),
-    (0.0, 0.0, 1.0),
-];
+pub const EIGHT: &[Degrees] = &with_tilts((0.0, 45.0), (90.0, 45.0));
 
 /// The eight positions with the tilts (45, 45) and (45, −45) at the same two places of the path:
 /// from a level stop they turn both gimbals. They determine Gzz better than (0, 45) with (90, 45).
-pub const EIGHT_LEVEL: &[Degrees] = &[
-    (0.0, 0.0, 1.0),
-    (45.0, 45.0, 2.0),
-    (0.0, 90.0, 1.0),
-    (0.0, 180.0, 1.0),
-    (0.0, 270.0, 1.0),
-    (0.0, 180.0, 1.0),
-    (0.0, 90.0, 1.0),
-    (90.0, 90.0, 1.0),
-    (180.0, 90.0, 1.0),
-    (270.0, 90.0, 1.0),
-    (180.0, 90.0, 1.0),
-    (90.0, 90.0, 1.0),
-    (90.0, 180.0, 1.0),
-    (90.0, 270.0, 1.0),
-    (90.0, 180.0, 1.0),
-    (90.0, 90.0, 1.0),
-    (45.0, -45.0, 2.0),
-    (90.0, 0.0, 1.0),
-    (0.0, 0.0, 1.0),
-];
+pub const EIGHT_LEVEL: &[Degrees] = &with_tilts((45.0, 45.0), (45.0, -45.0));
 
 /// Negative control: the tilts (0, 45) and (0, −45) at the same two places. Both lie in one body
 /// plane, and the second adds nothing to the first.
-pub const EIGHT_SAME_PLANE: &[Degrees] = &[
-    (0.0, 0.0, 1.0),
-    (0.0, 45.0, 2.0),
-    (0.0, 90.0, 1.0),
-    (0.0, 180.0, 1.0),
-    (0.0, 270.0, 1.0),
-    (0.0, 180.0, 1.0),
-    (0.0, 90.0, 1.0),
-    (90.0, 90.0, 1.0),
-    (180.0, 90.0, 1.0),
-    (270.0, 90.0, 1.0),
-    (180.0, 90.0, 1.0),
-    (90.0, 90.0, 1.0),
-    (90.0, 180.0, 1.0),
-    (90.0, 270.0, 1.0),
-    (90.0, 180.0, 1.0),
-    (90.0, 90.0, 1.0),
-    (0.0, -45.0, 2.0),
-    (90.0, 0.0, 1.0),
-    (0.0, 0.0, 1.0),
-];
+pub const EIGHT_SAME_PLANE: &[Degrees] = &with_tilts((0.0, 45.0), (0.0, -45.0));
 
 /// Twelve different orientations for two gimbals, one gimbal a move: each axis up and down with two
 /// headings. The angles are Octant's; the published twelve turn about axes that two gimbals don't
 /// have, see [`FREE_TABLE`].
-pub const TWELVE: &[Degrees] = &[
-    (0.0, 0.0, 1.0),
-    (180.0, 0.0, 1.0),
-    (180.0, 90.0, 1.0),
-    (270.0, 90.0, 1.0),
-    (360.0, 90.0, 1.0),
-    (450.0, 90.0, 1.0),
-    (450.0, 180.0, 1.0),
-    (270.0, 180.0, 1.0),
-    (270.0, 270.0, 1.0),
-    (360.0, 270.0, 1.0),
-    (450.0, 270.0, 1.0),
-    (540.0, 270.0, 1.0),
-];
+pub const TWELVE: &[Degrees] = stops! {
+    0.0: 0.0; 180.0: 0.0, 90.0; 270.0: 90.0; 360.0: 90.0; 450.0: 90.0, 180.0;
+    270.0: 180.0, 270.0; 360.0: 270.0; 450.0: 270.0; 540.0: 270.0;
+};
 
 /// Nineteen positions (Xie Bo, 2011) with two gimbals: y+90 ×3, y−90 ×3, z+90, x+90 ×3, x−90 ×3,
 /// z+90 ×2, z−90 ×3. At azimuth −90° body y lies along the roll axis, at 0° body x does.
-pub const NINETEEN: &[Degrees] = &[
-    (-90.0, 0.0, 1.0),
-    (-90.0, 90.0, 1.0),
-    (-90.0, 180.0, 1.0),
-    (-90.0, 270.0, 1.0),
-    (-90.0, 180.0, 1.0),
-    (-90.0, 90.0, 1.0),
-    (-90.0, 0.0, 1.0),
-    (0.0, 0.0, 1.0),
-    (0.0, 90.0, 1.0),
-    (0.0, 180.0, 1.0),
-    (0.0, 270.0, 1.0),
-    (0.0, 180.0, 1.0),
-    (0.0, 90.0, 1.0),
-    (0.0, 0.0, 1.0),
-    (90.0, 0.0, 1.0),
-    (180.0, 0.0, 1.0),
-    (90.0, 0.0, 1.0),
-    (0.0, 0.0, 1.0),
-    (-90.0, 0.0, 1.0),
-];
+pub const NINETEEN: &[Degrees] = stops! {
+    -90.0: 0.0, 90.0, 180.0, 270.0, 180.0, 90.0, 0.0;
+    0.0: 0.0, 90.0, 180.0, 270.0, 180.0, 90.0, 0.0; 90.0: 0.0; 180.0: 0.0; 90.0: 0.0; 0.0: 0.0;
+    -90.0: 0.0;
+};
 
 /// Twenty-four positions for two gimbals, one gimbal a move: four azimuths at each of six rolls 60°
 /// apart. The angles are Octant's.
-pub const TWENTY_FOUR: &[Degrees] = &[
-    (0.0, 0.0, 1.0),
-    (90.0, 0.0, 1.0),
-    (180.0, 0.0, 1.0),
-    (270.0, 0.0, 1.0),
-    (270.0, 60.0, 1.0),
-    (180.0, 60.0, 1.0),
-    (90.0, 60.0, 1.0),
-    (0.0, 60.0, 1.0),
-    (0.0, 120.0, 1.0),
-    (90.0, 120.0, 1.0),
-    (180.0, 120.0, 1.0),
-    (270.0, 120.0, 1.0),
-    (270.0, 180.0, 1.0),
-    (180.0, 180.0, 1.0),
-    (90.0, 180.0, 1.0),
-    (0.0, 180.0, 1.0),
-    (0.0, 240.0, 1.0),
-    (90.0, 240.0, 1.0),
-    (180.0, 240.0, 1.0),
-    (270.0, 240.0, 1.0),
-    (270.0, 300.0, 1.0),
-    (180.0, 300.0, 1.0),
-    (90.0, 300.0, 1.0),
-    (0.0, 300.0, 1.0),
-];
+pub const TWENTY_FOUR: &[Degrees] = stops! {
+    0.0: 0.0; 90.0: 0.0; 180.0: 0.0; 270.0: 0.0, 60.0; 180.0: 60.0; 90.0: 60.0;
+    0.0: 60.0, 120.0; 90.0: 120.0; 180.0: 120.0; 270.0: 120.0, 180.0; 180.0: 180.0; 90.0: 180.0;
+    0.0: 180.0, 240.0; 90.0: 240.0; 180.0: 240.0; 270.0: 240.0, 300.0; 180.0: 300.0;
+    90.0: 300.0; 0.0: 300.0;
+};
 
 /// Named sequences of a calibration: name, stops, and a description in one line.
 pub const SEQUENCES: &[(&str, &[Degrees], &str)] = &[
@@ -212,24 +110,10 @@ pub fn named(name: &str) -> Option<&'static [Degrees]> {
 
 /// Navigation: sixteen moves of 180°, X+ Z+ X− Z− Z+ X+ Z− X− X− Z− X+ Z+ Z− X− Z+ X+ (X roll, Z
 /// azimuth). The sixteenth move leads back to the first stop.
-pub const SIXTEEN: &[Degrees] = &[
-    (0.0, 0.0, 1.0),
-    (0.0, 180.0, 1.0),
-    (180.0, 180.0, 1.0),
-    (180.0, 0.0, 1.0),
-    (0.0, 0.0, 1.0),
-    (180.0, 0.0, 1.0),
-    (180.0, 180.0, 1.0),
-    (0.0, 180.0, 1.0),
-    (0.0, 0.0, 1.0),
-    (0.0, -180.0, 1.0),
-    (-180.0, -180.0, 1.0),
-    (-180.0, 0.0, 1.0),
-    (0.0, 0.0, 1.0),
-    (-180.0, 0.0, 1.0),
-    (-180.0, -180.0, 1.0),
-    (0.0, -180.0, 1.0),
-];
+pub const SIXTEEN: &[Degrees] = stops! {
+    0.0: 0.0, 180.0; 180.0: 180.0, 0.0; 0.0: 0.0; 180.0: 0.0, 180.0; 0.0: 180.0, 0.0, -180.0;
+    -180.0: -180.0, 0.0; 0.0: 0.0; -180.0: 0.0, -180.0; 0.0: -180.0;
+};
 
 /// A body axis to turn about.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -244,53 +128,26 @@ pub enum Axis {
 
 use Axis::{X, Y, Z};
 
+/// Sequences of turns about body axes, each in degrees.
+macro_rules! turns {
+    ($($name:literal: $($axis:ident $degrees:literal),+;)+) => {
+        &[$(($name, &[$(($axis, $degrees)),+])),+]
+    };
+}
+
 /// Published sequences for a table that turns freely about the body axes: name, and turns in
 /// degrees. The first attitude is the one before the first turn.
 ///
 /// - `nineteen`: Xie Bo, 2011.
 /// - `twelve`: twelve turns, thirteen attitudes.
-pub const FREE_TABLE: &[(&str, &[(Axis, f64)])] = &[
-    (
-        "nineteen",
-        &[
-            (Y, 90.0),
-            (Y, 90.0),
-            (Y, 90.0),
-            (Y, -90.0),
-            (Y, -90.0),
-            (Y, -90.0),
-            (Z, 90.0),
-            (X, 90.0),
-            (X, 90.0),
-            (X, 90.0),
-            (X, -90.0),
-            (X, -90.0),
-            (X, -90.0),
-            (Z, 90.0),
-            (Z, 90.0),
-            (Z, -90.0),
-            (Z, -90.0),
-            (Z, -90.0),
-        ],
-    ),
-    (
-        "twelve",
-        &[
-            (X, 90.0),
-            (X, 90.0),
-            (Y, 90.0),
-            (Z, -90.0),
-            (Z, -90.0),
-            (Y, -90.0),
-            (X, -90.0),
-            (X, -90.0),
-            (Y, -90.0),
-            (Z, 90.0),
-            (Z, 90.0),
-            (Y, 90.0),
-        ],
-    ),
-];
+pub const FREE_TABLE: &[(&str, &[(Axis, f64)])] = turns! {
+    "nineteen":
+        Y 90.0, Y 90.0, Y 90.0, Y -90.0, Y -90.0, Y -90.0, Z 90.0, X 90.0, X 90.0, X 90.0,
+        X -90.0, X -90.0, X -90.0, Z 90.0, Z 90.0, Z -90.0, Z -90.0, Z -90.0;
+    "twelve":
+        X 90.0, X 90.0, Y 90.0, Z -90.0, Z -90.0, Y -90.0, X -90.0, X -90.0, Y -90.0, Z 90.0,
+        Z 90.0, Y 90.0;
+};
 
 fn about(axis: Axis, degrees: f64) -> Matrix3<f64> {
     let angle_rad = degrees.to_radians();

@@ -123,7 +123,7 @@ fn inputs(report: &mut Report<'_>, folder: &Path) -> Result<(), ReportError> {
     // Only if the campaign's plan is still the same.
     if crate::plan::Plan::of(&plan.campaign).is_ok_and(|now| now.id == plan.id) {
         files.push((plan.campaign.clone(), folder.join("campaign.toml")));
-        let campaign = crate::file::Campaign::load(&plan.campaign).ok();
+        let campaign = octant_scenario::campaign::Campaign::load(&plan.campaign).ok();
         if let Some(path) = campaign.and_then(|campaign| campaign.requirements) {
             files.push((path, folder.join("requirements.toml")));
         }

@@ -1,192 +1,168 @@
 //! Keys of a campaign: its scenarios and their variations.
 
-use super::definition::{Bounds, Default, Key, Kind, SCHEMA, Section, Tag, Variants, key, section};
+use super::definition::{Bounds, Kind, SCHEMA};
+use super::table::{
+    At, Of, Raw, boolean, choice, form_tables, forms, integer, keys, number, numbers, si, table,
+    tables, text,
+};
+use crate::campaign::Design;
+use crate::document::Node;
 use crate::quantity::Dimension;
 
-/// Keys of a campaign.
-pub static CAMPAIGN: Section = section(&[
-    key("schema", Kind::Integer(SCHEMA, SCHEMA), Default::Required, "Version of the format."),
-    key("title", Kind::Text, Default::Required, "Name of the campaign."),
-    key(
-        "seed",
-        Kind::Integer(0, i64::MAX),
-        Default::Value("1"),
-        "Of what is drawn; the first replicate runs with it, the next with the next number.",
-    ),
-    key(
-        "replicates",
-        Kind::Integer(1, 1_000_000),
-        Default::Value("1"),
-        "Runs of every combination, each with a seed and draws of its own.",
-    ),
-    key(
-        "requirements",
-        Kind::Text,
-        Default::Absent("those of the scenarios alone"),
-        "File with the requirements, counted from the campaign's own folder.",
-    ),
-    key("scenarios", Kind::Tables(&SCENARIO, 1, 1000), Default::Required, "What is run."),
-    key(
-        "factors",
-        Kind::VariantTables(&FACTORS, 100),
-        Default::Absent("nothing is varied but seeds"),
-        "What is varied, in every scenario.",
-    ),
-    key(
-        "correlations",
-        Kind::Tables(&CORRELATION, 0, 1000),
-        Default::Absent("draws are independent"),
-        "Draws that go together.",
-    ),
-    key("design", Kind::Choice(&DESIGNS), Default::Value("monte-carlo"), "How draws are spread."),
-    key("limits", Kind::Table(&LIMITS), Default::Section, "What a case may use."),
-    key("stop", Kind::Table(&STOP), Default::Absent("every case is run"), "When enough is known."),
-]);
-
-static SCENARIO: Section = section(&[
-    key("id", Kind::Text, Default::Required, "Name, unique in the campaign."),
-    key("file", Kind::Text, Default::Required, "File, counted from the campaign's own folder."),
-    key(
-        "set",
-        Kind::Settings,
-        Default::Absent("the scenario as it is"),
-        "Keys of the scenario with other values, as --set has them.",
-    ),
-    key(
-        "verifies",
-        Kind::Names,
-        Default::Absent("all that are verified by test"),
-        "Ids of the requirements of the campaign's file that its cases check.",
-    ),
-]);
-
-const DESIGNS: [(&str, &str); 2] = [
-    ("monte-carlo", "each draw for itself: more replicates leave the cases that there are"),
-    (
-        "latin-hypercube",
-        "one draw in each of as many strips as there are replicates: another number of replicates \
-         is another design",
-    ),
-];
-
-static FACTORS: Variants = Variants { tag: Tag::Key("values of the factor"), forms: factor_forms };
-
-fn factor_forms() -> &'static [(&'static str, &'static Section)] {
-    static FORMS: [(&str, &Section); 5] = [
-        ("values", &GRID),
-        ("choose", &CHOOSE),
-        ("faults", &FAULTS),
-        ("uniform", &UNIFORM),
-        ("normal", &NORMAL),
-    ];
-    &FORMS
+keys! {
+    /// A campaign.
+    pub(crate) struct CampaignKeys {
+        #[expect(dead_code, reason = "it has one value")]
+        schema: u32 = integer(SCHEMA, SCHEMA), required, "Version of the format.";
+        title: String = text(), required, "Name of the campaign.";
+        seed: u64 = integer(0, i64::MAX), "1",
+            "Of what is drawn; the first replicate runs with it, the next with the next number.";
+        replicates: u32 = integer(1, 1_000_000), "1",
+            "Runs of every combination, each with a seed and draws of its own.";
+        requirements: Option<String> = text(), absent("those of the scenarios alone"),
+            "File with the requirements, counted from the campaign's own folder.";
+        scenarios: Vec<MemberKeys> = tables(1, 1000), required, "What is run.";
+        factors: Option<Vec<FactorKeys>> = form_tables(100), absent("nothing is varied but seeds"),
+            "What is varied, in every scenario.";
+        correlations: Option<Vec<CorrelationKeys>> = tables(0, 1000), absent("draws are independent"),
+            "Draws that go together.";
+        design: Design = choice! {
+                "monte-carlo" => Design::MonteCarlo,
+                    "each draw for itself: more replicates leave the cases that there are";
+                "latin-hypercube" => Design::LatinHypercube,
+                    "one draw in each of as many strips as there are replicates: another number of \
+                     replicates is another design";
+            }, "monte-carlo", "How draws are spread.";
+        limits: LimitsKeys = table(), section, "What a case may use.";
+        stop: Option<EarlyStopKeys> = table::<EarlyStopKeys>(), absent("every case is run"),
+            "When enough is known.";
+    }
 }
 
-const NAME: Key =
-    key("name", Kind::Text, Default::Required, "Name of the factor, unique in the campaign.");
-const SET: Key = key(
-    "key",
-    Kind::Text,
-    Default::Derived("the name"),
-    "Key of the scenario that it sets, as in --set; faults.ID.KEY is one of a fault.",
-);
-const UNIT: Key = key(
-    "unit",
-    Kind::Text,
-    Default::Absent("a plain number"),
-    "Unit of the numbers, such as \"deg/h\".",
-);
+keys! {
+    /// One of `[[scenarios]]`.
+    pub(crate) struct MemberKeys {
+        id: At<String> = text(), required, "Name, unique in the campaign.";
+        file: String = text(), required, "File, counted from the campaign's own folder.";
+        set: Option<Raw> = Of::<Raw>::kind(Kind::Settings), absent("the scenario as it is"),
+            "Keys of the scenario with other values, as --set has them.";
+        verifies: Option<Vec<String>> = Of::<Vec<String>>::kind(Kind::Names),
+            absent("all that are verified by test"),
+            "Ids of the requirements of the campaign's file that its cases check.";
+    }
+}
 
-static GRID: Section = section(&[
-    NAME,
-    SET,
-    key("values", Kind::Values, Default::Required, "Values: every one is run, as a grid."),
-]);
+forms! {
+    /// One of `[[factors]]`.
+    pub(crate) enum FactorKeys("values of the factor") {
+        "values" => Grid(GridKeys);
+        "choose" => Choose(ChooseKeys);
+        "faults" => Faults(FaultListsKeys);
+        "uniform" => Uniform(UniformKeys);
+        "normal" => Normal(NormalKeys);
+    }
+}
 
-static CHOOSE: Section = section(&[
-    NAME,
-    SET,
-    key("choose", Kind::Values, Default::Required, "Values: one is drawn for each replicate."),
-]);
+impl FactorKeys {
+    pub(crate) fn name(&self) -> &At<String> {
+        match self {
+            Self::Grid(GridKeys { name, .. })
+            | Self::Choose(ChooseKeys { name, .. })
+            | Self::Faults(FaultListsKeys { name, .. })
+            | Self::Uniform(UniformKeys { name, .. })
+            | Self::Normal(NormalKeys { name, .. }) => name,
+        }
+    }
+}
 
-static FAULTS: Section = section(&[
-    NAME,
-    key(
-        "faults",
-        Kind::Lists,
-        Default::Required,
-        "Lists of ids of the scenario's faults: those of the list are injected, the others left out.",
-    ),
-    key(
-        "draw",
-        Kind::Boolean,
-        Default::Value("false"),
-        "One list is drawn for each replicate, instead of every one run.",
-    ),
-]);
+const NAME: &str = "Name of the factor, unique in the campaign.";
+const SET: &str = "Key of the scenario that it sets, as in --set; faults.ID.KEY is one of a fault.";
+const UNIT: &str = "Unit of the numbers, such as \"deg/h\".";
 
-static UNIFORM: Section = section(&[
-    NAME,
-    SET,
-    UNIT,
-    key("uniform", Kind::Numbers(2), Default::Required, "Least and greatest value."),
-]);
+keys! {
+    /// Values of a grid.
+    pub(crate) struct GridKeys {
+        name: At<String> = text(), required, NAME;
+        key: Option<String> = text(), derived("the name"), SET;
+        values: At<Vec<Node>> = Of::<Vec<Node>>::kind(Kind::Values), required,
+            "Values: every one is run, as a grid.";
+    }
+}
 
-static NORMAL: Section = section(&[
-    NAME,
-    SET,
-    UNIT,
-    key("normal", Kind::Numbers(2), Default::Required, "Mean and standard deviation."),
-    key(
-        "within",
-        Kind::Numbers(2),
-        Default::Absent("not truncated"),
-        "Least and greatest value: the distribution is truncated there.",
-    ),
-]);
+keys! {
+    /// Values to draw from.
+    pub(crate) struct ChooseKeys {
+        name: At<String> = text(), required, NAME;
+        key: Option<String> = text(), derived("the name"), SET;
+        choose: At<Vec<Node>> = Of::<Vec<Node>>::kind(Kind::Values), required,
+            "Values: one is drawn for each replicate.";
+    }
+}
 
-static CORRELATION: Section = section(&[
-    key("first", Kind::Text, Default::Required, "Name of a factor that is drawn."),
-    key("second", Kind::Text, Default::Required, "Name of another."),
-    key(
-        "value",
-        Kind::Number(Bounds::Within(-0.999, 0.999, "between -0.999 and 0.999")),
-        Default::Required,
-        "The correlation of the Gaussian copula that joins them: of normal factors their own.",
-    ),
-]);
+keys! {
+    /// Sets of faults.
+    pub(crate) struct FaultListsKeys {
+        name: At<String> = text(), required, NAME;
+        faults: At<Vec<Vec<String>>> = Of::<Vec<Vec<String>>>::kind(Kind::Lists), required,
+            "Lists of ids of the scenario's faults: those of the list are injected, the others left out.";
+        draw: bool = boolean(), "false",
+            "One list is drawn for each replicate, instead of every one run.";
+    }
+}
 
-static LIMITS: Section = section(&[
-    key(
-        "time",
-        Kind::Quantity(&[Dimension::TIME], Bounds::Positive),
-        Default::Value("10 min"),
-        "After which a case is ended as an error.",
-    ),
-    key(
-        "memory_mib",
-        Kind::Integer(64, 1_000_000),
-        Default::Value("2048"),
-        "Address space of a case, MiB; a case that wants more ends as an error. On Linux.",
-    ),
-]);
+keys! {
+    /// A uniform distribution.
+    pub(crate) struct UniformKeys {
+        name: At<String> = text(), required, NAME;
+        key: Option<String> = text(), derived("the name"), SET;
+        unit: Option<String> = text(), absent("a plain number"), UNIT;
+        uniform: At<[f64; 2]> = numbers(), required, "Least and greatest value.";
+    }
+}
 
-const PROBABILITY: Kind =
-    Kind::Number(Bounds::Within(0.001, 0.999_999, "between 0.001 and 0.999999"));
+keys! {
+    /// A normal distribution.
+    pub(crate) struct NormalKeys {
+        name: At<String> = text(), required, NAME;
+        key: Option<String> = text(), derived("the name"), SET;
+        unit: Option<String> = text(), absent("a plain number"), UNIT;
+        normal: At<[f64; 2]> = numbers(), required, "Mean and standard deviation.";
+        within: At<Option<[f64; 2]>> = numbers::<2>(), absent("not truncated"),
+            "Least and greatest value: the distribution is truncated there.";
+    }
+}
 
-static STOP: Section = section(&[
-    key("requirement", Kind::Text, Default::Required, "Id of the requirement that decides."),
-    key(
-        "pass",
-        PROBABILITY,
-        Default::Value("0.95"),
-        "It has to be kept with at least this probability.",
-    ),
-    key("confidence", PROBABILITY, Default::Value("0.95"), "With this confidence, one-sided."),
-    key(
-        "every",
-        Kind::Integer(1, 1_000_000),
-        Default::Value("20"),
-        "After how many cases, in the order of the plan, it is looked at again.",
-    ),
-]);
+const fn probability() -> Of<f64> {
+    number(Bounds::Within(0.001, 0.999_999, "between 0.001 and 0.999999"))
+}
+
+keys! {
+    /// One of `[[correlations]]`.
+    pub(crate) struct CorrelationKeys {
+        first: At<String> = text(), required, "Name of a factor that is drawn.";
+        second: At<String> = text(), required, "Name of another.";
+        value: f64 = number(Bounds::Within(-0.999, 0.999, "between -0.999 and 0.999")), required,
+            "The correlation of the Gaussian copula that joins them: of normal factors their own.";
+    }
+}
+
+keys! {
+    /// `[limits]`.
+    pub(crate) struct LimitsKeys {
+        time: f64 = si(&[Dimension::TIME], Bounds::Positive), "10 min",
+            "After which a case is ended as an error.";
+        memory_mib: u64 = integer(64, 1_000_000), "2048",
+            "Address space of a case, MiB; a case that wants more ends as an error. On Linux.";
+    }
+}
+
+keys! {
+    /// `[stop]`.
+    pub(crate) struct EarlyStopKeys {
+        requirement: String = text(), required, "Id of the requirement that decides.";
+        pass: f64 = probability(), "0.95", "It has to be kept with at least this probability.";
+        confidence: f64 = probability(), "0.95", "With this confidence, one-sided.";
+        every: u64 = integer(1, 1_000_000), "20",
+            "After how many cases, in the order of the plan, it is looked at again.";
+    }
+}

@@ -1,75 +1,69 @@
 //! Keys of faults on connections of FMUs: a file of its own, or a part of a system structure.
 
-use super::definition::{Default, Key, Kind, SCHEMA, Section, Tag, Variants, key, section};
-use super::faults::{
-    AFTER, AFTER_FAULT, AT, EVERY, MANUAL, POISSON, SAMPLE, lasting, leak, leak_all, named,
-    parameter,
-};
+use super::definition::{Key, Kind, SCHEMA, Section, Tag, Variants};
+use super::faults::{KIND, TRIGGER, TriggerKeys, WhenKeys, leak_all, of_kind};
+use super::table::{At, Forms, Keys, Of, Raw, integer, keys, text};
 use octant_faults::connection::kinds::{self, KINDS};
 use std::sync::LazyLock;
 
-/// A list of faults on connections.
-pub static CONNECTIONS: Section = section(&[
-    key("schema", Kind::Integer(SCHEMA, SCHEMA), Default::Required, "Version of the format: 1."),
-    key(
-        "faults",
-        Kind::VariantTables(&FAULT, 10_000),
-        Default::Absent("none"),
-        "Faults, in the order in which they act on a connection.",
-    ),
-]);
+keys! {
+    /// A list of faults on connections.
+    pub(crate) struct ConnectionsKeys {
+        #[expect(dead_code, reason = "it has one value")]
+        schema: u32 = integer(SCHEMA, SCHEMA), required, "Version of the format: 1.";
+        faults: Option<Vec<Raw>> = Of::<Vec<Raw>>::kind(Kind::VariantTables(&FAULT, 10_000)), absent("none"),
+            "Faults, in the order in which they act on a connection.";
+    }
+}
 
 static FAULT: Variants = Variants { tag: Tag::Value("kind"), forms: || &FORMS };
 
-static FORMS: LazyLock<Vec<(&'static str, &'static Section)>> =
-    LazyLock::new(|| KINDS.iter().map(|kind| (kind.name, leak(fault(kind)))).collect());
+static FORMS: LazyLock<Vec<(&'static str, &'static Section)>> = LazyLock::new(|| {
+    let form = |kind: &&'static kinds::Kind| {
+        let common = ConnectionFaultKeys::SECTION;
+        (kind.name, of_kind(common, kind.name, kind.summary, kind.parameters, kind.lasts))
+    };
+    KINDS.iter().map(form).collect()
+});
 
 /// Keys of a kind.
-pub fn connection_section(kind: &str) -> Option<&'static Section> {
+pub(crate) fn connection_section(kind: &str) -> Option<&'static Section> {
     FORMS.iter().find(|(name, _)| *name == kind).map(|(_, section)| *section)
 }
 
-fn fault(kind: &'static kinds::Kind) -> Section {
-    let mut keys: Vec<Key> = vec![
-        key("id", Kind::Text, Default::Required, "Name of the fault, unique in the system."),
-        named(kind.name, kind.summary),
-        key(
-            "connection",
-            Kind::Text,
-            Default::Required,
+keys! {
+    /// A fault on a connection, without the parameters of its kind and [`LastingKeys`](super::LastingKeys).
+    pub(crate) struct ConnectionFaultKeys {
+        id: At<String> = text(), required, "Name of the fault, unique in the system.";
+        kind: At<String> = text(), required, KIND;
+        connection: String = text(), required,
             "The input that it acts on, such as calibrator.gyro.delta_theta[1]; the name of an array \
-             stands for all its elements.",
-        ),
-    ];
-    keys.extend(kind.parameters.iter().map(parameter));
-    keys.push(key("trigger", Kind::Variants(&TRIGGER), Default::Required, "When it sets in."));
-    keys.extend(lasting(kind.lasts));
-    Section { keys: leak_all(keys), one_of: false }
+             stands for all its elements.";
+        trigger: At<TriggerKeys> = Of::<TriggerKeys>::kind(Kind::Variants(&TRIGGERS)), required, TRIGGER;
+    }
 }
 
 /// Forms of a trigger: those that need no core, and a condition on an output.
-static TRIGGER: Variants = Variants {
-    tag: Tag::Key("trigger"),
-    forms: || {
-        static FORMS: [(&str, &Section); 7] = [
-            ("at", &AT),
-            ("sample", &SAMPLE),
-            ("when", &WHEN),
-            ("every", &EVERY),
-            ("poisson", &POISSON),
-            ("after_fault", &AFTER_FAULT),
-            ("manual", &MANUAL),
-        ];
-        &FORMS
-    },
-};
+static TRIGGERS: Variants = Variants { tag: Tag::Key("trigger"), forms: || &TRIGGER_FORMS };
 
-static WHEN: Section = section(&[
-    key(
-        "when",
-        Kind::Text,
-        Default::Required,
-        "An output goes above or below a value: \"plant.truth.gimbal.roll above 45 deg\".",
-    ),
-    AFTER,
-]);
+static TRIGGER_FORMS: LazyLock<Vec<(&'static str, &'static Section)>> = LazyLock::new(|| {
+    let form = |(name, section): &(&'static str, &'static Section)| match *name {
+        "position" | "moving_to" | "mode" => None,
+        "when" => Some((*name, &WHEN as &'static Section)),
+        _ => Some((*name, *section)),
+    };
+    (TriggerKeys::VARIANTS.forms)().iter().filter_map(form).collect()
+});
+
+static WHEN: LazyLock<Section> = LazyLock::new(|| {
+    let on_output = |key: &Key| match key.name {
+        "when" => Key {
+            kind: Kind::Text,
+            doc: "An output goes above or below a value: \"plant.truth.gimbal.roll above 45 deg\".",
+            ..*key
+        },
+        _ => *key,
+    };
+    let keys = WhenKeys::SECTION.keys.iter().map(on_output).collect();
+    Section { keys: leak_all(keys), one_of: false }
+});

@@ -10,8 +10,8 @@ use octant_base::names::{nearest, suggestion};
 pub const SCHEMA: i64 = 1;
 
 /// Definition of a key.
-#[derive(Debug)]
-pub struct Key {
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Key {
     /// Name.
     pub name: &'static str,
     /// Kind of its values.
@@ -24,7 +24,7 @@ pub struct Key {
 
 /// Default of a key.
 #[derive(Clone, Copy, Debug)]
-pub enum Default {
+pub(crate) enum Default {
     /// No default: the key is required.
     Required,
     /// A value, as TOML; texts without quotes.
@@ -39,7 +39,7 @@ pub enum Default {
 
 /// Kind of a key's values.
 #[derive(Clone, Copy, Debug)]
-pub enum Kind {
+pub(crate) enum Kind {
     /// Any text.
     Text,
     /// A text of the form `scheme` or `scheme:FILE`, with one of these schemes.
@@ -100,7 +100,7 @@ pub enum Kind {
 
 impl Kind {
     /// Keys of a table, if a table can be given.
-    pub fn section(&self) -> Option<&'static Section> {
+    pub(crate) fn section(&self) -> Option<&'static Section> {
         match self {
             Self::Table(section) => Some(section),
             Self::Either(kinds) => kinds.iter().find_map(Self::section),
@@ -111,7 +111,7 @@ impl Kind {
 
 /// Bounds of a number, or of a quantity in SI.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Bounds {
+pub(crate) enum Bounds {
     /// Every finite number.
     Any,
     /// Every finite number except zero.
@@ -126,7 +126,7 @@ pub enum Bounds {
 
 impl Bounds {
     /// True if a value lies within the bounds; never for NaN.
-    pub fn contain(self, value: f64) -> bool {
+    pub(crate) fn contain(self, value: f64) -> bool {
         value.is_finite()
             && match self {
                 Self::Any => true,
@@ -138,7 +138,7 @@ impl Bounds {
     }
 
     /// Description that fits after "expected a value".
-    pub fn words(self) -> &'static str {
+    pub(crate) fn words(self) -> &'static str {
         match self {
             Self::Any => "that is finite",
             Self::NotZero => "other than 0: with 0 nothing would happen",
@@ -151,7 +151,7 @@ impl Bounds {
 
 /// Keys of a table.
 #[derive(Debug)]
-pub struct Section {
+pub(crate) struct Section {
     /// Keys.
     pub keys: &'static [Key],
     /// True if exactly one of the keys must be given.
@@ -160,12 +160,12 @@ pub struct Section {
 
 impl Section {
     /// Key of a name.
-    pub fn key(&self, name: &str) -> Option<&Key> {
+    pub(crate) fn key(&self, name: &str) -> Option<&Key> {
         self.keys.iter().find(|key| key.name == name)
     }
 
     /// Names of all keys that can be given.
-    pub fn names(&self) -> impl Iterator<Item = &'static str> + Clone {
+    pub(crate) fn names(&self) -> impl Iterator<Item = &'static str> + Clone {
         let possible = |key: &&Key| !matches!(key.kind, Kind::Refused(_));
         self.keys.iter().filter(possible).map(|key| key.name)
     }
@@ -173,7 +173,7 @@ impl Section {
 
 /// Distinction between the forms of a table.
 #[derive(Clone, Copy, Debug)]
-pub enum Tag {
+pub(crate) enum Tag {
     /// Text under this key.
     Value(&'static str),
     /// The key itself: exactly one of the names is a key of the table. This text names the table in
@@ -183,7 +183,7 @@ pub enum Tag {
 
 /// Forms of a table.
 #[derive(Debug)]
-pub struct Variants {
+pub(crate) struct Variants {
     /// Distinction between them.
     pub tag: Tag,
     /// Name and keys of each form.
@@ -192,7 +192,7 @@ pub struct Variants {
 
 impl Variants {
     /// Names of all forms.
-    pub fn names(&self) -> impl Iterator<Item = &'static str> + Clone {
+    pub(crate) fn names(&self) -> impl Iterator<Item = &'static str> + Clone {
         (self.forms)().iter().map(|(name, _)| *name)
     }
 
@@ -201,7 +201,7 @@ impl Variants {
     }
 
     /// Keys of a table, by its content.
-    pub fn section(&self, table: &Table) -> Option<&'static Section> {
+    pub(crate) fn section(&self, table: &Table) -> Option<&'static Section> {
         match self.tag {
             Tag::Value(key) => match &table.get(key)?.value {
                 Value::Text(name) => self.form(name),
@@ -215,7 +215,7 @@ impl Variants {
     }
 
     /// Problem of a table without a form.
-    pub fn problem(&self, table: &Table, path: &str, place: &Place) -> Problem {
+    pub(crate) fn problem(&self, table: &Table, path: &str, place: &Place) -> Problem {
         let problem = |place: &Place, path: String, message: String| Problem {
             place: place.clone(),
             path,

@@ -1,88 +1,105 @@
 //! Keys of faults: common keys, and the keys of each kind, made from the catalogue.
 
-use super::definition::{Bounds, Default, Key, Kind, Section, Tag, Variants, key, section};
-use crate::quantity::Dimension;
+use super::definition::{Bounds, Default, Key, Kind, Section, Tag, Variants, key};
+use super::table::{At, Forms, Keys, Of, Value, boolean, choice, form, forms, integer, keys, text};
+use crate::error::Problem;
+use crate::quantity::{Dimension, Quantity};
+use crate::read::reader::Reader;
 use octant_faults::catalogue::{self, Lasts, Parameter, Takes};
 use octant_faults::kinds;
+use octant_sample::Mode;
 use std::sync::LazyLock;
 
 /// Keys of a fault, which depend on its kind.
 pub(crate) static FAULT: Variants = Variants { tag: Tag::Value("kind"), forms: || &FORMS };
 
 /// Keys of every kind. The catalogue is fixed at compile time, so they are made once and kept.
-static FORMS: LazyLock<Vec<(&'static str, &'static Section)>> =
-    LazyLock::new(|| kinds::all().map(|kind| (kind.name, leak(fault(kind)))).collect());
+static FORMS: LazyLock<Vec<(&'static str, &'static Section)>> = LazyLock::new(|| {
+    let form = |kind: &'static catalogue::Kind| {
+        let common = FaultKeys::SECTION;
+        (kind.name, of_kind(common, kind.name, kind.summary, kind.parameters, kind.lasts))
+    };
+    kinds::all().map(form).collect()
+});
 
 /// Keys of a kind.
 pub(crate) fn kind_section(kind: &str) -> Option<&'static Section> {
     FORMS.iter().find(|(name, _)| *name == kind).map(|(_, section)| *section)
 }
 
-pub(super) fn leak<T>(value: T) -> &'static T {
-    Box::leak(Box::new(value))
-}
-
 pub(super) fn leak_all<T>(values: Vec<T>) -> &'static [T] {
     Box::leak(values.into_boxed_slice())
 }
 
-fn fault(kind: &'static catalogue::Kind) -> Section {
-    let mut keys = vec![
-        key("id", Kind::Text, Default::Required, "Name of the fault, unique in the scenario."),
-        named(kind.name, kind.summary),
-    ];
-    keys.extend(kind.parameters.iter().map(parameter));
-    keys.push(key("trigger", Kind::Variants(&TRIGGER), Default::Required, "When it sets in."));
-    keys.extend(lasting(kind.lasts));
-    Section { keys: leak_all(keys), one_of: false }
+keys! {
+    /// A fault, without the parameters of its kind and [`LastingKeys`].
+    pub(crate) struct FaultKeys {
+        id: At<String> = text(), required, "Name of the fault, unique in the scenario.";
+        kind: At<String> = text(), required, KIND;
+        trigger: At<TriggerKeys> = form::<TriggerKeys>(), required, TRIGGER;
+    }
 }
 
-/// The key `kind`, in the form of one kind.
-pub(super) fn named(name: &'static str, summary: &'static str) -> Key {
-    key(
-        "kind",
-        Kind::Choice(leak_all(vec![(name, summary)])),
-        Default::Required,
-        "What happens: the name of a kind of fault.",
-    )
+pub(super) const KIND: &str = "What happens: the name of a kind of fault.";
+pub(super) const TRIGGER: &str = "When it sets in.";
+
+keys! {
+    /// A fault's duration, recovery and repetition.
+    pub(crate) struct LastingKeys {
+        duration: At<Option<Quantity>> = span(), absent("to the end of the run"),
+            "How long it lasts, rounded to whole samples.";
+        recovery: At<Option<Quantity>> = delay(), absent("none"),
+            "How long it fades after that, down a straight line.";
+        repeat: At<Option<RepeatKeys>> = repeat(),
+            absent("once, or as often as a periodic or random trigger says"),
+            "How often it comes back: so many times in all at this distance, or every time.";
+    }
 }
 
-/// Keys of a fault's duration, recovery and repetition.
-pub(super) fn lasting(lasts: Lasts) -> [Key; 3] {
-    let duration = match lasts {
-        Lasts::Instant => refused("duration", "this kind is over in an instant"),
-        Lasts::Span | Lasts::Fading => key(
-            "duration",
-            SPAN,
-            Default::Absent("to the end of the run"),
-            "How long it lasts, rounded to whole samples.",
-        ),
+/// Keys of a kind of fault: the common ones, with the kind's parameters before the trigger.
+pub(super) fn of_kind(
+    common: &Section,
+    name: &'static str,
+    summary: &'static str,
+    parameters: &'static [Parameter],
+    lasts: Lasts,
+) -> &'static Section {
+    let mut keys = Vec::new();
+    for key in common.keys {
+        match key.name {
+            "kind" => {
+                let kind = Kind::Choice(leak_all(vec![(name, summary)]));
+                keys.push(Key { kind, ..*key });
+            }
+            "trigger" => {
+                keys.extend(parameters.iter().map(parameter));
+                keys.push(*key);
+            }
+            _ => keys.push(*key),
+        }
+    }
+    keys.extend(LastingKeys::SECTION.keys.iter().map(|key| lasting(key, lasts)));
+    Box::leak(Box::new(Section { keys: leak_all(keys), one_of: false }))
+}
+
+/// One of [`LastingKeys`], for faults that last so.
+fn lasting(key: &Key, lasts: Lasts) -> Key {
+    let refused = |reason| Key {
+        kind: Kind::Refused(reason),
+        default: Default::Absent("none"),
+        doc: "Not for this kind.",
+        ..*key
     };
-    let recovery = match lasts {
-        Lasts::Fading => key(
-            "recovery",
-            Kind::Quantity(&[Dimension::TIME, Dimension::SAMPLES], Bounds::NotNegative),
-            Default::Value("0 s"),
-            "How long it fades after that, down a straight line.",
-        ),
-        Lasts::Span => refused("recovery", "this kind doesn't fade: it is there or it isn't"),
-        Lasts::Instant => refused("recovery", "this kind is over in an instant"),
-    };
-    let repeat = key(
-        "repeat",
-        Kind::Either(&OFTEN),
-        Default::Absent("once, or as often as a periodic or random trigger says"),
-        "How often it comes back: so many times in all at this distance, or every time.",
-    );
-    [duration, recovery, repeat]
-}
-
-const fn refused(name: &'static str, reason: &'static str) -> Key {
-    key(name, Kind::Refused(reason), Default::Absent("none"), "Not for this kind.")
+    match (key.name, lasts) {
+        ("duration" | "recovery", Lasts::Instant) => refused("this kind is over in an instant"),
+        ("recovery", Lasts::Span) => refused("this kind doesn't fade: it is there or it isn't"),
+        ("recovery", Lasts::Fading) => Key { default: Default::Value("0 s"), ..*key },
+        _ => *key,
+    }
 }
 
 /// Key of a parameter of the catalogue.
-pub(super) fn parameter(parameter: &'static Parameter) -> Key {
+fn parameter(parameter: &'static Parameter) -> Key {
     let dimensions = |all: &[catalogue::Dimension]| leak_all(all.iter().map(dimension).collect());
     let kind = match parameter.takes {
         Takes::Quantity(all, limits) => Kind::Quantity(dimensions(all), bounds(limits)),
@@ -156,140 +173,180 @@ pub(crate) fn dimension(dimension: &catalogue::Dimension) -> Dimension {
     }
 }
 
-const SPAN: Kind = Kind::Quantity(&[Dimension::TIME, Dimension::SAMPLES], Bounds::Positive);
-/// Kind of a delay: a time, or a number of samples, from 0.
-const DELAY: Kind = Kind::Quantity(&[Dimension::TIME, Dimension::SAMPLES], Bounds::NotNegative);
-pub(super) const AFTER: Key = key("after", DELAY, Default::Value("0 s"), "How long after that.");
-const STOP: Kind = Kind::Integer(1, u16::MAX as i64);
-const PHASE: Key = key(
-    "phase",
-    Kind::Choice(&[
-        ("calibration", "the positions of the calibration"),
-        ("navigation", "those of the rotation in navigation"),
-    ]),
-    Default::Value("calibration"),
-    "Which positions are counted.",
-);
-const FROM: Key =
-    key("from", DELAY, Default::Value("0 s"), "Time of the run before which it waits.");
-const UNTIL: Key = key(
-    "until",
-    SPAN,
-    Default::Absent("the end of the run"),
-    "Time of the run after which it sets in no more.",
-);
+const SPAN: &[Dimension] = &[Dimension::TIME, Dimension::SAMPLES];
 
-/// Forms of a trigger.
-pub(super) static TRIGGER: Variants = Variants {
-    tag: Tag::Key("trigger"),
-    forms: || {
-        static FORMS: [(&str, &Section); 10] = [
-            ("at", &AT),
-            ("sample", &SAMPLE),
-            ("position", &POSITION),
-            ("moving_to", &MOVING_TO),
-            ("mode", &MODE),
-            ("when", &WHEN),
-            ("every", &EVERY),
-            ("poisson", &POISSON),
-            ("after_fault", &AFTER_FAULT),
-            ("manual", &MANUAL),
-        ];
-        &FORMS
-    },
-};
+/// A time, or a number of samples, above 0.
+const fn span() -> Of<Quantity> {
+    Of::kind(Kind::Quantity(SPAN, Bounds::Positive))
+}
 
-pub(super) static AT: Section = section(&[key(
-    "at",
-    DELAY,
-    Default::Required,
-    "Time of the run: the first sample that it alters is that of the interval which begins then.",
-)]);
-pub(super) static SAMPLE: Section = section(&[key(
-    "sample",
-    Kind::Integer(1, i64::MAX),
-    Default::Required,
-    "Number of the first sample that it alters, from 1.",
-)]);
-static POSITION: Section = section(&[
-    key(
-        "position",
-        STOP,
-        Default::Required,
-        "The core arrives at this position, counted from 1 over all passes.",
-    ),
-    AFTER,
-    PHASE,
-]);
-static MOVING_TO: Section = section(&[
-    key(
-        "moving_to",
-        STOP,
-        Default::Required,
-        "The core sets out for this position, counted from 1 over all passes.",
-    ),
-    AFTER,
-    PHASE,
-]);
-static MODE: Section = section(&[
-    key(
-        "mode",
-        Kind::Choice(&[
-            ("aligning", "it looks for its attitude"),
-            ("calibrating", "it turns through positions"),
-            ("navigating", "it navigates"),
-        ]),
-        Default::Required,
-        "The core enters this mode.",
-    ),
-    AFTER,
-]);
-static WHEN: Section =
-    section(&[key("when", Kind::Condition, Default::Required, "A signal crosses a value."), AFTER]);
-pub(super) static EVERY: Section = section(&[
-    key("every", SPAN, Default::Required, "Again and again, onsets so far apart."),
-    FROM,
-    UNTIL,
-]);
-pub(super) static POISSON: Section = section(&[
-    key(
-        "poisson",
-        Kind::Quantity(&[Dimension::TIME, Dimension::FREQUENCY], Bounds::Positive),
-        Default::Required,
-        "At random: the mean time from its end to its next onset, or how often it comes a second.",
-    ),
-    FROM,
-    UNTIL,
-]);
-pub(super) static AFTER_FAULT: Section = section(&[
-    key("after_fault", Kind::Text, Default::Required, "The fault of this id has ended."),
-    AFTER,
-]);
-pub(super) static MANUAL: Section = section(&[
-    key("manual", Kind::Boolean, Default::Required, "By hand."),
-    key(
-        "fire",
-        Kind::Times,
-        Default::Absent("only with `octant run --fire ID=TIME`"),
-        "Times of the run at which it is fired; `octant run --fire ID=TIME` adds one.",
-    ),
-]);
+/// A time, or a number of samples, from 0.
+const fn delay() -> Of<Quantity> {
+    Of::kind(Kind::Quantity(SPAN, Bounds::NotNegative))
+}
 
-static OFTEN: [Kind; 2] = [
-    Kind::Choice(&[("every time", "whenever the trigger comes true again")]),
-    Kind::Variants(&REPEAT),
-];
+const fn stop() -> Of<u16> {
+    integer(1, u16::MAX as i64)
+}
 
-/// Forms of a repetition.
-static REPEAT: Variants = Variants {
-    tag: Tag::Key("repetition"),
-    forms: || {
-        static FORMS: [(&str, &Section); 1] = [("times", &TIMES)];
-        &FORMS
-    },
-};
+const fn phase() -> Of<Mode> {
+    choice! {
+        "calibration" => Mode::Calibrating, "the positions of the calibration";
+        "navigation" => Mode::Navigating, "those of the rotation in navigation";
+    }
+}
 
-static TIMES: Section = section(&[
-    key("times", Kind::Integer(2, u32::MAX as i64), Default::Required, "Onsets in all."),
-    key("every", SPAN, Default::Required, "Distance of the onsets."),
-]);
+const AFTER: &str = "How long after that.";
+const PHASE: &str = "Which positions are counted.";
+const FROM: &str = "Time of the run before which it waits.";
+const UNTIL: &str = "Time of the run after which it sets in no more.";
+const TO_THE_END: &str = "the end of the run";
+
+forms! {
+    /// `trigger` of a fault.
+    pub(crate) enum TriggerKeys("trigger") {
+        "at" => At(AtKeys);
+        "sample" => Sample(SampleKeys);
+        "position" => Position(PositionKeys);
+        "moving_to" => MovingTo(MovingToKeys);
+        "mode" => Mode(ModeKeys);
+        "when" => When(WhenKeys);
+        "every" => Every(EveryKeys);
+        "poisson" => Poisson(PoissonKeys);
+        "after_fault" => AfterFault(AfterFaultKeys);
+        "manual" => Manual(ManualKeys);
+    }
+}
+
+keys! {
+    /// Trigger at a time.
+    pub(crate) struct AtKeys {
+        at: Quantity = delay(), required,
+            "Time of the run: the first sample that it alters is that of the interval which begins then.";
+    }
+}
+
+keys! {
+    /// Trigger at a sample.
+    pub(crate) struct SampleKeys {
+        sample: u64 = integer(1, i64::MAX), required,
+            "Number of the first sample that it alters, from 1.";
+    }
+}
+
+keys! {
+    /// Trigger at a position.
+    pub(crate) struct PositionKeys {
+        position: u16 = stop(), required,
+            "The core arrives at this position, counted from 1 over all passes.";
+        after: Quantity = delay(), "0 s", AFTER;
+        phase: Mode = phase(), "calibration", PHASE;
+    }
+}
+
+keys! {
+    /// Trigger at the start of a move.
+    pub(crate) struct MovingToKeys {
+        moving_to: u16 = stop(), required,
+            "The core sets out for this position, counted from 1 over all passes.";
+        after: Quantity = delay(), "0 s", AFTER;
+        phase: Mode = phase(), "calibration", PHASE;
+    }
+}
+
+keys! {
+    /// Trigger at a mode.
+    pub(crate) struct ModeKeys {
+        mode: Mode = choice! {
+                "aligning" => Mode::Aligning, "it looks for its attitude";
+                "calibrating" => Mode::Calibrating, "it turns through positions";
+                "navigating" => Mode::Navigating, "it navigates";
+            }, required, "The core enters this mode.";
+        after: Quantity = delay(), "0 s", AFTER;
+    }
+}
+
+keys! {
+    /// Trigger by a condition.
+    pub(crate) struct WhenKeys {
+        when: At<String> = Of::<String>::kind(Kind::Condition), required,
+            "A signal crosses a value.";
+        after: Quantity = delay(), "0 s", AFTER;
+    }
+}
+
+keys! {
+    /// Periodic trigger.
+    pub(crate) struct EveryKeys {
+        every: At<Quantity> = span(), required, "Again and again, onsets so far apart.";
+        from: Quantity = delay(), "0 s", FROM;
+        until: At<Option<Quantity>> = span(), absent(TO_THE_END), UNTIL;
+    }
+}
+
+keys! {
+    /// Random trigger.
+    pub(crate) struct PoissonKeys {
+        poisson: Quantity
+            = Of::<Quantity>::kind(Kind::Quantity(&[Dimension::TIME, Dimension::FREQUENCY], Bounds::Positive)),
+            required,
+            "At random: the mean time from its end to its next onset, or how often it comes a second.";
+        from: Quantity = delay(), "0 s", FROM;
+        until: At<Option<Quantity>> = span(), absent(TO_THE_END), UNTIL;
+    }
+}
+
+keys! {
+    /// Trigger after another fault.
+    pub(crate) struct AfterFaultKeys {
+        after_fault: String = text(), required, "The fault of this id has ended.";
+        after: Quantity = delay(), "0 s", AFTER;
+    }
+}
+
+keys! {
+    /// Trigger by hand.
+    pub(crate) struct ManualKeys {
+        manual: At<bool> = boolean(), required, "By hand.";
+        fire: Option<Vec<f64>> = Of::<Vec<f64>>::kind(Kind::Times),
+            absent("only with `octant run --fire ID=TIME`"),
+            "Times of the run at which it is fired; `octant run --fire ID=TIME` adds one.";
+    }
+}
+
+/// Repetition of a fault.
+#[derive(Clone, Debug)]
+pub(crate) enum RepeatKeys {
+    EveryTime,
+    Times(TimesKeys),
+}
+
+forms! {
+    /// A repetition that is a table.
+    pub(crate) enum CountedKeys("repetition") {
+        "times" => Times(TimesKeys);
+    }
+}
+
+impl Value for RepeatKeys {
+    fn read(table: &Reader<'_>, key: &str) -> Result<Option<Self>, Problem> {
+        Ok(CountedKeys::read(table, key)?.map(|CountedKeys::Times(keys)| Self::Times(keys)))
+    }
+}
+
+const fn repeat() -> Of<RepeatKeys> {
+    const EVERY_TIME: Kind =
+        Kind::Choice(&[("every time", "whenever the trigger comes true again")]);
+    Of::or_choice(
+        const { Kind::Either(&[EVERY_TIME, Kind::Variants(CountedKeys::VARIANTS)]) },
+        const { &[RepeatKeys::EveryTime] },
+    )
+}
+
+keys! {
+    /// Repetition so many times.
+    pub(crate) struct TimesKeys {
+        times: u32 = integer(2, u32::MAX as i64), required, "Onsets in all.";
+        every: At<Quantity> = span(), required, "Distance of the onsets.";
+    }
+}

@@ -1,8 +1,9 @@
-//! The table of keys, which defines everything that can be written in a scenario, with dimension,
-//! default and meaning.
+//! The table of keys, which defines everything that can be written in a scenario, a suite, a campaign
+//! or a list of faults on connections, with dimension, default and meaning.
 //!
-//! Check, defaults, error messages, the JSON Schema and the test of the tour all use it. A table of a
-//! scenario is declared with `keys!`, which also gives the struct that it is read into.
+//! Check, defaults, error messages, the JSON Schema and the test of the tour all use it. A table is
+//! declared with `keys!`, which also gives the struct that it is read into, and a table with several
+//! forms with `forms!`, which gives an enum.
 
 mod calibration;
 mod campaign;
@@ -23,11 +24,14 @@ pub(crate) use calibration::{
     AidingKeys, AlignmentKeys, AlignmentMethod, CalibrationKeys, EstimatorName, InitialKeys,
     Intervals, LeastSquaresKeys, NavigationKeys, ProcedureKeys, Reference, Rotation, StopKeys,
 };
-pub use campaign::CAMPAIGN;
-pub use connection::{CONNECTIONS, connection_section};
-pub use definition::{Bounds, Default, Key, Kind, SCHEMA, Section, Tag, Variants};
+pub(crate) use campaign::{
+    CampaignKeys, CorrelationKeys, EarlyStopKeys, FactorKeys, LimitsKeys, MemberKeys,
+};
+pub(crate) use connection::{ConnectionFaultKeys, ConnectionsKeys, connection_section};
+pub use definition::SCHEMA;
+pub(crate) use definition::{Bounds, Default, Key, Kind, Section, Tag, Variants};
 pub(crate) use drive::DriveKeys;
-pub(crate) use faults::{dimension, kind_section};
+pub(crate) use faults::{FaultKeys, LastingKeys, RepeatKeys, TriggerKeys, dimension, kind_section};
 pub(crate) use fmu::{ENDPOINT_MAP, EndpointFmuKeys, FmuKeys, SOURCE_MAP, SourceFmuKeys};
 pub(crate) use instrument::{ExtensionsKeys, ImuKeys, TurntableKeys};
 pub(crate) use link::LinkKeys;
@@ -38,7 +42,7 @@ pub(crate) use run::{
 pub(crate) use screening::{GateKeys, ScreeningKeys};
 pub(crate) use source::{McapKeys, SignalKeys, SourceKeys, SourceLiveKeys, TextKeys};
 pub(crate) use suite::{CaseKeys, SuiteKeys};
-pub(crate) use table::{At, Keys, Raw};
+pub(crate) use table::{At, FromTable, Keys, Raw};
 
 /// Keys of a scenario.
 pub(crate) const SCENARIO: &Section = ScenarioKeys::SECTION;

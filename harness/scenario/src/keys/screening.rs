@@ -1,7 +1,7 @@
 //! Keys of the screening.
 
 use super::definition::{Bounds, Kind};
-use super::table::{Of, choice, integer, keys, number, or_text, si};
+use super::table::{Keys, Of, choice, integer, keys, number, or_text, si};
 use crate::quantity::Dimension;
 
 keys! {

@@ -3,10 +3,11 @@
 //!
 //! A field that nobody takes is a warning of the compiler, and a key that isn't declared has no field.
 
-use super::definition::{Bounds, Default, Key, Kind, Section, key};
-use crate::document::Table;
-use crate::error::{Place, Problem};
-use crate::quantity::Dimension;
+use super::definition::{Bounds, Default, Key, Kind, Section, Variants, key};
+use crate::complete::complete;
+use crate::document::{self, Node, Table};
+use crate::error::{Place, Problem, ScenarioError};
+use crate::quantity::{Dimension, Quantity};
 use crate::read::reader::Reader;
 use std::ops::Deref;
 
@@ -47,7 +48,9 @@ macro_rules! keys {
                 ), )+],
                 one_of: $one_of,
             };
+        }
 
+        impl $crate::keys::table::FromTable for $name {
             fn of(
                 table: &$crate::read::reader::Reader<'_>,
             ) -> Result<Self, $crate::error::Problem> {
@@ -56,32 +59,40 @@ macro_rules! keys {
                 })
             }
         }
+    };
+}
+pub(crate) use keys;
 
-        impl $crate::keys::table::Value for $name {
-            fn read(
-                table: &$crate::read::reader::Reader<'_>,
-                key: &str,
-            ) -> Result<Option<Self>, $crate::error::Problem> {
-                use $crate::keys::table::Keys;
-                table.optional_table(key).map(|table| Self::of(&table)).transpose()
-            }
+/// Declares the forms of a table, each with the key that distinguishes it and the table of its keys:
+/// `"key" => Form(TableOfKeys);`. The text in front names the table in messages.
+macro_rules! forms {
+    ($(#[$attribute:meta])* $visible:vis enum $name:ident($words:literal) { $(
+        $key:literal => $form:ident($keys:ty);
+    )+ }) => {
+        $(#[$attribute])*
+        #[derive(Clone, Debug)]
+        $visible enum $name { $( $form($keys), )+ }
+
+        impl $crate::keys::table::Forms for $name {
+            const VARIANTS: &'static $crate::keys::Variants = &$crate::keys::Variants {
+                tag: $crate::keys::Tag::Key($words),
+                forms: || &[$( ($key, <$keys as $crate::keys::table::Keys>::SECTION), )+],
+            };
         }
 
-        impl $crate::keys::table::Value for Vec<$name> {
-            fn read(
+        impl $crate::keys::table::FromTable for $name {
+            fn of(
                 table: &$crate::read::reader::Reader<'_>,
-                key: &str,
-            ) -> Result<Option<Self>, $crate::error::Problem> {
-                use $crate::keys::table::Keys;
-                if table.node(key).is_none() {
-                    return Ok(None);
-                }
-                table.tables(key).iter().map($name::of).collect::<Result<_, _>>().map(Some)
+            ) -> Result<Self, $crate::error::Problem> {
+                $( if table.node($key).is_some() {
+                    return $crate::keys::table::FromTable::of(table).map(Self::$form);
+                } )+
+                Err(table.problem("", concat!("missing ", $words)))
             }
         }
     };
 }
-pub(crate) use keys;
+pub(crate) use forms;
 
 /// Default of a key, from its short form in a table.
 macro_rules! default {
@@ -130,13 +141,43 @@ macro_rules! or_text {
 }
 pub(crate) use or_text;
 
-/// Keys of a table, and the table read.
-pub(crate) trait Keys: Sized {
+/// A table that is read as a whole.
+pub(crate) trait FromTable: Sized {
+    /// Reads a checked and completed table.
+    fn of(table: &Reader<'_>) -> Result<Self, Problem>;
+}
+
+/// A table with one set of keys.
+pub(crate) trait Keys: FromTable {
     /// Keys, in the order of the schema.
     const SECTION: &'static Section;
 
-    /// Reads a checked and completed table.
-    fn of(table: &Reader<'_>) -> Result<Self, Problem>;
+    /// Parses the text of a file that is such a table; `file` names it in errors. `prepare` changes the
+    /// document before it is checked, `make` reads what the keys mean together.
+    fn parse<T>(
+        text: &str,
+        file: &str,
+        prepare: impl FnOnce(&mut Table, &mut Vec<Problem>),
+        make: impl FnOnce(Self) -> Result<T, Problem>,
+    ) -> Result<T, ScenarioError> {
+        let with_file = |problems| ScenarioError { file: file.to_owned(), problems };
+        let mut document = document::parse(text).map_err(with_file)?;
+        let mut problems = Vec::new();
+        prepare(&mut document, &mut problems);
+        let start = Place::File { line: 1, column: 1 };
+        complete(&mut document, Self::SECTION, "", &start, &mut problems);
+        if !problems.is_empty() {
+            return Err(with_file(problems));
+        }
+        let keys = Self::of(&Reader::root(&document));
+        keys.and_then(make).map_err(|problem| with_file(vec![problem]))
+    }
+}
+
+/// A table with one of several sets of keys.
+pub(crate) trait Forms: FromTable {
+    /// Forms, in the order of the schema.
+    const VARIANTS: &'static Variants;
 }
 
 /// A value under a key.
@@ -153,11 +194,14 @@ pub(crate) struct Raw {
     place: Place,
 }
 
-impl Raw {
-    fn of(table: &Reader<'_>) -> Self {
-        Self { table: table.table.clone(), path: table.path.clone(), place: table.place.clone() }
+impl FromTable for Raw {
+    fn of(table: &Reader<'_>) -> Result<Self, Problem> {
+        let Reader { table, path, place } = table.clone();
+        Ok(Self { table: table.clone(), path, place })
     }
+}
 
+impl Raw {
     pub(crate) fn reader(&self) -> Reader<'_> {
         Reader::new(&self.table, &self.path, &self.place)
     }
@@ -186,8 +230,9 @@ values! {
     u32: |table, key| table.integer(key).map(Some);
     u64: |table, key| table.integer(key).map(Some);
     usize: |table, key| table.integer(key).map(Some);
-    Raw: |table, key| Ok(table.optional_table(key).as_ref().map(Raw::of));
-    Vec<Raw>: |table, key| Ok(Some(table.tables(key).iter().map(Raw::of).collect()));
+    Vec<Vec<String>>: |table, key| Ok(Some(table.entries(key).iter().map(Node::texts).collect()));
+    Vec<Node>: |table, key| Ok(Some(table.entries(key).to_vec()));
+    Quantity: |table, key| Ok(table.optional_quantity(key));
     f64: |table, key| match table.optional_si(key) {
         None => table.number(key).map(Some),
         si => Ok(si),
@@ -196,6 +241,21 @@ values! {
         None => table.numbers(key).map(Some),
         si => Ok(si),
     };
+}
+
+impl<T: FromTable> Value for T {
+    fn read(table: &Reader<'_>, key: &str) -> Result<Option<Self>, Problem> {
+        table.optional_table(key).map(|table| Self::of(&table)).transpose()
+    }
+}
+
+impl<T: FromTable> Value for Vec<T> {
+    fn read(table: &Reader<'_>, key: &str) -> Result<Option<Self>, Problem> {
+        if table.node(key).is_none() {
+            return Ok(None);
+        }
+        table.tables(key).iter().map(T::of).collect::<Result<_, _>>().map(Some)
+    }
 }
 
 impl<T: Value> Value for Option<T> {
@@ -396,13 +456,18 @@ pub(super) const fn si_list(dimension: Dimension, count: usize) -> Of<Vec<f64>> 
     Of::kind(Kind::Quantities(dimension, count))
 }
 
-pub(super) const fn table<T: Keys + Value>() -> Of<T> {
+pub(super) const fn table<T: Keys>() -> Of<T> {
     Of::kind(Kind::Table(T::SECTION))
 }
 
-pub(super) const fn tables<T: Keys>(at_least: usize, at_most: usize) -> Of<Vec<T>>
-where
-    Vec<T>: Value,
-{
+pub(super) const fn tables<T: Keys>(at_least: usize, at_most: usize) -> Of<Vec<T>> {
     Of::kind(Kind::Tables(T::SECTION, at_least, at_most))
+}
+
+pub(super) const fn form<T: Forms>() -> Of<T> {
+    Of::kind(Kind::Variants(T::VARIANTS))
+}
+
+pub(super) const fn form_tables<T: Forms>(at_most: usize) -> Of<Vec<T>> {
+    Of::kind(Kind::VariantTables(T::VARIANTS, at_most))
 }

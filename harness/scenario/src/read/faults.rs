@@ -8,7 +8,7 @@ mod value;
 
 use super::reader::Reader;
 use crate::error::Problem;
-use crate::keys::{At, Raw};
+use crate::keys::{At, FaultKeys, FromTable, Raw};
 use crate::model::{Endpoint, Fault, Scenario, Source};
 use grid::{Waiting, check_chains};
 use octant_faults::catalogue::{Acts, Kind};
@@ -75,11 +75,8 @@ fn build(table: &Reader<'_>, error: &BuildError) -> Problem {
 }
 
 fn fault(table: &Reader<'_>, scenario: &Scenario, timing: &Timing) -> Result<Fault, Problem> {
-    let id = table.text("id")?;
-    if id.trim().is_empty() {
-        return Err(table.problem("id", "found an empty text, expected a name"));
-    }
-    let name = table.text("kind")?;
+    let FaultKeys { id, kind: name, trigger } = FaultKeys::of(table)?;
+    let (id, name) = (named(&id)?, name.as_str());
     let kind = kinds::named(name)
         .ok_or_else(|| table.problem("kind", format!("found {name:?}, which is no kind")))?;
     if let Some(why) = impossible(kind, &scenario.source) {
@@ -105,12 +102,16 @@ fn fault(table: &Reader<'_>, scenario: &Scenario, timing: &Timing) -> Result<Fau
     for parameter in kind.parameters {
         values.set(parameter.name, value(table, parameter)?);
     }
-    let (schedule, fires) = timing.schedule(table, kind)?;
-    Ok(Fault {
-        spec: Spec { id: id.to_owned(), kind, values, schedule },
-        fires,
-        place: table.place.clone(),
-    })
+    let (schedule, fires) = timing.schedule(table, kind, &trigger)?;
+    Ok(Fault { spec: Spec { id, kind, values, schedule }, fires, place: table.place.clone() })
+}
+
+/// Id of a fault, which isn't empty.
+fn named(id: &At<String>) -> Result<String, Problem> {
+    if id.trim().is_empty() {
+        return Err(id.problem("found an empty text, expected a name"));
+    }
+    Ok(id.value.clone())
 }
 
 /// Reason why a kind can't act on a source.

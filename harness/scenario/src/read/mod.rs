@@ -12,11 +12,11 @@ pub(crate) mod reader;
 pub mod requirement;
 mod source;
 
-pub use reader::Reader;
+pub(crate) use reader::Reader;
 
 use super::document::Table;
 use super::error::Problem;
-use super::keys::{Keys, RealtimeKeys, RecordKeys, ScenarioKeys};
+use super::keys::{FromTable, RealtimeKeys, RecordKeys, ScenarioKeys};
 use super::model::{Motion, Realtime, Record, Scenario, Source};
 use octant_plant::config as plant;
 use std::path::Path;

@@ -4,9 +4,9 @@ use super::reader::Reader;
 use crate::document::{Node, Table, Value};
 use crate::error::Problem;
 use crate::keys::{
-    AidingKeys, AlignmentKeys, AlignmentMethod, At, CalibrationKeys, EstimatorName, GateKeys,
-    InitialKeys, Intervals, Keys, LeastSquaresKeys, NavigationKeys, ProcedureKeys, Raw, Reference,
-    Rotation, ScreeningKeys, StopKeys,
+    AidingKeys, AlignmentKeys, AlignmentMethod, At, CalibrationKeys, EstimatorName, FromTable,
+    GateKeys, InitialKeys, Intervals, LeastSquaresKeys, NavigationKeys, ProcedureKeys, Raw,
+    Reference, Rotation, ScreeningKeys, StopKeys,
 };
 use crate::model::{Alignment, Calibration, Motion, case_attitude};
 use crate::quantity::{self, Dimension};

@@ -1,12 +1,12 @@
 //! Faults on connections of FMUs: reading of everything that needs no system.
 
 use super::grid::{Grid, Waiting, check_chains};
+use super::named;
 use super::value::value;
 use crate::arguments::fire;
-use crate::complete::complete;
-use crate::document::{self, Node, Value as Written, join, number};
+use crate::document::{Node, Table, Value as Written, join, number};
 use crate::error::{Place, Problem, ScenarioError};
-use crate::keys;
+use crate::keys::{ConnectionFaultKeys, ConnectionsKeys, FromTable, Keys, Raw, TriggerKeys};
 use crate::read::reader::Reader;
 use octant_faults::Values;
 use octant_faults::catalogue::{Parameter, Takes};
@@ -77,25 +77,15 @@ pub fn connection_faults(
     steps: u64,
     fires: &[String],
 ) -> Result<Vec<ConnectionFault>, ScenarioError> {
-    let with_file = |problems| ScenarioError { file: file.to_owned(), problems };
-    let mut table = document::parse(text).map_err(with_file)?;
-    let mut problems = Vec::new();
-    for argument in fires {
-        if let Err(problem) = fire(&mut table, argument) {
-            problems.push(problem);
-        }
-    }
-    let start = Place::File { line: 1, column: 1 };
-    complete(&mut table, &keys::CONNECTIONS, "", &start, &mut problems);
-    if !problems.is_empty() {
-        return Err(with_file(problems));
-    }
-    read(&Reader::root(&table), &Grid { period_ns: step_s * 1e9, step: "step" }, steps)
-        .map_err(|problem| with_file(vec![problem]))
+    let fire_all = |table: &mut Table, problems: &mut Vec<Problem>| {
+        problems.extend(fires.iter().filter_map(|argument| fire(table, argument).err()));
+    };
+    let grid = Grid { period_ns: step_s * 1e9, step: "step" };
+    ConnectionsKeys::parse(text, file, fire_all, |keys| read(keys, &grid, steps))
 }
 
-fn read(root: &Reader<'_>, grid: &Grid, steps: u64) -> Result<Vec<ConnectionFault>, Problem> {
-    let tables = root.tables("faults");
+fn read(keys: ConnectionsKeys, grid: &Grid, steps: u64) -> Result<Vec<ConnectionFault>, Problem> {
+    let tables: Vec<Reader<'_>> = keys.faults.iter().flatten().map(Raw::reader).collect();
     let mut all: Vec<ConnectionFault> = Vec::with_capacity(tables.len());
     for table in &tables {
         let fault = fault(table, grid)?;
@@ -129,13 +119,11 @@ fn read(root: &Reader<'_>, grid: &Grid, steps: u64) -> Result<Vec<ConnectionFaul
 }
 
 fn fault(table: &Reader<'_>, grid: &Grid) -> Result<ConnectionFault, Problem> {
-    let id = table.text("id")?;
-    if id.trim().is_empty() {
-        return Err(table.problem("id", "found an empty text, expected a name"));
-    }
-    let name = table.text("kind")?;
-    let kind = kinds::named(name)
-        .ok_or_else(|| table.problem("kind", format!("found {name:?}, which is no kind")))?;
+    let ConnectionFaultKeys { id, kind: name, connection, trigger } =
+        ConnectionFaultKeys::of(table)?;
+    let id = named(&id)?;
+    let kind = kinds::named(&name)
+        .ok_or_else(|| name.problem(format!("found {:?}, which is no kind", *name)))?;
     let mut places = vec![(String::new(), table.place.clone())];
     let mut values = Values::default();
     let mut given = Vec::new();
@@ -156,19 +144,21 @@ fn fault(table: &Reader<'_>, grid: &Grid) -> Result<ConnectionFault, Problem> {
             places.push((key.to_owned(), node.place.clone()));
         }
     }
-    let trigger = table.table("trigger")?;
-    let when = trigger.optional_text("when").map(str::to_owned);
-    let (of_trigger, fires) = match when {
-        Some(_) => (Trigger::Outside { delay: grid.delay(&trigger)? }, Vec::new()),
-        None => grid.trigger(&trigger)?,
+    let (when, read, fires) = match (&*trigger, grid.trigger(&trigger)?) {
+        (_, Some((read, fires))) => (None, read, fires),
+        (TriggerKeys::When(keys), None) => {
+            let delay = grid.epochs(keys.after);
+            (Some(keys.when.value.clone()), Trigger::Outside { delay }, Vec::new())
+        }
+        (_, None) => return Err(trigger.problem("missing")),
     };
     Ok(ConnectionFault {
-        id: id.to_owned(),
-        connection: table.text("connection")?.to_owned(),
+        id,
+        connection,
         kind,
         values,
         given,
-        schedule: grid.schedule(table, kind.lasts, of_trigger, &fires)?,
+        schedule: grid.schedule(table, kind.lasts, &trigger, (read, &fires))?,
         when,
         fires,
         places,

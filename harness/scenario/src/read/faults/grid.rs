@@ -1,8 +1,8 @@
 //! Epochs at equal intervals, and schedules on them: the part of a schedule that needs no core.
 
-use crate::document::{Node, Value};
 use crate::error::Problem;
-use crate::quantity::{self, Dimension};
+use crate::keys::{At, FromTable, LastingKeys, RepeatKeys, TriggerKeys};
+use crate::quantity::{Dimension, Quantity};
 use crate::read::reader::Reader;
 use octant_base::names::suggestion;
 use octant_faults::catalogue::Lasts;
@@ -22,14 +22,8 @@ impl Grid {
     }
 
     /// Converts a time, or a number of samples, to epochs.
-    pub(super) fn epochs(&self, table: &Reader<'_>, key: &str) -> Result<Option<u64>, Problem> {
-        let Some(text) = table.optional_text(key) else { return Ok(None) };
-        let quantity = quantity::parse(text).map_err(|_| table.problem(key, "missing"))?;
-        Ok(Some(if quantity.is(Dimension::SAMPLES) {
-            quantity.si as u64
-        } else {
-            self.of_time(quantity.si)
-        }))
+    pub(super) fn epochs(&self, quantity: Quantity) -> u64 {
+        if quantity.is(Dimension::SAMPLES) { quantity.si as u64 } else { self.of_time(quantity.si) }
     }
 
     pub(super) fn of_time(&self, time_s: f64) -> u64 {
@@ -38,105 +32,103 @@ impl Grid {
     }
 
     /// Converts as [`Self::epochs`] does, and requires at least one epoch.
-    pub(super) fn span(&self, table: &Reader<'_>, key: &str) -> Result<Option<u64>, Problem> {
-        match self.epochs(table, key)? {
-            Some(0) => {
-                let found = table.text(key)?;
-                let message = format!(
-                    "found {found:?}, which is less than a {} of {} s",
-                    self.step,
-                    self.period_s()
-                );
-                Err(table.problem(key, message))
-            }
+    fn span<Q: Copy + Into<Option<Quantity>>>(&self, at: &At<Q>) -> Result<Option<u64>, Problem> {
+        match at.value.into().map(|quantity| self.epochs(quantity)) {
+            Some(0) => Err(at.problem(format!(
+                "found {:?}, which is less than a {} of {} s",
+                at.text,
+                self.step,
+                self.period_s()
+            ))),
             other => Ok(other),
         }
     }
 
-    pub(super) fn or_zero(&self, table: &Reader<'_>, key: &str) -> Result<u64, Problem> {
-        self.epochs(table, key).map(Option::unwrap_or_default)
-    }
-
-    /// Delay of a fault after the event that it waits for.
-    pub(super) fn delay(&self, table: &Reader<'_>) -> Result<u64, Problem> {
-        self.or_zero(table, "after")
-    }
-
-    /// Reads a schedule with a given trigger.
+    /// Reads the schedule of a fault that lasts so, with a trigger, and the epochs at which it is fired
+    /// by hand.
     pub(super) fn schedule(
         &self,
         table: &Reader<'_>,
         lasts: Lasts,
-        trigger: Trigger,
-        fires: &[u64],
+        at: &At<TriggerKeys>,
+        (trigger, fires): (Trigger, &[u64]),
     ) -> Result<Schedule, Problem> {
+        let keys = LastingKeys::of(table)?;
+        let repeat = match &*keys.repeat {
+            None => Repeat::Once,
+            Some(RepeatKeys::EveryTime) => Repeat::EveryTime,
+            Some(RepeatKeys::Times(keys)) => {
+                Repeat::Times { times: keys.times, every: self.span(&keys.every)?.unwrap_or(1) }
+            }
+        };
         let schedule = Schedule {
             trigger,
-            duration: self.span(table, "duration")?,
-            recovery: self.or_zero(table, "recovery")?,
-            repeat: self.repeat(table)?,
+            duration: self.span(&keys.duration)?,
+            recovery: keys.recovery.map_or(0, |recovery| self.epochs(recovery)),
+            repeat,
         };
-        self.check_repetition(table, lasts, &schedule, fires)?;
+        self.check_repetition(&keys, at, lasts, &schedule, fires)?;
         Ok(schedule)
     }
 
     /// Reads a trigger by time, after another fault or by hand, and the epochs at which it is fired by
-    /// hand.
-    pub(super) fn trigger(&self, table: &Reader<'_>) -> Result<(Trigger, Vec<u64>), Problem> {
-        let first = || Ok(self.or_zero(table, "from")?.saturating_add(1));
-        let last = || Ok(self.span(table, "until")?.map(|until| until.saturating_add(1)));
-        let trigger = if table.node("at").is_some() {
-            Trigger::Epoch(self.or_zero(table, "at")?.saturating_add(1))
-        } else if table.node("sample").is_some() {
-            Trigger::Epoch(table.integer("sample")?)
-        } else if table.node("every").is_some() {
-            let period = self.span(table, "every")?.unwrap_or(1);
-            Trigger::Periodic { first: first()?, period, last: last()? }
-        } else if table.node("poisson").is_some() {
-            let quantity = quantity::parse(table.text("poisson")?)
-                .map_err(|_| table.problem("poisson", "missing"))?;
-            let is_time = quantity.is(Dimension::TIME);
-            let mean_s = if is_time { quantity.si } else { 1.0 / quantity.si };
-            Trigger::Poisson { first: first()?, last: last()?, mean: mean_s / self.period_s() }
-        } else if table.node("after_fault").is_some() {
-            let fault = table.text("after_fault")?.to_owned();
-            Trigger::After { fault, delay: self.delay(table)? }
-        } else {
-            if !table.boolean("manual")? {
-                return Err(table.problem("manual", "found false, expected true"));
+    /// hand; `None`: another one.
+    pub(super) fn trigger(
+        &self,
+        keys: &TriggerKeys,
+    ) -> Result<Option<(Trigger, Vec<u64>)>, Problem> {
+        let first = |from: Quantity| self.epochs(from).saturating_add(1);
+        let last = |until: &At<Option<Quantity>>, from| {
+            let last = self.span(until)?.map(|until| until.saturating_add(1));
+            if last.is_some_and(|last| last < first(from)) {
+                return Err(until.problem(format!("found {:?}, which is before from", until.text)));
             }
-            Trigger::Manual
+            Ok(last)
         };
-        if let Trigger::Periodic { first, last: Some(last), .. }
-        | Trigger::Poisson { first, last: Some(last), .. } = &trigger
-            && last < first
-        {
-            let message = format!("found {:?}, which is before from", table.text("until")?);
-            return Err(table.problem("until", message));
-        }
-        let mut fires: Vec<u64> = (table.optional_si_vec("fire").unwrap_or_default().into_iter())
-            .map(|time_s| self.of_time(time_s).saturating_add(1))
-            .collect();
-        fires.sort_unstable();
-        Ok((trigger, fires))
-    }
-
-    fn repeat(&self, table: &Reader<'_>) -> Result<Repeat, Problem> {
-        match table.node("repeat") {
-            None => Ok(Repeat::Once),
-            Some(Node { value: Value::Text(_), .. }) => Ok(Repeat::EveryTime),
-            Some(_) => {
-                let repeat = table.table("repeat")?;
-                let every = self.span(&repeat, "every")?.unwrap_or(1);
-                Ok(Repeat::Times { times: repeat.integer("times")?, every })
+        let mut fires = Vec::new();
+        let trigger = match keys {
+            TriggerKeys::At(keys) => Trigger::Epoch(first(keys.at)),
+            TriggerKeys::Sample(keys) => Trigger::Epoch(keys.sample),
+            TriggerKeys::Every(keys) => Trigger::Periodic {
+                period: self.span(&keys.every)?.unwrap_or(1),
+                first: first(keys.from),
+                last: last(&keys.until, keys.from)?,
+            },
+            TriggerKeys::Poisson(keys) => {
+                let is_time = keys.poisson.is(Dimension::TIME);
+                let mean_s = if is_time { keys.poisson.si } else { 1.0 / keys.poisson.si };
+                Trigger::Poisson {
+                    first: first(keys.from),
+                    last: last(&keys.until, keys.from)?,
+                    mean: mean_s / self.period_s(),
+                }
             }
-        }
+            TriggerKeys::AfterFault(keys) => {
+                Trigger::After { fault: keys.after_fault.clone(), delay: self.epochs(keys.after) }
+            }
+            TriggerKeys::Manual(keys) => {
+                if !*keys.manual {
+                    return Err(keys.manual.problem("found false, expected true"));
+                }
+                fires.extend(
+                    keys.fire.iter().flatten().map(|at_s| self.of_time(*at_s).saturating_add(1)),
+                );
+                fires.sort_unstable();
+                Trigger::Manual
+            }
+            TriggerKeys::Position(_)
+            | TriggerKeys::MovingTo(_)
+            | TriggerKeys::Mode(_)
+            | TriggerKeys::When(_) => return Ok(None),
+        };
+        Ok(Some((trigger, fires)))
     }
 
     /// Checks that a repeated fault ends before it returns, and that the repetition has an effect.
     fn check_repetition(
         &self,
-        table: &Reader<'_>,
+        keys: &LastingKeys,
+        at: &At<TriggerKeys>,
         lasts: Lasts,
         schedule: &Schedule,
         fires: &[u64],
@@ -149,25 +141,25 @@ impl Grid {
             matches!(schedule.trigger, Trigger::Periodic { .. } | Trigger::Poisson { .. });
         if schedule.duration.is_none() && schedule.recovery > 0 {
             let message = "without effect: without a duration it lasts to the end of the run";
-            return Err(table.problem("recovery", message));
+            return Err(keys.recovery.problem(message));
         }
         if by_itself && schedule.repeat != Repeat::Once {
             let message = "without effect: this trigger comes back by itself";
-            return Err(table.problem("repeat", message));
+            return Err(keys.repeat.problem(message));
         }
         if schedule.repeat == Repeat::EveryTime && matches!(schedule.trigger, Trigger::Epoch(_)) {
             let message = "without effect: a time comes once; give times and every";
-            return Err(table.problem("repeat", message));
+            return Err(keys.repeat.problem(message));
         }
         if length.is_none() && (by_itself || schedule.repeat != Repeat::Once) {
             let message = "missing: without it the fault lasts to the end of the run, and never \
                            comes back";
-            return Err(table.problem("duration", message));
+            return Err(keys.duration.problem(message));
         }
-        let (distance, key) = match (&schedule.trigger, schedule.repeat) {
-            (Trigger::Periodic { period, .. }, _) => (Some(*period), "trigger"),
-            (_, Repeat::Times { every, .. }) => (Some(every), "repeat"),
-            _ => (None, ""),
+        let distance = match (&schedule.trigger, schedule.repeat) {
+            (Trigger::Periodic { period, .. }, _) => Some(*period),
+            (_, Repeat::Times { every, .. }) => Some(every),
+            _ => None,
         };
         if let (Some(distance), Some(length)) = (distance, length)
             && distance <= length
@@ -177,12 +169,12 @@ impl Grid {
                 self.words(distance),
                 self.words(length)
             );
-            return Err(table.problem(key, message));
+            return Err(if by_itself { at.problem(message) } else { keys.repeat.problem(message) });
         }
         if fires.len() > 1 && schedule.repeat != Repeat::EveryTime {
             let message =
                 format!("fired {} times, which needs repeat = \"every time\"", fires.len());
-            return Err(table.problem("trigger", message));
+            return Err(at.problem(message));
         }
         Ok(())
     }

@@ -3,6 +3,7 @@
 use super::grid::Grid;
 use crate::condition;
 use crate::error::Problem;
+use crate::keys::{At, TriggerKeys};
 use crate::model::{Alignment, Calibration, Fault, Method, Scenario};
 use crate::read::reader::Reader;
 use octant_calibration::config::TurntableRates;
@@ -46,48 +47,44 @@ impl<'a> Timing<'a> {
         &self,
         table: &Reader<'_>,
         kind: &Kind,
+        trigger: &At<TriggerKeys>,
     ) -> Result<(Schedule, Vec<u64>), Problem> {
-        let (trigger, fires) = self.trigger(&table.table("trigger")?)?;
-        let schedule = self.grid.schedule(table, kind.lasts, trigger, &fires)?;
+        let (read, fires) = match self.grid.trigger(trigger)? {
+            Some(read) => read,
+            None => (self.trigger(trigger)?, Vec::new()),
+        };
+        let schedule = self.grid.schedule(table, kind.lasts, trigger, (read, &fires))?;
         Ok((schedule, fires))
     }
 
-    fn trigger(&self, table: &Reader<'_>) -> Result<(Trigger, Vec<u64>), Problem> {
-        let delay = self.grid.delay(table)?;
-        let mode = || {
-            Ok(if table.text("phase")? == "calibration" {
-                Mode::Calibrating
-            } else {
-                Mode::Navigating
-            })
-        };
-        let stop = |key| Ok(table.integer::<u16>(key)?.saturating_sub(1));
-        let trigger = if table.node("position").is_some() {
-            Trigger::Position { stop: stop("position")?, mode: mode()?, delay }
-        } else if table.node("moving_to").is_some() {
-            Trigger::Move { stop: stop("moving_to")?, mode: mode()?, delay }
-        } else if table.node("mode").is_some() {
-            let mode = match table.text("mode")? {
-                "aligning" => Mode::Aligning,
-                "calibrating" => Mode::Calibrating,
-                _ => Mode::Navigating,
-            };
-            Trigger::Mode { mode, delay }
-        } else if table.node("when").is_some() {
-            let (signal, comparison, value) =
-                condition::parse(table.text("when")?).map_err(|m| table.problem("when", m))?;
-            if signal.needs_truth()
-                && let Some(without) = self.scenario.source.without_truth()
-            {
-                let found = table.text("when")?;
-                let message = format!("found {found:?}, which needs truth, and {without}");
-                return Err(table.problem("when", message));
+    fn trigger(&self, at: &At<TriggerKeys>) -> Result<Trigger, Problem> {
+        let delay = |after| self.grid.epochs(after);
+        Ok(match &**at {
+            TriggerKeys::Position(keys) => Trigger::Position {
+                stop: keys.position.saturating_sub(1),
+                mode: keys.phase,
+                delay: delay(keys.after),
+            },
+            TriggerKeys::MovingTo(keys) => Trigger::Move {
+                stop: keys.moving_to.saturating_sub(1),
+                mode: keys.phase,
+                delay: delay(keys.after),
+            },
+            TriggerKeys::Mode(keys) => Trigger::Mode { mode: keys.mode, delay: delay(keys.after) },
+            TriggerKeys::When(keys) => {
+                let (signal, comparison, value) =
+                    condition::parse(&keys.when).map_err(|message| keys.when.problem(message))?;
+                if signal.needs_truth()
+                    && let Some(without) = self.scenario.source.without_truth()
+                {
+                    let found = &*keys.when;
+                    let message = format!("found {found:?}, which needs truth, and {without}");
+                    return Err(keys.when.problem(message));
+                }
+                Trigger::Condition { signal, comparison, value, delay: delay(keys.after) }
             }
-            Trigger::Condition { signal, comparison, value, delay }
-        } else {
-            return self.grid.trigger(table);
-        };
-        Ok((trigger, Vec::new()))
+            _ => return Err(at.problem("missing")),
+        })
     }
 
     /// Refuses a fault that can't fire, as far as that is known before the run.

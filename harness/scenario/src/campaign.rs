@@ -20,13 +20,12 @@
 //! uniform = [1, 1000]
 //! ```
 
+use crate::document::{self, Node, Table, Value};
+use crate::error::{Problem, ScenarioError};
+use crate::keys::{
+    At, CampaignKeys, CorrelationKeys, EarlyStopKeys, FactorKeys, Keys, LimitsKeys, MemberKeys,
+};
 use octant_base::names::suggestion;
-use octant_scenario::complete::complete;
-use octant_scenario::document::{self, Node, Table, Value};
-use octant_scenario::error::{Place, Problem, ScenarioError};
-use octant_scenario::keys::CAMPAIGN;
-use octant_scenario::read::Reader;
-use octant_statistics::proportion::Demand;
 use std::path::{Path, PathBuf};
 
 /// A campaign.
@@ -165,8 +164,10 @@ pub struct Limits {
 pub struct Stop {
     /// Requirement that decides.
     pub requirement: String,
-    /// Evidence required.
-    pub demand: Demand,
+    /// Least probability with which it is kept.
+    pub pass: f64,
+    /// Confidence in that, one-sided.
+    pub confidence: f64,
     /// Number of cases between evaluations.
     pub every: u64,
 }
@@ -199,113 +200,96 @@ impl Campaign {
     /// # Errors
     /// If it isn't TOML or isn't a campaign: every problem with its place.
     pub fn parse(text: &str, file: &str, folder: &Path) -> Result<Self, ScenarioError> {
-        let with_file = |problems| ScenarioError { file: file.to_owned(), problems };
-        let mut document = document::parse(text).map_err(with_file)?;
-        let mut problems = Vec::new();
-        let start = Place::File { line: 1, column: 1 };
-        complete(&mut document, &CAMPAIGN, "", &start, &mut problems);
-        if !problems.is_empty() {
-            return Err(with_file(problems));
-        }
-        read(&document, folder).map_err(|problem| with_file(vec![problem]))
+        let read = |keys| read(keys, folder);
+        CampaignKeys::parse(text, file, |_, _| (), read)
     }
 }
 
-fn read(document: &Table, folder: &Path) -> Result<Campaign, Problem> {
-    let root = Reader::root(document);
+fn read(keys: CampaignKeys, folder: &Path) -> Result<Campaign, Problem> {
     let mut scenarios: Vec<Member> = Vec::new();
-    for table in root.tables("scenarios") {
-        let id = unique(&table, "id", scenarios.iter().map(|member| member.id.as_str()))?;
-        let set = table.node("set").map_or(Vec::new(), settings);
-        let verifies = table.node("verifies").map(names);
-        scenarios.push(Member { id, file: folder.join(table.text("file")?), set, verifies });
+    for MemberKeys { id, file, set, verifies } in keys.scenarios {
+        let id = unique(&id, scenarios.iter().map(|member| member.id.as_str()))?;
+        let set = set.map_or(Vec::new(), |set| settings(&set.table));
+        scenarios.push(Member { id, file: folder.join(file), set, verifies });
     }
     let mut factors: Vec<Factor> = Vec::new();
-    for table in root.tables("factors") {
-        let name = unique(&table, "name", factors.iter().map(|factor| factor.name.as_str()))?;
-        let levels = levels(&table, &name)?;
+    for keys in keys.factors.into_iter().flatten() {
+        let at = keys.name().clone();
+        let name = unique(&at, factors.iter().map(|factor| factor.name.as_str()))?;
+        let levels = levels(keys)?;
         let other = factors.iter().find(|other| same_key(&other.levels, &levels));
         if let Some(other) = other {
-            return Err(table.problem(
-                "name",
-                format!("{name:?} and {:?} set the same: expected one factor for it", other.name),
-            ));
+            return Err(at.problem(format!(
+                "{name:?} and {:?} set the same: expected one factor for it",
+                other.name
+            )));
         }
         factors.push(Factor { name, levels });
     }
     let mut correlations: Vec<Correlation> = Vec::new();
-    for table in root.tables("correlations") {
-        let [first, second] = ["first", "second"].map(|key| drawn(&table, key, &factors));
-        let (first, second) = (first?, second?);
+    for CorrelationKeys { first: one, second: other, value } in
+        keys.correlations.into_iter().flatten()
+    {
+        let (first, second) = (drawn(&one, &factors)?, drawn(&other, &factors)?);
         if first == second {
-            return Err(table.problem("second", "expected another factor than the first"));
+            return Err(other.problem("expected another factor than the first"));
         }
         let pair = |c: &Correlation| [c.first.min(c.second), c.first.max(c.second)];
-        let correlation = Correlation { first, second, value: table.number("value")? };
+        let correlation = Correlation { first, second, value };
         if correlations.iter().any(|other| pair(other) == pair(&correlation)) {
-            return Err(table.problem("second", "these two have a correlation already"));
+            return Err(other.problem("these two have a correlation already"));
         }
         correlations.push(correlation);
     }
-    let limits = root.table("limits")?;
-    let stop = match root.optional_table("stop") {
-        None => None,
-        Some(stop) => Some(Stop {
-            requirement: stop.text("requirement")?.to_owned(),
-            demand: Demand { pass: stop.number("pass")?, confidence: stop.number("confidence")? },
-            every: stop.integer("every")?,
-        }),
+    let LimitsKeys { time: time_s, memory_mib } = keys.limits;
+    let stop = |EarlyStopKeys { requirement, pass, confidence, every }| Stop {
+        requirement,
+        pass,
+        confidence,
+        every,
     };
     Ok(Campaign {
-        title: root.text("title")?.to_owned(),
-        seed: root.integer("seed")?,
-        replicates: root.integer("replicates")?,
-        design: match root.text("design")? {
-            "latin-hypercube" => Design::LatinHypercube,
-            _ => Design::MonteCarlo,
-        },
-        requirements: root.optional_text("requirements").map(|file| folder.join(file)),
+        title: keys.title,
+        seed: keys.seed,
+        replicates: keys.replicates,
+        design: keys.design,
+        requirements: keys.requirements.map(|file| folder.join(file)),
         scenarios,
         factors,
         correlations,
-        limits: Limits { time_s: limits.si("time")?, memory_mib: limits.integer("memory_mib")? },
-        stop,
+        limits: Limits { time_s, memory_mib },
+        stop: keys.stop.map(stop),
     })
 }
 
 /// Reads a name that isn't taken yet.
 fn unique<'a>(
-    table: &Reader<'_>,
-    key: &str,
+    name: &At<String>,
     mut taken: impl Iterator<Item = &'a str>,
 ) -> Result<String, Problem> {
-    let name = table.text(key)?;
     if name.trim().is_empty() {
-        return Err(table.problem(key, "found an empty text, expected a name"));
+        return Err(name.problem("found an empty text, expected a name"));
     }
-    if taken.any(|other| other == name) {
-        return Err(
-            table.problem(key, format!("found {name:?} a second time, expected unique names"))
-        );
+    if taken.any(|other| other == **name) {
+        let message = format!("found {:?} a second time, expected unique names", **name);
+        return Err(name.problem(message));
     }
-    Ok(name.to_owned())
+    Ok(name.value.clone())
 }
 
 /// Lists the settings of a table as `KEY=VALUE`; nested tables are parts of keys.
-fn settings(node: &Node) -> Vec<String> {
-    fn walk(prefix: &str, node: &Node, all: &mut Vec<String>) {
-        match &node.value {
-            Value::Table(table) => {
-                for entry in &table.entries {
-                    let path = octant_scenario::complete::join(prefix, &entry.key);
-                    walk(&path, &entry.node, all);
-                }
+fn settings(table: &Table) -> Vec<String> {
+    fn walk(prefix: &str, table: &Table, all: &mut Vec<String>) {
+        for entry in &table.entries {
+            let path = document::join(prefix, &entry.key);
+            match &entry.node.value {
+                Value::Table(table) => walk(&path, table, all),
+                value => all.push(format!("{path}={}", toml(value))),
             }
-            value => all.push(format!("{prefix}={}", toml(value))),
         }
     }
     let mut all = Vec::new();
-    walk("", node, &mut all);
+    walk("", table, &mut all);
     all
 }
 
@@ -315,74 +299,73 @@ fn toml(value: &Value) -> String {
     text
 }
 
-fn levels(table: &Reader<'_>, name: &str) -> Result<Levels, Problem> {
-    let key = || table.optional_text("key").unwrap_or(name).to_owned();
-    let unit = || table.optional_text("unit").map(str::to_owned);
-    let distributed = |distribution| Levels::Distributed { key: key(), unit: unit(), distribution };
-    for (list, drawn) in [("values", false), ("choose", true)] {
-        if let Some(Node { value: Value::Array(entries), .. }) = table.node(list) {
-            let values: Vec<String> = entries.iter().map(|entry| toml(&entry.value)).collect();
-            once(table, list, &values)?;
-            return Ok(Levels::Values { key: key(), values, drawn });
-        }
-    }
-    if let Some(Node { value: Value::Array(entries), .. }) = table.node("faults") {
-        let lists: Vec<Vec<String>> = entries.iter().map(names).collect();
-        once(table, "faults", &lists)?;
-        return Ok(Levels::Faults { lists, drawn: table.boolean("draw")? });
-    }
-    if table.node("uniform").is_some() {
-        let [low, high] = table.numbers("uniform")?;
-        ascending(table, "uniform", low, high)?;
-        return Ok(distributed(Distribution::Uniform { low, high }));
-    }
-    let [mean, sigma] = table.numbers("normal")?;
-    if sigma <= 0.0 {
-        let message = format!("found a standard deviation of {sigma}, expected one above 0");
-        return Err(table.problem("normal", message));
-    }
-    let mut within = [f64::NEG_INFINITY, f64::INFINITY];
-    if table.node("within").is_some() {
-        within = table.numbers("within")?;
-        ascending(table, "within", within[0], within[1])?;
-        // The part of the distribution beyond this limit is less than 1e-15.
-        if within[0] > mean + 8.0 * sigma || within[1] < mean - 8.0 * sigma {
-            let message = "nothing of the distribution is between these limits".to_owned();
-            return Err(table.problem("within", message));
-        }
-    }
-    let [low, high] = within;
-    Ok(distributed(Distribution::Normal { mean, sigma, low, high }))
-}
-
-fn names(node: &Node) -> Vec<String> {
-    let Value::Array(entries) = &node.value else { return Vec::new() };
-    let text = |entry: &Node| match &entry.value {
-        Value::Text(text) => Some(text.clone()),
-        _ => None,
+fn levels(keys: FactorKeys) -> Result<Levels, Problem> {
+    let key = |name: At<String>, key: Option<String>| key.unwrap_or(name.value);
+    let values = |values: &At<Vec<Node>>| {
+        once(values, values.iter().map(|entry| toml(&entry.value)).collect())
     };
-    entries.iter().filter_map(text).collect()
+    Ok(match keys {
+        FactorKeys::Grid(keys) => Levels::Values {
+            values: values(&keys.values)?,
+            key: key(keys.name, keys.key),
+            drawn: false,
+        },
+        FactorKeys::Choose(keys) => Levels::Values {
+            values: values(&keys.choose)?,
+            key: key(keys.name, keys.key),
+            drawn: true,
+        },
+        FactorKeys::Faults(keys) => Levels::Faults {
+            lists: once(&keys.faults, keys.faults.value.clone())?,
+            drawn: keys.draw,
+        },
+        FactorKeys::Uniform(keys) => {
+            let [low, high] = *keys.uniform;
+            ascending(&keys.uniform, low, high)?;
+            Levels::Distributed {
+                key: key(keys.name, keys.key),
+                unit: keys.unit,
+                distribution: Distribution::Uniform { low, high },
+            }
+        }
+        FactorKeys::Normal(keys) => {
+            let [mean, sigma] = *keys.normal;
+            if sigma <= 0.0 {
+                let message =
+                    format!("found a standard deviation of {sigma}, expected one above 0");
+                return Err(keys.normal.problem(message));
+            }
+            let [low, high] = keys.within.unwrap_or([f64::NEG_INFINITY, f64::INFINITY]);
+            ascending(&keys.within, low, high)?;
+            // The part of the distribution beyond this limit is less than 1e-15.
+            if low > mean + 8.0 * sigma || high < mean - 8.0 * sigma {
+                let message = "nothing of the distribution is between these limits";
+                return Err(keys.within.problem(message));
+            }
+            Levels::Distributed {
+                key: key(keys.name, keys.key),
+                unit: keys.unit,
+                distribution: Distribution::Normal { mean, sigma, low, high },
+            }
+        }
+    })
 }
 
-fn ascending(table: &Reader<'_>, key: &str, low: f64, high: f64) -> Result<(), Problem> {
+fn ascending<T>(at: &At<T>, low: f64, high: f64) -> Result<(), Problem> {
     if low < high {
         return Ok(());
     }
-    Err(table.problem(key, format!("found {low} and {high}, expected the smaller one first")))
+    Err(at.problem(format!("found {low} and {high}, expected the smaller one first")))
 }
 
 /// Refuses a grid that contains a value twice, because it would run the same case twice.
-fn once<T: PartialEq + std::fmt::Debug>(
-    table: &Reader<'_>,
-    key: &str,
-    values: &[T],
-) -> Result<(), Problem> {
+fn once<T: PartialEq + std::fmt::Debug, A>(at: &At<A>, values: Vec<T>) -> Result<Vec<T>, Problem> {
     let again = values.iter().enumerate().find(|(i, value)| values[..*i].contains(value));
     match again {
         Some((_, value)) => {
-            Err(table.problem(key, format!("found {value:?} a second time, expected it once")))
+            Err(at.problem(format!("found {value:?} a second time, expected it once")))
         }
-        None => Ok(()),
+        None => Ok(values),
     }
 }
 
@@ -398,17 +381,16 @@ fn same_key(a: &Levels, b: &Levels) -> bool {
 }
 
 /// Returns the index of a factor that is drawn from a distribution.
-fn drawn(table: &Reader<'_>, key: &str, factors: &[Factor]) -> Result<usize, Problem> {
-    let name = table.text(key)?;
-    let of = |factor: &Factor| matches!(factor.levels, Levels::Distributed { .. });
-    let Some(index) = factors.iter().position(|factor| factor.name == name) else {
+fn drawn(name: &At<String>, factors: &[Factor]) -> Result<usize, Problem> {
+    let Some(index) = factors.iter().position(|factor| factor.name == **name) else {
         let known = suggestion(name, factors.iter().map(|factor| factor.name.as_str()), "factors");
-        return Err(table.problem(key, format!("found {name:?}, {known}")));
+        return Err(name.problem(format!("found {:?}, {known}", **name)));
     };
-    if !of(&factors[index]) {
-        let message =
-            format!("{name:?} has no distribution: expected a factor with uniform or normal");
-        return Err(table.problem(key, message));
+    if !matches!(factors[index].levels, Levels::Distributed { .. }) {
+        return Err(name.problem(format!(
+            "{:?} has no distribution: expected a factor with uniform or normal",
+            **name
+        )));
     }
     Ok(index)
 }
