@@ -60,6 +60,18 @@ impl Number for f32 {
     }
 }
 
+impl Number for f64 {
+    fn from_f64(value: f64) -> Option<Self> {
+        Some(value)
+    }
+    fn to_f64(self) -> Option<f64> {
+        Some(self)
+    }
+    fn words(self) -> String {
+        self.to_string()
+    }
+}
+
 /// A Boolean of either standard: zero is false, any other number is C's true.
 #[derive(Clone, Copy, Debug, Default)]
 #[repr(transparent)]
