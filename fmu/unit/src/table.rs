@@ -267,6 +267,17 @@ impl Variable {
     }
 }
 
+/// Makes an array of variables. Each row has the constructor of [`Variable`], its other properties,
+/// and the description: `input("gyro.delta_theta", Real) elements(3): "Increments.";`.
+macro_rules! variables {
+    ($($role:ident($name:expr, $kind:expr) $($property:ident($($value:expr),*))*: $text:expr;)*) => {
+        [$($crate::table::Variable::$role($name, $kind)
+            $(.$property($($value),*))*
+            .described($text)),*]
+    };
+}
+pub(crate) use variables;
+
 /// A model: its name, and its variables.
 #[derive(Debug)]
 pub struct Model {
@@ -318,7 +329,7 @@ impl Model {
     pub const fn slot(&self, name: &str) -> usize {
         let (mut slot, mut i) = (1, 0);
         while i < self.variables.len() {
-            if same(self.variables[i].name.as_bytes(), name.as_bytes()) {
+            if same(self.variables[i].name, name) {
                 return slot;
             }
             slot += self.variables[i].slots();
@@ -383,16 +394,14 @@ pub(crate) const fn count(parts: &[&[Variable]]) -> usize {
     count
 }
 
-const fn same(a: &[u8], b: &[u8]) -> bool {
-    if a.len() != b.len() {
-        return false;
-    }
+/// Compares names at compile time.
+pub(crate) const fn same(a: &str, b: &str) -> bool {
+    let (a, b) = (a.as_bytes(), b.as_bytes());
+    let mut same = a.len() == b.len();
     let mut i = 0;
-    while i < a.len() {
-        if a[i] != b[i] {
-            return false;
-        }
+    while same && i < a.len() {
+        same = a[i] == b[i];
         i += 1;
     }
-    true
+    same
 }

@@ -1,6 +1,6 @@
 //! Types with named values.
 
-use crate::table::Enumeration;
+use crate::table::{Enumeration, same};
 use octant_faults::catalogue::Acts;
 use octant_faults::kinds::KINDS;
 
@@ -41,17 +41,6 @@ static ITEMS: [(i32, &str, &str); COUNT] = items();
 
 /// Kinds on delivery that never release more than one sample in a step.
 const ONE_AT_A_TIME: &[&str] = &["dropout"];
-
-const fn same(a: &str, b: &str) -> bool {
-    let (a, b) = (a.as_bytes(), b.as_bytes());
-    let mut same = a.len() == b.len();
-    let mut i = 0;
-    while same && i < a.len() {
-        same = a[i] == b[i];
-        i += 1;
-    }
-    same
-}
 
 /// Returns whether a kind can act inside the plant.
 pub(crate) const fn acts_in_plant(kind: &octant_faults::Kind) -> bool {
