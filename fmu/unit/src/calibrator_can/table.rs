@@ -5,7 +5,7 @@ pub(super) mod slot;
 use crate::calibrator::table as calibrator;
 use crate::quantities as q;
 use crate::table::{
-    Binary, Enumeration, Kind, Model, Ticks, Variable, concatenated, same, variables,
+    Binary, Kind, Model, Ticks, Variable, concatenated, enumerations, same, variables,
 };
 
 /// Largest number of bytes of a tick, in both directions.
@@ -19,26 +19,20 @@ static RX_DATA: Binary =
 static TX_DATA: Binary =
     Binary { mime_type: MIME_TYPE, max_bytes: BYTES_MAX, clock: "can.Tx_Clock" };
 
-/// Action of the bus simulation on a frame that lost arbitration; values as on the bus.
-static ARBITRATION_LOST: Enumeration = Enumeration {
-    name: "ArbitrationLost",
-    description: "What the bus simulation does with a frame that loses the bus.",
-    items: &[
-        (1, "buffer", "It keeps the frame and sends it when the bus is free."),
-        (2, "discard", "It throws the frame away and says so; the device sends it again."),
-    ],
-};
-
-/// State of a CAN node; values as on the bus.
-static NODE_STATE: Enumeration = Enumeration {
-    name: "CanNodeState",
-    description: "State of a CAN node.",
-    items: &[
-        (1, "error_active", "It takes part."),
-        (2, "error_passive", "An error counter is above 127."),
-        (3, "bus_off", "The transmit error counter is above 255: it sends nothing."),
-    ],
-};
+enumerations! {
+    /// Action of the bus simulation on a frame that lost arbitration; values as on the bus.
+    ARBITRATION_LOST "ArbitrationLost"
+        "What the bus simulation does with a frame that loses the bus." {
+        1 buffer "It keeps the frame and sends it when the bus is free.";
+        2 discard "It throws the frame away and says so; the device sends it again.";
+    }
+    /// State of a CAN node; values as on the bus.
+    NODE_STATE "CanNodeState" "State of a CAN node." {
+        1 error_active "It takes part.";
+        2 error_passive "An error counter is above 127.";
+        3 bus_off "The transmit error counter is above 255: it sends nothing.";
+    }
+}
 
 /// Name of the bus, with which the names of its variables begin.
 pub const BUS: &str = "can";

@@ -47,16 +47,16 @@ macro_rules! stops {
                 within(-STOP_MAX_RAD, STOP_MAX_RAD) nominal(1.0)
                 start(const { &column($stops, 0, 0.0) }):
                 concat!("Inner gimbal at each stop, about body z, cumulative, where ", $named, " \
-             is custom; stops.count of them are used.");
+is custom; stops.count of them are used.");
             parameter(concat!($prefix, ".stops.roll"), Real) elements(STOPS_MAX) of(&q::ANGLE)
                 within(-STOP_MAX_RAD, STOP_MAX_RAD) nominal(1.0)
                 start(const { &column($stops, 1, 0.0) }):
                 concat!("Outer gimbal at each stop, about case x, cumulative, where ", $named, " \
-             is custom; stops.count of them are used.");
+is custom; stops.count of them are used.");
             parameter(concat!($prefix, ".stops.weight"), Real) elements(STOPS_MAX) min(0.0)
                 nominal(1.0) start(const { &column($stops, 2, 1.0) }):
                 concat!("Dwell at each stop relative to weight 1, above 0, where ", $named, " is \
-             custom; stops.count of them are used.");
+custom; stops.count of them are used.");
         }
     };
 }

@@ -32,7 +32,7 @@ macro_rules! gauss_markov {
         variables! {
             parameter(concat!("imu.", $name, ".enabled"), Boolean):
                 concat!("The ", $what, " wander as a first-order Gauss-Markov process, which the \
-             filter doesn't model.");
+filter doesn't model.");
             parameter(concat!("imu.", $name, ".sigma"), Real) of(&q::$quantity) min(0.0)
                 nominal($nominal) start(&[$nominal]):
                 concat!("Standard deviation of the wandering ", $what, ".");

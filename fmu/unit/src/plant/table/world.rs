@@ -61,7 +61,7 @@ macro_rules! sinusoids {
             parameter(concat!("motion.", $name, ".amplitude"), Real) elements(SINUSOIDS_MAX)
                 of(&q::$quantity) nominal($nominal):
                 concat!("Dockside: amplitudes A of ", $what, ", A sin(2 pi t / period + phase); \
-             count of them are used.");
+count of them are used.");
             parameter(concat!("motion.", $name, ".period"), Real) elements(SINUSOIDS_MAX)
                 of(&q::TIME) within(0.01, 1e7) nominal(8.0) start(&[8.0]):
                 concat!("Dockside: periods of ", $what, "; count of them are used.");
