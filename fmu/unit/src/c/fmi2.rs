@@ -29,9 +29,6 @@ fn enter(
     call(handle, STANDARD, function, work)
 }
 
-const NO_MODEL_EXCHANGE: &str = "there is no model exchange, only co-simulation";
-const NO_DERIVATIVES: &str = "the model is sampled: its variables have no derivatives";
-
 fn get<T: Type>(
     c: Component,
     function: &'static str,
@@ -104,7 +101,7 @@ export! {
         };
         let function = "fmi2Instantiate";
         if kind != CO_SIMULATION {
-            return no_instance(function, outlet, NO_MODEL_EXCHANGE);
+            return no_instance(function, outlet, mode::NO_MODEL_EXCHANGE);
         }
         // SAFETY: null, or strings.
         let (name, guid) = unsafe { (log::string(name), log::string(guid)) };
@@ -248,13 +245,13 @@ types! {
 }
 
 refused! {
-    mode::ALIVE, NO_DERIVATIVES =>
+    mode::ALIVE, mode::NO_DERIVATIVES =>
         fmi2GetDirectionalDerivative(
             *const ValueReference, usize, *const ValueReference, usize, *const f64, *mut f64)
         fmi2SetRealInputDerivatives(*const ValueReference, usize, *const i32, *const f64)
         fmi2GetRealOutputDerivatives(*const ValueReference, usize, *const i32, *mut f64);
     mode::NEVER, "no step is under way" => fmi2CancelStep();
-    mode::NEVER, NO_MODEL_EXCHANGE =>
+    mode::NEVER, mode::NO_MODEL_EXCHANGE =>
         fmi2EnterEventMode()
         fmi2NewDiscreteStates(*mut EventInfo)
         fmi2EnterContinuousTimeMode()

@@ -52,8 +52,8 @@ export! {
         environment: Environment,
         log: Option<LogMessage>,
     ) -> Handle {
-        let reason = "there is no model exchange, only co-simulation";
-        no_instance("fmi3InstantiateModelExchange", outlet(environment, log), reason)
+        let function = "fmi3InstantiateModelExchange";
+        no_instance(function, outlet(environment, log), mode::NO_MODEL_EXCHANGE)
     }
 
     /// Makes an instance of the model with this token; null: the log has the reason.

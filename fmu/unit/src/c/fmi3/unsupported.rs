@@ -33,12 +33,10 @@ pub(super) const CLOCKS: Modes = Modes::of(&[mode::Mode::Initialization, mode::M
 /// them.
 const OTHER_CLOCKS: &str = "clocks with fractions, shifts or intervals of the importer";
 
-const NO_DERIVATIVES: &str = "the model is sampled: its variables have no derivatives";
 const NO_STRUCTURE: &str = "there are no structural parameters";
-const NO_MODEL_EXCHANGE: &str = "there is no model exchange, only co-simulation";
 
 refused! {
-    mode::ALIVE, NO_DERIVATIVES =>
+    mode::ALIVE, mode::NO_DERIVATIVES =>
         fmi3GetDirectionalDerivative(
             *const ValueReference, usize, *const ValueReference, usize,
             *const f64, usize, *mut f64, usize)
@@ -48,7 +46,7 @@ refused! {
         fmi3GetOutputDerivatives(*const ValueReference, usize, *const i32, *mut f64, usize);
     mode::ALIVE, NO_STRUCTURE => fmi3EnterConfigurationMode();
     mode::NEVER, NO_STRUCTURE => fmi3ExitConfigurationMode();
-    mode::ALIVE, NO_MODEL_EXCHANGE =>
+    mode::ALIVE, mode::NO_MODEL_EXCHANGE =>
         fmi3EnterContinuousTimeMode()
         fmi3CompletedIntegratorStep(Boolean, *mut Boolean, *mut Boolean)
         fmi3SetTime(f64)
