@@ -317,58 +317,19 @@ fn is_usual(format: BinaryFormat, name: &str) -> bool {
     let lower = name.to_ascii_lowercase();
     match format {
         BinaryFormat::Elf => {
-            const STEMS: [&str; 13] = [
-                "libc",
-                "libm",
-                "libdl",
-                "libpthread",
-                "librt",
-                "libgcc_s",
-                "libstdc++",
-                "libutil",
-                "libresolv",
-                "ld-linux",
-                "ld-linux-x86-64",
-                "ld-linux-aarch64",
-                "ld-linux-armhf",
-            ];
-            lower.split_once(".so").is_some_and(|(stem, _)| STEMS.contains(&stem))
+            const STEMS: &str = "libc libm libdl libpthread librt libgcc_s libstdc++ libutil libresolv ld-linux \
+                 ld-linux-x86-64 ld-linux-aarch64 ld-linux-armhf";
+            lower
+                .split_once(".so")
+                .is_some_and(|(stem, _)| STEMS.split(' ').any(|known| known == stem))
         }
         BinaryFormat::Pe => {
-            const STEMS: [&str; 30] = [
-                "kernel32",
-                "user32",
-                "advapi32",
-                "ntdll",
-                "ws2_32",
-                "wsock32",
-                "ole32",
-                "oleaut32",
-                "shell32",
-                "gdi32",
-                "comdlg32",
-                "comctl32",
-                "bcrypt",
-                "bcryptprimitives",
-                "userenv",
-                "ucrtbase",
-                "msvcrt",
-                "winmm",
-                "version",
-                "dbghelp",
-                "secur32",
-                "crypt32",
-                "iphlpapi",
-                "psapi",
-                "shlwapi",
-                "setupapi",
-                "rpcrt4",
-                "synchronization",
-                "winspool",
-                "powrprof",
-            ];
+            const STEMS: &str = "kernel32 user32 advapi32 ntdll ws2_32 wsock32 ole32 oleaut32 shell32 gdi32 \
+                 comdlg32 comctl32 bcrypt bcryptprimitives userenv ucrtbase msvcrt winmm version \
+                 dbghelp secur32 crypt32 iphlpapi psapi shlwapi setupapi rpcrt4 synchronization \
+                 winspool powrprof";
             let stem = lower.strip_suffix(".dll").unwrap_or(&lower);
-            STEMS.contains(&stem) || stem.starts_with("api-ms-win-")
+            STEMS.split(' ').any(|known| known == stem) || stem.starts_with("api-ms-win-")
         }
         BinaryFormat::MachO => {
             name.starts_with("/usr/lib/") || name.starts_with("/System/Library/")

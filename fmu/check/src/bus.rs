@@ -264,7 +264,7 @@ fn described(variable: &Variable) -> String {
         Some(clock) => format!("a {:?} clock", clock.interval_variability).to_lowercase(),
         None => variable.kind.name().to_owned(),
     };
-    format!("{kind} and {}", super::variables::name(variable.causality))
+    format!("{kind} and {}", variable.causality.name())
 }
 
 /// Checks the nested terminal with the configuration of the node.

@@ -6,7 +6,6 @@ use super::rules::{
     CLOCK_CAUSALITY, CLOCK_EVENT_MODE, CLOCK_FRACTION, CLOCK_INTERVAL, CLOCK_PERIODIC,
     CLOCK_PRIORITY,
 };
-use super::variables::{name, word};
 use octant_fmu_host::description::{Causality, Clock, IntervalVariability, Variability};
 
 /// Checks the clocks.
@@ -19,7 +18,8 @@ pub(super) fn check(model: &Model<'_, '_>, findings: &mut Findings) {
         if !matches!(variable.causality, Causality::Input | Causality::Output | Causality::Local)
             || !matches!(variable.variability, Variability::Discrete | Variability::Tunable)
         {
-            let found = format!("{} and {}", name(variable.causality), word(variable.variability));
+            let found =
+                format!("{} and {}", variable.causality.name(), variable.variability.name());
             let expected = "input, output or local, and discrete or tunable";
             model.broken(findings, &CLOCK_CAUSALITY, declared, found, expected);
         }

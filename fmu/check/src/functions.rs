@@ -13,48 +13,32 @@ enum Of {
     ScheduledExecution,
 }
 
+/// Functions that belong to one interface; all others belong to every interface.
+const OF_INTERFACE: [(Of, &str); 3] = [
+    (
+        Of::ModelExchange,
+        "fmi2EnterEventMode fmi2NewDiscreteStates fmi2EnterContinuousTimeMode \
+         fmi2CompletedIntegratorStep fmi2SetTime fmi2SetContinuousStates fmi2GetDerivatives \
+         fmi2GetEventIndicators fmi2GetContinuousStates fmi2GetNominalsOfContinuousStates \
+         fmi3InstantiateModelExchange fmi3EnterContinuousTimeMode fmi3CompletedIntegratorStep \
+         fmi3SetTime fmi3SetContinuousStates fmi3GetContinuousStateDerivatives \
+         fmi3GetEventIndicators fmi3GetContinuousStates fmi3GetNominalsOfContinuousStates \
+         fmi3GetNumberOfEventIndicators fmi3GetNumberOfContinuousStates",
+    ),
+    (
+        Of::CoSimulation,
+        "fmi2SetRealInputDerivatives fmi2GetRealOutputDerivatives fmi2DoStep fmi2CancelStep \
+         fmi2GetStatus fmi2GetRealStatus fmi2GetIntegerStatus fmi2GetBooleanStatus \
+         fmi2GetStringStatus fmi3InstantiateCoSimulation fmi3EnterStepMode \
+         fmi3GetOutputDerivatives fmi3DoStep",
+    ),
+    (Of::ScheduledExecution, "fmi3InstantiateScheduledExecution fmi3ActivateModelPartition"),
+];
+
 /// Interface to which a function belongs; none: all of them.
 fn interface_of(function: &str) -> Option<Of> {
-    match function {
-        "fmi2EnterEventMode"
-        | "fmi2NewDiscreteStates"
-        | "fmi2EnterContinuousTimeMode"
-        | "fmi2CompletedIntegratorStep"
-        | "fmi2SetTime"
-        | "fmi2SetContinuousStates"
-        | "fmi2GetDerivatives"
-        | "fmi2GetEventIndicators"
-        | "fmi2GetContinuousStates"
-        | "fmi2GetNominalsOfContinuousStates"
-        | "fmi3InstantiateModelExchange"
-        | "fmi3EnterContinuousTimeMode"
-        | "fmi3CompletedIntegratorStep"
-        | "fmi3SetTime"
-        | "fmi3SetContinuousStates"
-        | "fmi3GetContinuousStateDerivatives"
-        | "fmi3GetEventIndicators"
-        | "fmi3GetContinuousStates"
-        | "fmi3GetNominalsOfContinuousStates"
-        | "fmi3GetNumberOfEventIndicators"
-        | "fmi3GetNumberOfContinuousStates" => Some(Of::ModelExchange),
-        "fmi2SetRealInputDerivatives"
-        | "fmi2GetRealOutputDerivatives"
-        | "fmi2DoStep"
-        | "fmi2CancelStep"
-        | "fmi2GetStatus"
-        | "fmi2GetRealStatus"
-        | "fmi2GetIntegerStatus"
-        | "fmi2GetBooleanStatus"
-        | "fmi2GetStringStatus"
-        | "fmi3InstantiateCoSimulation"
-        | "fmi3EnterStepMode"
-        | "fmi3GetOutputDerivatives"
-        | "fmi3DoStep" => Some(Of::CoSimulation),
-        "fmi3InstantiateScheduledExecution" | "fmi3ActivateModelPartition" => {
-            Some(Of::ScheduledExecution)
-        }
-        _ => None,
-    }
+    let mut interfaces = OF_INTERFACE.into_iter();
+    interfaces.find(|(_, names)| names.split(' ').any(|name| name == function)).map(|(of, _)| of)
 }
 
 /// Returns whether the function belongs to an interface of the FMU, or to all interfaces.

@@ -183,8 +183,7 @@ fn clocked(model: &Model<'_, '_>, declared: &Declared<'_, '_>, findings: &mut Fi
         return;
     }
     if !matches!(variable.variability, Variability::Discrete | Variability::Tunable) {
-        let found =
-            format!("a clocked variable that is {}", super::variables::word(variable.variability));
+        let found = format!("a clocked variable that is {}", variable.variability.name());
         model.broken(findings, &VARIABLE_CLOCKS, declared, found, "discrete or tunable");
     }
     for reference in &variable.clocks {

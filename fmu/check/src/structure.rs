@@ -8,7 +8,6 @@ use super::rules::{
     STRUCTURE_INITIAL_ORDER, STRUCTURE_KINDS, STRUCTURE_OUTPUT_ORDER, STRUCTURE_OUTPUTS,
     STRUCTURE_REFERENCE, STRUCTURE_STATE,
 };
-use super::variables::name;
 use octant_fmu_host::description::xml::Element;
 use octant_fmu_host::description::{Causality, Initial, Variability};
 use std::collections::BTreeSet;
@@ -247,8 +246,8 @@ fn derivatives<'m, 'a: 'm, 't: 'a>(
             let found = format!(
                 "a state that is {}, {}, {}",
                 model.variables[state].type_name(),
-                name(variable.causality),
-                super::variables::word(variable.variability)
+                variable.causality.name(),
+                variable.variability.name()
             );
             let expected = "a continuous real variable, local or an output";
             model.broken(findings, &STRUCTURE_STATE, &model.variables[state], found, expected);
@@ -320,8 +319,8 @@ fn indicators<'m, 'a: 'm, 't: 'a>(
             let found = format!(
                 "an event indicator that is {}, {}, {}",
                 declared.type_name(),
-                name(variable.causality),
-                super::variables::word(variable.variability)
+                variable.causality.name(),
+                variable.variability.name()
             );
             let place = model.at(entry.element, &variable.name);
             let expected = "a continuous real variable, local or an output";
@@ -377,7 +376,7 @@ fn dependencies(
                 variable.name,
                 entry.list.name(),
                 known.name,
-                name(known.causality)
+                known.causality.name()
             );
             let expected = match entry.list {
                 List::InitialUnknowns => "inputs, the independent variable, and what is exact",

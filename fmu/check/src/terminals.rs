@@ -127,7 +127,7 @@ fn members(
                         | Causality::CalculatedParameter
                 )
             {
-                let found = format!("{name:?}, which is {}", super::variables::name(causality));
+                let found = format!("{name:?}, which is {}", causality.name());
                 findings.add(
                     &TERMINALS_CAUSALITY,
                     place,

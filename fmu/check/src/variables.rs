@@ -68,9 +68,9 @@ fn causality(model: &Model<'_, '_>, declared: &Declared<'_, '_>, findings: &mut 
     }
     let allowed = allowed_variability(variable.causality);
     if !allowed.contains(&variability) {
-        let found = format!("{} and {}", name(variable.causality), word(variability));
-        let words: Vec<&str> = allowed.iter().map(|&one| word(one)).collect();
-        let expected = format!("{} and {}", name(variable.causality), words.join(" or "));
+        let found = format!("{} and {}", variable.causality.name(), variability.name());
+        let words: Vec<&str> = allowed.iter().map(|&one| one.name()).collect();
+        let expected = format!("{} and {}", variable.causality.name(), words.join(" or "));
         model.broken(findings, &VARIABLE_CAUSALITY, declared, found, expected);
         return false;
     }
@@ -83,10 +83,10 @@ fn causality(model: &Model<'_, '_>, declared: &Declared<'_, '_>, findings: &mut 
         let allowed = allowed_initial(model.standard(), variable.causality, variability);
         if !variable.initial.is_some_and(|initial| allowed.contains(&initial)) {
             let found =
-                format!("initial {text:?} of {} {}", word(variability), name(variable.causality));
+                format!("initial {text:?} of {} {}", variability.name(), variable.causality.name());
             let expected = match allowed {
                 [] => "no initial".to_owned(),
-                _ => allowed.iter().map(|&one| initial_word(one)).collect::<Vec<_>>().join(" or "),
+                _ => allowed.iter().map(|&one| one.name()).collect::<Vec<_>>().join(" or "),
             };
             model.broken(findings, &VARIABLE_INITIAL, declared, found, expected);
             return false;
@@ -137,8 +137,8 @@ fn start(model: &Model<'_, '_>, declared: &Declared<'_, '_>, findings: &mut Find
     if needs && !has_start {
         let what = match (variable.causality, variable.initial) {
             (Causality::Input | Causality::Parameter | Causality::StructuralParameter, _)
-            | (_, None) => name(variable.causality),
-            (_, Some(initial)) => initial_word(initial),
+            | (_, None) => variable.causality.name(),
+            (_, Some(initial)) => initial.name(),
         };
         model.broken(
             findings,
@@ -292,37 +292,5 @@ fn independent(model: &Model<'_, '_>, findings: &mut Findings) {
     if all.is_empty() && !model.is_fmi2() {
         let place = model.at(model.root.child("ModelVariables").unwrap_or(model.root), "");
         findings.add(&VARIABLE_INDEPENDENT, place, "no independent variable", "one, usually time");
-    }
-}
-
-/// Name of a causality in the standards.
-pub(super) fn name(causality: Causality) -> &'static str {
-    match causality {
-        Causality::StructuralParameter => "structuralParameter",
-        Causality::Parameter => "parameter",
-        Causality::CalculatedParameter => "calculatedParameter",
-        Causality::Input => "input",
-        Causality::Output => "output",
-        Causality::Local => "local",
-        Causality::Independent => "independent",
-    }
-}
-
-/// Name of a variability in the standards.
-pub(super) fn word(variability: Variability) -> &'static str {
-    match variability {
-        Variability::Constant => "constant",
-        Variability::Fixed => "fixed",
-        Variability::Tunable => "tunable",
-        Variability::Discrete => "discrete",
-        Variability::Continuous => "continuous",
-    }
-}
-
-fn initial_word(initial: Initial) -> &'static str {
-    match initial {
-        Initial::Exact => "exact",
-        Initial::Approx => "approx",
-        Initial::Calculated => "calculated",
     }
 }

@@ -141,34 +141,27 @@ impl Library {
 
     /// Checks that the indispensable functions exist, and that the library is of this standard.
     fn check(&self, fmu: &str, path: &Path) -> Result<(), InstanceError> {
-        let (needed, version, expected): (&[(&str, bool)], _, _) = match &self.functions {
+        macro_rules! needed {
+            ($of:ident: $($name:ident)*) => {
+                vec![$((stringify!($name), $of.$name.is_some())),*]
+            };
+        }
+        let (needed, version, expected) = match &self.functions {
             Functions::Fmi2(f) => (
-                &[
-                    ("fmi2Instantiate", f.instantiate.is_some()),
-                    ("fmi2FreeInstance", f.free_instance.is_some()),
-                    ("fmi2SetupExperiment", f.setup_experiment.is_some()),
-                    ("fmi2EnterInitializationMode", f.enter_initialization_mode.is_some()),
-                    ("fmi2ExitInitializationMode", f.exit_initialization_mode.is_some()),
-                    ("fmi2GetReal", f.get_real.is_some()),
-                    ("fmi2SetReal", f.set_real.is_some()),
-                ],
-                f.get_version,
+                needed!(f: fmi2Instantiate fmi2FreeInstance fmi2SetupExperiment
+                    fmi2EnterInitializationMode fmi2ExitInitializationMode fmi2GetReal fmi2SetReal),
+                f.fmi2GetVersion,
                 "2.",
             ),
-            Functions::Fmi3(f) => (
-                &[
-                    (
-                        "fmi3InstantiateCoSimulation or fmi3InstantiateModelExchange",
-                        f.instantiate_co_simulation.is_some()
-                            || f.instantiate_model_exchange.is_some(),
-                    ),
-                    ("fmi3FreeInstance", f.free_instance.is_some()),
-                    ("fmi3EnterInitializationMode", f.enter_initialization_mode.is_some()),
-                    ("fmi3ExitInitializationMode", f.exit_initialization_mode.is_some()),
-                ],
-                f.get_version,
-                "3.",
-            ),
+            Functions::Fmi3(f) => {
+                let either = f.fmi3InstantiateCoSimulation.is_some()
+                    || f.fmi3InstantiateModelExchange.is_some();
+                let mut needed = needed!(f: fmi3FreeInstance fmi3EnterInitializationMode
+                    fmi3ExitInitializationMode);
+                let name = "fmi3InstantiateCoSimulation or fmi3InstantiateModelExchange";
+                needed.insert(0, (name, either));
+                (needed, f.fmi3GetVersion, "3.")
+            }
         };
         let missing: Vec<&str> =
             needed.iter().filter(|(_, there)| !there).map(|(name, _)| *name).collect();

@@ -55,6 +55,25 @@ pub struct Enumeration {
     pub items: &'static [(i32, &'static str, &'static str)],
 }
 
+/// Declares types with named values: the name and description of each, and its items with value, name
+/// and description.
+macro_rules! enumerations {
+    ($(
+        $(#[$doc:meta])*
+        $vis:vis $type:ident $name:literal $description:literal {
+            $($value:literal $item:ident $says:literal;)*
+        }
+    )*) => {$(
+        $(#[$doc])*
+        $vis static $type: $crate::table::Enumeration = $crate::table::Enumeration {
+            name: $name,
+            description: $description,
+            items: &[$(($value, stringify!($item), $says)),*],
+        };
+    )*};
+}
+pub(crate) use enumerations;
+
 /// Role of a variable.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Causality {
@@ -267,6 +286,17 @@ impl Variable {
     }
 }
 
+/// Makes an array of variables. Each row has the constructor of [`Variable`], its other properties,
+/// and the description: `input("gyro.delta_theta", Real) elements(3): "Increments.";`.
+macro_rules! variables {
+    ($($role:ident($name:expr, $kind:expr) $($property:ident($($value:expr),*))*: $text:expr;)*) => {
+        [$($crate::table::Variable::$role($name, $kind)
+            $(.$property($($value),*))*
+            .described($text)),*]
+    };
+}
+pub(crate) use variables;
+
 /// A model: its name, and its variables.
 #[derive(Debug)]
 pub struct Model {
@@ -318,7 +348,7 @@ impl Model {
     pub const fn slot(&self, name: &str) -> usize {
         let (mut slot, mut i) = (1, 0);
         while i < self.variables.len() {
-            if same(self.variables[i].name.as_bytes(), name.as_bytes()) {
+            if same(self.variables[i].name, name) {
                 return slot;
             }
             slot += self.variables[i].slots();
@@ -383,16 +413,41 @@ pub(crate) const fn count(parts: &[&[Variable]]) -> usize {
     count
 }
 
-const fn same(a: &[u8], b: &[u8]) -> bool {
-    if a.len() != b.len() {
-        return false;
-    }
+/// Compares names at compile time.
+pub(crate) const fn same(a: &str, b: &str) -> bool {
+    let (a, b) = (a.as_bytes(), b.as_bytes());
+    let mut same = a.len() == b.len();
     let mut i = 0;
-    while i < a.len() {
-        if a[i] != b[i] {
-            return false;
-        }
+    while same && i < a.len() {
+        same = a[i] == b[i];
         i += 1;
     }
-    true
+    same
+}
+
+/// Checks that every variable of a model is described once, and starts within its range.
+#[cfg(test)]
+pub(crate) fn check(model: &Model) {
+    let mut names = std::collections::BTreeSet::new();
+    for variable in model.variables {
+        let name = variable.name;
+        assert!(names.insert(name), "{name} twice");
+        assert!(variable.description.ends_with('.'), "{name}");
+        let has_start = matches!(variable.causality, Causality::Parameter | Causality::Input);
+        assert_eq!(variable.start.is_empty(), !has_start, "{name}");
+        assert!(variable.start.len() <= 1 || variable.start.len() == variable.slots(), "{name}");
+        for start in variable.start {
+            assert!(variable.min.is_none_or(|min| *start >= min), "{name}: {start}");
+            assert!(variable.max.is_none_or(|max| *start <= max), "{name}: {start}");
+            if let Kind::Enumeration(of) = variable.kind {
+                assert!(of.items.iter().any(|item| f64::from(item.0) == *start), "{name}");
+            }
+        }
+        assert_eq!(model.find(name).unwrap().0, model.slot(name));
+    }
+    // No name may be a part of another's.
+    for name in &names {
+        let inner = format!("{name}.");
+        assert!(!names.iter().any(|other| other.starts_with(&inner)), "{name}");
+    }
 }

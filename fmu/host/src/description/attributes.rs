@@ -29,46 +29,19 @@ pub(super) fn interface(
 
 /// Reads `causality` as written.
 pub(super) fn causality(element: Element<'_, '_>) -> Result<Option<Causality>, DescriptionError> {
-    element.one_of(
-        "causality",
-        &[
-            ("parameter", Causality::Parameter),
-            ("calculatedParameter", Causality::CalculatedParameter),
-            ("input", Causality::Input),
-            ("output", Causality::Output),
-            ("local", Causality::Local),
-            ("independent", Causality::Independent),
-            ("structuralParameter", Causality::StructuralParameter),
-        ],
-    )
+    element.one_of("causality", &Causality::WORDS)
 }
 
 /// Reads `variability` as written.
 pub(super) fn variability(
     element: Element<'_, '_>,
 ) -> Result<Option<Variability>, DescriptionError> {
-    element.one_of(
-        "variability",
-        &[
-            ("constant", Variability::Constant),
-            ("fixed", Variability::Fixed),
-            ("tunable", Variability::Tunable),
-            ("discrete", Variability::Discrete),
-            ("continuous", Variability::Continuous),
-        ],
-    )
+    element.one_of("variability", &Variability::WORDS)
 }
 
 /// Reads `initial` as written.
 pub(super) fn initial(element: Element<'_, '_>) -> Result<Option<Initial>, DescriptionError> {
-    element.one_of(
-        "initial",
-        &[
-            ("exact", Initial::Exact),
-            ("approx", Initial::Approx),
-            ("calculated", Initial::Calculated),
-        ],
-    )
+    element.one_of("initial", &Initial::WORDS)
 }
 
 /// Default of `variability`: that of FMI 3.0 by the type, also used for FMI 2.0 where its default,

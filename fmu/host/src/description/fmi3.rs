@@ -220,17 +220,7 @@ fn clock(typed: Typed<'_, '_>) -> Result<Clock, DescriptionError> {
     let attribute = "intervalVariability";
     let interval_variability = typed
         .of(attribute)
-        .one_of(
-            attribute,
-            &[
-                ("constant", IntervalVariability::Constant),
-                ("fixed", IntervalVariability::Fixed),
-                ("tunable", IntervalVariability::Tunable),
-                ("changing", IntervalVariability::Changing),
-                ("countdown", IntervalVariability::Countdown),
-                ("triggered", IntervalVariability::Triggered),
-            ],
-        )?
+        .one_of(attribute, &IntervalVariability::WORDS)?
         .ok_or_else(|| typed.own.error(Some(attribute), "the attribute is missing", "a word"))?;
     Ok(Clock {
         interval_variability,

@@ -1,106 +1,73 @@
 //! Variables of a description.
 
-/// Type of a variable.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
-#[allow(missing_docs, reason = "named as in FMI 3.0")]
-pub enum Kind {
-    Float64,
-    Float32,
-    Int8,
-    UInt8,
-    Int16,
-    UInt16,
-    Int32,
-    UInt32,
-    Int64,
-    UInt64,
-    Boolean,
-    String,
-    Binary,
-    Enumeration,
-    Clock,
+/// Declares enumerations of the standards' words: the variants, each with its word.
+macro_rules! words {
+    ($($(#[$attribute:meta])* pub enum $name:ident { $($variant:ident $word:literal),* $(,)? })*) => {$(
+        $(#[$attribute])*
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        #[allow(missing_docs, reason = "named as in the standards")]
+        pub enum $name {
+            $($variant),*
+        }
+
+        impl $name {
+            /// All values.
+            pub const ALL: [Self; [$($word),*].len()] = [$(Self::$variant),*];
+
+            /// All words of the standards, with their values.
+            pub const WORDS: [(&'static str, Self); Self::ALL.len()] =
+                [$(($word, Self::$variant)),*];
+
+            /// Word of the standards.
+            #[must_use]
+            pub const fn name(self) -> &'static str {
+                match self {
+                    $(Self::$variant => $word),*
+                }
+            }
+        }
+    )*};
+}
+
+words! {
+    /// Type of a variable, with its name in FMI 3.0.
+    #[derive(Hash, serde::Serialize, serde::Deserialize)]
+    pub enum Kind {
+        Float64 "Float64", Float32 "Float32", Int8 "Int8", UInt8 "UInt8", Int16 "Int16",
+        UInt16 "UInt16", Int32 "Int32", UInt32 "UInt32", Int64 "Int64", UInt64 "UInt64",
+        Boolean "Boolean", String "String", Binary "Binary", Enumeration "Enumeration",
+        Clock "Clock",
+    }
+
+    /// Role of a variable.
+    pub enum Causality {
+        Parameter "parameter", CalculatedParameter "calculatedParameter", Input "input",
+        Output "output", Local "local", Independent "independent",
+        StructuralParameter "structuralParameter",
+    }
+
+    /// Times at which a variable changes.
+    pub enum Variability {
+        Constant "constant", Fixed "fixed", Tunable "tunable", Discrete "discrete",
+        Continuous "continuous",
+    }
+
+    /// Origin of a variable's first value.
+    pub enum Initial { Exact "exact", Approx "approx", Calculated "calculated" }
+
+    /// Variability of a clock's interval.
+    pub enum IntervalVariability {
+        Constant "constant", Fixed "fixed", Tunable "tunable", Changing "changing",
+        Countdown "countdown", Triggered "triggered",
+    }
 }
 
 impl Kind {
-    /// Name in FMI 3.0.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Float64 => "Float64",
-            Self::Float32 => "Float32",
-            Self::Int8 => "Int8",
-            Self::UInt8 => "UInt8",
-            Self::Int16 => "Int16",
-            Self::UInt16 => "UInt16",
-            Self::Int32 => "Int32",
-            Self::UInt32 => "UInt32",
-            Self::Int64 => "Int64",
-            Self::UInt64 => "UInt64",
-            Self::Boolean => "Boolean",
-            Self::String => "String",
-            Self::Binary => "Binary",
-            Self::Enumeration => "Enumeration",
-            Self::Clock => "Clock",
-        }
-    }
-
-    /// All types.
-    pub const ALL: [Self; 15] = [
-        Self::Float64,
-        Self::Float32,
-        Self::Int8,
-        Self::UInt8,
-        Self::Int16,
-        Self::UInt16,
-        Self::Int32,
-        Self::UInt32,
-        Self::Int64,
-        Self::UInt64,
-        Self::Boolean,
-        Self::String,
-        Self::Binary,
-        Self::Enumeration,
-        Self::Clock,
-    ];
-
     /// Returns whether the type is a floating-point number.
     #[must_use]
     pub const fn is_float(self) -> bool {
         matches!(self, Self::Float64 | Self::Float32)
     }
-}
-
-/// Role of a variable.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[allow(missing_docs, reason = "named as in the standards")]
-pub enum Causality {
-    StructuralParameter,
-    Parameter,
-    CalculatedParameter,
-    Input,
-    Output,
-    Local,
-    Independent,
-}
-
-/// Times at which a variable changes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[allow(missing_docs, reason = "named as in the standards")]
-pub enum Variability {
-    Constant,
-    Fixed,
-    Tunable,
-    Discrete,
-    Continuous,
-}
-
-/// Origin of a variable's first value.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[allow(missing_docs, reason = "named as in the standards")]
-pub enum Initial {
-    Exact,
-    Approx,
-    Calculated,
 }
 
 /// One dimension of an array.
@@ -206,16 +173,4 @@ pub struct Clock {
     pub priority: Option<u32>,
     /// `canBeDeactivated`.
     pub can_be_deactivated: bool,
-}
-
-/// Variability of a clock's interval.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[allow(missing_docs, reason = "named as in FMI 3.0")]
-pub enum IntervalVariability {
-    Constant,
-    Fixed,
-    Tunable,
-    Changing,
-    Countdown,
-    Triggered,
 }

@@ -6,21 +6,21 @@
 //! | `solver` | integration of the equations, with error control and dense output |
 //! | `crossing` | detection of sign changes of event indicators |
 //! | `integrate` | integration from one communication point to the next |
-//! | `fmi2`, `fmi3` | the functions of each standard |
+//! | `functions` | the functions of both standards |
 //!
 //! Between communication points inputs are constant, so that setting one is an event: the discrete
 //! equations are updated, and the solver restarts. The method is explicit: a stiff model is
 //! integrated correctly, but in many small steps, up to a limit.
 
 mod crossing;
-mod fmi2;
-mod fmi3;
+mod functions;
 mod integrate;
 mod solver;
 
 use super::description::Description;
 use super::instance::call::Condition;
 use super::instance::co_simulation::Phase;
+use super::instance::common::{functions_of_unit, instance_of_unit};
 use super::instance::states::States;
 use super::instance::unit::Continuous;
 use super::instance::{Access, Group, Instance, InstanceError, Message, Outcome, Stepped, Update};
@@ -74,14 +74,6 @@ impl<U: Continuous> Exchange<U> {
         }
     }
 
-    fn expect(&self, what: &str, phases: &[Phase]) -> Result<(), InstanceError> {
-        if phases.contains(&self.own.phase) {
-            Ok(())
-        } else {
-            Err(self.unit.base().order(what, self.own.phase.words()))
-        }
-    }
-
     /// Makes room for the FMU's present numbers of states and indicators.
     fn make_room(&mut self) -> Result<(), InstanceError> {
         let (states, indicators) = self.unit.counts()?;
@@ -132,13 +124,7 @@ impl<U: Continuous> Exchange<U> {
 }
 
 impl<U: Continuous> Instance for Exchange<U> {
-    fn name(&self) -> &str {
-        &self.unit.base().name
-    }
-
-    fn description(&self) -> &Description {
-        &self.unit.base().description
-    }
+    functions_of_unit!();
 
     fn enter_initialization(
         &mut self,
@@ -168,26 +154,6 @@ impl<U: Continuous> Instance for Exchange<U> {
 
     fn set(&mut self, group: &Group, values: &[f64]) -> Result<(), InstanceError> {
         self.with_access(group, |unit| unit.set(group, values))
-    }
-
-    fn get(&mut self, group: &Group, values: &mut [f64]) -> Result<(), InstanceError> {
-        self.unit.get(group, values)
-    }
-
-    fn set_strings(&mut self, group: &Group, values: &[String]) -> Result<(), InstanceError> {
-        self.with_access(group, |unit| unit.set_strings(group, values))
-    }
-
-    fn get_strings(&mut self, group: &Group) -> Result<Vec<String>, InstanceError> {
-        self.unit.get_strings(group)
-    }
-
-    fn set_binaries(&mut self, group: &Group, values: &[Vec<u8>]) -> Result<(), InstanceError> {
-        self.with_access(group, |unit| unit.set_binaries(group, values))
-    }
-
-    fn get_binaries(&mut self, group: &Group) -> Result<Vec<Vec<u8>>, InstanceError> {
-        self.unit.get_binaries(group)
     }
 
     fn step(&mut self, time_s: f64, step_s: f64) -> Result<Stepped, InstanceError> {
@@ -244,46 +210,14 @@ impl<U: Continuous> Instance for Exchange<U> {
         Ok(())
     }
 
-    fn forget_state(&mut self, state: u64) -> Result<(), InstanceError> {
-        self.kept.forget(&mut self.unit, state)
-    }
-
-    fn state_to_bytes(&mut self, state: u64) -> Result<Vec<u8>, InstanceError> {
-        self.kept.save(&mut self.unit, state)
-    }
-
-    fn state_from_bytes(&mut self, bytes: &[u8]) -> Result<u64, InstanceError> {
-        self.kept.load(&mut self.unit, bytes)
-    }
-
     fn reset(&mut self) -> Result<(), InstanceError> {
         self.unit.reset()?;
         self.own = Own { phase: Phase::New, time_s: 0.0, next_event_s: None, natural_s: 0.0 };
         Ok(())
     }
-
-    fn terminate(&mut self) -> Result<(), InstanceError> {
-        self.expect("the end", &[Phase::Step, Phase::Event])?;
-        self.unit.terminate()?;
-        self.own.phase = Phase::End;
-        Ok(())
-    }
-
-    fn messages(&mut self) -> Vec<Message> {
-        self.unit.base().messages()
-    }
 }
 
-impl<U: Continuous> Drop for Exchange<U> {
-    fn drop(&mut self) {
-        let runs = matches!(self.own.phase, Phase::Step | Phase::Event);
-        if runs && self.unit.base().condition == Condition::Sound {
-            // The instance is freed in any case, so that the answer doesn't matter.
-            let _ = self.unit.terminate();
-        }
-        self.kept.clear(&mut self.unit);
-    }
-}
+instance_of_unit!(Exchange, Continuous);
 
 /// Result of a step at which the FMU requests the end before the step's end.
 fn ended(time_s: f64) -> Stepped {

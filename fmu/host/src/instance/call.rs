@@ -188,29 +188,140 @@ impl Base {
     }
 }
 
-/// Calls a function of an FMU's table with its instance first; returns its status, or the error
-/// that it is missing or must not be called. With `mend`: also after the FMU answered error.
+/// Calls a function of an FMU's table with its instance first, and returns what its status means:
+/// [`Answer`], or an error, also if the function is missing or must not be called. With `mend`: also
+/// after the FMU answered error.
+macro_rules! ask {
+    (mend $unit:ident.$name:ident($($argument:expr),* $(,)?)) => {
+        $crate::instance::call::status!($unit $name true ($($argument),*))
+            .and_then(|status| $unit.base.answer(stringify!($name), status))
+    };
+    ($unit:ident.$name:ident($($argument:expr),* $(,)?)) => {
+        $crate::instance::call::status!($unit $name false ($($argument),*))
+            .and_then(|status| $unit.base.answer(stringify!($name), status))
+    };
+}
+pub(crate) use ask;
+
+/// Calls a function as [`ask!`] does, and takes a discarded or pending call as an error too.
 macro_rules! call {
-    ($unit:ident.$field:ident $name:literal ($($argument:expr),* $(,)?)) => {
-        $crate::instance::call::call!(@ $unit $field $name false ($($argument),*))
+    (mend $unit:ident.$name:ident($($argument:expr),* $(,)?)) => {
+        $crate::instance::call::status!($unit $name true ($($argument),*))
+            .and_then(|status| $unit.base.check(stringify!($name), status))
     };
-    (mend $unit:ident.$field:ident $name:literal ($($argument:expr),* $(,)?)) => {
-        $crate::instance::call::call!(@ $unit $field $name true ($($argument),*))
+    ($unit:ident.$name:ident($($argument:expr),* $(,)?)) => {
+        $crate::instance::call::status!($unit $name false ($($argument),*))
+            .and_then(|status| $unit.base.check(stringify!($name), status))
     };
-    (@ $unit:ident $field:ident $name:literal $mend:literal ($($argument:expr),*)) => {{
-        const NUMBER: u32 = $crate::instance::call::function_number($name);
-        let function = $unit.functions.$field.ok_or_else(|| $unit.base.missing($name))?;
-        $unit.base.ready($name, $mend)?;
-        $unit.base.mark.set(NUMBER);
-        // SAFETY: the instance is alive and sound, every pointer is to memory of the length that is
-        // given with it, and the function has the signature of the standard; what the FMU's own
-        // code does is the FMU's.
-        let status = unsafe { function($unit.instance, $($argument),*) };
-        $unit.base.mark.set($crate::instance::call::NOWHERE);
-        status
-    }};
 }
 pub(crate) use call;
+
+/// Calls a function and returns its status.
+macro_rules! status {
+    ($unit:ident $name:ident $mend:literal ($($argument:expr),*)) => {
+        match $unit.functions.$name {
+            None => Err($unit.base.missing(stringify!($name))),
+            Some(function) => $unit.base.ready(stringify!($name), $mend).map(|()| {
+                $unit.base.mark.set(const { $crate::instance::call::function_number(stringify!($name)) });
+                // SAFETY: the instance is alive and sound, every pointer is to memory of the length
+                // that is given with it, and the function has the signature of the standard; what
+                // the FMU's own code does is the FMU's.
+                let status = unsafe { function($unit.instance, $($argument),*) };
+                $unit.base.mark.set($crate::instance::call::NOWHERE);
+                status
+            }),
+        }
+    };
+}
+pub(crate) use status;
+
+/// The functions of [`super::unit::Unit`] that differ between the standards in their names alone.
+macro_rules! functions_of_both {
+    (
+        $exit_initialization:ident $terminate:ident $reset:ident $enter_event_mode:ident
+        $get_state:ident $set_state:ident $free_state:ident
+        $state_size:ident $serialize:ident $deserialize:ident
+    ) => {
+        fn base(&self) -> &Base {
+            &self.base
+        }
+
+        fn exit_initialization(&mut self) -> Result<(), InstanceError> {
+            call!(self.$exit_initialization())
+        }
+
+        fn terminate(&mut self) -> Result<(), InstanceError> {
+            call!(self.$terminate())
+        }
+
+        fn reset(&mut self) -> Result<(), InstanceError> {
+            call!(mend self.$reset())?;
+            self.base.condition = Condition::Sound;
+            Ok(())
+        }
+
+        fn enter_event_mode(&mut self) -> Result<(), InstanceError> {
+            call!(self.$enter_event_mode())
+        }
+
+        fn state(&mut self) -> Result<RawState, InstanceError> {
+            let mut state = ptr::null_mut();
+            call!(self.$get_state(&mut state))?;
+            Ok(state)
+        }
+
+        fn set_state(&mut self, state: RawState) -> Result<(), InstanceError> {
+            call!(mend self.$set_state(state))?;
+            self.base.condition = Condition::Sound;
+            Ok(())
+        }
+
+        fn free_state(&mut self, mut state: RawState) -> Result<(), InstanceError> {
+            call!(mend self.$free_state(&mut state))
+        }
+
+        fn serialize(&mut self, state: RawState) -> Result<Vec<u8>, InstanceError> {
+            let mut size = 0;
+            call!(self.$state_size(state, &mut size))?;
+            let mut bytes = self.base.state_buffer(size)?;
+            call!(self.$serialize(state, bytes.as_mut_ptr().cast(), size))?;
+            Ok(bytes)
+        }
+
+        fn deserialize(&mut self, bytes: &[u8]) -> Result<RawState, InstanceError> {
+            let mut state = ptr::null_mut();
+            call!(self.$deserialize(bytes.as_ptr().cast(), bytes.len(), &mut state))?;
+            Ok(state)
+        }
+    };
+}
+pub(crate) use functions_of_both;
+
+/// Frees an instance of either standard when it is dropped, unless the FMU is lost: then it isn't
+/// called again, and the objects that it may still use have to stay.
+macro_rules! free_on_drop {
+    ($free:ident, $($kept:ident),*) => {
+        impl Drop for Component {
+            fn drop(&mut self) {
+                if self.base.condition == Condition::Lost {
+                    std::mem::forget((
+                        $(Arc::clone(&self.$kept),)*
+                        Arc::clone(&self.base.log),
+                    ));
+                    return;
+                }
+                if let Some(free) = self.functions.$free {
+                    self.base.mark.set(function_number(stringify!($free)));
+                    // SAFETY: the instance is alive, and this is the last that is done with it.
+                    unsafe { free(self.instance) };
+                    // The library may be unloaded next, which runs its destructors.
+                    self.base.mark.set(LOADING);
+                }
+            }
+        }
+    };
+}
+pub(crate) use free_on_drop;
 
 #[cfg(test)]
 mod tests {

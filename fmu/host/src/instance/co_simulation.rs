@@ -3,6 +3,7 @@
 use super::super::description::Description;
 use super::call::Condition;
 use super::clocks::Clocks;
+use super::common::{functions_of_unit, instance_of_unit};
 use super::held::Held;
 use super::states::States;
 use super::unit::Steps;
@@ -43,7 +44,7 @@ impl Phase {
 pub(super) struct CoSimulation<U: Steps> {
     unit: U,
     own: Own,
-    states: States<Own>,
+    kept: States<Own>,
     held: Held,
 }
 
@@ -63,15 +64,7 @@ impl<U: Steps> CoSimulation<U> {
             Clocks::default()
         };
         let own = Own { phase: Phase::New, time_s: 0.0, clocks };
-        Self { unit, own, states: States::new(), held: Held::default() }
-    }
-
-    fn expect(&self, what: &str, phases: &[Phase]) -> Result<(), InstanceError> {
-        if phases.contains(&self.own.phase) {
-            Ok(())
-        } else {
-            Err(self.unit.base().order(what, self.own.phase.words()))
-        }
+        Self { unit, own, kept: States::new(), held: Held::default() }
     }
 
     /// Updates the discrete states until the FMU needs no more updates, and returns to step mode.
@@ -165,13 +158,7 @@ impl<U: Steps> CoSimulation<U> {
 }
 
 impl<U: Steps> Instance for CoSimulation<U> {
-    fn name(&self) -> &str {
-        &self.unit.base().name
-    }
-
-    fn description(&self) -> &Description {
-        &self.unit.base().description
-    }
+    functions_of_unit!();
 
     fn enter_initialization(
         &mut self,
@@ -224,26 +211,6 @@ impl<U: Steps> Instance for CoSimulation<U> {
             self.held.keep(place, group, values);
         }
         done
-    }
-
-    fn get(&mut self, group: &Group, values: &mut [f64]) -> Result<(), InstanceError> {
-        self.unit.get(group, values)
-    }
-
-    fn set_strings(&mut self, group: &Group, values: &[String]) -> Result<(), InstanceError> {
-        self.with_access(group, |unit| unit.set_strings(group, values))
-    }
-
-    fn get_strings(&mut self, group: &Group) -> Result<Vec<String>, InstanceError> {
-        self.unit.get_strings(group)
-    }
-
-    fn set_binaries(&mut self, group: &Group, values: &[Vec<u8>]) -> Result<(), InstanceError> {
-        self.with_access(group, |unit| unit.set_binaries(group, values))
-    }
-
-    fn get_binaries(&mut self, group: &Group) -> Result<Vec<Vec<u8>>, InstanceError> {
-        self.unit.get_binaries(group)
     }
 
     fn step(&mut self, time_s: f64, step_s: f64) -> Result<Stepped, InstanceError> {
@@ -307,25 +274,13 @@ impl<U: Steps> Instance for CoSimulation<U> {
     }
 
     fn keep_state(&mut self) -> Result<u64, InstanceError> {
-        self.states.keep(&mut self.unit, self.own.clone())
+        self.kept.keep(&mut self.unit, self.own.clone())
     }
 
     fn restore_state(&mut self, state: u64) -> Result<(), InstanceError> {
         self.held.forget();
-        self.own = self.states.restore(&mut self.unit, state)?;
+        self.own = self.kept.restore(&mut self.unit, state)?;
         Ok(())
-    }
-
-    fn forget_state(&mut self, state: u64) -> Result<(), InstanceError> {
-        self.states.forget(&mut self.unit, state)
-    }
-
-    fn state_to_bytes(&mut self, state: u64) -> Result<Vec<u8>, InstanceError> {
-        self.states.save(&mut self.unit, state)
-    }
-
-    fn state_from_bytes(&mut self, bytes: &[u8]) -> Result<u64, InstanceError> {
-        self.states.load(&mut self.unit, bytes)
     }
 
     fn reset(&mut self) -> Result<(), InstanceError> {
@@ -334,26 +289,6 @@ impl<U: Steps> Instance for CoSimulation<U> {
         self.own.phase = Phase::New;
         Ok(())
     }
-
-    fn terminate(&mut self) -> Result<(), InstanceError> {
-        self.expect("the end", &[Phase::Step, Phase::Event])?;
-        self.unit.terminate()?;
-        self.own.phase = Phase::End;
-        Ok(())
-    }
-
-    fn messages(&mut self) -> Vec<Message> {
-        self.unit.base().messages()
-    }
 }
 
-impl<U: Steps> Drop for CoSimulation<U> {
-    fn drop(&mut self) {
-        let runs = matches!(self.own.phase, Phase::Step | Phase::Event);
-        if runs && self.unit.base().condition == Condition::Sound {
-            // The instance is freed in any case, so that the answer doesn't matter.
-            let _ = self.unit.terminate();
-        }
-        self.states.clear(&mut self.unit);
-    }
-}
+instance_of_unit!(CoSimulation, Steps);

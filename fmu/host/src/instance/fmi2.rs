@@ -3,14 +3,17 @@
 
 use super::super::description::Kind;
 use super::super::library::{Functions, Library};
-use super::call::{Answer, Base, Condition, NOWHERE, call, function_number};
+use super::call::{
+    Answer, Base, Condition, LOADING, NOWHERE, ask, call, free_on_drop, function_number,
+    functions_of_both,
+};
 use super::message::{Log, callbacks, text};
-use super::number::Truth;
+use super::scratch::{Scratch2, get_through, set_through};
 use super::setup::{Setup, c_text};
 use super::unit::{Interval, RawState, Steps, Unit};
 use super::{Group, InstanceError, Outcome, Stepped, Update, group};
 use octant_fmi::fmi2;
-use std::ffi::{CString, c_char, c_void};
+use std::ffi::{CString, c_char};
 use std::ptr;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -30,8 +33,7 @@ pub(crate) struct Component {
     time_limit: Duration,
     /// True if states may be restored: then the FMU is told to keep the data needed for it.
     pub(crate) restorable: bool,
-    integers: Vec<i32>,
-    truths: Vec<Truth<i32>>,
+    scratch: Scratch2,
 }
 
 // SAFETY: the pointers are the FMU's handle and the callbacks, whose log is shared behind a lock.
@@ -50,7 +52,7 @@ impl Component {
         };
         let log = Log::new();
         let base = setup.base(&log);
-        if let Some(platform) = functions.get_types_platform {
+        if let Some(platform) = functions.fmi2GetTypesPlatform {
             base.mark.set(function_number("fmi2GetTypesPlatform"));
             // SAFETY: the function takes nothing and gives null or a text that stays.
             let platform = unsafe { text(platform(), STRING_MAX) };
@@ -67,7 +69,8 @@ impl Component {
         let resources = c_text(&setup.name, "the folder", &setup.resource_uri())?;
         #[allow(clippy::arc_with_non_send_sync, reason = "for its address, which has to stay")]
         let callbacks = Arc::new(callbacks(&log));
-        let instantiate = functions.instantiate.ok_or_else(|| base.missing("fmi2Instantiate"))?;
+        let instantiate =
+            functions.fmi2Instantiate.ok_or_else(|| base.missing("fmi2Instantiate"))?;
         base.mark.set(function_number("fmi2Instantiate"));
         // SAFETY: the texts live through the call, and the callbacks as long as the instance.
         let instance = unsafe {
@@ -93,8 +96,7 @@ impl Component {
             instance,
             time_limit: setup.time_limit,
             restorable: setup.interface.state,
-            integers: Vec::new(),
-            truths: Vec::new(),
+            scratch: Scratch2::default(),
         })
     }
 
@@ -112,15 +114,13 @@ impl Component {
         let until = Instant::now() + self.time_limit;
         loop {
             let mut status = fmi2::PENDING;
-            let asked = call!(self.get_status "fmi2GetStatus"(fmi2::DO_STEP_STATUS, &mut status));
-            self.base.check("fmi2GetStatus", asked)?;
+            call!(self.fmi2GetStatus(fmi2::DO_STEP_STATUS, &mut status))?;
             match self.base.answer("fmi2DoStep", status)? {
                 Answer::Pending if Instant::now() < until => {
                     std::thread::sleep(Duration::from_micros(100));
                 }
                 Answer::Pending => {
-                    let status = call!(self.cancel_step "fmi2CancelStep"());
-                    self.base.check("fmi2CancelStep", status)?;
+                    call!(self.fmi2CancelStep())?;
                     return Err(self.base.failed("fmi2DoStep", "pending beyond the time limit"));
                 }
                 answer => return Ok(answer),
@@ -135,19 +135,16 @@ impl Component {
         let mut terminated = fmi2::FALSE;
         // Both functions are optional in practice: without them the FMU is assumed to have made no
         // step and to continue.
-        if self.functions.get_real_status.is_some() {
-            let status = call!(self.get_real_status "fmi2GetRealStatus"(
-                fmi2::LAST_SUCCESSFUL_TIME, &mut reached_s));
-            if self.base.answer("fmi2GetRealStatus", status)? != Answer::Fine
-                || !reached_s.is_finite()
-            {
+        if self.functions.fmi2GetRealStatus.is_some() {
+            let kind = fmi2::LAST_SUCCESSFUL_TIME;
+            let answer = ask!(self.fmi2GetRealStatus(kind, &mut reached_s))?;
+            if answer != Answer::Fine || !reached_s.is_finite() {
                 reached_s = time_s;
             }
         }
-        if self.functions.get_boolean_status.is_some() {
-            let status = call!(self.get_boolean_status "fmi2GetBooleanStatus"(
-                fmi2::TERMINATED, &mut terminated));
-            if self.base.answer("fmi2GetBooleanStatus", status)? != Answer::Fine {
+        if self.functions.fmi2GetBooleanStatus.is_some() {
+            let kind = fmi2::TERMINATED;
+            if ask!(self.fmi2GetBooleanStatus(kind, &mut terminated))? != Answer::Fine {
                 terminated = fmi2::FALSE;
             }
         }
@@ -160,43 +157,11 @@ impl Component {
     }
 }
 
-/// Gets numbers of another type than f64 into `scratch` and from there into `values`.
-macro_rules! get_through {
-    ($unit:ident, $group:ident, $values:ident, $scratch:ident, $field:ident $name:literal) => {{
-        let mut scratch = std::mem::take(&mut $unit.$scratch);
-        scratch.clear();
-        scratch.resize_with($values.len(), Default::default);
-        let status = call!($unit.$field $name(
-            $group.references.as_ptr(),
-            $group.references.len(),
-            scratch.as_mut_ptr().cast(),
-        ));
-        let done = $unit.base.check($name, status).and_then(|()| {
-            group::numbers_to_f64(&$unit.base, $group, &scratch, $values)
-        });
-        $unit.$scratch = scratch;
-        done
-    }};
-}
-
-/// Sets numbers of another type than f64 from `values` through `scratch`.
-macro_rules! set_through {
-    ($unit:ident, $group:ident, $values:ident, $scratch:ident, $field:ident $name:literal) => {{
-        let mut scratch = std::mem::take(&mut $unit.$scratch);
-        group::numbers_from_f64(&$unit.base, $group, $values, &mut scratch)?;
-        let status = call!($unit.$field $name(
-            $group.references.as_ptr(),
-            $group.references.len(),
-            scratch.as_ptr().cast(),
-        ));
-        $unit.$scratch = scratch;
-        $unit.base.check($name, status)
-    }};
-}
-
 impl Unit for Component {
-    fn base(&self) -> &Base {
-        &self.base
+    functions_of_both! {
+        fmi2ExitInitializationMode fmi2Terminate fmi2Reset fmi2EnterEventMode
+        fmi2GetFMUstate fmi2SetFMUstate fmi2FreeFMUstate
+        fmi2SerializedFMUstateSize fmi2SerializeFMUstate fmi2DeSerializeFMUstate
     }
 
     fn enter_initialization(
@@ -205,33 +170,14 @@ impl Unit for Component {
         stop_s: Option<f64>,
         tolerance: Option<f64>,
     ) -> Result<(), InstanceError> {
-        let status = call!(self.setup_experiment "fmi2SetupExperiment"(
+        call!(self.fmi2SetupExperiment(
             i32::from(tolerance.is_some()),
             tolerance.unwrap_or(0.0),
             start_s,
             i32::from(stop_s.is_some()),
             stop_s.unwrap_or(start_s),
-        ));
-        self.base.check("fmi2SetupExperiment", status)?;
-        let status = call!(self.enter_initialization_mode "fmi2EnterInitializationMode"());
-        self.base.check("fmi2EnterInitializationMode", status)
-    }
-
-    fn exit_initialization(&mut self) -> Result<(), InstanceError> {
-        let status = call!(self.exit_initialization_mode "fmi2ExitInitializationMode"());
-        self.base.check("fmi2ExitInitializationMode", status)
-    }
-
-    fn terminate(&mut self) -> Result<(), InstanceError> {
-        let status = call!(self.terminate "fmi2Terminate"());
-        self.base.check("fmi2Terminate", status)
-    }
-
-    fn reset(&mut self) -> Result<(), InstanceError> {
-        let status = call!(mend self.reset "fmi2Reset"());
-        self.base.check("fmi2Reset", status)?;
-        self.base.condition = Condition::Sound;
-        Ok(())
+        ))?;
+        call!(self.fmi2EnterInitializationMode())
     }
 
     fn set(&mut self, group: &Group, values: &[f64]) -> Result<(), InstanceError> {
@@ -239,15 +185,12 @@ impl Unit for Component {
         match group.kind {
             Kind::Float64 => {
                 let (references, count) = (group.references.as_ptr(), group.references.len());
-                let status = call!(self.set_real "fmi2SetReal"(references, count, values.as_ptr()));
-                self.base.check("fmi2SetReal", status)
+                call!(self.fmi2SetReal(references, count, values.as_ptr()))
             }
             Kind::Int32 | Kind::Enumeration => {
-                set_through!(self, group, values, integers, set_integer "fmi2SetInteger")
+                set_through!(self.Integer, group, values, fmi2SetInteger)
             }
-            Kind::Boolean => {
-                set_through!(self, group, values, truths, set_boolean "fmi2SetBoolean")
-            }
+            Kind::Boolean => set_through!(self.Boolean, group, values, fmi2SetBoolean),
             _ => Err(self.unsupported_kind(group, "set")),
         }
     }
@@ -257,16 +200,12 @@ impl Unit for Component {
         match group.kind {
             Kind::Float64 => {
                 let (references, count) = (group.references.as_ptr(), group.references.len());
-                let status =
-                    call!(self.get_real "fmi2GetReal"(references, count, values.as_mut_ptr()));
-                self.base.check("fmi2GetReal", status)
+                call!(self.fmi2GetReal(references, count, values.as_mut_ptr()))
             }
             Kind::Int32 | Kind::Enumeration => {
-                get_through!(self, group, values, integers, get_integer "fmi2GetInteger")
+                get_through!(self.Integer, group, values, fmi2GetInteger)
             }
-            Kind::Boolean => {
-                get_through!(self, group, values, truths, get_boolean "fmi2GetBoolean")
-            }
+            Kind::Boolean => get_through!(self.Boolean, group, values, fmi2GetBoolean),
             _ => Err(self.unsupported_kind(group, "get")),
         }
     }
@@ -278,17 +217,21 @@ impl Unit for Component {
             .map(|value| c_text(&self.base.name, "a text", value))
             .collect::<Result<_, _>>()?;
         let pointers: Vec<*const c_char> = texts.iter().map(|text| text.as_ptr()).collect();
-        let status = call!(self.set_string "fmi2SetString"(
-            group.references.as_ptr(), group.references.len(), pointers.as_ptr()));
-        self.base.check("fmi2SetString", status)
+        call!(self.fmi2SetString(
+            group.references.as_ptr(),
+            group.references.len(),
+            pointers.as_ptr()
+        ))
     }
 
     fn get_strings(&mut self, group: &Group) -> Result<Vec<String>, InstanceError> {
         group::expect_scalars(&self.base, group, group.elements)?;
         let mut pointers = vec![ptr::null(); group.elements];
-        let status = call!(self.get_string "fmi2GetString"(
-            group.references.as_ptr(), group.references.len(), pointers.as_mut_ptr()));
-        self.base.check("fmi2GetString", status)?;
+        call!(self.fmi2GetString(
+            group.references.as_ptr(),
+            group.references.len(),
+            pointers.as_mut_ptr()
+        ))?;
         // SAFETY: null or the FMU's text, which lives until the next call.
         Ok(pointers.into_iter().map(|pointer| unsafe { text(pointer, STRING_MAX) }).collect())
     }
@@ -313,15 +256,9 @@ impl Unit for Component {
         self.enter_configuration_mode()
     }
 
-    fn enter_event_mode(&mut self) -> Result<(), InstanceError> {
-        let status = call!(self.enter_event_mode "fmi2EnterEventMode"());
-        self.base.check("fmi2EnterEventMode", status)
-    }
-
     fn update_discrete_states(&mut self) -> Result<Update, InstanceError> {
         let mut info = fmi2::EventInfo::default();
-        let status = call!(self.new_discrete_states "fmi2NewDiscreteStates"(&mut info));
-        self.base.check("fmi2NewDiscreteStates", status)?;
+        call!(self.fmi2NewDiscreteStates(&mut info))?;
         Ok(Update {
             again: info.new_discrete_states_needed != 0,
             terminate: info.terminate_simulation != 0,
@@ -329,45 +266,6 @@ impl Unit for Component {
             states_changed: info.values_of_continuous_states_changed != 0,
             next_event_time_s: (info.next_event_time_defined != 0).then_some(info.next_event_time),
         })
-    }
-
-    fn state(&mut self) -> Result<RawState, InstanceError> {
-        let mut state = ptr::null_mut();
-        let status = call!(self.get_fmu_state "fmi2GetFMUstate"(&mut state));
-        self.base.check("fmi2GetFMUstate", status)?;
-        Ok(state)
-    }
-
-    fn set_state(&mut self, state: RawState) -> Result<(), InstanceError> {
-        let status = call!(mend self.set_fmu_state "fmi2SetFMUstate"(state));
-        self.base.check("fmi2SetFMUstate", status)?;
-        self.base.condition = Condition::Sound;
-        Ok(())
-    }
-
-    fn free_state(&mut self, mut state: RawState) -> Result<(), InstanceError> {
-        let status = call!(mend self.free_fmu_state "fmi2FreeFMUstate"(&mut state));
-        self.base.check("fmi2FreeFMUstate", status)
-    }
-
-    fn serialize(&mut self, state: RawState) -> Result<Vec<u8>, InstanceError> {
-        let mut size = 0;
-        let status =
-            call!(self.serialized_fmu_state_size "fmi2SerializedFMUstateSize"(state, &mut size));
-        self.base.check("fmi2SerializedFMUstateSize", status)?;
-        let mut bytes = self.base.state_buffer(size)?;
-        let status = call!(self.serialize_fmu_state "fmi2SerializeFMUstate"(
-            state, bytes.as_mut_ptr().cast(), size));
-        self.base.check("fmi2SerializeFMUstate", status)?;
-        Ok(bytes)
-    }
-
-    fn deserialize(&mut self, bytes: &[u8]) -> Result<RawState, InstanceError> {
-        let mut state: *mut c_void = ptr::null_mut();
-        let status = call!(self.deserialize_fmu_state "fmi2DeSerializeFMUstate"(
-            bytes.as_ptr().cast(), bytes.len(), &mut state));
-        self.base.check("fmi2DeSerializeFMUstate", status)?;
-        Ok(state)
     }
 }
 
@@ -381,8 +279,7 @@ impl Steps for Component {
     }
 
     fn do_step(&mut self, time_s: f64, step_s: f64) -> Result<Stepped, InstanceError> {
-        let status = call!(self.do_step "fmi2DoStep"(time_s, step_s, i32::from(!self.restorable)));
-        let mut answer = self.base.answer("fmi2DoStep", status)?;
+        let mut answer = ask!(self.fmi2DoStep(time_s, step_s, i32::from(!self.restorable)))?;
         if answer == Answer::Pending {
             answer = self.wait()?;
         }
@@ -406,23 +303,4 @@ impl Steps for Component {
     }
 }
 
-impl Drop for Component {
-    fn drop(&mut self) {
-        if self.base.condition == Condition::Lost {
-            // A lost FMU isn't called again, so that the objects it may still use have to stay.
-            std::mem::forget((
-                Arc::clone(&self.library),
-                Arc::clone(&self.callbacks),
-                Arc::clone(&self.base.log),
-            ));
-            return;
-        }
-        if let Some(free) = self.functions.free_instance {
-            self.base.mark.set(function_number("fmi2FreeInstance"));
-            // SAFETY: the instance is alive, and this is the last that is done with it.
-            unsafe { free(self.instance) };
-            // The library may be unloaded next, which runs its destructors.
-            self.base.mark.set(super::call::LOADING);
-        }
-    }
-}
+free_on_drop!(fmi2FreeInstance, library, callbacks);

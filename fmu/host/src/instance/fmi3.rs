@@ -3,14 +3,17 @@
 
 use super::super::description::Kind;
 use super::super::library::{Functions, Library};
-use super::call::{Answer, Base, Condition, LOADING, NOWHERE, call, function_number};
+use super::call::{
+    Answer, Base, Condition, LOADING, NOWHERE, ask, call, free_on_drop, function_number,
+    functions_of_both,
+};
 use super::message::{Log, log_message, text};
-use super::scratch::Scratch;
+use super::scratch::{Scratch3, get_through, set_through};
 use super::setup::{Setup, c_text};
 use super::unit::{Interval, RawState, Steps, Unit};
 use super::{Group, InstanceError, Outcome, Stepped, Update, group};
-use octant_fmi::fmi3;
-use std::ffi::{CString, c_char, c_void};
+use octant_fmi::{fmi3, fmi3_types};
+use std::ffi::{CString, c_char};
 use std::ptr;
 use std::sync::Arc;
 
@@ -28,7 +31,7 @@ pub(crate) struct Component {
     event_mode: bool,
     /// True if states may be restored: then the FMU is told to keep the data needed for it.
     pub(crate) restorable: bool,
-    scratch: Scratch,
+    scratch: Scratch3,
 }
 
 // SAFETY: the pointers are the FMU's handle; the log is shared behind a lock. The FMU is called by
@@ -64,7 +67,7 @@ impl Component {
             Use::CoSimulation => {
                 let function = "fmi3InstantiateCoSimulation";
                 let instantiate =
-                    functions.instantiate_co_simulation.ok_or_else(|| base.missing(function))?;
+                    functions.fmi3InstantiateCoSimulation.ok_or_else(|| base.missing(function))?;
                 base.mark.set(function_number("fmi3InstantiateCoSimulation"));
                 // SAFETY: the texts live through the call, and the log as long as the instance.
                 let instance = unsafe {
@@ -88,7 +91,7 @@ impl Component {
             Use::ModelExchange => {
                 let function = "fmi3InstantiateModelExchange";
                 let instantiate =
-                    functions.instantiate_model_exchange.ok_or_else(|| base.missing(function))?;
+                    functions.fmi3InstantiateModelExchange.ok_or_else(|| base.missing(function))?;
                 base.mark.set(function_number("fmi3InstantiateModelExchange"));
                 // SAFETY: as above.
                 let instance = unsafe {
@@ -116,7 +119,7 @@ impl Component {
             instance,
             event_mode,
             restorable: setup.interface.state,
-            scratch: Scratch::default(),
+            scratch: Scratch3::default(),
         })
     }
 
@@ -147,45 +150,43 @@ unsafe extern "C" fn intermediate_update(
     }
 }
 
-/// Gets numbers through a buffer of their type.
-macro_rules! get_through {
-    ($unit:ident, $group:ident, $values:ident, $scratch:ident, $field:ident $name:literal) => {{
-        let mut scratch = std::mem::take(&mut $unit.scratch.$scratch);
-        scratch.clear();
-        scratch.resize_with($values.len(), Default::default);
-        let status = call!($unit.$field $name(
-            $group.references.as_ptr(),
-            $group.references.len(),
-            scratch.as_mut_ptr().cast(),
-            scratch.len(),
-        ));
-        let done = $unit.base.check($name, status).and_then(|()| {
-            group::numbers_to_f64(&$unit.base, $group, &scratch, $values)
-        });
-        $unit.scratch.$scratch = scratch;
-        done
-    }};
-}
+macro_rules! numbers {
+    ($($kind:ident $value:ident: $get:ident $set:ident;)*) => {
+        impl Component {
+            /// Gets variables through a buffer of their type.
+            fn get_numbers(
+                &mut self,
+                group: &Group,
+                values: &mut [f64],
+            ) -> Result<(), InstanceError> {
+                match type_of(group.kind) {
+                    $(Kind::$kind => get_through!(self.$kind, group, values, $get, len),)*
+                    _ => Err(self.unsupported_kind(group, "get")),
+                }
+            }
 
-/// Sets numbers through a buffer of their type.
-macro_rules! set_through {
-    ($unit:ident, $group:ident, $values:ident, $scratch:ident, $field:ident $name:literal) => {{
-        let mut scratch = std::mem::take(&mut $unit.scratch.$scratch);
-        group::numbers_from_f64(&$unit.base, $group, $values, &mut scratch)?;
-        let status = call!($unit.$field $name(
-            $group.references.as_ptr(),
-            $group.references.len(),
-            scratch.as_ptr().cast(),
-            scratch.len(),
-        ));
-        $unit.scratch.$scratch = scratch;
-        $unit.base.check($name, status)
-    }};
+            /// Sets variables through a buffer of their type.
+            fn set_numbers(&mut self, group: &Group, values: &[f64]) -> Result<(), InstanceError> {
+                match type_of(group.kind) {
+                    $(Kind::$kind => set_through!(self.$kind, group, values, $set, len),)*
+                    _ => Err(self.unsupported_kind(group, "set")),
+                }
+            }
+        }
+    };
+}
+fmi3_types!(numbers);
+
+/// Type of the functions that access variables of a kind: an Enumeration is an Int64.
+fn type_of(kind: Kind) -> Kind {
+    if kind == Kind::Enumeration { Kind::Int64 } else { kind }
 }
 
 impl Unit for Component {
-    fn base(&self) -> &Base {
-        &self.base
+    functions_of_both! {
+        fmi3ExitInitializationMode fmi3Terminate fmi3Reset fmi3EnterEventMode
+        fmi3GetFMUState fmi3SetFMUState fmi3FreeFMUState
+        fmi3SerializedFMUStateSize fmi3SerializeFMUState fmi3DeserializeFMUState
     }
 
     fn enter_initialization(
@@ -194,31 +195,13 @@ impl Unit for Component {
         stop_s: Option<f64>,
         tolerance: Option<f64>,
     ) -> Result<(), InstanceError> {
-        let status = call!(self.enter_initialization_mode "fmi3EnterInitializationMode"(
+        call!(self.fmi3EnterInitializationMode(
             u8::from(tolerance.is_some()),
             tolerance.unwrap_or(0.0),
             start_s,
             u8::from(stop_s.is_some()),
             stop_s.unwrap_or(start_s),
-        ));
-        self.base.check("fmi3EnterInitializationMode", status)
-    }
-
-    fn exit_initialization(&mut self) -> Result<(), InstanceError> {
-        let status = call!(self.exit_initialization_mode "fmi3ExitInitializationMode"());
-        self.base.check("fmi3ExitInitializationMode", status)
-    }
-
-    fn terminate(&mut self) -> Result<(), InstanceError> {
-        let status = call!(self.terminate "fmi3Terminate"());
-        self.base.check("fmi3Terminate", status)
-    }
-
-    fn reset(&mut self) -> Result<(), InstanceError> {
-        let status = call!(mend self.reset "fmi3Reset"());
-        self.base.check("fmi3Reset", status)?;
-        self.base.condition = Condition::Sound;
-        Ok(())
+        ))
     }
 
     fn set(&mut self, group: &Group, values: &[f64]) -> Result<(), InstanceError> {
@@ -226,36 +209,13 @@ impl Unit for Component {
         match group.kind {
             Kind::Float64 => {
                 let (references, count) = (group.references.as_ptr(), group.references.len());
-                let status = call!(self.set_float64 "fmi3SetFloat64"(
-                    references, count, values.as_ptr(), values.len()));
-                self.base.check("fmi3SetFloat64", status)
-            }
-            Kind::Float32 => {
-                set_through!(self, group, values, float32, set_float32 "fmi3SetFloat32")
-            }
-            Kind::Int8 => set_through!(self, group, values, int8, set_int8 "fmi3SetInt8"),
-            Kind::UInt8 => set_through!(self, group, values, uint8, set_uint8 "fmi3SetUInt8"),
-            Kind::Int16 => set_through!(self, group, values, int16, set_int16 "fmi3SetInt16"),
-            Kind::UInt16 => set_through!(self, group, values, uint16, set_uint16 "fmi3SetUInt16"),
-            Kind::Int32 => set_through!(self, group, values, int32, set_int32 "fmi3SetInt32"),
-            Kind::UInt32 => set_through!(self, group, values, uint32, set_uint32 "fmi3SetUInt32"),
-            Kind::Int64 | Kind::Enumeration => {
-                set_through!(self, group, values, int64, set_int64 "fmi3SetInt64")
-            }
-            Kind::UInt64 => set_through!(self, group, values, uint64, set_uint64 "fmi3SetUInt64"),
-            Kind::Boolean => {
-                set_through!(self, group, values, truths, set_boolean "fmi3SetBoolean")
+                call!(self.fmi3SetFloat64(references, count, values.as_ptr(), values.len()))
             }
             Kind::Clock => {
                 group::expect_scalars(&self.base, group, values.len())?;
-                let mut clocks = std::mem::take(&mut self.scratch.truths);
-                group::numbers_from_f64(&self.base, group, values, &mut clocks)?;
-                let status = call!(self.set_clock "fmi3SetClock"(
-                    group.references.as_ptr(), group.references.len(), clocks.as_ptr().cast()));
-                self.scratch.truths = clocks;
-                self.base.check("fmi3SetClock", status)
+                set_through!(self.Boolean, group, values, fmi3SetClock)
             }
-            Kind::String | Kind::Binary => Err(self.unsupported_kind(group, "set")),
+            _ => self.set_numbers(group, values),
         }
     }
 
@@ -264,42 +224,13 @@ impl Unit for Component {
         match group.kind {
             Kind::Float64 => {
                 let (references, count) = (group.references.as_ptr(), group.references.len());
-                let status = call!(self.get_float64 "fmi3GetFloat64"(
-                    references, count, values.as_mut_ptr(), values.len()));
-                self.base.check("fmi3GetFloat64", status)
-            }
-            Kind::Float32 => {
-                get_through!(self, group, values, float32, get_float32 "fmi3GetFloat32")
-            }
-            Kind::Int8 => get_through!(self, group, values, int8, get_int8 "fmi3GetInt8"),
-            Kind::UInt8 => get_through!(self, group, values, uint8, get_uint8 "fmi3GetUInt8"),
-            Kind::Int16 => get_through!(self, group, values, int16, get_int16 "fmi3GetInt16"),
-            Kind::UInt16 => get_through!(self, group, values, uint16, get_uint16 "fmi3GetUInt16"),
-            Kind::Int32 => get_through!(self, group, values, int32, get_int32 "fmi3GetInt32"),
-            Kind::UInt32 => get_through!(self, group, values, uint32, get_uint32 "fmi3GetUInt32"),
-            Kind::Int64 | Kind::Enumeration => {
-                get_through!(self, group, values, int64, get_int64 "fmi3GetInt64")
-            }
-            Kind::UInt64 => get_through!(self, group, values, uint64, get_uint64 "fmi3GetUInt64"),
-            Kind::Boolean => {
-                get_through!(self, group, values, truths, get_boolean "fmi3GetBoolean")
+                call!(self.fmi3GetFloat64(references, count, values.as_mut_ptr(), values.len()))
             }
             Kind::Clock => {
                 group::expect_scalars(&self.base, group, values.len())?;
-                let mut clocks = std::mem::take(&mut self.scratch.truths);
-                clocks.clear();
-                clocks.resize_with(values.len(), Default::default);
-                let status = call!(self.get_clock "fmi3GetClock"(
-                    group.references.as_ptr(), group.references.len(),
-                    clocks.as_mut_ptr().cast()));
-                let done = self
-                    .base
-                    .check("fmi3GetClock", status)
-                    .and_then(|()| group::numbers_to_f64(&self.base, group, &clocks, values));
-                self.scratch.truths = clocks;
-                done
+                get_through!(self.Boolean, group, values, fmi3GetClock)
             }
-            Kind::String | Kind::Binary => Err(self.unsupported_kind(group, "get")),
+            _ => self.get_numbers(group, values),
         }
     }
 
@@ -310,17 +241,22 @@ impl Unit for Component {
             .map(|value| c_text(&self.base.name, "a text", value))
             .collect::<Result<_, _>>()?;
         let pointers: Vec<*const c_char> = texts.iter().map(|text| text.as_ptr()).collect();
-        let status = call!(self.set_string "fmi3SetString"(
-            group.references.as_ptr(), group.references.len(), pointers.as_ptr(), pointers.len()));
-        self.base.check("fmi3SetString", status)
+        call!(self.fmi3SetString(
+            group.references.as_ptr(),
+            group.references.len(),
+            pointers.as_ptr(),
+            pointers.len()
+        ))
     }
 
     fn get_strings(&mut self, group: &Group) -> Result<Vec<String>, InstanceError> {
         let mut pointers = vec![ptr::null(); group.elements];
-        let status = call!(self.get_string "fmi3GetString"(
-            group.references.as_ptr(), group.references.len(),
-            pointers.as_mut_ptr(), pointers.len()));
-        self.base.check("fmi3GetString", status)?;
+        call!(self.fmi3GetString(
+            group.references.as_ptr(),
+            group.references.len(),
+            pointers.as_mut_ptr(),
+            pointers.len()
+        ))?;
         // SAFETY: null or the FMU's text, which lives until the next call.
         Ok(pointers.into_iter().map(|pointer| unsafe { text(pointer, VALUE_MAX) }).collect())
     }
@@ -329,19 +265,25 @@ impl Unit for Component {
         group::expect_elements(&self.base, group, values.len())?;
         let sizes: Vec<usize> = values.iter().map(Vec::len).collect();
         let pointers: Vec<*const u8> = values.iter().map(|bytes| bytes.as_ptr()).collect();
-        let status = call!(self.set_binary "fmi3SetBinary"(
-            group.references.as_ptr(), group.references.len(),
-            sizes.as_ptr(), pointers.as_ptr(), pointers.len()));
-        self.base.check("fmi3SetBinary", status)
+        call!(self.fmi3SetBinary(
+            group.references.as_ptr(),
+            group.references.len(),
+            sizes.as_ptr(),
+            pointers.as_ptr(),
+            pointers.len()
+        ))
     }
 
     fn get_binaries(&mut self, group: &Group) -> Result<Vec<Vec<u8>>, InstanceError> {
         let mut sizes = vec![0; group.elements];
         let mut pointers = vec![ptr::null(); group.elements];
-        let status = call!(self.get_binary "fmi3GetBinary"(
-            group.references.as_ptr(), group.references.len(),
-            sizes.as_mut_ptr(), pointers.as_mut_ptr(), pointers.len()));
-        self.base.check("fmi3GetBinary", status)?;
+        call!(self.fmi3GetBinary(
+            group.references.as_ptr(),
+            group.references.len(),
+            sizes.as_mut_ptr(),
+            pointers.as_mut_ptr(),
+            pointers.len()
+        ))?;
         let mut values = Vec::with_capacity(group.elements);
         for (size, pointer) in sizes.into_iter().zip(pointers) {
             if size > VALUE_MAX {
@@ -358,70 +300,29 @@ impl Unit for Component {
     }
 
     fn enter_configuration_mode(&mut self) -> Result<(), InstanceError> {
-        let status = call!(self.enter_configuration_mode "fmi3EnterConfigurationMode"());
-        self.base.check("fmi3EnterConfigurationMode", status)
+        call!(self.fmi3EnterConfigurationMode())
     }
 
     fn exit_configuration_mode(&mut self) -> Result<(), InstanceError> {
-        let status = call!(self.exit_configuration_mode "fmi3ExitConfigurationMode"());
-        self.base.check("fmi3ExitConfigurationMode", status)
-    }
-
-    fn enter_event_mode(&mut self) -> Result<(), InstanceError> {
-        let status = call!(self.enter_event_mode "fmi3EnterEventMode"());
-        self.base.check("fmi3EnterEventMode", status)
+        call!(self.fmi3ExitConfigurationMode())
     }
 
     fn update_discrete_states(&mut self) -> Result<Update, InstanceError> {
         let mut flags = [0u8; 5];
         let mut next_event_time_s = 0.0;
         let [again, terminate, nominals, states, defined] = &mut flags;
-        let status = call!(self.update_discrete_states "fmi3UpdateDiscreteStates"(
-            again, terminate, nominals, states, defined, &mut next_event_time_s));
-        self.base.check("fmi3UpdateDiscreteStates", status)?;
+        call!(self.fmi3UpdateDiscreteStates(
+            again,
+            terminate,
+            nominals,
+            states,
+            defined,
+            &mut next_event_time_s
+        ))?;
         let [again, terminate, nominals_changed, states_changed, defined] =
             flags.map(|flag| flag != 0);
         let next_event_time_s = defined.then_some(next_event_time_s);
         Ok(Update { again, terminate, nominals_changed, states_changed, next_event_time_s })
-    }
-
-    fn state(&mut self) -> Result<RawState, InstanceError> {
-        let mut state = ptr::null_mut();
-        let status = call!(self.get_fmu_state "fmi3GetFMUState"(&mut state));
-        self.base.check("fmi3GetFMUState", status)?;
-        Ok(state)
-    }
-
-    fn set_state(&mut self, state: RawState) -> Result<(), InstanceError> {
-        let status = call!(mend self.set_fmu_state "fmi3SetFMUState"(state));
-        self.base.check("fmi3SetFMUState", status)?;
-        self.base.condition = Condition::Sound;
-        Ok(())
-    }
-
-    fn free_state(&mut self, mut state: RawState) -> Result<(), InstanceError> {
-        let status = call!(mend self.free_fmu_state "fmi3FreeFMUState"(&mut state));
-        self.base.check("fmi3FreeFMUState", status)
-    }
-
-    fn serialize(&mut self, state: RawState) -> Result<Vec<u8>, InstanceError> {
-        let mut size = 0;
-        let status =
-            call!(self.serialized_fmu_state_size "fmi3SerializedFMUStateSize"(state, &mut size));
-        self.base.check("fmi3SerializedFMUStateSize", status)?;
-        let mut bytes = self.base.state_buffer(size)?;
-        let status = call!(self.serialize_fmu_state "fmi3SerializeFMUState"(
-            state, bytes.as_mut_ptr(), size));
-        self.base.check("fmi3SerializeFMUState", status)?;
-        Ok(bytes)
-    }
-
-    fn deserialize(&mut self, bytes: &[u8]) -> Result<RawState, InstanceError> {
-        let mut state: *mut c_void = ptr::null_mut();
-        let status = call!(self.deserialize_fmu_state "fmi3DeserializeFMUState"(
-            bytes.as_ptr(), bytes.len(), &mut state));
-        self.base.check("fmi3DeserializeFMUState", status)?;
-        Ok(state)
     }
 }
 
@@ -431,18 +332,18 @@ impl Steps for Component {
     }
 
     fn enter_step_mode(&mut self) -> Result<(), InstanceError> {
-        let status = call!(self.enter_step_mode "fmi3EnterStepMode"());
-        self.base.check("fmi3EnterStepMode", status)
+        call!(self.fmi3EnterStepMode())
     }
 
     fn do_step(&mut self, time_s: f64, step_s: f64) -> Result<Stepped, InstanceError> {
         let mut flags = [0u8; 3];
         let mut reached_s = time_s + step_s;
         let [event, terminate, early] = &mut flags;
-        let status = call!(self.do_step "fmi3DoStep"(
-            time_s, step_s, u8::from(!self.restorable), event, terminate, early, &mut reached_s));
+        let keep = u8::from(!self.restorable);
+        let answer =
+            ask!(self.fmi3DoStep(time_s, step_s, keep, event, terminate, early, &mut reached_s))?;
         let [event, terminate, early] = flags.map(|flag| flag != 0);
-        let outcome = match self.base.answer("fmi3DoStep", status)? {
+        let outcome = match answer {
             Answer::Fine if early => Outcome::Early,
             Answer::Fine => Outcome::Done,
             Answer::Discard => Outcome::Discarded,
@@ -459,9 +360,7 @@ impl Steps for Component {
 
     fn interval(&mut self, clock: u32) -> Result<Interval, InstanceError> {
         let (mut interval_s, mut qualifier) = (0.0, fmi3::INTERVAL_NOT_YET_KNOWN);
-        let status = call!(self.get_interval_decimal "fmi3GetIntervalDecimal"(
-            &clock, 1, &mut interval_s, &mut qualifier));
-        self.base.check("fmi3GetIntervalDecimal", status)?;
+        call!(self.fmi3GetIntervalDecimal(&clock, 1, &mut interval_s, &mut qualifier))?;
         Ok(match qualifier {
             fmi3::INTERVAL_CHANGED => Interval::Changed(interval_s),
             fmi3::INTERVAL_UNCHANGED => Interval::Unchanged(interval_s),
@@ -470,24 +369,8 @@ impl Steps for Component {
     }
 
     fn activate(&mut self, clock: u32) -> Result<(), InstanceError> {
-        let status = call!(self.set_clock "fmi3SetClock"(&clock, 1, &1));
-        self.base.check("fmi3SetClock", status)
+        call!(self.fmi3SetClock(&clock, 1, &1))
     }
 }
 
-impl Drop for Component {
-    fn drop(&mut self) {
-        if self.base.condition == Condition::Lost {
-            // A lost FMU isn't called again, so that the objects it may still use have to stay.
-            std::mem::forget((Arc::clone(&self.library), Arc::clone(&self.base.log)));
-            return;
-        }
-        if let Some(free) = self.functions.free_instance {
-            self.base.mark.set(function_number("fmi3FreeInstance"));
-            // SAFETY: the instance is alive, and this is the last that is done with it.
-            unsafe { free(self.instance) };
-            // The library may be unloaded next, which runs its destructors.
-            self.base.mark.set(LOADING);
-        }
-    }
-}
+free_on_drop!(fmi3FreeInstance, library);

@@ -195,7 +195,7 @@ pub(super) fn numbers_to_f64<T: Number>(
     values: &mut [f64],
 ) -> Result<(), InstanceError> {
     for (i, (number, value)) in numbers.iter().zip(values).enumerate() {
-        *value = number.to_f64().ok_or_else(|| misfit(base, group, i, number.words()))?;
+        *value = number.to_f64().ok_or_else(|| misfit(base, group, i, number.to_string()))?;
     }
     Ok(())
 }

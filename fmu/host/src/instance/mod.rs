@@ -11,16 +11,18 @@
 //! | `message` | messages that an FMU logs |
 //! | `call` | one call of a function: its name, its status, the meaning of the status |
 //! | `number` | conversion between f64 and the number types of FMI, checked |
-//! | `scratch` | buffers for numbers of the types of FMI 3.0 |
+//! | `scratch` | buffers through which numbers of other types than f64 are got and set |
 //! | `unit` | functions of both standards in one form |
 //! | `fmi2`, `fmi3` | the functions of each standard |
 //! | `states` | stored states, and states as bytes |
 //! | `clocks` | ticks of time-based clocks |
+//! | `common` | the part that co-simulation and model exchange have in common |
 //! | `co_simulation` | co-simulation in the order of calls that the standards require |
 
 pub(super) mod call;
 mod clocks;
 pub(super) mod co_simulation;
+pub(super) mod common;
 pub mod error;
 pub(super) mod fmi2;
 pub(super) mod fmi3;

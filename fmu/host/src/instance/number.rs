@@ -2,13 +2,11 @@
 //! refused.
 
 /// A number type of FMI.
-pub(super) trait Number: Copy + Default {
+pub(super) trait Number: Copy + Default + std::fmt::Display {
     /// Converts f64 to the type, if the type has this number.
     fn from_f64(value: f64) -> Option<Self>;
     /// Converts the number to f64, if f64 has it.
     fn to_f64(self) -> Option<f64>;
-    /// Text of the number, for an error.
-    fn words(self) -> String;
 }
 
 /// Limit below which f64 has every whole number.
@@ -38,9 +36,6 @@ macro_rules! whole {
                 }
                 (value as i128 == self as i128).then_some(value)
             }
-            fn words(self) -> String {
-                self.to_string()
-            }
         }
     )*};
 }
@@ -55,8 +50,14 @@ impl Number for f32 {
     fn to_f64(self) -> Option<f64> {
         Some(f64::from(self))
     }
-    fn words(self) -> String {
-        self.to_string()
+}
+
+impl Number for f64 {
+    fn from_f64(value: f64) -> Option<Self> {
+        Some(value)
+    }
+    fn to_f64(self) -> Option<f64> {
+        Some(self)
     }
 }
 
@@ -64,6 +65,12 @@ impl Number for f32 {
 #[derive(Clone, Copy, Debug, Default)]
 #[repr(transparent)]
 pub(super) struct Truth<T>(pub(super) T);
+
+impl<T: std::fmt::Display> std::fmt::Display for Truth<T> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        self.0.fmt(f)
+    }
+}
 
 macro_rules! truth {
     ($($kind:ty),*) => {$(
@@ -73,9 +80,6 @@ macro_rules! truth {
             }
             fn to_f64(self) -> Option<f64> {
                 Some(if self.0 == 0 { 0.0 } else { 1.0 })
-            }
-            fn words(self) -> String {
-                self.0.to_string()
             }
         }
     )*};

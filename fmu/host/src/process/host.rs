@@ -113,7 +113,7 @@ impl Host {
     fn run(mut self) -> io::Result<()> {
         let mut instance = match self.open()? {
             Ok(instance) => {
-                message::write(&mut self.socket, &Reply::Ok(Answer::Done))?;
+                message::write(&mut self.socket, &Reply::Ok(Answer::Done(())))?;
                 instance
             }
             Err(error) => return message::write(&mut self.socket, &Reply::Err(error)),
@@ -237,27 +237,21 @@ impl Host {
     fn reply(&mut self, instance: &mut dyn Instance, request: Request) -> Reply {
         Ok(match request {
             Request::EnterInitialization { start_s, stop_s, tolerance } => {
-                instance.enter_initialization(start_s, stop_s, tolerance)?;
-                Answer::Done
+                Answer::Done(instance.enter_initialization(start_s, stop_s, tolerance)?)
             }
             Request::ExitInitialization => Answer::Truth(instance.exit_initialization()?),
-            Request::Set { group, values } => {
-                instance.set(&group, &values)?;
-                Answer::Done
-            }
+            Request::Set { group, values } => Answer::Done(instance.set(&group, &values)?),
             Request::Get { group } => {
                 let mut values = vec![0.0; group.elements];
                 instance.get(&group, &mut values)?;
                 Answer::Numbers(values)
             }
             Request::SetStrings { group, values } => {
-                instance.set_strings(&group, &values)?;
-                Answer::Done
+                Answer::Done(instance.set_strings(&group, &values)?)
             }
             Request::GetStrings { group } => Answer::Strings(instance.get_strings(&group)?),
             Request::SetBinaries { group, values } => {
-                instance.set_binaries(&group, &values)?;
-                Answer::Done
+                Answer::Done(instance.set_binaries(&group, &values)?)
             }
             Request::GetBinaries { group } => Answer::Binaries(instance.get_binaries(&group)?),
             Request::Step { time_s, step_s } => Answer::Stepped(instance.step(time_s, step_s)?),
@@ -267,43 +261,25 @@ impl Host {
                 };
                 let (inputs, outputs) = (room(&set), room(&get));
                 self.plans.push(Plan { set, get, inputs, outputs });
-                Answer::Done
+                Answer::Done(())
             }
             Request::HandleEvents => Answer::Truth(instance.handle_events()?),
-            Request::EnterEventMode => {
-                instance.enter_event_mode()?;
-                Answer::Done
-            }
+            Request::EnterEventMode => Answer::Done(instance.enter_event_mode()?),
             Request::UpdateDiscreteStates => Answer::Update(instance.update_discrete_states()?),
-            Request::LeaveEventMode => {
-                instance.leave_event_mode()?;
-                Answer::Done
-            }
+            Request::LeaveEventMode => Answer::Done(instance.leave_event_mode()?),
             Request::KeepState => Answer::Number(instance.keep_state()?),
-            Request::RestoreState(state) => {
-                instance.restore_state(state)?;
-                Answer::Done
-            }
-            Request::ForgetState(state) => {
-                instance.forget_state(state)?;
-                Answer::Done
-            }
+            Request::RestoreState(state) => Answer::Done(instance.restore_state(state)?),
+            Request::ForgetState(state) => Answer::Done(instance.forget_state(state)?),
             Request::StateToBytes(state) => Answer::Bytes(instance.state_to_bytes(state)?),
             Request::StateFromBytes(bytes) => Answer::Number(instance.state_from_bytes(&bytes)?),
-            Request::Reset => {
-                instance.reset()?;
-                Answer::Done
-            }
-            Request::Terminate => {
-                instance.terminate()?;
-                Answer::Done
-            }
+            Request::Reset => Answer::Done(instance.reset()?),
+            Request::Terminate => Answer::Done(instance.terminate()?),
             Request::Messages => {
                 self.shared.word(Word::MessagesWait).store(0, Ordering::Relaxed);
                 Answer::Messages(std::mem::take(&mut self.messages))
             }
             // The first and the last request are handled elsewhere.
-            Request::Open { .. } | Request::Quit => Answer::Done,
+            Request::Open { .. } | Request::Quit => Answer::Done(()),
         })
     }
 }

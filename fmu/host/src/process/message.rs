@@ -78,7 +78,7 @@ pub(super) enum Request {
 /// Answer of the child process.
 #[derive(Debug, Serialize, Deserialize)]
 pub(super) enum Answer {
-    Done,
+    Done(()),
     Truth(bool),
     Number(u64),
     Numbers(Vec<f64>),

@@ -107,6 +107,16 @@ impl Read for Patient<'_> {
     }
 }
 
+/// Sends a request and takes the value of its answer, which is of one kind.
+macro_rules! ask {
+    ($remote:ident, $request:expr => $answer:ident) => {
+        match $remote.ask(&$request)? {
+            Answer::$answer(value) => Ok(value),
+            _ => $remote.confused(),
+        }
+    };
+}
+
 impl Remote {
     /// Reads the next message; `None`: it only woke this process.
     fn hear(
@@ -155,27 +165,6 @@ impl Remote {
         Err(self.watch.lost(&self.shared, &io::Error::other("an answer to another question")))
     }
 
-    fn done(&mut self, request: &Request) -> Result<(), InstanceError> {
-        match self.ask(request)? {
-            Answer::Done => Ok(()),
-            _ => self.confused(),
-        }
-    }
-
-    fn truth(&mut self, request: &Request) -> Result<bool, InstanceError> {
-        match self.ask(request)? {
-            Answer::Truth(truth) => Ok(truth),
-            _ => self.confused(),
-        }
-    }
-
-    fn number(&mut self, request: &Request) -> Result<u64, InstanceError> {
-        match self.ask(request)? {
-            Answer::Number(number) => Ok(number),
-            _ => self.confused(),
-        }
-    }
-
     /// Number of an exchange with these groups; `None`: it doesn't go through shared memory.
     fn plan(&mut self, set: &[Group], get: &[Group]) -> Result<Option<usize>, InstanceError> {
         if let Some(plan) = self.plans.iter().position(|(a, b)| a == set && b == get) {
@@ -191,7 +180,7 @@ impl Remote {
             return Ok(None);
         }
         let (set, get) = (set.to_vec(), get.to_vec());
-        self.done(&Request::Plan { set: set.clone(), get: get.clone() })?;
+        ask!(self, Request::Plan { set: set.clone(), get: get.clone() } => Done)?;
         self.plans.push((set, get));
         Ok(Some(self.plans.len() - 1))
     }
@@ -293,15 +282,15 @@ impl Instance for Remote {
         stop_s: Option<f64>,
         tolerance: Option<f64>,
     ) -> Result<(), InstanceError> {
-        self.done(&Request::EnterInitialization { start_s, stop_s, tolerance })
+        ask!(self, Request::EnterInitialization { start_s, stop_s, tolerance } => Done)
     }
 
     fn exit_initialization(&mut self) -> Result<bool, InstanceError> {
-        self.truth(&Request::ExitInitialization)
+        ask!(self, Request::ExitInitialization => Truth)
     }
 
     fn set(&mut self, group: &Group, values: &[f64]) -> Result<(), InstanceError> {
-        self.done(&Request::Set { group: group.clone(), values: values.to_vec() })
+        ask!(self, Request::Set { group: group.clone(), values: values.to_vec() } => Done)
     }
 
     fn get(&mut self, group: &Group, values: &mut [f64]) -> Result<(), InstanceError> {
@@ -319,82 +308,67 @@ impl Instance for Remote {
     }
 
     fn set_strings(&mut self, group: &Group, values: &[String]) -> Result<(), InstanceError> {
-        self.done(&Request::SetStrings { group: group.clone(), values: values.to_vec() })
+        ask!(self, Request::SetStrings { group: group.clone(), values: values.to_vec() } => Done)
     }
 
     fn get_strings(&mut self, group: &Group) -> Result<Vec<String>, InstanceError> {
-        match self.ask(&Request::GetStrings { group: group.clone() })? {
-            Answer::Strings(strings) => Ok(strings),
-            _ => self.confused(),
-        }
+        ask!(self, Request::GetStrings { group: group.clone() } => Strings)
     }
 
     fn set_binaries(&mut self, group: &Group, values: &[Vec<u8>]) -> Result<(), InstanceError> {
-        self.done(&Request::SetBinaries { group: group.clone(), values: values.to_vec() })
+        ask!(self, Request::SetBinaries { group: group.clone(), values: values.to_vec() } => Done)
     }
 
     fn get_binaries(&mut self, group: &Group) -> Result<Vec<Vec<u8>>, InstanceError> {
-        match self.ask(&Request::GetBinaries { group: group.clone() })? {
-            Answer::Binaries(binaries) => Ok(binaries),
-            _ => self.confused(),
-        }
+        ask!(self, Request::GetBinaries { group: group.clone() } => Binaries)
     }
 
     fn step(&mut self, time_s: f64, step_s: f64) -> Result<Stepped, InstanceError> {
-        match self.ask(&Request::Step { time_s, step_s })? {
-            Answer::Stepped(stepped) => Ok(stepped),
-            _ => self.confused(),
-        }
+        ask!(self, Request::Step { time_s, step_s } => Stepped)
     }
 
     fn handle_events(&mut self) -> Result<bool, InstanceError> {
-        self.truth(&Request::HandleEvents)
+        ask!(self, Request::HandleEvents => Truth)
     }
 
     fn enter_event_mode(&mut self) -> Result<(), InstanceError> {
-        self.done(&Request::EnterEventMode)
+        ask!(self, Request::EnterEventMode => Done)
     }
 
     fn update_discrete_states(&mut self) -> Result<Update, InstanceError> {
-        match self.ask(&Request::UpdateDiscreteStates)? {
-            Answer::Update(update) => Ok(update),
-            _ => self.confused(),
-        }
+        ask!(self, Request::UpdateDiscreteStates => Update)
     }
 
     fn leave_event_mode(&mut self) -> Result<(), InstanceError> {
-        self.done(&Request::LeaveEventMode)
+        ask!(self, Request::LeaveEventMode => Done)
     }
 
     fn keep_state(&mut self) -> Result<u64, InstanceError> {
-        self.number(&Request::KeepState)
+        ask!(self, Request::KeepState => Number)
     }
 
     fn restore_state(&mut self, state: u64) -> Result<(), InstanceError> {
-        self.done(&Request::RestoreState(state))
+        ask!(self, Request::RestoreState(state) => Done)
     }
 
     fn forget_state(&mut self, state: u64) -> Result<(), InstanceError> {
-        self.done(&Request::ForgetState(state))
+        ask!(self, Request::ForgetState(state) => Done)
     }
 
     fn state_to_bytes(&mut self, state: u64) -> Result<Vec<u8>, InstanceError> {
-        match self.ask(&Request::StateToBytes(state))? {
-            Answer::Bytes(bytes) => Ok(bytes),
-            _ => self.confused(),
-        }
+        ask!(self, Request::StateToBytes(state) => Bytes)
     }
 
     fn state_from_bytes(&mut self, bytes: &[u8]) -> Result<u64, InstanceError> {
-        self.number(&Request::StateFromBytes(bytes.to_vec()))
+        ask!(self, Request::StateFromBytes(bytes.to_vec()) => Number)
     }
 
     fn reset(&mut self) -> Result<(), InstanceError> {
-        self.done(&Request::Reset)
+        ask!(self, Request::Reset => Done)
     }
 
     fn terminate(&mut self) -> Result<(), InstanceError> {
-        self.done(&Request::Terminate)
+        ask!(self, Request::Terminate => Done)
     }
 
     /// Returns no messages from a process that has ended.

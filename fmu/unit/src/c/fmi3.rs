@@ -17,15 +17,17 @@ use super::call::{free, instantiate, no_instance, ok, put};
 use super::instance::Options;
 use super::log::{self, Callback, Outlet};
 use super::mode::{self, Mode, Refusal, Standard};
-use core::ffi::CStr;
-use entry::{FALSE, TRUE, enter};
+use core::ffi::{CStr, c_void};
+use entry::enter;
 use octant_fmi::fmi3::{
-    Boolean, ClockUpdate, DependencyKind, Environment, Instance as Handle, IntermediateUpdate,
-    LogMessage, Preemption, State, Status, String, ValueReference, signature,
+    Boolean, ClockUpdate, DependencyKind, Environment, FALSE, Instance as Handle,
+    IntermediateUpdate, LogMessage, OK, Preemption, State, Status, String, TRUE, ValueReference,
+    signature,
 };
 use step::{Places, do_step};
 
 const VERSION: &CStr = c"3.0";
+const STANDARD: Standard = Standard::Fmi3;
 
 /// `fmi3Dependent`: the kind of all dependencies.
 const DEPENDENT: DependencyKind = 5;
@@ -36,12 +38,12 @@ fn outlet(environment: Environment, log: Option<LogMessage>) -> Outlet {
 
 export! {
     /// Returns the version of the standard.
-    GetVersion: fn fmi3GetVersion() -> String {
+    fn fmi3GetVersion() -> String {
         VERSION.as_ptr()
     }
 
     /// Fails: there is no model exchange.
-    InstantiateModelExchange: fn fmi3InstantiateModelExchange(
+    fn fmi3InstantiateModelExchange(
         _name: String,
         _token: String,
         _resources: String,
@@ -50,12 +52,12 @@ export! {
         environment: Environment,
         log: Option<LogMessage>,
     ) -> Handle {
-        let reason = "there is no model exchange, only co-simulation";
-        no_instance("fmi3InstantiateModelExchange", outlet(environment, log), reason)
+        let function = "fmi3InstantiateModelExchange";
+        no_instance(function, outlet(environment, log), mode::NO_MODEL_EXCHANGE)
     }
 
     /// Makes an instance of the model with this token; null: the log has the reason.
-    InstantiateCoSimulation: fn fmi3InstantiateCoSimulation(
+    fn fmi3InstantiateCoSimulation(
         name: String,
         token: String,
         _resources: String,
@@ -86,7 +88,7 @@ export! {
     }
 
     /// Fails: there is no scheduled execution.
-    InstantiateScheduledExecution: fn fmi3InstantiateScheduledExecution(
+    fn fmi3InstantiateScheduledExecution(
         _name: String,
         _token: String,
         _resources: String,
@@ -102,23 +104,8 @@ export! {
         no_instance("fmi3InstantiateScheduledExecution", outlet(environment, log), reason)
     }
 
-    /// Ends an instance.
-    FreeInstance: fn fmi3FreeInstance(i: Handle) {
-        free(i, Standard::Fmi3);
-    }
-
-    /// Switches categories of messages.
-    SetDebugLogging: fn fmi3SetDebugLogging(
-        i: Handle, on: Boolean, count: usize, categories: *const String,
-    ) -> Status {
-        enter(i, "fmi3SetDebugLogging", |instance| {
-            // SAFETY: null, or so many strings.
-            unsafe { instance.set_debug_logging(on != FALSE, count, categories) }
-        })
-    }
-
     /// Starts the initialization.
-    EnterInitializationMode: fn fmi3EnterInitializationMode(
+    fn fmi3EnterInitializationMode(
         i: Handle,
         _tolerance_defined: Boolean,
         _tolerance: f64,
@@ -132,87 +119,30 @@ export! {
         })
     }
 
-    /// Ends the initialization: the model is made from its parameters.
-    ExitInitializationMode: fn fmi3ExitInitializationMode(i: Handle) -> Status {
-        enter(i, "fmi3ExitInitializationMode", |instance| ok(instance.exit_initialization()))
-    }
-
     /// Changes from Step Mode to Event Mode.
-    EnterEventMode: fn fmi3EnterEventMode(i: Handle) -> Status {
+    fn fmi3EnterEventMode(i: Handle) -> Status {
         enter(i, "fmi3EnterEventMode", |instance| {
             instance.require(mode::STEP)?;
             if !instance.options.event_mode_used {
                 return Err(Refusal::error("the instance was made without event mode"));
             }
             instance.run.mode = Mode::Event;
-            Ok(octant_fmi::fmi3::OK)
+            Ok(OK)
         })
     }
 
     /// Changes from Event Mode to Step Mode.
-    EnterStepMode: fn fmi3EnterStepMode(i: Handle) -> Status {
+    fn fmi3EnterStepMode(i: Handle) -> Status {
         enter(i, "fmi3EnterStepMode", |instance| {
             instance.require(mode::EVENT)?;
             instance.end_ticks()?;
             instance.run.mode = Mode::Step;
-            Ok(octant_fmi::fmi3::OK)
-        })
-    }
-
-    /// Ends the simulation.
-    Terminate: fn fmi3Terminate(i: Handle) -> Status {
-        enter(i, "fmi3Terminate", |instance| ok(instance.terminate()))
-    }
-
-    /// Returns to the state after instantiation.
-    Reset: fn fmi3Reset(i: Handle) -> Status {
-        enter(i, "fmi3Reset", |instance| ok(instance.reset()))
-    }
-
-    /// Stores the state.
-    GetFmuState: fn fmi3GetFMUState(i: Handle, state: *mut State) -> Status {
-        enter(i, "fmi3GetFMUState", |instance| ok(instance.get_state(state)))
-    }
-
-    /// Continues from a stored state.
-    SetFmuState: fn fmi3SetFMUState(i: Handle, state: State) -> Status {
-        enter(i, "fmi3SetFMUState", |instance| ok(instance.set_state(state)))
-    }
-
-    /// Frees a stored state.
-    FreeFmuState: fn fmi3FreeFMUState(i: Handle, state: *mut State) -> Status {
-        enter(i, "fmi3FreeFMUState", |instance| ok(instance.free_state(state)))
-    }
-
-    /// Returns the number of bytes of a stored state.
-    SerializedFmuStateSize: fn fmi3SerializedFMUStateSize(
-        i: Handle, state: State, size: *mut usize,
-    ) -> Status {
-        enter(i, "fmi3SerializedFMUStateSize", |instance| {
-            ok(put(size, instance.state_bytes(state)?.len(), "the size"))
-        })
-    }
-
-    /// Writes a stored state as bytes.
-    SerializeFmuState: fn fmi3SerializeFMUState(
-        i: Handle, state: State, bytes: *mut u8, size: usize,
-    ) -> Status {
-        enter(i, "fmi3SerializeFMUState", |instance| {
-            ok(instance.serialize_state(state, bytes, size))
-        })
-    }
-
-    /// Stores a state given as bytes.
-    DeserializeFmuState: fn fmi3DeserializeFMUState(
-        i: Handle, bytes: *const u8, size: usize, state: *mut State,
-    ) -> Status {
-        enter(i, "fmi3DeserializeFMUState", |instance| {
-            ok(instance.deserialize_state(bytes, size, state))
+            Ok(OK)
         })
     }
 
     /// Returns the number of variables on which a variable depends.
-    GetNumberOfVariableDependencies: fn fmi3GetNumberOfVariableDependencies(
+    fn fmi3GetNumberOfVariableDependencies(
         i: Handle, reference: ValueReference, count: *mut usize,
     ) -> Status {
         enter(i, "fmi3GetNumberOfVariableDependencies", |instance| {
@@ -222,7 +152,7 @@ export! {
     }
 
     /// Returns the variables on which a variable depends, all elements on all elements.
-    GetVariableDependencies: fn fmi3GetVariableDependencies(
+    fn fmi3GetVariableDependencies(
         i: Handle,
         dependent: ValueReference,
         dependent_elements: *mut usize,
@@ -246,18 +176,18 @@ export! {
                 put(independent_elements.wrapping_add(k), 0, "the elements")?;
                 put(kinds.wrapping_add(k), DEPENDENT, "the kinds")?;
             }
-            Ok(octant_fmi::fmi3::OK)
+            Ok(OK)
         })
     }
 
     /// Does nothing: no discrete state is evaluated before the update.
-    EvaluateDiscreteStates: fn fmi3EvaluateDiscreteStates(i: Handle) -> Status {
+    fn fmi3EvaluateDiscreteStates(i: Handle) -> Status {
         enter(i, "fmi3EvaluateDiscreteStates", |instance| ok(instance.require(mode::EVENT)))
     }
 
     /// Ends an event: the data of the clocks that ticked is taken, and the next event is the next
     /// sample.
-    UpdateDiscreteStates: fn fmi3UpdateDiscreteStates(
+    fn fmi3UpdateDiscreteStates(
         i: Handle,
         need_update: *mut Boolean,
         terminate: *mut Boolean,
@@ -285,7 +215,7 @@ export! {
     }
 
     /// Makes one communication step. Discard: no part of it was made.
-    DoStep: fn fmi3DoStep(
+    fn fmi3DoStep(
         i: Handle,
         time: f64,
         step: f64,
@@ -298,4 +228,10 @@ export! {
         let places = Places { event_handling_needed, terminate, early_return, last_successful_time };
         do_step(i, time, step, &places)
     }
+}
+
+functions_of_both! {
+    fmi3FreeInstance fmi3SetDebugLogging fmi3ExitInitializationMode fmi3Terminate fmi3Reset
+    fmi3GetFMUState fmi3SetFMUState fmi3FreeFMUState
+    fmi3SerializedFMUStateSize fmi3SerializeFMUState fmi3DeserializeFMUState(u8)
 }

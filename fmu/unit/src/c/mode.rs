@@ -127,6 +127,9 @@ pub(super) const TERMINATE: Modes = Modes::of(&[Step, Event, StepFailed]);
 /// Modes in which FMI 2.0 allows asking for the status of a step.
 pub(super) const STATUS: Modes = Modes::of(&[Step, StepFailed, Terminated]);
 
+pub(super) const NO_MODEL_EXCHANGE: &str = "there is no model exchange, only co-simulation";
+pub(super) const NO_DERIVATIVES: &str = "the model is sampled: its variables have no derivatives";
+
 /// Reason why a call is not answered with OK.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Refusal {

@@ -37,182 +37,94 @@ fn integer_fits(value: i32, slot: &Slot) -> bool {
     }
 }
 
-/// FMI 2.0: Real. Counts are whole numbers.
-pub(super) struct Real2;
+/// Declares types: the name of each, its name in messages, the type of a value, the cells, and the
+/// conversions.
+macro_rules! types {
+    ($(
+        $(#[$doc:meta])*
+        $name:ident $text:literal $value:ty: $cells:pat,
+        get |$bits:ident, $of:pat_param| $get:expr,
+        fits |$new:ident, $slot:ident| $fits:expr,
+        set |$from:ident, $to:pat_param| $set:expr;
+    )*) => {$(
+        $(#[$doc])*
+        pub(super) struct $name;
 
-impl Type for Real2 {
-    type Value = f64;
-    const NAME: &'static str = "Real";
+        impl Type for $name {
+            type Value = $value;
+            const NAME: &'static str = $text;
 
-    #[inline]
-    fn has(cell: Cell) -> bool {
-        matches!(cell, Cell::Real | Cell::Count)
-    }
+            #[inline]
+            fn has(cell: Cell) -> bool {
+                matches!(cell, $cells)
+            }
 
-    #[inline]
-    fn get(bits: u64, cell: Cell) -> f64 {
-        if cell == Cell::Real { f64::from_bits(bits) } else { bits as f64 }
-    }
+            #[inline]
+            fn get($bits: u64, $of: Cell) -> $value {
+                $get
+            }
 
-    #[inline]
-    fn fits(value: f64, slot: &Slot) -> bool {
+            #[inline]
+            fn fits($new: $value, $slot: &Slot) -> bool {
+                $fits
+            }
+
+            #[inline]
+            fn set($from: $value, $to: Cell) -> u64 {
+                $set
+            }
+        }
+    )*};
+}
+
+types! {
+    /// FMI 2.0: Real. Counts are whole numbers.
+    Real2 "Real" f64: Cell::Real | Cell::Count,
+    get |bits, cell| if cell == Cell::Real { f64::from_bits(bits) } else { bits as f64 },
+    fits |value, slot| {
         if slot.cell == Cell::Real {
             return real_fits(value, slot);
         }
         let (min, max) = (slot.min.max(0.0), slot.max.min(EXACT_MAX));
         value >= min && value <= max && value as u64 as f64 == value
-    }
+    },
+    set |value, cell| if cell == Cell::Real { value.to_bits() } else { value as u64 };
 
-    #[inline]
-    fn set(value: f64, cell: Cell) -> u64 {
-        if cell == Cell::Real { value.to_bits() } else { value as u64 }
-    }
-}
+    /// FMI 3.0: Float64.
+    Float64 "Float64" f64: Cell::Real,
+    get |bits, _| f64::from_bits(bits),
+    fits |value, slot| real_fits(value, slot),
+    set |value, _| value.to_bits();
 
-/// FMI 3.0: Float64.
-pub(super) struct Float64;
+    /// FMI 2.0: Integer, with which enumerations are accessed, too.
+    Integer2 "Integer or Enumeration" i32: Cell::Integer | Cell::Enumeration,
+    get |bits, _| bits as i32,
+    fits |value, slot| integer_fits(value, slot),
+    set |value, _| i64::from(value) as u64;
 
-impl Type for Float64 {
-    type Value = f64;
-    const NAME: &'static str = "Float64";
+    /// FMI 3.0: Int32.
+    Int32 "Int32" i32: Cell::Integer,
+    get |bits, _| bits as i32,
+    fits |value, slot| integer_fits(value, slot),
+    set |value, _| i64::from(value) as u64;
 
-    #[inline]
-    fn has(cell: Cell) -> bool {
-        cell == Cell::Real
-    }
+    /// FMI 3.0: Enumeration, which is accessed as Int64.
+    Int64 "Int64 or Enumeration" i64: Cell::Enumeration,
+    get |bits, _| bits as i64,
+    fits |value, slot| i32::try_from(value).is_ok_and(|value| integer_fits(value, slot)),
+    set |value, _| value as u64;
 
-    #[inline]
-    fn get(bits: u64, _: Cell) -> f64 {
-        f64::from_bits(bits)
-    }
-
-    #[inline]
-    fn fits(value: f64, slot: &Slot) -> bool {
-        real_fits(value, slot)
-    }
-
-    #[inline]
-    fn set(value: f64, _: Cell) -> u64 {
-        value.to_bits()
-    }
-}
-
-/// FMI 2.0: Integer, with which enumerations are accessed, too.
-pub(super) struct Integer2;
-
-impl Type for Integer2 {
-    type Value = i32;
-    const NAME: &'static str = "Integer or Enumeration";
-
-    #[inline]
-    fn has(cell: Cell) -> bool {
-        matches!(cell, Cell::Integer | Cell::Enumeration)
-    }
-
-    #[inline]
-    fn get(bits: u64, _: Cell) -> i32 {
-        bits as i32
-    }
-
-    #[inline]
-    fn fits(value: i32, slot: &Slot) -> bool {
-        integer_fits(value, slot)
-    }
-
-    #[inline]
-    fn set(value: i32, _: Cell) -> u64 {
-        i64::from(value) as u64
-    }
-}
-
-/// FMI 3.0: Int32.
-pub(super) struct Int32;
-
-impl Type for Int32 {
-    type Value = i32;
-    const NAME: &'static str = "Int32";
-
-    #[inline]
-    fn has(cell: Cell) -> bool {
-        cell == Cell::Integer
-    }
-
-    #[inline]
-    fn get(bits: u64, _: Cell) -> i32 {
-        bits as i32
-    }
-
-    #[inline]
-    fn fits(value: i32, slot: &Slot) -> bool {
-        integer_fits(value, slot)
-    }
-
-    #[inline]
-    fn set(value: i32, _: Cell) -> u64 {
-        i64::from(value) as u64
-    }
-}
-
-/// FMI 3.0: Enumeration, which is accessed as Int64.
-pub(super) struct Int64;
-
-impl Type for Int64 {
-    type Value = i64;
-    const NAME: &'static str = "Int64 or Enumeration";
-
-    #[inline]
-    fn has(cell: Cell) -> bool {
-        cell == Cell::Enumeration
-    }
-
-    #[inline]
-    fn get(bits: u64, _: Cell) -> i64 {
-        bits as i64
-    }
-
-    #[inline]
-    fn fits(value: i64, slot: &Slot) -> bool {
-        i32::try_from(value).is_ok_and(|value| integer_fits(value, slot))
-    }
-
-    #[inline]
-    fn set(value: i64, _: Cell) -> u64 {
-        value as u64
-    }
-}
-
-/// FMI 3.0: UInt64.
-pub(super) struct UInt64;
-
-impl Type for UInt64 {
-    type Value = u64;
-    const NAME: &'static str = "UInt64";
-
-    #[inline]
-    fn has(cell: Cell) -> bool {
-        cell == Cell::Count
-    }
-
-    #[inline]
-    fn get(bits: u64, _: Cell) -> u64 {
-        bits
-    }
-
-    #[inline]
-    fn fits(value: u64, slot: &Slot) -> bool {
-        (slot.min..=slot.max).contains(&(value as f64))
-    }
-
-    #[inline]
-    fn set(value: u64, _: Cell) -> u64 {
-        value
-    }
+    /// FMI 3.0: UInt64.
+    UInt64 "UInt64" u64: Cell::Count,
+    get |bits, _| bits,
+    fits |value, slot| (slot.min..=slot.max).contains(&(value as f64)),
+    set |value, _| value;
 }
 
 /// Boolean, of 32 bits in FMI 2.0 and of 8 in FMI 3.0.
-pub(super) struct Boolean<T>(PhantomData<T>);
+pub(super) struct BooleanOf<T>(PhantomData<T>);
 
-impl<T: Copy + From<bool> + PartialEq + core::fmt::Display> Type for Boolean<T> {
+impl<T: Copy + From<bool> + PartialEq + core::fmt::Display> Type for BooleanOf<T> {
     type Value = T;
     const NAME: &'static str = "Boolean";
 
@@ -237,6 +149,9 @@ impl<T: Copy + From<bool> + PartialEq + core::fmt::Display> Type for Boolean<T> 
     }
 }
 
+/// FMI 3.0: Boolean.
+pub(super) type Boolean = BooleanOf<octant_fmi::fmi3::Boolean>;
+
 /// A type that no variable has.
 pub(super) struct Absent<T>(PhantomData<T>);
 
@@ -245,14 +160,24 @@ pub(super) trait Named: Copy + PartialEq + core::fmt::Display {
     const NAME: &'static str;
 }
 
-macro_rules! named {
-    ($($kind:ty: $name:literal),*) => {$(
-        impl Named for $kind {
-            const NAME: &'static str = $name;
+macro_rules! absent {
+    ($($name:ident $value:ty;)*) => {$(
+        #[doc = concat!("FMI 3.0: ", stringify!($name), ".")]
+        pub(super) type $name = Absent<$value>;
+
+        impl Named for $value {
+            const NAME: &'static str = stringify!($name);
         }
     )*};
 }
-named!(f32: "Float32", i8: "Int8", u8: "UInt8", i16: "Int16", u16: "UInt16", u32: "UInt32");
+absent! {
+    Float32 f32;
+    Int8 i8;
+    UInt8 u8;
+    Int16 i16;
+    UInt16 u16;
+    UInt32 u32;
+}
 
 impl<T: Named> Type for Absent<T> {
     type Value = T;

@@ -30,37 +30,11 @@ pub static MODEL: Model = Model {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::table::{Causality, Kind};
     use octant_sample::parameters::Group;
-    use std::collections::BTreeSet;
 
     #[test]
     fn every_variable_is_described_once_and_starts_within_its_range() {
-        let mut names = BTreeSet::new();
-        for variable in MODEL.variables {
-            let name = variable.name;
-            assert!(names.insert(name), "{name} twice");
-            assert!(variable.description.ends_with('.'), "{name}");
-            let has_start = matches!(variable.causality, Causality::Parameter | Causality::Input);
-            assert_eq!(variable.start.is_empty(), !has_start, "{name}");
-            assert!(
-                variable.start.len() <= 1 || variable.start.len() == variable.slots(),
-                "{name}"
-            );
-            for start in variable.start {
-                assert!(variable.min.is_none_or(|min| *start >= min), "{name}: {start}");
-                assert!(variable.max.is_none_or(|max| *start <= max), "{name}: {start}");
-                if let Kind::Enumeration(of) = variable.kind {
-                    assert!(of.items.iter().any(|item| f64::from(item.0) == *start), "{name}");
-                }
-            }
-            assert_eq!(MODEL.find(name).unwrap().0, MODEL.slot(name));
-        }
-        // No name may be a part of another's.
-        for name in &names {
-            let inner = format!("{name}.");
-            assert!(!names.iter().any(|other| other.starts_with(&inner)), "{name}");
-        }
+        crate::table::check(&MODEL);
     }
 
     #[test]

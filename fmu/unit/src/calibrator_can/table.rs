@@ -4,7 +4,9 @@ pub(super) mod slot;
 
 use crate::calibrator::table as calibrator;
 use crate::quantities as q;
-use crate::table::{Binary, Enumeration, Kind, Model, Ticks, Variable, concatenated};
+use crate::table::{
+    Binary, Kind, Model, Ticks, Variable, concatenated, enumerations, same, variables,
+};
 
 /// Largest number of bytes of a tick, in both directions.
 const BYTES_MAX: usize = 65_535;
@@ -17,26 +19,20 @@ static RX_DATA: Binary =
 static TX_DATA: Binary =
     Binary { mime_type: MIME_TYPE, max_bytes: BYTES_MAX, clock: "can.Tx_Clock" };
 
-/// Action of the bus simulation on a frame that lost arbitration; values as on the bus.
-static ARBITRATION_LOST: Enumeration = Enumeration {
-    name: "ArbitrationLost",
-    description: "What the bus simulation does with a frame that loses the bus.",
-    items: &[
-        (1, "buffer", "It keeps the frame and sends it when the bus is free."),
-        (2, "discard", "It throws the frame away and says so; the device sends it again."),
-    ],
-};
-
-/// State of a CAN node; values as on the bus.
-static NODE_STATE: Enumeration = Enumeration {
-    name: "CanNodeState",
-    description: "State of a CAN node.",
-    items: &[
-        (1, "error_active", "It takes part."),
-        (2, "error_passive", "An error counter is above 127."),
-        (3, "bus_off", "The transmit error counter is above 255: it sends nothing."),
-    ],
-};
+enumerations! {
+    /// Action of the bus simulation on a frame that lost arbitration; values as on the bus.
+    ARBITRATION_LOST "ArbitrationLost"
+        "What the bus simulation does with a frame that loses the bus." {
+        1 buffer "It keeps the frame and sends it when the bus is free.";
+        2 discard "It throws the frame away and says so; the device sends it again.";
+    }
+    /// State of a CAN node; values as on the bus.
+    NODE_STATE "CanNodeState" "State of a CAN node." {
+        1 error_active "It takes part.";
+        2 error_passive "An error counter is above 127.";
+        3 bus_off "The transmit error counter is above 255: it sends nothing.";
+    }
+}
 
 /// Name of the bus, with which the names of its variables begin.
 pub const BUS: &str = "can";
@@ -46,56 +42,42 @@ pub const NOTIFICATIONS: &str = "can.bus_notifications";
 
 const RATE_MAX: f64 = u32::MAX as f64;
 
-const LINK: [Variable; 14] = [
-    Variable::input("can.Rx_Clock", Kind::Clock(Ticks::Triggered))
-        .described("Ticks when can.Rx_Data has come."),
-    Variable::input("can.Rx_Data", Kind::Binary(&RX_DATA)).described(
-        "Bus operations that come: the frames of the harness, and what the bus simulation says.",
-    ),
-    Variable::input("can.Tx_Clock", Kind::Clock(Ticks::Countdown)).described(
+const LINK: [Variable; 14] = variables! {
+    input("can.Rx_Clock", Kind::Clock(Ticks::Triggered)): "Ticks when can.Rx_Data has come.";
+    input("can.Rx_Data", Kind::Binary(&RX_DATA)):
+        "Bus operations that come: the frames of the harness, and what the bus simulation says.";
+    input("can.Tx_Clock", Kind::Clock(Ticks::Countdown)):
         "Ticks when can.Tx_Data is to be taken: at once (interval 0) when an answer is there, else \
-         when a status or heartbeat is due.",
-    ),
-    Variable::output("can.Tx_Data", Kind::Binary(&TX_DATA))
-        .described("Bus operations that go: the frames of the device, its settings and its state."),
-    Variable::parameter(NOTIFICATIONS, Kind::Boolean).described(
+         when a status or heartbeat is due.";
+    output("can.Tx_Data", Kind::Binary(&TX_DATA)):
+        "Bus operations that go: the frames of the device, its settings and its state.";
+    parameter(NOTIFICATIONS, Kind::Boolean):
         "The bus simulation confirms frames and tells of errors and lost arbitration: the device \
-         has one frame at a time on the bus, and sends it until it is confirmed.",
-    ),
-    Variable::parameter("can.fd", Kind::Boolean)
-        .described("CAN FD, with another bit rate for the data; else classic CAN."),
-    Variable::parameter("can.bit_rate", Kind::Count)
-        .within(1.0, RATE_MAX)
-        .start(&[500_000.0])
-        .described("Bit rate, bit/s, that the bus simulation is told."),
-    Variable::parameter("can.data_bit_rate", Kind::Count)
-        .within(1.0, RATE_MAX)
-        .start(&[2_000_000.0])
-        .described("Bit rate of the data, bit/s, that the bus simulation is told of CAN FD."),
-    Variable::parameter("can.arbitration_lost", Kind::Enumeration(&ARBITRATION_LOST))
-        .start(&[1.0])
-        .described(
-            "What the bus simulation is asked to do with a frame that loses the bus. To discard it \
-             takes can.bus_notifications.",
-        ),
-    Variable::output("can.node_state", Kind::Enumeration(&NODE_STATE))
-        .described("State of the node, as it follows from the error counters."),
-    Variable::output("can.transmit_errors", Kind::Count).described("Transmit error counter."),
-    Variable::output("can.receive_errors", Kind::Count).described("Receive error counter."),
-    Variable::output("can.waiting", Kind::Count)
-        .described("Frames that wait for the bus, one that is on it included."),
-    Variable::output("can.lost", Kind::Count).described(
+         has one frame at a time on the bus, and sends it until it is confirmed.";
+    parameter("can.fd", Kind::Boolean):
+        "CAN FD, with another bit rate for the data; else classic CAN.";
+    parameter("can.bit_rate", Kind::Count) within(1.0, RATE_MAX) start(&[500_000.0]):
+        "Bit rate, bit/s, that the bus simulation is told.";
+    parameter("can.data_bit_rate", Kind::Count) within(1.0, RATE_MAX) start(&[2_000_000.0]):
+        "Bit rate of the data, bit/s, that the bus simulation is told of CAN FD.";
+    parameter("can.arbitration_lost", Kind::Enumeration(&ARBITRATION_LOST)) start(&[1.0]):
+        "What the bus simulation is asked to do with a frame that loses the bus. To discard it \
+         takes can.bus_notifications.";
+    output("can.node_state", Kind::Enumeration(&NODE_STATE)):
+        "State of the node, as it follows from the error counters.";
+    output("can.transmit_errors", Kind::Count): "Transmit error counter.";
+    output("can.receive_errors", Kind::Count): "Receive error counter.";
+    output("can.waiting", Kind::Count): "Frames that wait for the bus, one that is on it included.";
+    output("can.lost", Kind::Count):
         "Frames that there was no room for, or that were thrown away when the node went off the \
-         bus.",
-    ),
-];
+         bus.";
+};
 
 /// Sample period, which is not that of a communication step here.
-const PERIOD: [Variable; 1] = [Variable::parameter("imu.period_ns", Kind::Count)
-    .of(&q::NANOSECONDS)
-    .within(1.0, 1e9)
-    .start(&[5e6])
-    .described("Sample period, ns, which the harness has to have as well.")];
+const PERIOD: [Variable; 1] = variables! {
+    parameter("imu.period_ns", Kind::Count) of(&q::NANOSECONDS) within(1.0, 1e9) start(&[5e6]):
+        "Sample period, ns, which the harness has to have as well.";
+};
 
 /// Index of the first of the Calibrator's parameters that are copied here.
 const FIRST: usize = {
@@ -108,21 +90,6 @@ const FIRST: usize = {
     assert!(i == 1, "the period stands before the stamps, and nothing else");
     i + 1
 };
-
-const fn same(a: &str, b: &str) -> bool {
-    let (a, b) = (a.as_bytes(), b.as_bytes());
-    if a.len() != b.len() {
-        return false;
-    }
-    let mut i = 0;
-    while i < a.len() {
-        if a[i] != b[i] {
-            return false;
-        }
-        i += 1;
-    }
-    true
-}
 
 const COUNT: usize =
     LINK.len() + calibrator::OUTPUTS.len() + PERIOD.len() + calibrator::PARAMETERS.len() - FIRST;

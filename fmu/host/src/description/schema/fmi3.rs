@@ -15,37 +15,28 @@ const CAUSALITY: Type = Type::Word(&[
 const INTERVAL: Type =
     Type::Word(&["constant", "fixed", "tunable", "changing", "countdown", "triggered"]);
 
-/// The root element.
-pub static MODEL_DESCRIPTION: Node = node(
-    "fmiModelDescription",
-    &[
-        must("fmiVersion", Type::Version3),
-        must("modelName", Type::Text),
-        must("instantiationToken", Type::Line),
-        may("description", Type::Text),
-        may("author", Type::Text),
-        may("version", Type::Line),
-        may("copyright", Type::Text),
-        may("license", Type::Text),
-        may("generationTool", Type::Line),
-        may("generationDateAndTime", Type::DateTime),
-        may("variableNamingConvention", NAMING),
-    ],
-    &[
-        optional(0, &MODEL_EXCHANGE),
-        optional(1, &CO_SIMULATION),
-        optional(2, &SCHEDULED_EXECUTION),
-        optional(3, &UNIT_DEFINITIONS),
-        optional(4, &TYPE_DEFINITIONS),
-        optional(5, &LOG_CATEGORIES),
-        optional(6, &DEFAULT_EXPERIMENT),
-        one(7, &MODEL_VARIABLES),
-        one(8, &MODEL_STRUCTURE),
+nodes! {
+    /// The root element.
+    pub MODEL_DESCRIPTION "fmiModelDescription" {
+        must fmiVersion: Type::Version3;
+        must modelName: Type::Text;
+        must instantiationToken: Type::Line;
+        may description author: Type::Text;
+        may version: Type::Line;
+        may copyright license: Type::Text;
+        may generationTool: Type::Line;
+        may generationDateAndTime: Type::DateTime;
+        may variableNamingConvention: NAMING;
+    } -> &[
+        optional(0, &MODEL_EXCHANGE), optional(1, &CO_SIMULATION),
+        optional(2, &SCHEDULED_EXECUTION), optional(3, &UNIT_DEFINITIONS),
+        optional(4, &TYPE_DEFINITIONS), optional(5, &LOG_CATEGORIES),
+        optional(6, &DEFAULT_EXPERIMENT), one(7, &MODEL_VARIABLES), one(8, &MODEL_STRUCTURE),
         optional(9, &ANNOTATIONS),
-    ],
-);
+    ];
+    pub(super) ANNOTATIONS "Annotations" {} -> &[some(0, &ANNOTATION)];
+}
 
-pub(super) static ANNOTATIONS: Node = node("Annotations", &[], &[some(0, &ANNOTATION)]);
 static ANNOTATION: Node = Node {
     name: "Annotation",
     attributes: &[must("type", Type::Line)],
@@ -99,36 +90,23 @@ static CO_SIMULATION: Node = interface!(
 );
 static SCHEDULED_EXECUTION: Node = interface!("ScheduledExecution", []);
 
-static UNIT_DEFINITIONS: Node = node("UnitDefinitions", &[], &[some(0, &UNIT)]);
-static UNIT: Node = node(
-    "Unit",
-    &[must("name", Type::Line)],
-    &[optional(0, &BASE_UNIT), any(1, &DISPLAY_UNIT), optional(2, &ANNOTATIONS)],
-);
-static DISPLAY_UNIT: Node = node(
-    "DisplayUnit",
-    &[
-        must("name", Type::Line),
-        may("factor", Type::Double),
-        may("offset", Type::Double),
-        may("inverse", Type::Boolean),
-    ],
-    ANNOTATED,
-);
+nodes! {
+    UNIT_DEFINITIONS "UnitDefinitions" {} -> &[some(0, &UNIT)];
+    UNIT "Unit" {
+        must name: Type::Line;
+    } -> &[optional(0, &BASE_UNIT), any(1, &DISPLAY_UNIT), optional(2, &ANNOTATIONS)];
+    DISPLAY_UNIT "DisplayUnit" {
+        must name: Type::Line;
+        may factor offset: Type::Double;
+        may inverse: Type::Boolean;
+    } -> ANNOTATED;
 
-static LOG_CATEGORIES: Node = node("LogCategories", &[], &[some(0, &CATEGORY)]);
-static CATEGORY: Node =
-    node("Category", &[must("name", Type::Line), may("description", Type::Text)], ANNOTATED);
-static DEFAULT_EXPERIMENT: Node = node(
-    "DefaultExperiment",
-    &[
-        may("startTime", Type::Double),
-        may("stopTime", Type::Double),
-        may("tolerance", Type::Double),
-        may("stepSize", Type::Double),
-    ],
-    ANNOTATED,
-);
+    LOG_CATEGORIES "LogCategories" {} -> &[some(0, &CATEGORY)];
+    CATEGORY "Category" { must name: Type::Line; may description: Type::Text; } -> ANNOTATED;
+    DEFAULT_EXPERIMENT "DefaultExperiment" {
+        may startTime stopTime tolerance stepSize: Type::Double;
+    } -> ANNOTATED;
+}
 
 /// A type of variables and its type definition: the attributes that both have, those of the
 /// definition alone, and those of the variable alone.
@@ -172,20 +150,20 @@ const TEXT_ARRAY: &[Child] =
 const HEX_ARRAY: &[Child] =
     &[optional(0, &ANNOTATIONS), any(1, &DIMENSION), any(2, &HEX_START), any(3, &ALIAS)];
 
-static DIMENSION: Node = node(
-    "Dimension",
-    &[may("start", Type::UNSIGNED_LONG), may("valueReference", Type::UNSIGNED_INT)],
-    &[],
-);
-static ALIAS: Node =
-    node("Alias", &[must("name", Type::Line), may("description", Type::Text)], &[]);
-static FLOAT_ALIAS: Node = node(
-    "Alias",
-    &[must("name", Type::Line), may("description", Type::Text), may("displayUnit", Type::Line)],
-    &[],
-);
-static TEXT_START: Node = node("Start", &[may("value", Type::Text)], &[]);
-static HEX_START: Node = node("Start", &[may("value", Type::Hex)], &[]);
+nodes! {
+    DIMENSION "Dimension" {
+        may start: Type::UNSIGNED_LONG;
+        may valueReference: Type::UNSIGNED_INT;
+    };
+    ALIAS "Alias" { must name: Type::Line; may description: Type::Text; };
+    FLOAT_ALIAS "Alias" {
+        must name: Type::Line;
+        may description: Type::Text;
+        may displayUnit: Type::Line;
+    };
+    TEXT_START "Start" { may value: Type::Text; };
+    HEX_START "Start" { may value: Type::Hex; };
+}
 
 const DECLARED: Attribute = may("declaredType", Type::Line);
 const INTERMEDIATE: Attribute = may("intermediateUpdate", Type::Boolean);
@@ -277,128 +255,75 @@ typed!(CLOCK "Clock", CLOCK_TYPE "ClockType",
     variable [DECLARED],
     children &[optional(0, &ANNOTATIONS), any(1, &ALIAS)]);
 
-static ITEM: Node = node(
-    "Item",
-    &[must("name", Type::Line), must("value", Type::LONG), may("description", Type::Text)],
-    ANNOTATED,
-);
+nodes! {
+    ITEM "Item" {
+        must name: Type::Line;
+        must value: Type::LONG;
+        may description: Type::Text;
+    } -> ANNOTATED;
 
-static TYPE_DEFINITIONS: Node = node(
-    "TypeDefinitions",
-    &[],
-    &[
-        some(0, &FLOAT32_TYPE),
-        some(0, &FLOAT64_TYPE),
-        some(0, &INT8_TYPE),
-        some(0, &UINT8_TYPE),
-        some(0, &INT16_TYPE),
-        some(0, &UINT16_TYPE),
-        some(0, &INT32_TYPE),
-        some(0, &UINT32_TYPE),
-        some(0, &INT64_TYPE),
-        some(0, &UINT64_TYPE),
-        some(0, &BOOLEAN_TYPE),
-        some(0, &STRING_TYPE),
-        some(0, &BINARY_TYPE),
-        some(0, &ENUMERATION_TYPE),
-        some(0, &CLOCK_TYPE),
-    ],
-);
-static MODEL_VARIABLES: Node = node(
-    "ModelVariables",
-    &[],
-    &[
-        some(0, &FLOAT32),
-        some(0, &FLOAT64),
-        some(0, &INT8),
-        some(0, &UINT8),
-        some(0, &INT16),
-        some(0, &UINT16),
-        some(0, &INT32),
-        some(0, &UINT32),
-        some(0, &INT64),
-        some(0, &UINT64),
-        some(0, &BOOLEAN),
-        some(0, &STRING),
-        some(0, &BINARY),
-        some(0, &ENUMERATION),
+    TYPE_DEFINITIONS "TypeDefinitions" {} -> &[
+        some(0, &FLOAT32_TYPE), some(0, &FLOAT64_TYPE), some(0, &INT8_TYPE), some(0, &UINT8_TYPE),
+        some(0, &INT16_TYPE), some(0, &UINT16_TYPE), some(0, &INT32_TYPE), some(0, &UINT32_TYPE),
+        some(0, &INT64_TYPE), some(0, &UINT64_TYPE), some(0, &BOOLEAN_TYPE), some(0, &STRING_TYPE),
+        some(0, &BINARY_TYPE), some(0, &ENUMERATION_TYPE), some(0, &CLOCK_TYPE),
+    ];
+
+    MODEL_VARIABLES "ModelVariables" {} -> &[
+        some(0, &FLOAT32), some(0, &FLOAT64), some(0, &INT8), some(0, &UINT8), some(0, &INT16),
+        some(0, &UINT16), some(0, &INT32), some(0, &UINT32), some(0, &INT64), some(0, &UINT64),
+        some(0, &BOOLEAN), some(0, &STRING), some(0, &BINARY), some(0, &ENUMERATION),
         some(0, &CLOCK),
-    ],
-);
+    ];
 
-static MODEL_STRUCTURE: Node = node(
-    "ModelStructure",
-    &[],
-    &[
-        any(0, &OUTPUT),
-        any(1, &CONTINUOUS_STATE_DERIVATIVE),
-        any(2, &CLOCKED_STATE),
-        any(3, &INITIAL_UNKNOWN),
-        any(4, &EVENT_INDICATOR),
-    ],
-);
+    MODEL_STRUCTURE "ModelStructure" {} -> &[
+        any(0, &OUTPUT), any(1, &CONTINUOUS_STATE_DERIVATIVE), any(2, &CLOCKED_STATE),
+        any(3, &INITIAL_UNKNOWN), any(4, &EVENT_INDICATOR),
+    ];
+}
+
 const UNKNOWN: &[Attribute] = &[
     must("valueReference", Type::UNSIGNED_INT),
     may("dependencies", Type::List(&Type::UNSIGNED_INT)),
     may("dependenciesKind", KINDS),
 ];
-static OUTPUT: Node = node("Output", UNKNOWN, ANNOTATED);
-static CONTINUOUS_STATE_DERIVATIVE: Node = node("ContinuousStateDerivative", UNKNOWN, ANNOTATED);
-static CLOCKED_STATE: Node = node("ClockedState", UNKNOWN, ANNOTATED);
-static INITIAL_UNKNOWN: Node = node("InitialUnknown", UNKNOWN, ANNOTATED);
-static EVENT_INDICATOR: Node = node("EventIndicator", UNKNOWN, ANNOTATED);
 
-/// The root element of `sources/buildDescription.xml`.
-pub static BUILD_DESCRIPTION: Node = node(
-    "fmiBuildDescription",
-    &[must("fmiVersion", Type::Version3)],
-    &[some(0, &BUILD_CONFIGURATION), optional(1, &ANNOTATIONS)],
-);
-static BUILD_CONFIGURATION: Node = node(
-    "BuildConfiguration",
-    &[
-        must("modelIdentifier", Type::Line),
-        may("platform", Type::Line),
-        may("description", Type::Text),
-    ],
-    &[any(0, &SOURCE_FILE_SET), any(1, &LIBRARY), optional(2, &ANNOTATIONS)],
-);
-static SOURCE_FILE_SET: Node = node(
-    "SourceFileSet",
-    &[
-        may("name", Type::Line),
-        may("language", Type::Line),
-        may("compiler", Type::Line),
-        may("compilerOptions", Type::Text),
-    ],
-    &[
-        some(0, &SOURCE_FILE),
-        any(1, &PREPROCESSOR_DEFINITION),
-        any(2, &INCLUDE_DIRECTORY),
+nodes! {
+    OUTPUT "Output" = UNKNOWN -> ANNOTATED;
+    CONTINUOUS_STATE_DERIVATIVE "ContinuousStateDerivative" = UNKNOWN -> ANNOTATED;
+    CLOCKED_STATE "ClockedState" = UNKNOWN -> ANNOTATED;
+    INITIAL_UNKNOWN "InitialUnknown" = UNKNOWN -> ANNOTATED;
+    EVENT_INDICATOR "EventIndicator" = UNKNOWN -> ANNOTATED;
+
+    /// The root element of `sources/buildDescription.xml`.
+    pub BUILD_DESCRIPTION "fmiBuildDescription" {
+        must fmiVersion: Type::Version3;
+    } -> &[some(0, &BUILD_CONFIGURATION), optional(1, &ANNOTATIONS)];
+    BUILD_CONFIGURATION "BuildConfiguration" {
+        must modelIdentifier: Type::Line;
+        may platform: Type::Line;
+        may description: Type::Text;
+    } -> &[any(0, &SOURCE_FILE_SET), any(1, &LIBRARY), optional(2, &ANNOTATIONS)];
+    SOURCE_FILE_SET "SourceFileSet" {
+        may name language compiler: Type::Line;
+        may compilerOptions: Type::Text;
+    } -> &[
+        some(0, &SOURCE_FILE), any(1, &PREPROCESSOR_DEFINITION), any(2, &INCLUDE_DIRECTORY),
         optional(3, &ANNOTATIONS),
-    ],
-);
-static SOURCE_FILE: Node = node("SourceFile", &[must("name", Type::Line)], ANNOTATED);
-static INCLUDE_DIRECTORY: Node = node("IncludeDirectory", &[must("name", Type::Line)], ANNOTATED);
-static PREPROCESSOR_DEFINITION: Node = node(
-    "PreprocessorDefinition",
-    &[
-        must("name", Type::Line),
-        may("optional", Type::Boolean),
-        may("value", Type::Line),
-        may("description", Type::Text),
-    ],
-    &[any(0, &OPTION), optional(1, &ANNOTATIONS)],
-);
-static OPTION: Node =
-    node("Option", &[may("value", Type::Line), may("description", Type::Text)], &[]);
-static LIBRARY: Node = node(
-    "Library",
-    &[
-        must("name", Type::Line),
-        may("version", Type::Line),
-        may("external", Type::Boolean),
-        may("description", Type::Text),
-    ],
-    ANNOTATED,
-);
+    ];
+    SOURCE_FILE "SourceFile" { must name: Type::Line; } -> ANNOTATED;
+    INCLUDE_DIRECTORY "IncludeDirectory" { must name: Type::Line; } -> ANNOTATED;
+    PREPROCESSOR_DEFINITION "PreprocessorDefinition" {
+        must name: Type::Line;
+        may optional: Type::Boolean;
+        may value: Type::Line;
+        may description: Type::Text;
+    } -> &[any(0, &OPTION), optional(1, &ANNOTATIONS)];
+    OPTION "Option" { may value: Type::Line; may description: Type::Text; };
+    LIBRARY "Library" {
+        must name: Type::Line;
+        may version: Type::Line;
+        may external: Type::Boolean;
+        may description: Type::Text;
+    } -> ANNOTATED;
+}

@@ -3,6 +3,31 @@
 //! The tables correspond to the XML Schemas of the standards; rules beyond a schema are checked
 //! elsewhere.
 
+/// Declares elements in the notation of the tables: the constant, the element's name, its attributes
+/// by type (`must` or `may` be there), and its children.
+macro_rules! nodes {
+    ($(
+        $(#[$doc:meta])*
+        $vis:vis $node:ident $name:literal
+        $(= $list:ident)?
+        $({ $($need:ident $($attribute:ident)+: $of:expr;)* })?
+        $(-> $children:expr)?;
+    )*) => {$(
+        $(#[$doc])*
+        $vis static $node: Node = node(
+            $name,
+            nodes!(@ $($list)? $(&[$($($need(stringify!($attribute), $of)),+),*])?),
+            nodes!(@ $($children)?),
+        );
+    )*};
+    (@) => {
+        &[]
+    };
+    (@ $list:expr) => {
+        $list
+    };
+}
+
 mod fmi2;
 mod fmi3;
 mod terminals;

@@ -7,7 +7,7 @@ use octant_fmi::fmi3::{Binary, Boolean, Instance as Handle, Status, ValueReferen
 
 export! {
     /// Gets binary variables; the bytes stay valid until the next call.
-    GetBinary: fn fmi3GetBinary(
+    fn fmi3GetBinary(
         i: Handle,
         references: *const ValueReference,
         count: usize,
@@ -21,7 +21,7 @@ export! {
     }
 
     /// Sets binary variables whose clocks tick.
-    SetBinary: fn fmi3SetBinary(
+    fn fmi3SetBinary(
         i: Handle,
         references: *const ValueReference,
         count: usize,
@@ -35,7 +35,7 @@ export! {
     }
 
     /// Returns which clocks tick.
-    GetClock: fn fmi3GetClock(
+    fn fmi3GetClock(
         i: Handle, references: *const ValueReference, count: usize, values: *mut Boolean,
     ) -> Status {
         enter(i, "fmi3GetClock", |instance| {
@@ -44,7 +44,7 @@ export! {
     }
 
     /// Lets clocks tick until the end of the event.
-    SetClock: fn fmi3SetClock(
+    fn fmi3SetClock(
         i: Handle, references: *const ValueReference, count: usize, values: *const Boolean,
     ) -> Status {
         enter(i, "fmi3SetClock", |instance| {
@@ -53,7 +53,7 @@ export! {
     }
 
     /// Returns the time until countdown clocks are to tick.
-    GetIntervalDecimal: fn fmi3GetIntervalDecimal(
+    fn fmi3GetIntervalDecimal(
         i: Handle,
         references: *const ValueReference,
         count: usize,

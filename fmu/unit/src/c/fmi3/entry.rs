@@ -4,11 +4,7 @@ use crate::c::call::call;
 use crate::c::instance::Instance;
 use crate::c::mode::{Refusal, Standard};
 use core::ffi::c_void;
-use octant_fmi::fmi3::{Boolean, Status};
-
-/// C's `true` and `false`.
-pub(super) const TRUE: Boolean = 1;
-pub(super) const FALSE: Boolean = 0;
+use octant_fmi::fmi3::Status;
 
 #[inline]
 pub(super) fn enter(

@@ -1,11 +1,13 @@
 //! Communication steps of one sample period, and of several with calls of the importer in between.
 
-use super::entry::{FALSE, TRUE, enter};
+use super::entry::enter;
 use crate::c::call::put;
 use crate::c::instance::Instance;
 use crate::c::mode::{Mode, Modes, Refusal};
 use core::ffi::c_void;
-use octant_fmi::fmi3::{Boolean, DISCARD, Environment, IntermediateUpdate, OK, Status, WARNING};
+use octant_fmi::fmi3::{
+    Boolean, DISCARD, Environment, FALSE, IntermediateUpdate, OK, Status, TRUE, WARNING,
+};
 
 const NAME: &str = "fmi3DoStep";
 

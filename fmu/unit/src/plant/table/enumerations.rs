@@ -1,31 +1,25 @@
 //! Types with named values.
 
-use crate::table::Enumeration;
+use crate::table::{Enumeration, enumerations, same};
 use octant_faults::catalogue::Acts;
 use octant_faults::kinds::KINDS;
 
 pub use crate::calibrator::table::REFERENCE_KIND;
 
-/// Motion of the case.
-pub static MOTION: Enumeration = Enumeration {
-    name: "Motion",
-    description: "How the case of the instrument moves.",
-    items: &[
-        (0, "static", "Fixed to the ground."),
-        (1, "dockside", "On a moored ship: sums of sinusoids about a mean attitude and position."),
-    ],
-};
-
-/// Quantity that the reference measures.
-pub static AIDING: Enumeration = Enumeration {
-    name: "AidingSource",
-    description: "What the reference of the calibration measures, with white noise of its own.",
-    items: &[
-        (0, "zero_velocity", "Velocity of the ground or dock: zero. It doesn't know of sway."),
-        (1, "velocity", "True velocity of the instrument over ground."),
-        (2, "dock_position", "Position of the dock: constant. It doesn't know of sway."),
-    ],
-};
+enumerations! {
+    /// Motion of the case.
+    pub MOTION "Motion" "How the case of the instrument moves." {
+        0 static "Fixed to the ground.";
+        1 dockside "On a moored ship: sums of sinusoids about a mean attitude and position.";
+    }
+    /// Quantity that the reference measures.
+    pub AIDING "AidingSource"
+        "What the reference of the calibration measures, with white noise of its own." {
+        0 zero_velocity "Velocity of the ground or dock: zero. It doesn't know of sway.";
+        1 velocity "True velocity of the instrument over ground.";
+        2 dock_position "Position of the dock: constant. It doesn't know of sway.";
+    }
+}
 
 /// Kinds of faults that can act inside the plant. The values are the positions in the catalogue,
 /// from 1.
@@ -41,17 +35,6 @@ static ITEMS: [(i32, &str, &str); COUNT] = items();
 
 /// Kinds on delivery that never release more than one sample in a step.
 const ONE_AT_A_TIME: &[&str] = &["dropout"];
-
-const fn same(a: &str, b: &str) -> bool {
-    let (a, b) = (a.as_bytes(), b.as_bytes());
-    let mut same = a.len() == b.len();
-    let mut i = 0;
-    while same && i < a.len() {
-        same = a[i] == b[i];
-        i += 1;
-    }
-    same
-}
 
 /// Returns whether a kind can act inside the plant.
 pub(crate) const fn acts_in_plant(kind: &octant_faults::Kind) -> bool {
