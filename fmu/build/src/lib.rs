@@ -40,8 +40,8 @@ use library::Library;
 use octant_fmu::c::token;
 use octant_fmu::calibrator::Calibrator;
 use octant_fmu::calibrator_can::CalibratorCan;
-use octant_fmu::component::Component as _;
-use octant_fmu::plant::Plant;
+use octant_fmu::component::ModelComponent as _;
+use octant_fmu::plant::PlantFmu;
 use octant_fmu::table::Model;
 use octant_scenario::Scenario;
 use own::Own;
@@ -111,7 +111,7 @@ fn libraries(options: &Options) -> Result<Vec<Library>, BuildError> {
 
 /// Runs the models that are wired to a system, with their start values.
 fn own() -> Result<[Own; 2], BuildError> {
-    let references = reference::closed_loop::<Plant, Calibrator>();
+    let references = reference::closed_loop::<PlantFmu, Calibrator>();
     let references = references.map_err(|reason| BuildError::Model { reason })?;
     Ok(references.map(|reference| Own { model: reference.model(), reference: Some(reference) }))
 }

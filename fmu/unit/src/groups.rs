@@ -27,7 +27,7 @@ macro_rules! groups {
         #[allow(clippy::wildcard_imports, reason = "the units of the rows")]
         use octant_earth::units::*;
         $crate::table::variables! {$(
-            $make(concat!($prefix, ".", $group), $crate::table::Kind::Real)
+            $make(concat!($prefix, ".", $group), $crate::table::ElementType::Real)
                 elements($elements) of(&$crate::quantities::$quantity) nominal($nominal):
                 concat!($before, $text, $after);
         )*}

@@ -7,7 +7,7 @@ mod epochs;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use epochs::{PERIOD_NS, Step, push, stream};
-use octant_recorder::{Frame, Policy, Recorder, RecorderOptions, Samples, StreamHash};
+use octant_recorder::{EpochFrame, Policy, Recorder, RecorderOptions, Samples, StreamHash};
 use std::hint::black_box;
 
 const EPOCHS: u64 = 200 * 600;
@@ -91,8 +91,11 @@ fn loop_thread(steps: &[Step]) {
             let start = std::time::Instant::now();
             for _ in 0..(blocks - 2) * block / few.len() {
                 for step in few {
-                    let frame =
-                        Frame { clean: &step.clean, faulted: &step.faulted, output: &step.output };
+                    let frame = EpochFrame {
+                        clean: &step.clean,
+                        faulted: &step.faulted,
+                        output: &step.output,
+                    };
                     recorder.push(black_box(frame)).unwrap();
                 }
             }

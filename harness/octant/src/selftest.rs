@@ -8,8 +8,8 @@ use clap::Args;
 use octant_base::interrupt;
 use octant_campaign::plan;
 use octant_requirements::Verdict;
-use octant_selftest::judge::Judged;
-use octant_selftest::record::{CaseRecord, FILE_NAME, Record, write};
+use octant_selftest::judge::CaseVerdict;
+use octant_selftest::record::{CaseRecord, FILE_NAME, SelftestRecord, write};
 use octant_selftest::{answers, cases, run};
 use std::path::PathBuf;
 use std::time::SystemTime;
@@ -61,14 +61,15 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
             progress.done += 1;
             progress.message = case.id.to_string();
         });
-        if case.verdict == Judged::Alarm {
+        if case.verdict == CaseVerdict::Alarm {
             bar.note(&format!("ALARM: {}: {}", case.id, case.found));
         }
     };
     let done = run(&program, &cases, jobs, interrupt::flag(), &tell);
     bar.finish();
     let failed = |reason: &dyn std::fmt::Display| Failure::bench(reason).failed();
-    let record = Record::new(&program, started, cases.len(), done.map_err(|error| failed(&error))?);
+    let record =
+        SelftestRecord::new(&program, started, cases.len(), done.map_err(|error| failed(&error))?);
     let record = record.map_err(|error| failed(&error))?;
     let json = record.to_json().map_err(|error| failed(&format!("write the result: {error}")))?;
     for path in arguments.out.iter().chain(&of_campaign) {
@@ -80,7 +81,7 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
 
 /// Returns the verdict of the exit status; a status that isn't a verdict's becomes a failure with a
 /// message.
-fn conclude(record: &Record) -> Result<Verdict, Failure> {
+fn conclude(record: &SelftestRecord) -> Result<Verdict, Failure> {
     let verdict = Verdict::ALL.into_iter().find(|v| v.exit_code() == record.exit_code());
     verdict.ok_or_else(|| Failure {
         status: record.exit_code(),

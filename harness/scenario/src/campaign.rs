@@ -20,7 +20,7 @@
 //! uniform = [1, 1000]
 //! ```
 
-use crate::document::{self, Node, Table, Value};
+use crate::document::{self, DocumentNode, DocumentTable, DocumentValue};
 use crate::error::{Problem, ScenarioError};
 use crate::keys::{
     At, CampaignKeys, CorrelationKeys, EarlyStopKeys, FactorKeys, Keys, LimitsKeys, MemberKeys,
@@ -44,13 +44,13 @@ pub struct Campaign {
     /// Scenarios to run.
     pub scenarios: Vec<Member>,
     /// Factors; the last one of the grid runs fastest.
-    pub factors: Vec<Factor>,
+    pub factors: Vec<FactorSpec>,
     /// Correlated draws.
-    pub correlations: Vec<Correlation>,
+    pub correlations: Vec<CorrelationSpec>,
     /// Limits of a case.
-    pub limits: Limits,
+    pub limits: LimitsSpec,
     /// Early stopping.
-    pub stop: Option<Stop>,
+    pub stop: Option<StopSpec>,
 }
 
 /// Design of the draws over the replicates.
@@ -79,7 +79,7 @@ pub struct Member {
 
 /// Varied quantity.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Factor {
+pub struct FactorSpec {
     /// Name: a column of the results.
     pub name: String,
     /// Levels of the factor.
@@ -112,13 +112,13 @@ pub enum Levels {
         /// Unit of the numbers; `None`: plain numbers.
         unit: Option<String>,
         /// The distribution.
-        distribution: Distribution,
+        distribution: DistributionSpec,
     },
 }
 
 /// Distribution of drawn numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Distribution {
+pub enum DistributionSpec {
     /// Uniform between two limits.
     Uniform {
         /// Lower limit.
@@ -141,7 +141,7 @@ pub enum Distribution {
 
 /// Correlation of two draws.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Correlation {
+pub struct CorrelationSpec {
     /// Index of a factor.
     pub first: usize,
     /// Index of the other factor.
@@ -152,7 +152,7 @@ pub struct Correlation {
 
 /// Limits of a case.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Limits {
+pub struct LimitsSpec {
     /// Time, s.
     pub time_s: f64,
     /// Address space, MiB.
@@ -161,7 +161,7 @@ pub struct Limits {
 
 /// Early stopping.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Stop {
+pub struct StopSpec {
     /// Requirement that decides.
     pub requirement: String,
     /// Least probability with which it is kept.
@@ -212,7 +212,7 @@ fn read(keys: CampaignKeys, folder: &Path) -> Result<Campaign, Problem> {
         let set = set.map_or(Vec::new(), |set| settings(&set.table));
         scenarios.push(Member { id, file: folder.join(file), set, verifies });
     }
-    let mut factors: Vec<Factor> = Vec::new();
+    let mut factors: Vec<FactorSpec> = Vec::new();
     for keys in keys.factors.into_iter().flatten() {
         let at = keys.name().clone();
         let name = unique(&at, factors.iter().map(|factor| factor.name.as_str()))?;
@@ -224,9 +224,9 @@ fn read(keys: CampaignKeys, folder: &Path) -> Result<Campaign, Problem> {
                 other.name
             )));
         }
-        factors.push(Factor { name, levels });
+        factors.push(FactorSpec { name, levels });
     }
-    let mut correlations: Vec<Correlation> = Vec::new();
+    let mut correlations: Vec<CorrelationSpec> = Vec::new();
     for CorrelationKeys { first: one, second: other, value } in
         keys.correlations.into_iter().flatten()
     {
@@ -234,15 +234,15 @@ fn read(keys: CampaignKeys, folder: &Path) -> Result<Campaign, Problem> {
         if first == second {
             return Err(other.problem("expected another factor than the first"));
         }
-        let pair = |c: &Correlation| [c.first.min(c.second), c.first.max(c.second)];
-        let correlation = Correlation { first, second, value };
+        let pair = |c: &CorrelationSpec| [c.first.min(c.second), c.first.max(c.second)];
+        let correlation = CorrelationSpec { first, second, value };
         if correlations.iter().any(|other| pair(other) == pair(&correlation)) {
             return Err(other.problem("these two have a correlation already"));
         }
         correlations.push(correlation);
     }
     let LimitsKeys { time: time_s, memory_mib } = keys.limits;
-    let stop = |EarlyStopKeys { requirement, pass, confidence, every }| Stop {
+    let stop = |EarlyStopKeys { requirement, pass, confidence, every }| StopSpec {
         requirement,
         pass,
         confidence,
@@ -257,7 +257,7 @@ fn read(keys: CampaignKeys, folder: &Path) -> Result<Campaign, Problem> {
         scenarios,
         factors,
         correlations,
-        limits: Limits { time_s, memory_mib },
+        limits: LimitsSpec { time_s, memory_mib },
         stop: keys.stop.map(stop),
     })
 }
@@ -278,12 +278,12 @@ fn unique<'a>(
 }
 
 /// Lists the settings of a table as `KEY=VALUE`; nested tables are parts of keys.
-fn settings(table: &Table) -> Vec<String> {
-    fn walk(prefix: &str, table: &Table, all: &mut Vec<String>) {
+fn settings(table: &DocumentTable) -> Vec<String> {
+    fn walk(prefix: &str, table: &DocumentTable, all: &mut Vec<String>) {
         for entry in &table.entries {
             let path = document::join(prefix, &entry.key);
             match &entry.node.value {
-                Value::Table(table) => walk(&path, table, all),
+                DocumentValue::Table(table) => walk(&path, table, all),
                 value => all.push(format!("{path}={}", toml(value))),
             }
         }
@@ -293,7 +293,7 @@ fn settings(table: &Table) -> Vec<String> {
     all
 }
 
-fn toml(value: &Value) -> String {
+fn toml(value: &DocumentValue) -> String {
     let mut text = String::new();
     document::write_value(value, &mut text);
     text
@@ -301,7 +301,7 @@ fn toml(value: &Value) -> String {
 
 fn levels(keys: FactorKeys) -> Result<Levels, Problem> {
     let key = |name: At<String>, key: Option<String>| key.unwrap_or(name.value);
-    let values = |values: &At<Vec<Node>>| {
+    let values = |values: &At<Vec<DocumentNode>>| {
         once(values, values.iter().map(|entry| toml(&entry.value)).collect())
     };
     Ok(match keys {
@@ -325,7 +325,7 @@ fn levels(keys: FactorKeys) -> Result<Levels, Problem> {
             Levels::Distributed {
                 key: key(keys.name, keys.key),
                 unit: keys.unit,
-                distribution: Distribution::Uniform { low, high },
+                distribution: DistributionSpec::Uniform { low, high },
             }
         }
         FactorKeys::Normal(keys) => {
@@ -345,7 +345,7 @@ fn levels(keys: FactorKeys) -> Result<Levels, Problem> {
             Levels::Distributed {
                 key: key(keys.name, keys.key),
                 unit: keys.unit,
-                distribution: Distribution::Normal { mean, sigma, low, high },
+                distribution: DistributionSpec::Normal { mean, sigma, low, high },
             }
         }
     })
@@ -381,7 +381,7 @@ fn same_key(a: &Levels, b: &Levels) -> bool {
 }
 
 /// Returns the index of a factor that is drawn from a distribution.
-fn drawn(name: &At<String>, factors: &[Factor]) -> Result<usize, Problem> {
+fn drawn(name: &At<String>, factors: &[FactorSpec]) -> Result<usize, Problem> {
     let Some(index) = factors.iter().position(|factor| factor.name == **name) else {
         let known = suggestion(name, factors.iter().map(|factor| factor.name.as_str()), "factors");
         return Err(name.problem(format!("found {:?}, {known}", **name)));

@@ -3,13 +3,13 @@
 //! Channels have the names of the variables of Octant's own FMUs; a scenario maps them to the variables
 //! of others.
 
-use crate::quantity::Dimension;
+use crate::quantity::UnitDimension;
 
 /// Class of a channel's elements.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Class {
     /// A quantity of a dimension; transmitted in SI.
-    Quantity(Dimension),
+    Quantity(UnitDimension),
     /// A real number without unit.
     Number,
     /// A whole number: counters, flags in bits.
@@ -46,20 +46,20 @@ macro_rules! channels {
 
 /// Channels of samples and references: outputs of a source, and inputs of a core.
 pub mod sample {
-    use super::{Channel, Class, Dimension};
+    use super::{Channel, Class, UnitDimension};
 
     channels! {
-        RATE = "gyro.rate", Class::Quantity(Dimension::ANGULAR_RATE), 3,
+        RATE = "gyro.rate", Class::Quantity(UnitDimension::ANGULAR_RATE), 3,
             "Angular rate of the body, x y z, taken as constant over the sample's interval.";
-        DELTA_THETA = "gyro.delta_theta", Class::Quantity(Dimension::ANGLE), 3,
+        DELTA_THETA = "gyro.delta_theta", Class::Quantity(UnitDimension::ANGLE), 3,
             "Angle increments over the sample's interval, x y z.";
-        SPECIFIC_FORCE = "accelerometer.specific_force", Class::Quantity(Dimension::ACCELERATION), 3,
+        SPECIFIC_FORCE = "accelerometer.specific_force", Class::Quantity(UnitDimension::ACCELERATION), 3,
             "Specific force, x y z (at rest it points up), taken as constant over the sample's interval.";
-        DELTA_VELOCITY = "accelerometer.delta_velocity", Class::Quantity(Dimension::VELOCITY), 3,
+        DELTA_VELOCITY = "accelerometer.delta_velocity", Class::Quantity(UnitDimension::VELOCITY), 3,
             "Velocity increments over the sample's interval, x y z.";
-        AZIMUTH = "gimbal.azimuth", Class::Quantity(Dimension::ANGLE), 1,
+        AZIMUTH = "gimbal.azimuth", Class::Quantity(UnitDimension::ANGLE), 1,
             "Angle of the inner gimbal at the stamp, cumulative.";
-        ROLL = "gimbal.roll", Class::Quantity(Dimension::ANGLE), 1,
+        ROLL = "gimbal.roll", Class::Quantity(UnitDimension::ANGLE), 1,
             "Angle of the outer gimbal at the stamp, cumulative.";
         VALID = "imu.valid", Class::Flag, 1,
             "Whether there is a sample; without one none is delivered.";
@@ -73,75 +73,75 @@ pub mod sample {
             "Whether a reference goes with the sample: 0 none, 1 velocity, 2 position.";
         REFERENCE_VALID = "reference.valid", Class::Flag, 1,
             "Whether a reference goes with the sample.";
-        REFERENCE_VELOCITY = "reference.velocity", Class::Quantity(Dimension::VELOCITY), 3,
+        REFERENCE_VELOCITY = "reference.velocity", Class::Quantity(UnitDimension::VELOCITY), 3,
             "Velocity over ground that the reference measured: north, east, down.";
-        REFERENCE_LATITUDE = "reference.latitude", Class::Quantity(Dimension::ANGLE), 1,
+        REFERENCE_LATITUDE = "reference.latitude", Class::Quantity(UnitDimension::ANGLE), 1,
             "Geodetic latitude that the reference measured.";
-        REFERENCE_LONGITUDE = "reference.longitude", Class::Quantity(Dimension::ANGLE), 1,
+        REFERENCE_LONGITUDE = "reference.longitude", Class::Quantity(UnitDimension::ANGLE), 1,
             "Longitude that the reference measured.";
-        REFERENCE_HEIGHT = "reference.height", Class::Quantity(Dimension::LENGTH), 1,
+        REFERENCE_HEIGHT = "reference.height", Class::Quantity(UnitDimension::LENGTH), 1,
             "Height above the ellipsoid that the reference measured.";
         REFERENCE_AGE = "reference.age_ns", Class::Nanoseconds, 1,
             "Stamp of the sample minus that of its reference, ns.";
-        COMMAND_AZIMUTH = "gimbal_command.azimuth", Class::Quantity(Dimension::ANGLE), 1,
+        COMMAND_AZIMUTH = "gimbal_command.azimuth", Class::Quantity(UnitDimension::ANGLE), 1,
             "Set point of the inner gimbal, cumulative.";
-        COMMAND_ROLL = "gimbal_command.roll", Class::Quantity(Dimension::ANGLE), 1,
+        COMMAND_ROLL = "gimbal_command.roll", Class::Quantity(UnitDimension::ANGLE), 1,
             "Set point of the outer gimbal, cumulative.";
     }
 }
 
 /// Channels of truth.
 pub mod truth {
-    use super::{Channel, Class, Dimension};
+    use super::{Channel, Class, UnitDimension};
 
     channels! {
-        LATITUDE = "truth.latitude", Class::Quantity(Dimension::ANGLE), 1,
+        LATITUDE = "truth.latitude", Class::Quantity(UnitDimension::ANGLE), 1,
             "True geodetic latitude at the stamp.";
-        LONGITUDE = "truth.longitude", Class::Quantity(Dimension::ANGLE), 1,
+        LONGITUDE = "truth.longitude", Class::Quantity(UnitDimension::ANGLE), 1,
             "True longitude at the stamp.";
-        HEIGHT = "truth.height", Class::Quantity(Dimension::LENGTH), 1,
+        HEIGHT = "truth.height", Class::Quantity(UnitDimension::LENGTH), 1,
             "True height above the ellipsoid.";
-        VELOCITY = "truth.velocity", Class::Quantity(Dimension::VELOCITY), 3,
+        VELOCITY = "truth.velocity", Class::Quantity(UnitDimension::VELOCITY), 3,
             "True velocity over ground: north, east, down.";
         ATTITUDE = "truth.attitude", Class::Number, 4,
             "True attitude of the body as a quaternion w x y z that takes a vector in body into north, east, down.";
-        AZIMUTH = "truth.gimbal.azimuth", Class::Quantity(Dimension::ANGLE), 1,
+        AZIMUTH = "truth.gimbal.azimuth", Class::Quantity(UnitDimension::ANGLE), 1,
             "True angle of the inner gimbal, without encoder error.";
-        ROLL = "truth.gimbal.roll", Class::Quantity(Dimension::ANGLE), 1,
+        ROLL = "truth.gimbal.roll", Class::Quantity(UnitDimension::ANGLE), 1,
             "True angle of the outer gimbal, without encoder error.";
     }
 }
 
 /// Channels of the motion of the case: of a ship, or of a turntable's base.
 pub mod case {
-    use super::{Channel, Class, Dimension};
+    use super::{Channel, Class, UnitDimension};
 
     channels! {
-        HEADING = "case.heading", Class::Quantity(Dimension::ANGLE), 1,
+        HEADING = "case.heading", Class::Quantity(UnitDimension::ANGLE), 1,
             "Heading of the case, from north over east.";
-        PITCH = "case.pitch", Class::Quantity(Dimension::ANGLE), 1,
+        PITCH = "case.pitch", Class::Quantity(UnitDimension::ANGLE), 1,
             "Pitch of the case, bow up positive.";
-        ROLL = "case.roll", Class::Quantity(Dimension::ANGLE), 1,
+        ROLL = "case.roll", Class::Quantity(UnitDimension::ANGLE), 1,
             "Roll of the case, starboard down positive.";
-        NORTH = "case.north", Class::Quantity(Dimension::LENGTH), 1,
+        NORTH = "case.north", Class::Quantity(UnitDimension::LENGTH), 1,
             "Distance of the case north of the site.";
-        EAST = "case.east", Class::Quantity(Dimension::LENGTH), 1,
+        EAST = "case.east", Class::Quantity(UnitDimension::LENGTH), 1,
             "Distance of the case east of the site.";
-        DOWN = "case.down", Class::Quantity(Dimension::LENGTH), 1,
+        DOWN = "case.down", Class::Quantity(UnitDimension::LENGTH), 1,
             "Distance of the case below the site.";
-        LATITUDE = "case.latitude", Class::Quantity(Dimension::ANGLE), 1,
+        LATITUDE = "case.latitude", Class::Quantity(UnitDimension::ANGLE), 1,
             "Geodetic latitude of the case, instead of north.";
-        LONGITUDE = "case.longitude", Class::Quantity(Dimension::ANGLE), 1,
+        LONGITUDE = "case.longitude", Class::Quantity(UnitDimension::ANGLE), 1,
             "Longitude of the case, instead of east.";
-        HEIGHT = "case.height", Class::Quantity(Dimension::LENGTH), 1,
+        HEIGHT = "case.height", Class::Quantity(UnitDimension::LENGTH), 1,
             "Height of the case above the ellipsoid, instead of down.";
     }
 }
 
 /// Channels of a core's outputs, beside its gimbal command.
 pub mod answer {
-    use super::{Channel, Class, Dimension};
-    use octant_sample::parameters::Group;
+    use super::{Channel, Class, UnitDimension};
+    use octant_sample::parameters::ParameterGroup;
 
     channels! {
         MODE = "mode", Class::Code, 1,
@@ -150,13 +150,13 @@ pub mod answer {
             "Stop that the gimbals are at or move to, from 0.";
         MOVING = "moving", Class::Flag, 1,
             "Whether the gimbals are on their way.";
-        LATITUDE = "navigation.latitude", Class::Quantity(Dimension::ANGLE), 1,
+        LATITUDE = "navigation.latitude", Class::Quantity(UnitDimension::ANGLE), 1,
             "Geodetic latitude of the navigation solution.";
-        LONGITUDE = "navigation.longitude", Class::Quantity(Dimension::ANGLE), 1,
+        LONGITUDE = "navigation.longitude", Class::Quantity(UnitDimension::ANGLE), 1,
             "Longitude of the navigation solution.";
-        HEIGHT = "navigation.height", Class::Quantity(Dimension::LENGTH), 1,
+        HEIGHT = "navigation.height", Class::Quantity(UnitDimension::LENGTH), 1,
             "Height of the navigation solution above the ellipsoid.";
-        VELOCITY = "navigation.velocity", Class::Quantity(Dimension::VELOCITY), 3,
+        VELOCITY = "navigation.velocity", Class::Quantity(UnitDimension::VELOCITY), 3,
             "Velocity over ground of the navigation solution: north, east, down.";
         ATTITUDE = "navigation.attitude", Class::Number, 4,
             "Attitude of the navigation solution as a quaternion w x y z that takes a vector in body into north, east, down.";
@@ -177,7 +177,7 @@ pub mod answer {
     /// Declares the channels of the groups of parameters: name, class, elements, meaning, order of the elements.
     macro_rules! groups {
         ($($name:literal, $class:expr, $elements:literal, $doc:literal, $order:literal;)+) => {
-            /// Estimates, in the order of [`Group::ALL`].
+            /// Estimates, in the order of [`ParameterGroup::ALL`].
             pub static PARAMETERS: [Channel; 7] = [$(Channel {
                 name: concat!("parameters.", $name),
                 class: $class,
@@ -185,7 +185,7 @@ pub mod answer {
                 doc: concat!("Estimated ", $doc, $order, "."),
             }),+];
 
-            /// Standard deviations of the estimates, in the order of [`Group::ALL`].
+            /// Standard deviations of the estimates, in the order of [`ParameterGroup::ALL`].
             pub static SIGMA: [Channel; 7] = [$(Channel {
                 name: concat!("sigma.", $name),
                 class: $class,
@@ -196,20 +196,20 @@ pub mod answer {
     }
 
     groups! {
-        "gyro_bias", Class::Quantity(Dimension::GYRO_BIAS), 3, "gyro biases", "";
+        "gyro_bias", Class::Quantity(UnitDimension::GYRO_BIAS), 3, "gyro biases", "";
         "gyro_scale", Class::Number, 3, "gyro scale factor errors", "";
-        "gyro_misalignment", Class::Quantity(Dimension::SMALL_ANGLE), 6, "gyro misalignments",
+        "gyro_misalignment", Class::Quantity(UnitDimension::SMALL_ANGLE), 6, "gyro misalignments",
             ": xy, xz, yx, yz, zx, zy";
-        "g_dependent", Class::Quantity(Dimension::G_DEPENDENT), 9, "g-dependent gyro biases", " by rows";
-        "accel_bias", Class::Quantity(Dimension::ACCEL_BIAS), 3, "accelerometer biases", "";
+        "g_dependent", Class::Quantity(UnitDimension::G_DEPENDENT), 9, "g-dependent gyro biases", " by rows";
+        "accel_bias", Class::Quantity(UnitDimension::ACCEL_BIAS), 3, "accelerometer biases", "";
         "accel_scale", Class::Number, 3, "accelerometer scale factor errors", "";
-        "accel_misalignment", Class::Quantity(Dimension::SMALL_ANGLE), 3, "accelerometer misalignments",
+        "accel_misalignment", Class::Quantity(UnitDimension::SMALL_ANGLE), 3, "accelerometer misalignments",
             ": yx, zx, zy";
     }
 
     /// Estimates of a group, with their standard deviations.
     #[must_use]
-    pub fn group(group: Group) -> (&'static Channel, &'static Channel) {
+    pub fn group(group: ParameterGroup) -> (&'static Channel, &'static Channel) {
         (&PARAMETERS[group as usize], &SIGMA[group as usize])
     }
 }
@@ -217,11 +217,11 @@ pub mod answer {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use octant_sample::parameters::Group;
+    use octant_sample::parameters::ParameterGroup;
 
     #[test]
     fn the_channels_of_parameters_are_those_of_the_groups() {
-        for of in Group::ALL {
+        for of in ParameterGroup::ALL {
             let (estimate, sigma) = answer::group(of);
             assert_eq!(estimate.name, format!("parameters.{}", of.name()));
             assert_eq!(sigma.name, format!("sigma.{}", of.name()));

@@ -6,17 +6,17 @@
 use super::document::join;
 
 use super::condition;
-use super::document::{Node, Table, Value, number, parse_default};
+use super::document::{DocumentNode, DocumentTable, DocumentValue, number, parse_default};
 use super::error::{Place, Problem};
 use super::keys::{Bounds, Default, Key, Kind, Section, Variants};
 use super::ports;
-use super::quantity::{self, Dimension, explain};
+use super::quantity::{self, UnitDimension, explain};
 use octant_base::names::suggestion;
 use octant_faults::Channels;
 
 /// Checks a table and adds its defaults; problems are added to `problems`.
 pub(crate) fn complete(
-    table: &mut Table,
+    table: &mut DocumentTable,
     section: &'static Section,
     path: &str,
     place: &Place,
@@ -44,7 +44,10 @@ pub(crate) fn complete(
                 Default::Value(text) => table.set(key.name, parse_default(text)),
                 Default::Section => table.set(
                     key.name,
-                    Node { value: Value::Table(Table::default()), place: Place::Default },
+                    DocumentNode {
+                        value: DocumentValue::Table(DocumentTable::default()),
+                        place: Place::Default,
+                    },
                 ),
                 Default::Required => {
                     let expected = expected(&key.kind);
@@ -63,7 +66,7 @@ pub(crate) fn complete(
 
 /// Checks one value against the kind of its key.
 pub(crate) fn check(
-    node: &mut Node,
+    node: &mut DocumentNode,
     key: &'static Key,
     kind: &'static Kind,
     path: &str,
@@ -80,26 +83,26 @@ pub(crate) fn check(
             Some(kind) => check(node, key, kind, path, problems),
             None => report(format!("found {found}, expected {}", expected(kind))),
         },
-        (Kind::Text, Value::Text(_)) | (Kind::Boolean, Value::Boolean(_)) => {}
-        (Kind::Uri(schemes), Value::Text(text)) => {
+        (Kind::Text, DocumentValue::Text(_)) | (Kind::Boolean, DocumentValue::Boolean(_)) => {}
+        (Kind::Uri(schemes), DocumentValue::Text(text)) => {
             let scheme = text.split(':').next().unwrap_or_default();
             if !schemes.iter().any(|(known, _)| *known == scheme) {
                 let known = suggestion(scheme, schemes.iter().map(|(name, _)| *name), "possible");
                 report(format!("found {found}, {known}"));
             }
         }
-        (Kind::Choice(choices), Value::Text(text)) => {
+        (Kind::Choice(choices), DocumentValue::Text(text)) => {
             if !choices.iter().any(|(known, _)| known == text) {
                 let known = suggestion(text, choices.iter().map(|(name, _)| *name), "possible");
                 report(format!("found {found}, {known}"));
             }
         }
-        (Kind::Choices(choices), Value::Array(entries)) => {
+        (Kind::Choices(choices), DocumentValue::Array(entries)) => {
             for entry in entries.iter() {
                 let known = |text: &String| choices.contains(&text.as_str());
-                if !matches!(&entry.value, Value::Text(text) if known(text)) {
+                if !matches!(&entry.value, DocumentValue::Text(text) if known(text)) {
                     let found = entry.value.describe();
-                    let text = if let Value::Text(text) = &entry.value { text } else { "" };
+                    let text = if let DocumentValue::Text(text) = &entry.value { text } else { "" };
                     let known = suggestion(text, choices.iter().copied(), "possible");
                     problems.push(Problem {
                         place: entry.place.clone(),
@@ -109,7 +112,7 @@ pub(crate) fn check(
                 }
             }
         }
-        (Kind::Integer(from, to), Value::Integer(number)) => {
+        (Kind::Integer(from, to), DocumentValue::Integer(number)) => {
             if !(*from..=*to).contains(number) {
                 let kind = expected(kind);
                 report(match (key.name, *number > *to) {
@@ -121,13 +124,13 @@ pub(crate) fn check(
                 });
             }
         }
-        (Kind::Number(bounds), value @ (Value::Integer(_) | Value::Number(_))) => {
+        (Kind::Number(bounds), value @ (DocumentValue::Integer(_) | DocumentValue::Number(_))) => {
             if !number(value).is_some_and(|value| bounds.contain(value)) {
                 report(format!("found {found}, expected a number {}", bounds.words()));
             }
         }
-        (Kind::Numbers(count), Value::Array(entries)) => {
-            let finite = |entry: &Node| number(&entry.value).is_some_and(f64::is_finite);
+        (Kind::Numbers(count), DocumentValue::Array(entries)) => {
+            let finite = |entry: &DocumentNode| number(&entry.value).is_some_and(f64::is_finite);
             if entries.len() != *count || !entries.iter().all(finite) {
                 report(format!("found {found}, expected {count} numbers"));
             }
@@ -137,7 +140,7 @@ pub(crate) fn check(
                 report(message);
             }
         }
-        (Kind::Quantities(dimension, count), Value::Array(entries)) => {
+        (Kind::Quantities(dimension, count), DocumentValue::Array(entries)) => {
             if entries.len() != *count {
                 report(format!(
                     "found {} entries, expected {count}, each {}",
@@ -155,26 +158,27 @@ pub(crate) fn check(
                 }
             }
         }
-        (Kind::Vector(dimensions), Value::Array(entries)) => {
+        (Kind::Vector(dimensions), DocumentValue::Array(entries)) => {
             check_vector(entries, dimensions, path, &place, problems);
         }
-        (Kind::Times, Value::Array(entries)) => {
+        (Kind::Times, DocumentValue::Array(entries)) => {
             for (index, entry) in entries.iter().enumerate() {
-                let checked = check_quantity(&entry.value, &[Dimension::TIME], Bounds::NotNegative);
+                let checked =
+                    check_quantity(&entry.value, &[UnitDimension::TIME], Bounds::NotNegative);
                 if let Err(message) = checked {
                     let path = format!("{path}[{index}]");
                     problems.push(Problem { place: entry.place.clone(), path, message });
                 }
             }
         }
-        (Kind::Condition, Value::Text(text)) => {
+        (Kind::Condition, DocumentValue::Text(text)) => {
             if let Err(message) = condition::parse(text) {
                 report(format!("found {found}, {message}"));
             }
         }
-        (Kind::Channels, Value::Text(_) | Value::Array(_)) => {
+        (Kind::Channels, DocumentValue::Text(_) | DocumentValue::Array(_)) => {
             let entries = match &node.value {
-                Value::Array(entries) => entries.as_slice(),
+                DocumentValue::Array(entries) => entries.as_slice(),
                 _ => std::slice::from_ref(&*node),
             };
             if entries.is_empty() {
@@ -182,7 +186,7 @@ pub(crate) fn check(
             }
             let names = Channels::NAMES.iter().map(|(name, _)| *name);
             for entry in entries {
-                let text = if let Value::Text(text) = &entry.value { text } else { "" };
+                let text = if let DocumentValue::Text(text) = &entry.value { text } else { "" };
                 if Channels::named(text).is_none() {
                     let known = suggestion(text, names.clone(), "possible");
                     let message = format!("found {}, {known}", entry.value.describe());
@@ -191,9 +195,9 @@ pub(crate) fn check(
                 }
             }
         }
-        (Kind::Limit, Value::Integer(_)) => {}
-        (Kind::Limit, Value::Number(value)) if value.is_finite() => {}
-        (Kind::Limit, Value::Text(text)) => {
+        (Kind::Limit, DocumentValue::Integer(_)) => {}
+        (Kind::Limit, DocumentValue::Number(value)) if value.is_finite() => {}
+        (Kind::Limit, DocumentValue::Text(text)) => {
             if let Err(error) = quantity::parse(text) {
                 report(format!(
                     "found {found}, {}; expected a quantity or a number",
@@ -201,15 +205,15 @@ pub(crate) fn check(
                 ));
             }
         }
-        (Kind::Column, Value::Integer(1..=10_000) | Value::Text(_)) => {}
+        (Kind::Column, DocumentValue::Integer(1..=10_000) | DocumentValue::Text(_)) => {}
         (Kind::Port(channel), _) => problems.extend(ports::ports(node, channel, path).err()),
-        (Kind::Settings, Value::Table(table)) => {
+        (Kind::Settings, DocumentValue::Table(table)) => {
             problems.extend(ports::settings(table, path).err())
         }
-        (Kind::Values, Value::Array(entries)) if !entries.is_empty() => {}
-        (Kind::Names, Value::Array(entries))
-            if entries.iter().all(|entry| matches!(entry.value, Value::Text(_))) => {}
-        (Kind::Lists, Value::Array(entries)) if !entries.is_empty() => {
+        (Kind::Values, DocumentValue::Array(entries)) if !entries.is_empty() => {}
+        (Kind::Names, DocumentValue::Array(entries))
+            if entries.iter().all(|entry| matches!(entry.value, DocumentValue::Text(_))) => {}
+        (Kind::Lists, DocumentValue::Array(entries)) if !entries.is_empty() => {
             for entry in entries.iter().filter(|entry| !is_names(entry)) {
                 let found = entry.value.describe();
                 problems.push(Problem {
@@ -220,19 +224,19 @@ pub(crate) fn check(
             }
         }
         (Kind::Codes, value) if ports::codes(value).is_some_and(|codes| !codes.is_empty()) => {}
-        (Kind::Table(section), Value::Table(table)) => {
+        (Kind::Table(section), DocumentValue::Table(table)) => {
             complete(table, section, path, &place, problems);
         }
-        (Kind::Variants(variants), Value::Table(table)) => {
+        (Kind::Variants(variants), DocumentValue::Table(table)) => {
             complete_variant(table, variants, path, &place, problems);
         }
-        (Kind::VariantTables(variants, at_most), Value::Array(entries)) => {
+        (Kind::VariantTables(variants, at_most), DocumentValue::Array(entries)) => {
             if entries.len() > *at_most {
                 report(format!("found {} entries, expected at most {at_most}", entries.len()));
             }
             for (index, entry) in entries.iter_mut().enumerate() {
                 let (path, place) = (format!("{path}[{index}]"), entry.place.clone());
-                if let Value::Table(table) = &mut entry.value {
+                if let DocumentValue::Table(table) = &mut entry.value {
                     complete_variant(table, variants, &path, &place, problems);
                 } else {
                     let message = format!("found {}, expected a table", entry.value.describe());
@@ -240,7 +244,7 @@ pub(crate) fn check(
                 }
             }
         }
-        (Kind::Tables(section, at_least, at_most), Value::Array(entries)) => {
+        (Kind::Tables(section, at_least, at_most), DocumentValue::Array(entries)) => {
             if !(*at_least..=*at_most).contains(&entries.len()) {
                 let count = entries.len();
                 report(format!("found {count} entries, expected {at_least} to {at_most}"));
@@ -249,7 +253,9 @@ pub(crate) fn check(
                 let path = format!("{path}[{index}]");
                 let place = entry.place.clone();
                 match &mut entry.value {
-                    Value::Table(table) => complete(table, section, &path, &place, problems),
+                    DocumentValue::Table(table) => {
+                        complete(table, section, &path, &place, problems)
+                    }
                     other => problems.push(Problem {
                         place,
                         path,
@@ -268,7 +274,7 @@ pub(crate) fn check(
 
 /// Checks a table against the keys of its form.
 fn complete_variant(
-    table: &mut Table,
+    table: &mut DocumentTable,
     variants: &'static Variants,
     path: &str,
     place: &Place,
@@ -282,8 +288,8 @@ fn complete_variant(
 
 /// Checks x, y, z of a vector: each a quantity, all of the same dimension.
 fn check_vector(
-    entries: &[Node],
-    dimensions: &[Dimension],
+    entries: &[DocumentNode],
+    dimensions: &[UnitDimension],
     path: &str,
     place: &Place,
     problems: &mut Vec<Problem>,
@@ -297,14 +303,14 @@ fn check_vector(
             format!("found {} entries, expected 3 (x, y, z), each {expected}", entries.len());
         return report(place, path.to_owned(), message);
     }
-    let mut of: Option<Dimension> = None;
+    let mut of: Option<UnitDimension> = None;
     for (index, entry) in entries.iter().enumerate() {
         let path = format!("{path}[{index}]");
         if let Err(message) = check_quantity(&entry.value, dimensions, Bounds::Any) {
             report(&entry.place, path, message);
             continue;
         }
-        let Value::Text(text) = &entry.value else { continue };
+        let DocumentValue::Text(text) = &entry.value else { continue };
         let Ok(quantity) = quantity::parse(text) else { continue };
         let found = dimensions.iter().find(|dimension| quantity.is(**dimension)).copied();
         match (of, found) {
@@ -321,18 +327,23 @@ fn check_vector(
     }
 }
 
-fn check_quantity(value: &Value, dimensions: &[Dimension], bounds: Bounds) -> Result<(), String> {
+fn check_quantity(
+    value: &DocumentValue,
+    dimensions: &[UnitDimension],
+    bounds: Bounds,
+) -> Result<(), String> {
     let expected = quantity_words(dimensions);
-    let Value::Text(text) = value else {
+    let DocumentValue::Text(text) = value else {
         return Err(format!("found {}, expected {expected}", value.describe()));
     };
     let quantity = quantity::parse(text)
         .map_err(|error| format!("found {text:?}, {}; expected {expected}", explain(&error)))?;
     if !dimensions.iter().any(|dimension| quantity.is(*dimension)) {
-        let is = Dimension::of(quantity).map_or("another dimension", |dimension| dimension.name);
+        let is =
+            UnitDimension::of(quantity).map_or("another dimension", |dimension| dimension.name);
         return Err(format!("found {text:?}, {is}; expected {expected}"));
     }
-    if quantity.is(Dimension::SAMPLES) && quantity.si.fract() != 0.0 {
+    if quantity.is(UnitDimension::SAMPLES) && quantity.si.fract() != 0.0 {
         return Err(format!("found {text:?}, expected a whole number of samples"));
     }
     if bounds.contain(quantity.si) {
@@ -342,27 +353,27 @@ fn check_quantity(value: &Value, dimensions: &[Dimension], bounds: Bounds) -> Re
     }
 }
 
-fn quantity_words(dimensions: &[Dimension]) -> String {
-    let each = |d: &Dimension| format!("{} such as \"{}\"", d.name, d.example);
+fn quantity_words(dimensions: &[UnitDimension]) -> String {
+    let each = |d: &UnitDimension| format!("{} such as \"{}\"", d.name, d.example);
     dimensions.iter().map(each).collect::<Vec<_>>().join(" or ")
 }
 
-fn is_names(node: &Node) -> bool {
-    let Value::Array(entries) = &node.value else { return false };
-    entries.iter().all(|entry| matches!(entry.value, Value::Text(_)))
+fn is_names(node: &DocumentNode) -> bool {
+    let DocumentValue::Array(entries) = &node.value else { return false };
+    entries.iter().all(|entry| matches!(entry.value, DocumentValue::Text(_)))
 }
 
 /// True if a TOML value of this type is meant for this kind.
-fn takes(kind: &Kind, value: &Value) -> bool {
+fn takes(kind: &Kind, value: &DocumentValue) -> bool {
     matches!(
         (kind, value),
-        (Kind::Choice(_) | Kind::Text, Value::Text(_))
-            | (Kind::Boolean, Value::Boolean(_))
-            | (Kind::Integer(..) | Kind::Number(_), Value::Integer(_))
-            | (Kind::Number(_), Value::Number(_))
-            | (Kind::Table(_), Value::Table(_))
-            | (Kind::Tables(..), Value::Array(_))
-            | (Kind::Variants(_), Value::Table(_))
+        (Kind::Choice(_) | Kind::Text, DocumentValue::Text(_))
+            | (Kind::Boolean, DocumentValue::Boolean(_))
+            | (Kind::Integer(..) | Kind::Number(_), DocumentValue::Integer(_))
+            | (Kind::Number(_), DocumentValue::Number(_))
+            | (Kind::Table(_), DocumentValue::Table(_))
+            | (Kind::Tables(..), DocumentValue::Array(_))
+            | (Kind::Variants(_), DocumentValue::Table(_))
     )
 }
 
@@ -389,7 +400,7 @@ pub(crate) fn expected(kind: &Kind) -> String {
         Kind::Vector(dimensions) => {
             format!("an array of 3 (x, y, z), each {}", quantity_words(dimensions))
         }
-        Kind::Times => format!("an array, each {}", quantity_words(&[Dimension::TIME])),
+        Kind::Times => format!("an array, each {}", quantity_words(&[UnitDimension::TIME])),
         Kind::Condition => format!("a text such as {:?}", condition::EXAMPLE),
         Kind::Channels => {
             let all = Channels::NAMES.iter().map(|(name, _)| format!("{name:?}"));

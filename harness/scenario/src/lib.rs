@@ -32,14 +32,15 @@ pub use arguments::override_set;
 pub use error::{Place, Problem, ScenarioError};
 pub use keys::SCHEMA;
 pub use model::{
-    Alignment, Calibration, Code, Component, Distribution, Dockside, Drive, Endpoint, Fault,
-    FileName, FileNameError, Fmu, Instrument, InterfaceChoice, Live, Made, Mapped, Messages,
-    Method, Motion, Port, Process, Realtime, Record, Requirement, Scenario, Set, Setting,
-    ShipSpectrum, Source, Speaks, UnknownFault, Written,
+    AlignmentSpec, CalibrationSpec, ChannelElement, Code, DocksideSpec, Drive, EndpointSpec,
+    EntryPlace, Fault, FileName, FileNameError, Fmu, Instrument, InterfaceChoice, Live, Made,
+    Mapped, Messages, Method, MotionComponent, MotionSpec, ParameterDistribution, Process,
+    Realtime, RecordSpec, RequirementSpec, Scenario, Set, Setting, ShipSpectrum, SourceSpec,
+    Speaks, UnknownFault,
 };
 pub use ports::setting_argument;
 pub use quantity::parse as quantity_of;
-pub use quantity::{Dimension, Quantity};
+pub use quantity::{Quantity, UnitDimension};
 pub use read::faults::connection::{ConnectionFault, Given, connection_faults, text_of};
 pub use schema::schema;
 pub use tour::{fault_example, fault_parameters, tour};

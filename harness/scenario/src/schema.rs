@@ -3,7 +3,7 @@
 use super::complete::expected;
 use super::document::parse_default;
 use super::keys::{Bounds, Default, Key, Kind, SCENARIO, SCHEMA, Section, Variants};
-use super::quantity::Dimension;
+use super::quantity::UnitDimension;
 use crate::channel::Channel;
 use serde_json::{Map, Value, json};
 
@@ -96,7 +96,7 @@ fn kind(kind: &Kind) -> Value {
         Kind::Vector(dimensions) => {
             json!({ "type": "array", "items": quantity(dimensions), "minItems": 3, "maxItems": 3 })
         }
-        Kind::Times => json!({ "type": "array", "items": quantity(&[Dimension::TIME]) }),
+        Kind::Times => json!({ "type": "array", "items": quantity(&[UnitDimension::TIME]) }),
         Kind::Condition => {
             json!({ "type": "string", "examples": [crate::condition::EXAMPLE] })
         }
@@ -159,7 +159,7 @@ fn port(channel: &Channel) -> Value {
     json!({ "anyOf": [one, each] })
 }
 
-fn quantity(dimensions: &[Dimension]) -> Value {
+fn quantity(dimensions: &[UnitDimension]) -> Value {
     let mut quantity = json!({ "type": "string", "pattern": QUANTITY });
     if !dimensions.is_empty() {
         let examples: Vec<&str> = dimensions.iter().map(|d| d.example).collect();

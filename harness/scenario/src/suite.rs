@@ -22,12 +22,12 @@ use std::path::{Path, PathBuf};
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Suite {
     /// Cases, in the order of the file.
-    pub cases: Vec<Case>,
+    pub cases: Vec<SuiteCase>,
 }
 
 /// A scenario with its expected result.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Case {
+pub struct SuiteCase {
     /// File of the scenario.
     pub scenario: PathBuf,
     /// Expected verdict.
@@ -57,7 +57,7 @@ impl Suite {
 }
 
 fn cases(keys: SuiteKeys, folder: &Path) -> Result<Suite, Problem> {
-    let mut cases: Vec<Case> = Vec::new();
+    let mut cases: Vec<SuiteCase> = Vec::new();
     for CaseKeys { scenario: name, expect, because } in keys.cases {
         let scenario = folder.join(&*name);
         if cases.iter().any(|case| case.scenario == scenario) {
@@ -80,7 +80,7 @@ fn cases(keys: SuiteKeys, folder: &Path) -> Result<Suite, Problem> {
         if let Some(message) = problem {
             return Err(because.problem(message));
         }
-        cases.push(Case { scenario, expect, because: because.value });
+        cases.push(SuiteCase { scenario, expect, because: because.value });
     }
     Ok(Suite { cases })
 }
@@ -105,7 +105,7 @@ pub struct Unexpected {
     pub because: Option<String>,
 }
 
-impl Case {
+impl SuiteCase {
     /// Compares a result with the expected one: the verdict must be equal, and every reason the
     /// expected one.
     ///

@@ -6,7 +6,7 @@ use super::complete::expected;
 use super::document::{join, parse_default, write_value};
 use super::keys::{Bounds, Default, Key, Kind, SCENARIO, Section};
 use super::ports;
-use super::quantity::{self, Dimension};
+use super::quantity::{self, UnitDimension};
 use octant_faults::{connection::kinds as connection, kinds};
 
 /// Settings of the tour beside the defaults: path and TOML value.
@@ -323,7 +323,7 @@ fn given(section: &Section) -> Vec<String> {
 
 /// Example of a quantity within its bounds: that of the dimension if possible, else one between the
 /// bounds.
-fn quantity_within(dimension: Dimension, bounds: Bounds) -> String {
+fn quantity_within(dimension: UnitDimension, bounds: Bounds) -> String {
     let example = quantity::parse(dimension.example).is_ok_and(|q| bounds.contain(q.si));
     match bounds {
         Bounds::Within(from, to, _) if !example => dimension.write(0.5 * (from + to)),

@@ -117,7 +117,7 @@ pub const SIXTEEN: &[Degrees] = stops! {
 
 /// A body axis to turn about.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Axis {
+pub enum BodyAxis {
     /// Body x.
     X,
     /// Body y.
@@ -126,7 +126,7 @@ pub enum Axis {
     Z,
 }
 
-use Axis::{X, Y, Z};
+use BodyAxis::{X, Y, Z};
 
 /// Sequences of turns about body axes, each in degrees.
 macro_rules! turns {
@@ -140,7 +140,7 @@ macro_rules! turns {
 ///
 /// - `nineteen`: Xie Bo, 2011.
 /// - `twelve`: twelve turns, thirteen attitudes.
-pub const FREE_TABLE: &[(&str, &[(Axis, f64)])] = turns! {
+pub const FREE_TABLE: &[(&str, &[(BodyAxis, f64)])] = turns! {
     "nineteen":
         Y 90.0, Y 90.0, Y 90.0, Y -90.0, Y -90.0, Y -90.0, Z 90.0, X 90.0, X 90.0, X 90.0,
         X -90.0, X -90.0, X -90.0, Z 90.0, Z 90.0, Z -90.0, Z -90.0, Z -90.0;
@@ -149,7 +149,7 @@ pub const FREE_TABLE: &[(&str, &[(Axis, f64)])] = turns! {
         Z 90.0, Y 90.0;
 };
 
-fn about(axis: Axis, degrees: f64) -> Matrix3<f64> {
+fn about(axis: BodyAxis, degrees: f64) -> Matrix3<f64> {
     let angle_rad = degrees.to_radians();
     match axis {
         X => rotation::rx(angle_rad),
@@ -162,7 +162,7 @@ fn about(axis: Axis, degrees: f64) -> Matrix3<f64> {
 /// attitude after each turn.
 pub fn attitudes(
     start: Matrix3<f64>,
-    turns: &[(Axis, f64)],
+    turns: &[(BodyAxis, f64)],
 ) -> impl Iterator<Item = Matrix3<f64>> + '_ {
     let after = turns.iter().scan(start, |c_cb, (axis, degrees)| {
         *c_cb *= about(*axis, *degrees);
@@ -175,7 +175,7 @@ pub fn attitudes(
 /// at roll 0: an attitude that isn't `Rx(roll) · Rz(azimuth)`, in which body z stays at right
 /// angles to the roll axis. Returns its index; `None`: they reach all.
 #[must_use]
-pub fn unreachable_turn(azimuth_deg: f64, turns: &[(Axis, f64)]) -> Option<usize> {
+pub fn unreachable_turn(azimuth_deg: f64, turns: &[(BodyAxis, f64)]) -> Option<usize> {
     let start = frames::c_cb(azimuth_deg.to_radians(), 0.0);
     // The roll axis is case x: the first row of c_cb. Published angles are whole degrees.
     attitudes(start, turns).skip(1).position(|c_cb| c_cb[(0, 2)].abs() > 1e-9)

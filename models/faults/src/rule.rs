@@ -16,11 +16,11 @@ use octant_random::philox::block;
 use octant_random::stream::Phase;
 use octant_sample::disturbance::{Disturbance, Motor};
 use octant_sample::{Epoch, GimbalCommand, Output, Parameters};
-use octant_state::{Reader, State, StateError, Writer};
+use octant_state::{State, StateError, StateReader, Writer};
 
 /// The rule of one fault, by the place where it acts.
 #[derive(Clone, Debug)]
-pub enum Rule {
+pub enum FaultRule {
     /// Inside the plant.
     Plant(Box<dyn PlantRule>),
     /// On set points.
@@ -68,7 +68,7 @@ clone_boxed! {
     WireRule by CopyWireRule
 }
 
-impl State for Rule {
+impl State for FaultRule {
     fn save(&self, to: &mut Writer) {
         match self {
             Self::Plant(rule) => rule.save(to),
@@ -81,7 +81,7 @@ impl State for Rule {
         }
     }
 
-    fn load(&mut self, from: &mut Reader<'_>) -> Result<(), StateError> {
+    fn load(&mut self, from: &mut StateReader<'_>) -> Result<(), StateError> {
         match self {
             Self::Plant(rule) => rule.load(from),
             Self::Command(rule) => rule.load(from),

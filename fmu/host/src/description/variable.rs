@@ -32,7 +32,7 @@ macro_rules! words {
 words! {
     /// Type of a variable, with its name in FMI 3.0.
     #[derive(Hash, serde::Serialize, serde::Deserialize)]
-    pub enum Kind {
+    pub enum VariableType {
         Float64 "Float64", Float32 "Float32", Int8 "Int8", UInt8 "UInt8", Int16 "Int16",
         UInt16 "UInt16", Int32 "Int32", UInt32 "UInt32", Int64 "Int64", UInt64 "UInt64",
         Boolean "Boolean", String "String", Binary "Binary", Enumeration "Enumeration",
@@ -62,7 +62,7 @@ words! {
     }
 }
 
-impl Kind {
+impl VariableType {
     /// Returns whether the type is a floating-point number.
     #[must_use]
     pub const fn is_float(self) -> bool {
@@ -72,7 +72,7 @@ impl Kind {
 
 /// One dimension of an array.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Dimension {
+pub enum ArrayDimension {
     /// A fixed size.
     Fixed(u64),
     /// The value of the structural parameter with this value reference.
@@ -89,7 +89,7 @@ pub struct Variable {
     /// `description`, empty if missing.
     pub description: String,
     /// Type.
-    pub kind: Kind,
+    pub kind: VariableType,
     /// Name of the enumeration type, if it has one.
     pub enumeration: Option<String>,
     /// Causality; the default of the standard if missing in the file.
@@ -99,7 +99,7 @@ pub struct Variable {
     /// `initial` as written, or by the standard's table.
     pub initial: Option<Initial>,
     /// Dimensions; none: a scalar.
-    pub dimensions: Vec<Dimension>,
+    pub dimensions: Vec<ArrayDimension>,
     /// Start values as written, one for each element (only one: the same for all).
     pub start: Vec<String>,
     /// Smallest value.
@@ -126,7 +126,7 @@ pub struct Variable {
     /// 3.0).
     pub previous: Option<u32>,
     /// Further properties of a clock (FMI 3.0).
-    pub clock: Option<Clock>,
+    pub clock: Option<ClockProperties>,
     /// `mimeType` of a Binary.
     pub mime_type: Option<String>,
     /// Line of the file.
@@ -154,7 +154,7 @@ pub struct Alias {
 
 /// Properties of a clock (FMI 3.0).
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Clock {
+pub struct ClockProperties {
     /// `intervalVariability`.
     pub interval_variability: IntervalVariability,
     /// `intervalDecimal`, s.

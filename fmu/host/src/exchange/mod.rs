@@ -23,7 +23,9 @@ use super::instance::co_simulation::Phase;
 use super::instance::common::{functions_of_unit, instance_of_unit};
 use super::instance::states::States;
 use super::instance::unit::Continuous;
-use super::instance::{Access, Group, Instance, InstanceError, Message, Outcome, Stepped, Update};
+use super::instance::{
+    Access, FmuMessage, Instance, InstanceError, StepOutcome, Stepped, Update, VariableGroup,
+};
 use crossing::Indicators;
 use serde::{Deserialize, Serialize};
 use solver::Solver;
@@ -108,7 +110,7 @@ impl<U: Continuous> Exchange<U> {
     /// again.
     fn with_access(
         &mut self,
-        group: &Group,
+        group: &VariableGroup,
         set: impl FnOnce(&mut U) -> Result<(), InstanceError>,
     ) -> Result<(), InstanceError> {
         if group.access == Access::Configuration {
@@ -152,7 +154,7 @@ impl<U: Continuous> Instance for Exchange<U> {
         Ok(terminate)
     }
 
-    fn set(&mut self, group: &Group, values: &[f64]) -> Result<(), InstanceError> {
+    fn set(&mut self, group: &VariableGroup, values: &[f64]) -> Result<(), InstanceError> {
         self.with_access(group, |unit| unit.set(group, values))
     }
 
@@ -221,5 +223,5 @@ instance_of_unit!(Exchange, Continuous);
 
 /// Result of a step at which the FMU requests the end before the step's end.
 fn ended(time_s: f64) -> Stepped {
-    Stepped { time_s, outcome: Outcome::Early, event: false, terminate: true }
+    Stepped { time_s, outcome: StepOutcome::Early, event: false, terminate: true }
 }

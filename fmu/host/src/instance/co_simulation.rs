@@ -8,7 +8,8 @@ use super::held::Held;
 use super::states::States;
 use super::unit::Steps;
 use super::{
-    Access, Group, Instance, InstanceError, Message, Outcome, REPEATS_MAX, Stepped, Update,
+    Access, FmuMessage, Instance, InstanceError, REPEATS_MAX, StepOutcome, Stepped, Update,
+    VariableGroup,
 };
 use serde::{Deserialize, Serialize};
 
@@ -93,7 +94,7 @@ impl<U: Steps> CoSimulation<U> {
         let end_s = time_s + step_s;
         let close_s = 1e-9 * step_s;
         let mut stepped =
-            Stepped { time_s, outcome: Outcome::Done, event: false, terminate: false };
+            Stepped { time_s, outcome: StepOutcome::Done, event: false, terminate: false };
         let mut ticks = 0;
         loop {
             self.own.time_s = stepped.time_s;
@@ -109,7 +110,7 @@ impl<U: Steps> CoSimulation<U> {
                 self.enter_event_mode()?;
                 self.own.clocks.tick(&mut self.unit, stepped.time_s + close_s)?;
                 if self.settle()? {
-                    return Ok(Stepped { outcome: Outcome::Early, terminate: true, ..stepped });
+                    return Ok(Stepped { outcome: StepOutcome::Early, terminate: true, ..stepped });
                 }
                 continue;
             }
@@ -119,15 +120,15 @@ impl<U: Steps> CoSimulation<U> {
             ticks = 0;
             let target_s = if next_s < end_s - close_s { next_s } else { end_s };
             stepped = self.unit.do_step(stepped.time_s, target_s - stepped.time_s)?;
-            if stepped.outcome == Outcome::Done {
+            if stepped.outcome == StepOutcome::Done {
                 stepped.time_s = target_s;
             }
             // Events and ends of the FMU are handled by the caller; before the end of the step this
             // is an early return.
-            if stepped.outcome != Outcome::Done || stepped.event || stepped.terminate {
+            if stepped.outcome != StepOutcome::Done || stepped.event || stepped.terminate {
                 self.own.time_s = stepped.time_s;
-                if stepped.outcome == Outcome::Done && target_s < end_s {
-                    stepped.outcome = Outcome::Early;
+                if stepped.outcome == StepOutcome::Done && target_s < end_s {
+                    stepped.outcome = StepOutcome::Early;
                 }
                 return Ok(stepped);
             }
@@ -138,7 +139,7 @@ impl<U: Steps> CoSimulation<U> {
     /// again.
     fn with_access(
         &mut self,
-        group: &Group,
+        group: &VariableGroup,
         set: impl FnOnce(&mut U) -> Result<(), InstanceError>,
     ) -> Result<(), InstanceError> {
         match group.access {
@@ -188,7 +189,7 @@ impl<U: Steps> Instance for CoSimulation<U> {
         Ok(false)
     }
 
-    fn set(&mut self, group: &Group, values: &[f64]) -> Result<(), InstanceError> {
+    fn set(&mut self, group: &VariableGroup, values: &[f64]) -> Result<(), InstanceError> {
         self.held.forget();
         self.with_access(group, |unit| unit.set(group, values))
     }
@@ -196,7 +197,7 @@ impl<U: Steps> Instance for CoSimulation<U> {
     fn set_in_exchange(
         &mut self,
         place: usize,
-        group: &Group,
+        group: &VariableGroup,
         values: &[f64],
     ) -> Result<(), InstanceError> {
         let can_be_held = Held::can_be(group, self.unit.has_event_mode());
@@ -226,7 +227,12 @@ impl<U: Steps> Instance for CoSimulation<U> {
         let ended = self.own.phase == Phase::Event && self.settle()?;
         self.expect("a step", &[Phase::Step])?;
         if ended {
-            return Ok(Stepped { time_s, outcome: Outcome::Early, event: false, terminate: true });
+            return Ok(Stepped {
+                time_s,
+                outcome: StepOutcome::Early,
+                event: false,
+                terminate: true,
+            });
         }
         if self.own.clocks.is_empty() {
             return self.unit.do_step(time_s, step_s);

@@ -12,23 +12,31 @@ macro_rules! functions_of_unit {
             &self.unit.base().description
         }
 
-        fn get(&mut self, group: &Group, values: &mut [f64]) -> Result<(), InstanceError> {
+        fn get(&mut self, group: &VariableGroup, values: &mut [f64]) -> Result<(), InstanceError> {
             self.unit.get(group, values)
         }
 
-        fn set_strings(&mut self, group: &Group, values: &[String]) -> Result<(), InstanceError> {
+        fn set_strings(
+            &mut self,
+            group: &VariableGroup,
+            values: &[String],
+        ) -> Result<(), InstanceError> {
             self.with_access(group, |unit| unit.set_strings(group, values))
         }
 
-        fn get_strings(&mut self, group: &Group) -> Result<Vec<String>, InstanceError> {
+        fn get_strings(&mut self, group: &VariableGroup) -> Result<Vec<String>, InstanceError> {
             self.unit.get_strings(group)
         }
 
-        fn set_binaries(&mut self, group: &Group, values: &[Vec<u8>]) -> Result<(), InstanceError> {
+        fn set_binaries(
+            &mut self,
+            group: &VariableGroup,
+            values: &[Vec<u8>],
+        ) -> Result<(), InstanceError> {
             self.with_access(group, |unit| unit.set_binaries(group, values))
         }
 
-        fn get_binaries(&mut self, group: &Group) -> Result<Vec<Vec<u8>>, InstanceError> {
+        fn get_binaries(&mut self, group: &VariableGroup) -> Result<Vec<Vec<u8>>, InstanceError> {
             self.unit.get_binaries(group)
         }
 
@@ -51,7 +59,7 @@ macro_rules! functions_of_unit {
             Ok(())
         }
 
-        fn messages(&mut self) -> Vec<Message> {
+        fn messages(&mut self) -> Vec<FmuMessage> {
             self.unit.base().messages()
         }
     };

@@ -1,7 +1,7 @@
 //! The functions of FMI 2.0.
 #![allow(unsafe_code, reason = "functions of a library are called")]
 
-use super::super::description::Kind;
+use super::super::description::VariableType;
 use super::super::library::{Functions, Library};
 use super::call::{
     Answer, Base, Condition, LOADING, NOWHERE, ask, call, free_on_drop, function_number,
@@ -11,7 +11,7 @@ use super::message::{Log, callbacks, text};
 use super::scratch::{Scratch2, get_through, set_through};
 use super::setup::{Setup, c_text};
 use super::unit::{Interval, RawState, Steps, Unit};
-use super::{Group, InstanceError, Outcome, Stepped, Update, group};
+use super::{InstanceError, StepOutcome, Stepped, Update, VariableGroup, group};
 use octant_fmi::fmi2;
 use std::ffi::{CString, c_char};
 use std::ptr;
@@ -101,7 +101,7 @@ impl Component {
     }
 
     /// Error for a type that is no number type in FMI 2.0.
-    fn unsupported_kind(&self, group: &Group, what: &str) -> InstanceError {
+    fn unsupported_kind(&self, group: &VariableGroup, what: &str) -> InstanceError {
         InstanceError::unsupported(
             &self.base.name,
             format!("{what} {}", group::element_name(&self.base.description, group, 0)),
@@ -150,7 +150,7 @@ impl Component {
         }
         Ok(Stepped {
             time_s: reached_s,
-            outcome: Outcome::Discarded,
+            outcome: StepOutcome::Discarded,
             event: false,
             terminate: terminated != fmi2::FALSE,
         })
@@ -180,37 +180,41 @@ impl Unit for Component {
         call!(self.fmi2EnterInitializationMode())
     }
 
-    fn set(&mut self, group: &Group, values: &[f64]) -> Result<(), InstanceError> {
+    fn set(&mut self, group: &VariableGroup, values: &[f64]) -> Result<(), InstanceError> {
         group::expect_scalars(&self.base, group, values.len())?;
         match group.kind {
-            Kind::Float64 => {
+            VariableType::Float64 => {
                 let (references, count) = (group.references.as_ptr(), group.references.len());
                 call!(self.fmi2SetReal(references, count, values.as_ptr()))
             }
-            Kind::Int32 | Kind::Enumeration => {
+            VariableType::Int32 | VariableType::Enumeration => {
                 set_through!(self.Integer, group, values, fmi2SetInteger)
             }
-            Kind::Boolean => set_through!(self.Boolean, group, values, fmi2SetBoolean),
+            VariableType::Boolean => set_through!(self.Boolean, group, values, fmi2SetBoolean),
             _ => Err(self.unsupported_kind(group, "set")),
         }
     }
 
-    fn get(&mut self, group: &Group, values: &mut [f64]) -> Result<(), InstanceError> {
+    fn get(&mut self, group: &VariableGroup, values: &mut [f64]) -> Result<(), InstanceError> {
         group::expect_scalars(&self.base, group, values.len())?;
         match group.kind {
-            Kind::Float64 => {
+            VariableType::Float64 => {
                 let (references, count) = (group.references.as_ptr(), group.references.len());
                 call!(self.fmi2GetReal(references, count, values.as_mut_ptr()))
             }
-            Kind::Int32 | Kind::Enumeration => {
+            VariableType::Int32 | VariableType::Enumeration => {
                 get_through!(self.Integer, group, values, fmi2GetInteger)
             }
-            Kind::Boolean => get_through!(self.Boolean, group, values, fmi2GetBoolean),
+            VariableType::Boolean => get_through!(self.Boolean, group, values, fmi2GetBoolean),
             _ => Err(self.unsupported_kind(group, "get")),
         }
     }
 
-    fn set_strings(&mut self, group: &Group, values: &[String]) -> Result<(), InstanceError> {
+    fn set_strings(
+        &mut self,
+        group: &VariableGroup,
+        values: &[String],
+    ) -> Result<(), InstanceError> {
         group::expect_scalars(&self.base, group, values.len())?;
         let texts: Vec<CString> = values
             .iter()
@@ -224,7 +228,7 @@ impl Unit for Component {
         ))
     }
 
-    fn get_strings(&mut self, group: &Group) -> Result<Vec<String>, InstanceError> {
+    fn get_strings(&mut self, group: &VariableGroup) -> Result<Vec<String>, InstanceError> {
         group::expect_scalars(&self.base, group, group.elements)?;
         let mut pointers = vec![ptr::null(); group.elements];
         call!(self.fmi2GetString(
@@ -236,11 +240,11 @@ impl Unit for Component {
         Ok(pointers.into_iter().map(|pointer| unsafe { text(pointer, STRING_MAX) }).collect())
     }
 
-    fn set_binaries(&mut self, _: &Group, _: &[Vec<u8>]) -> Result<(), InstanceError> {
+    fn set_binaries(&mut self, _: &VariableGroup, _: &[Vec<u8>]) -> Result<(), InstanceError> {
         Err(InstanceError::unsupported(&self.base.name, "set bytes", "FMI 2.0 has no Binary"))
     }
 
-    fn get_binaries(&mut self, _: &Group) -> Result<Vec<Vec<u8>>, InstanceError> {
+    fn get_binaries(&mut self, _: &VariableGroup) -> Result<Vec<Vec<u8>>, InstanceError> {
         Err(InstanceError::unsupported(&self.base.name, "get bytes", "FMI 2.0 has no Binary"))
     }
 
@@ -288,7 +292,7 @@ impl Steps for Component {
         }
         Ok(Stepped {
             time_s: time_s + step_s,
-            outcome: Outcome::Done,
+            outcome: StepOutcome::Done,
             event: false,
             terminate: false,
         })

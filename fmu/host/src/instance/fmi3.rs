@@ -1,7 +1,7 @@
 //! The functions of FMI 3.0.
 #![allow(unsafe_code, reason = "functions of a library are called")]
 
-use super::super::description::Kind;
+use super::super::description::VariableType;
 use super::super::library::{Functions, Library};
 use super::call::{
     Answer, Base, Condition, LOADING, NOWHERE, ask, call, free_on_drop, function_number,
@@ -11,7 +11,7 @@ use super::message::{Log, log_message, text};
 use super::scratch::{Scratch3, get_through, set_through};
 use super::setup::{Setup, c_text};
 use super::unit::{Interval, RawState, Steps, Unit};
-use super::{Group, InstanceError, Outcome, Stepped, Update, group};
+use super::{InstanceError, StepOutcome, Stepped, Update, VariableGroup, group};
 use octant_fmi::{fmi3, fmi3_types};
 use std::ffi::{CString, c_char};
 use std::ptr;
@@ -123,7 +123,7 @@ impl Component {
         })
     }
 
-    fn unsupported_kind(&self, group: &Group, what: &str) -> InstanceError {
+    fn unsupported_kind(&self, group: &VariableGroup, what: &str) -> InstanceError {
         InstanceError::unsupported(
             &self.base.name,
             format!("{what} {}", group::element_name(&self.base.description, group, 0)),
@@ -156,19 +156,19 @@ macro_rules! numbers {
             /// Gets variables through a buffer of their type.
             fn get_numbers(
                 &mut self,
-                group: &Group,
+                group: &VariableGroup,
                 values: &mut [f64],
             ) -> Result<(), InstanceError> {
                 match type_of(group.kind) {
-                    $(Kind::$kind => get_through!(self.$kind, group, values, $get, len),)*
+                    $(VariableType::$kind => get_through!(self.$kind, group, values, $get, len),)*
                     _ => Err(self.unsupported_kind(group, "get")),
                 }
             }
 
             /// Sets variables through a buffer of their type.
-            fn set_numbers(&mut self, group: &Group, values: &[f64]) -> Result<(), InstanceError> {
+            fn set_numbers(&mut self, group: &VariableGroup, values: &[f64]) -> Result<(), InstanceError> {
                 match type_of(group.kind) {
-                    $(Kind::$kind => set_through!(self.$kind, group, values, $set, len),)*
+                    $(VariableType::$kind => set_through!(self.$kind, group, values, $set, len),)*
                     _ => Err(self.unsupported_kind(group, "set")),
                 }
             }
@@ -178,8 +178,8 @@ macro_rules! numbers {
 fmi3_types!(numbers);
 
 /// Type of the functions that access variables of a kind: an Enumeration is an Int64.
-fn type_of(kind: Kind) -> Kind {
-    if kind == Kind::Enumeration { Kind::Int64 } else { kind }
+fn type_of(kind: VariableType) -> VariableType {
+    if kind == VariableType::Enumeration { VariableType::Int64 } else { kind }
 }
 
 impl Unit for Component {
@@ -204,14 +204,14 @@ impl Unit for Component {
         ))
     }
 
-    fn set(&mut self, group: &Group, values: &[f64]) -> Result<(), InstanceError> {
+    fn set(&mut self, group: &VariableGroup, values: &[f64]) -> Result<(), InstanceError> {
         group::expect_elements(&self.base, group, values.len())?;
         match group.kind {
-            Kind::Float64 => {
+            VariableType::Float64 => {
                 let (references, count) = (group.references.as_ptr(), group.references.len());
                 call!(self.fmi3SetFloat64(references, count, values.as_ptr(), values.len()))
             }
-            Kind::Clock => {
+            VariableType::Clock => {
                 group::expect_scalars(&self.base, group, values.len())?;
                 set_through!(self.Boolean, group, values, fmi3SetClock)
             }
@@ -219,14 +219,14 @@ impl Unit for Component {
         }
     }
 
-    fn get(&mut self, group: &Group, values: &mut [f64]) -> Result<(), InstanceError> {
+    fn get(&mut self, group: &VariableGroup, values: &mut [f64]) -> Result<(), InstanceError> {
         group::expect_elements(&self.base, group, values.len())?;
         match group.kind {
-            Kind::Float64 => {
+            VariableType::Float64 => {
                 let (references, count) = (group.references.as_ptr(), group.references.len());
                 call!(self.fmi3GetFloat64(references, count, values.as_mut_ptr(), values.len()))
             }
-            Kind::Clock => {
+            VariableType::Clock => {
                 group::expect_scalars(&self.base, group, values.len())?;
                 get_through!(self.Boolean, group, values, fmi3GetClock)
             }
@@ -234,7 +234,11 @@ impl Unit for Component {
         }
     }
 
-    fn set_strings(&mut self, group: &Group, values: &[String]) -> Result<(), InstanceError> {
+    fn set_strings(
+        &mut self,
+        group: &VariableGroup,
+        values: &[String],
+    ) -> Result<(), InstanceError> {
         group::expect_elements(&self.base, group, values.len())?;
         let texts: Vec<CString> = values
             .iter()
@@ -249,7 +253,7 @@ impl Unit for Component {
         ))
     }
 
-    fn get_strings(&mut self, group: &Group) -> Result<Vec<String>, InstanceError> {
+    fn get_strings(&mut self, group: &VariableGroup) -> Result<Vec<String>, InstanceError> {
         let mut pointers = vec![ptr::null(); group.elements];
         call!(self.fmi3GetString(
             group.references.as_ptr(),
@@ -261,7 +265,11 @@ impl Unit for Component {
         Ok(pointers.into_iter().map(|pointer| unsafe { text(pointer, VALUE_MAX) }).collect())
     }
 
-    fn set_binaries(&mut self, group: &Group, values: &[Vec<u8>]) -> Result<(), InstanceError> {
+    fn set_binaries(
+        &mut self,
+        group: &VariableGroup,
+        values: &[Vec<u8>],
+    ) -> Result<(), InstanceError> {
         group::expect_elements(&self.base, group, values.len())?;
         let sizes: Vec<usize> = values.iter().map(Vec::len).collect();
         let pointers: Vec<*const u8> = values.iter().map(|bytes| bytes.as_ptr()).collect();
@@ -274,7 +282,7 @@ impl Unit for Component {
         ))
     }
 
-    fn get_binaries(&mut self, group: &Group) -> Result<Vec<Vec<u8>>, InstanceError> {
+    fn get_binaries(&mut self, group: &VariableGroup) -> Result<Vec<Vec<u8>>, InstanceError> {
         let mut sizes = vec![0; group.elements];
         let mut pointers = vec![ptr::null(); group.elements];
         call!(self.fmi3GetBinary(
@@ -344,13 +352,13 @@ impl Steps for Component {
             ask!(self.fmi3DoStep(time_s, step_s, keep, event, terminate, early, &mut reached_s))?;
         let [event, terminate, early] = flags.map(|flag| flag != 0);
         let outcome = match answer {
-            Answer::Fine if early => Outcome::Early,
-            Answer::Fine => Outcome::Done,
-            Answer::Discard => Outcome::Discarded,
+            Answer::Fine if early => StepOutcome::Early,
+            Answer::Fine => StepOutcome::Done,
+            Answer::Discard => StepOutcome::Discarded,
             Answer::Pending => return Err(self.base.failed("fmi3DoStep", "pending")),
         };
         let time_s = match outcome {
-            Outcome::Done => time_s + step_s,
+            StepOutcome::Done => time_s + step_s,
             // A reported time outside of the step means that no part of it was made.
             _ if reached_s >= time_s && reached_s <= time_s + step_s => reached_s,
             _ => time_s,

@@ -7,7 +7,7 @@ use super::access::Arrays;
 use super::call::{call, free, instantiate, no_instance, ok, put};
 use super::instance::{Instance, Options};
 use super::log::{self, Callback, Outlet};
-use super::mode::{self, Modes, Refusal, Standard};
+use super::mode::{self, Modes, Refusal, ServedStandard};
 use super::types::{BooleanOf, Integer2, Real2, Type};
 use core::ffi::{CStr, c_void};
 use octant_fmi::fmi2::{
@@ -18,7 +18,7 @@ use octant_fmi::fmi2::{
 
 const TYPES_PLATFORM: &CStr = c"default";
 const VERSION: &CStr = c"2.0";
-const STANDARD: Standard = Standard::Fmi2;
+const STANDARD: ServedStandard = ServedStandard::Fmi2;
 
 #[inline]
 fn enter(
@@ -106,7 +106,7 @@ export! {
         // SAFETY: null, or strings.
         let (name, guid) = unsafe { (log::string(name), log::string(guid)) };
         let options = Options::default();
-        instantiate(Standard::Fmi2, function, name, guid, options, outlet, logging != FALSE)
+        instantiate(ServedStandard::Fmi2, function, name, guid, options, outlet, logging != FALSE)
     }
 
     /// Announces the simulation: its start, and its end if it is known.
@@ -132,7 +132,7 @@ export! {
     fn fmi2GetString(
         c: Component, references: *const ValueReference, count: usize, _values: *mut String,
     ) -> Status {
-        no_variables(c, "fmi2GetString", mode::get(Standard::Fmi2), references, count)
+        no_variables(c, "fmi2GetString", mode::get(ServedStandard::Fmi2), references, count)
     }
 
     /// Sets Strings, of which there are none.

@@ -16,7 +16,7 @@ pub use unsupported::*;
 use super::call::{free, instantiate, no_instance, ok, put};
 use super::instance::Options;
 use super::log::{self, Callback, Outlet};
-use super::mode::{self, Mode, Refusal, Standard};
+use super::mode::{self, Mode, Refusal, ServedStandard};
 use core::ffi::{CStr, c_void};
 use entry::enter;
 use octant_fmi::fmi3::{
@@ -27,7 +27,7 @@ use octant_fmi::fmi3::{
 use step::{Places, do_step};
 
 const VERSION: &CStr = c"3.0";
-const STANDARD: Standard = Standard::Fmi3;
+const STANDARD: ServedStandard = ServedStandard::Fmi3;
 
 /// `fmi3Dependent`: the kind of all dependencies.
 const DEPENDENT: DependencyKind = 5;
@@ -84,7 +84,7 @@ export! {
             early_return_allowed: early_return_allowed != FALSE,
             intermediate_update,
         };
-        instantiate(Standard::Fmi3, function, name, token, options, outlet, logging != FALSE)
+        instantiate(ServedStandard::Fmi3, function, name, token, options, outlet, logging != FALSE)
     }
 
     /// Fails: there is no scheduled execution.

@@ -9,11 +9,11 @@ pub use enumerations::*;
 pub(crate) use parameters::PARAMETERS;
 pub(crate) use ports::OUTPUTS;
 
-use crate::table::{Model, Variable, concatenated};
+use crate::table::{DeclaredVariable, Model, concatenated};
 
 const COUNT: usize = ports::INPUTS.len() + ports::OUTPUTS.len() + parameters::PARAMETERS.len();
 
-static VARIABLES: [Variable; COUNT] =
+static VARIABLES: [DeclaredVariable; COUNT] =
     concatenated(&[&ports::INPUTS, &ports::OUTPUTS, &parameters::PARAMETERS]);
 
 /// The Calibrator.
@@ -30,7 +30,7 @@ pub static MODEL: Model = Model {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use octant_sample::parameters::Group;
+    use octant_sample::parameters::ParameterGroup;
 
     #[test]
     fn every_variable_is_described_once_and_starts_within_its_range() {
@@ -39,7 +39,7 @@ mod tests {
 
     #[test]
     fn groups_of_parameters_lie_one_after_another() {
-        for group in Group::ALL {
+        for group in ParameterGroup::ALL {
             let range = group.range();
             for (prefix, first) in [
                 ("parameters", slot::PARAMETERS),

@@ -5,7 +5,8 @@ pub(super) mod slot;
 use crate::calibrator::table as calibrator;
 use crate::quantities as q;
 use crate::table::{
-    Binary, Kind, Model, Ticks, Variable, concatenated, enumerations, same, variables,
+    ClockedBinary, DeclaredVariable, ElementType, Model, Ticks, concatenated, enumerations, same,
+    variables,
 };
 
 /// Largest number of bytes of a tick, in both directions.
@@ -14,10 +15,10 @@ const BYTES_MAX: usize = 65_535;
 /// MIME type of the bytes in FMI-LS-BUS.
 const MIME_TYPE: &str = "application/org.fmi-standard.fmi-ls-bus.can; version=\"1.0.0\"";
 
-static RX_DATA: Binary =
-    Binary { mime_type: MIME_TYPE, max_bytes: BYTES_MAX, clock: "can.Rx_Clock" };
-static TX_DATA: Binary =
-    Binary { mime_type: MIME_TYPE, max_bytes: BYTES_MAX, clock: "can.Tx_Clock" };
+static RX_DATA: ClockedBinary =
+    ClockedBinary { mime_type: MIME_TYPE, max_bytes: BYTES_MAX, clock: "can.Rx_Clock" };
+static TX_DATA: ClockedBinary =
+    ClockedBinary { mime_type: MIME_TYPE, max_bytes: BYTES_MAX, clock: "can.Tx_Clock" };
 
 enumerations! {
     /// Action of the bus simulation on a frame that lost arbitration; values as on the bus.
@@ -42,40 +43,40 @@ pub const NOTIFICATIONS: &str = "can.bus_notifications";
 
 const RATE_MAX: f64 = u32::MAX as f64;
 
-const LINK: [Variable; 14] = variables! {
-    input("can.Rx_Clock", Kind::Clock(Ticks::Triggered)): "Ticks when can.Rx_Data has come.";
-    input("can.Rx_Data", Kind::Binary(&RX_DATA)):
+const LINK: [DeclaredVariable; 14] = variables! {
+    input("can.Rx_Clock", ElementType::Clock(Ticks::Triggered)): "Ticks when can.Rx_Data has come.";
+    input("can.Rx_Data", ElementType::Binary(&RX_DATA)):
         "Bus operations that come: the frames of the harness, and what the bus simulation says.";
-    input("can.Tx_Clock", Kind::Clock(Ticks::Countdown)):
+    input("can.Tx_Clock", ElementType::Clock(Ticks::Countdown)):
         "Ticks when can.Tx_Data is to be taken: at once (interval 0) when an answer is there, else \
          when a status or heartbeat is due.";
-    output("can.Tx_Data", Kind::Binary(&TX_DATA)):
+    output("can.Tx_Data", ElementType::Binary(&TX_DATA)):
         "Bus operations that go: the frames of the device, its settings and its state.";
-    parameter(NOTIFICATIONS, Kind::Boolean):
+    parameter(NOTIFICATIONS, ElementType::Boolean):
         "The bus simulation confirms frames and tells of errors and lost arbitration: the device \
          has one frame at a time on the bus, and sends it until it is confirmed.";
-    parameter("can.fd", Kind::Boolean):
+    parameter("can.fd", ElementType::Boolean):
         "CAN FD, with another bit rate for the data; else classic CAN.";
-    parameter("can.bit_rate", Kind::Count) within(1.0, RATE_MAX) start(&[500_000.0]):
+    parameter("can.bit_rate", ElementType::Count) within(1.0, RATE_MAX) start(&[500_000.0]):
         "Bit rate, bit/s, that the bus simulation is told.";
-    parameter("can.data_bit_rate", Kind::Count) within(1.0, RATE_MAX) start(&[2_000_000.0]):
+    parameter("can.data_bit_rate", ElementType::Count) within(1.0, RATE_MAX) start(&[2_000_000.0]):
         "Bit rate of the data, bit/s, that the bus simulation is told of CAN FD.";
-    parameter("can.arbitration_lost", Kind::Enumeration(&ARBITRATION_LOST)) start(&[1.0]):
+    parameter("can.arbitration_lost", ElementType::Enumeration(&ARBITRATION_LOST)) start(&[1.0]):
         "What the bus simulation is asked to do with a frame that loses the bus. To discard it \
          takes can.bus_notifications.";
-    output("can.node_state", Kind::Enumeration(&NODE_STATE)):
+    output("can.node_state", ElementType::Enumeration(&NODE_STATE)):
         "State of the node, as it follows from the error counters.";
-    output("can.transmit_errors", Kind::Count): "Transmit error counter.";
-    output("can.receive_errors", Kind::Count): "Receive error counter.";
-    output("can.waiting", Kind::Count): "Frames that wait for the bus, one that is on it included.";
-    output("can.lost", Kind::Count):
+    output("can.transmit_errors", ElementType::Count): "Transmit error counter.";
+    output("can.receive_errors", ElementType::Count): "Receive error counter.";
+    output("can.waiting", ElementType::Count): "Frames that wait for the bus, one that is on it included.";
+    output("can.lost", ElementType::Count):
         "Frames that there was no room for, or that were thrown away when the node went off the \
          bus.";
 };
 
 /// Sample period, which is not that of a communication step here.
-const PERIOD: [Variable; 1] = variables! {
-    parameter("imu.period_ns", Kind::Count) of(&q::NANOSECONDS) within(1.0, 1e9) start(&[5e6]):
+const PERIOD: [DeclaredVariable; 1] = variables! {
+    parameter("imu.period_ns", ElementType::Count) of(&q::NANOSECONDS) within(1.0, 1e9) start(&[5e6]):
         "Sample period, ns, which the harness has to have as well.";
 };
 
@@ -94,7 +95,7 @@ const FIRST: usize = {
 const COUNT: usize =
     LINK.len() + calibrator::OUTPUTS.len() + PERIOD.len() + calibrator::PARAMETERS.len() - FIRST;
 
-static VARIABLES: [Variable; COUNT] =
+static VARIABLES: [DeclaredVariable; COUNT] =
     concatenated(&[&LINK, &calibrator::OUTPUTS, &PERIOD, calibrator::PARAMETERS.split_at(FIRST).1]);
 
 /// The Calibrator on CAN.

@@ -12,9 +12,9 @@ pub use enumerations::{AIDING, FAULT_KIND, MOTION, REFERENCE_KIND};
 pub use faults::{FAULT_NUMBERS, FAULT_SLOTS};
 pub use world::SINUSOIDS_MAX;
 
-use crate::table::{Model, Variable, concatenated, count};
+use crate::table::{DeclaredVariable, Model, concatenated, count};
 
-const PARTS: &[&[Variable]] = &[
+const PARTS: &[&[DeclaredVariable]] = &[
     &ports::INPUTS,
     &faults::INPUTS,
     &ports::OUTPUTS,
@@ -26,7 +26,7 @@ const PARTS: &[&[Variable]] = &[
 
 const COUNT: usize = count(PARTS);
 
-static VARIABLES: [Variable; COUNT] = concatenated(PARTS);
+static VARIABLES: [DeclaredVariable; COUNT] = concatenated(PARTS);
 
 /// The Plant.
 pub static MODEL: Model = Model {
@@ -42,7 +42,7 @@ pub static MODEL: Model = Model {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::table::Causality;
+    use crate::table::DeclaredCausality;
 
     #[test]
     fn every_variable_is_described_once_and_starts_within_its_range() {
@@ -57,9 +57,9 @@ mod tests {
             model.variables.iter().filter(move |variable| variable.causality == causality)
         };
         let calibrator = &crate::calibrator::table::MODEL;
-        for input in of(calibrator, Causality::Input) {
+        for input in of(calibrator, DeclaredCausality::Input) {
             let (_, output) = MODEL.find(input.name).unwrap();
-            assert_eq!(output.causality, Causality::Output, "{}", input.name);
+            assert_eq!(output.causality, DeclaredCausality::Output, "{}", input.name);
             assert_eq!(
                 (output.kind, output.elements, output.quantity),
                 (input.kind, input.elements, input.quantity),
@@ -67,7 +67,9 @@ mod tests {
                 input.name
             );
         }
-        for input in of(&MODEL, Causality::Input).filter(|input| !input.name.starts_with("fault")) {
+        for input in
+            of(&MODEL, DeclaredCausality::Input).filter(|input| !input.name.starts_with("fault"))
+        {
             let (_, output) = calibrator.find(input.name).unwrap();
             assert_eq!((output.kind, output.elements), (input.kind, input.elements));
             assert_eq!(output.quantity, input.quantity);

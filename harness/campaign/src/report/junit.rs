@@ -1,9 +1,9 @@
 //! `junit.xml` of a campaign: a suite for each combination, with a test case for each requirement that
 //! a case checks, and one for the case itself.
 
-use super::contents::Report;
+use super::contents::CampaignReport;
 use super::discrepancy::checks_of;
-use super::rows::Row;
+use super::rows::ReportRow;
 use octant_requirements::Verdict;
 use octant_score::junit::{JunitCase, JunitSuite, document};
 
@@ -11,7 +11,7 @@ use octant_score::junit::{JunitCase, JunitSuite, document};
 ///
 /// # Errors
 /// If the XML can't be written.
-pub fn junit(report: &Report<'_>) -> std::io::Result<String> {
+pub fn junit(report: &CampaignReport<'_>) -> std::io::Result<String> {
     let class = &report.plan.title;
     let mut cases = Vec::new();
     for requirement in &report.statistics.requirements {
@@ -45,7 +45,7 @@ pub fn junit(report: &Report<'_>) -> std::io::Result<String> {
     document("octant campaign", &suites)
 }
 
-fn of_case(report: &Report<'_>, row: &Row<'_>, class: &str) -> Vec<JunitCase> {
+fn of_case(report: &CampaignReport<'_>, row: &ReportRow<'_>, class: &str) -> Vec<JunitCase> {
     let id = &row.case.id;
     let mut all = Vec::new();
     for requirement in &report.statistics.requirements {

@@ -7,9 +7,11 @@ use crate::progress_bar::ProgressBar;
 use clap::Args;
 use octant_base::interrupt;
 use octant_base::number::counted;
-use octant_campaign::execute::{Done, Event, ExecuteError, Options, Outcome, Shard, execute};
+use octant_campaign::execute::{
+    CaseDone, ExecuteError, ExecuteOptions, ExecutionEvent, ExecutionSummary, Shard, execute,
+};
 use octant_campaign::plan::Plan;
-use octant_campaign::stop::Decision;
+use octant_campaign::stop::StopDecision;
 use octant_campaign::{merge, results, status};
 use octant_requirements::Verdict;
 use std::path::PathBuf;
@@ -41,7 +43,7 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
     let program = std::env::current_exe()
         .map_err(|error| Failure::bench(format!("failed to find this program: {error}")))?;
     let processors = || std::thread::available_parallelism().map_or(1, usize::from);
-    let mut options = Options {
+    let mut options = ExecuteOptions {
         folder: &arguments.folder,
         program: &program,
         jobs: arguments.jobs.map_or_else(processors, usize::from),
@@ -57,9 +59,9 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
         let left = left.unwrap_or_default();
         format!("{done} of {total} cases, {:.1} per second{left}", progress.per_s())
     });
-    let tell = |event: &Event| match event {
-        Event::There(count) => bar.skip(*count as u64),
-        Event::Done(done) => {
+    let tell = |event: &ExecutionEvent| match event {
+        ExecutionEvent::There(count) => bar.skip(*count as u64),
+        ExecutionEvent::Done(done) => {
             bar.update(|progress| progress.done += 1);
             if let Some(line) = failure(&plan.cases[done.index].id, done) {
                 bar.note(&line);
@@ -77,21 +79,23 @@ pub(super) fn command(arguments: &Arguments) -> Result<Verdict, Failure> {
 /// needed.
 pub(crate) fn in_rounds(
     plan: &Plan,
-    options: &mut Options<'_>,
-    tell: &(dyn Fn(&Event) + Sync),
-) -> Result<Outcome, ExecuteError> {
+    options: &mut ExecuteOptions<'_>,
+    tell: &(dyn Fn(&ExecutionEvent) + Sync),
+) -> Result<ExecutionSummary, ExecuteError> {
     let Some(rule) = plan.stop.as_ref().filter(|_| options.shard == Shard::WHOLE) else {
         return execute(plan, options, tell);
     };
-    let mut all = Outcome::default();
+    let mut all = ExecutionSummary::default();
     let mut told = 0;
     let decide = || status::decide(plan, options.folder, rule).map_err(ExecuteError::Result);
-    while let Decision::Open { next } = decide()? {
+    while let StopDecision::Open { next } = decide()? {
         options.end = next;
         let outcome = execute(plan, options, &|event| match event {
             // Cases of earlier rounds were reported already.
-            Event::There(count) => tell(&Event::There(count.saturating_sub(told))),
-            Event::Done(_) => tell(event),
+            ExecutionEvent::There(count) => {
+                tell(&ExecutionEvent::There(count.saturating_sub(told)))
+            }
+            ExecutionEvent::Done(_) => tell(event),
         })?;
         // A case that ends as an error again isn't run a third time.
         options.again = false;
@@ -108,7 +112,7 @@ pub(crate) fn in_rounds(
 }
 
 /// Describes a case as it ends; `None` if it passes.
-fn failure(id: &str, done: &Done) -> Option<String> {
+fn failure(id: &str, done: &CaseDone) -> Option<String> {
     let differs = done.differs.as_ref().map(|path| {
         format!(
             "case {id}: found another result than the stored one, kept beside it in {}",
@@ -124,7 +128,7 @@ fn conclude(
     arguments: &Arguments,
     plan: &Plan,
     shard: Shard,
-    outcome: &Outcome,
+    outcome: &ExecutionSummary,
 ) -> Result<Verdict, Failure> {
     let mut text = format!(
         "{} run, {} with a result already",

@@ -6,8 +6,8 @@ use super::table::{
     tables, text,
 };
 use crate::campaign::Design;
-use crate::document::Node;
-use crate::quantity::Dimension;
+use crate::document::DocumentNode;
+use crate::quantity::UnitDimension;
 
 keys! {
     /// A campaign.
@@ -84,7 +84,7 @@ keys! {
     pub(crate) struct GridKeys {
         name: At<String> = text(), required, NAME;
         key: Option<String> = text(), derived("the name"), SET;
-        values: At<Vec<Node>> = Of::<Vec<Node>>::kind(Kind::Values), required,
+        values: At<Vec<DocumentNode>> = Of::<Vec<DocumentNode>>::kind(Kind::Values), required,
             "Values: every one is run, as a grid.";
     }
 }
@@ -94,7 +94,7 @@ keys! {
     pub(crate) struct ChooseKeys {
         name: At<String> = text(), required, NAME;
         key: Option<String> = text(), derived("the name"), SET;
-        choose: At<Vec<Node>> = Of::<Vec<Node>>::kind(Kind::Values), required,
+        choose: At<Vec<DocumentNode>> = Of::<Vec<DocumentNode>>::kind(Kind::Values), required,
             "Values: one is drawn for each replicate.";
     }
 }
@@ -149,7 +149,7 @@ keys! {
 keys! {
     /// `[limits]`.
     pub(crate) struct LimitsKeys {
-        time: f64 = si(&[Dimension::TIME], Bounds::Positive), "10 min",
+        time: f64 = si(&[UnitDimension::TIME], Bounds::Positive), "10 min",
             "After which a case is ended as an error.";
         memory_mib: u64 = integer(64, 1_000_000), "2048",
             "Address space of a case, MiB; a case that wants more ends as an error. On Linux.";

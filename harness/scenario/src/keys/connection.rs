@@ -19,7 +19,7 @@ keys! {
 static FAULT: Variants = Variants { tag: Tag::Value("kind"), forms: || &FORMS };
 
 static FORMS: LazyLock<Vec<(&'static str, &'static Section)>> = LazyLock::new(|| {
-    let form = |kind: &&'static kinds::Kind| {
+    let form = |kind: &&'static kinds::ConnectionFaultKind| {
         let common = ConnectionFaultKeys::SECTION;
         (kind.name, of_kind(common, kind.name, kind.summary, kind.parameters, kind.lasts))
     };

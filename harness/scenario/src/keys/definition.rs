@@ -1,9 +1,9 @@
 //! Definition of keys: their kinds, defaults and bounds.
 
 use crate::channel::Channel;
-use crate::document::{Table, Value, join};
+use crate::document::{DocumentTable, DocumentValue, join};
 use crate::error::{Place, Problem};
-use crate::quantity::Dimension;
+use crate::quantity::UnitDimension;
 use octant_base::names::{nearest, suggestion};
 
 /// Version of the format that this program reads.
@@ -57,11 +57,11 @@ pub(crate) enum Kind {
     /// This many plain numbers.
     Numbers(usize),
     /// A quantity of this dimension, or of one of several (depending on another key).
-    Quantity(&'static [Dimension], Bounds),
+    Quantity(&'static [UnitDimension], Bounds),
     /// This many quantities.
-    Quantities(Dimension, usize),
+    Quantities(UnitDimension, usize),
     /// A quantity for each of x, y, z, all of one of these dimensions.
-    Vector(&'static [Dimension]),
+    Vector(&'static [UnitDimension]),
     /// A quantity of any dimension, or a plain number.
     Limit,
     /// An array of times of the run.
@@ -201,10 +201,10 @@ impl Variants {
     }
 
     /// Keys of a table, by its content.
-    pub(crate) fn section(&self, table: &Table) -> Option<&'static Section> {
+    pub(crate) fn section(&self, table: &DocumentTable) -> Option<&'static Section> {
         match self.tag {
             Tag::Value(key) => match &table.get(key)?.value {
-                Value::Text(name) => self.form(name),
+                DocumentValue::Text(name) => self.form(name),
                 _ => None,
             },
             Tag::Key(_) => {
@@ -215,7 +215,7 @@ impl Variants {
     }
 
     /// Problem of a table without a form.
-    pub(crate) fn problem(&self, table: &Table, path: &str, place: &Place) -> Problem {
+    pub(crate) fn problem(&self, table: &DocumentTable, path: &str, place: &Place) -> Problem {
         let problem = |place: &Place, path: String, message: String| Problem {
             place: place.clone(),
             path,
@@ -229,7 +229,7 @@ impl Variants {
                     return problem(place, path, format!("missing, expected one of {names}"));
                 };
                 let found = node.value.describe();
-                let text = if let Value::Text(text) = &node.value { text } else { "" };
+                let text = if let DocumentValue::Text(text) = &node.value { text } else { "" };
                 let known = suggestion(text, self.names(), "possible");
                 problem(&node.place, path, format!("found {found}, {known}"))
             }

@@ -3,9 +3,9 @@
 use super::definition::{Bounds, Default, Key, Kind, Section, Tag, Variants, key};
 use super::table::{At, Forms, Keys, Of, Value, boolean, choice, form, forms, integer, keys, text};
 use crate::error::Problem;
-use crate::quantity::{Dimension, Quantity};
+use crate::quantity::{Quantity, UnitDimension};
 use crate::read::reader::Reader;
-use octant_faults::catalogue::{self, Lasts, Parameter, Takes};
+use octant_faults::catalogue::{self, FaultParameter, Lasts, Takes};
 use octant_faults::kinds;
 use octant_sample::Mode;
 use std::sync::LazyLock;
@@ -15,7 +15,7 @@ pub(crate) static FAULT: Variants = Variants { tag: Tag::Value("kind"), forms: |
 
 /// Keys of every kind. The catalogue is fixed at compile time, so they are made once and kept.
 static FORMS: LazyLock<Vec<(&'static str, &'static Section)>> = LazyLock::new(|| {
-    let form = |kind: &'static catalogue::Kind| {
+    let form = |kind: &'static catalogue::FaultKind| {
         let common = FaultKeys::SECTION;
         (kind.name, of_kind(common, kind.name, kind.summary, kind.parameters, kind.lasts))
     };
@@ -61,7 +61,7 @@ pub(super) fn of_kind(
     common: &Section,
     name: &'static str,
     summary: &'static str,
-    parameters: &'static [Parameter],
+    parameters: &'static [FaultParameter],
     lasts: Lasts,
 ) -> &'static Section {
     let mut keys = Vec::new();
@@ -99,7 +99,7 @@ fn lasting(key: &Key, lasts: Lasts) -> Key {
 }
 
 /// Key of a parameter of the catalogue.
-fn parameter(parameter: &'static Parameter) -> Key {
+fn parameter(parameter: &'static FaultParameter) -> Key {
     let dimensions = |all: &[catalogue::Dimension]| leak_all(all.iter().map(dimension).collect());
     let kind = match parameter.takes {
         Takes::Quantity(all, limits) => Kind::Quantity(dimensions(all), bounds(limits)),
@@ -132,48 +132,48 @@ fn parameter(parameter: &'static Parameter) -> Key {
 /// Kinds of a value that an input can have.
 static VALUE: [Kind; 3] = [Kind::Text, Kind::Number(Bounds::Any), Kind::Boolean];
 
-fn bounds(bounds: catalogue::Bounds) -> Bounds {
+fn bounds(bounds: catalogue::ParameterBounds) -> Bounds {
     match bounds {
-        catalogue::Bounds::NotZero => Bounds::NotZero,
-        catalogue::Bounds::Any => Bounds::Any,
-        catalogue::Bounds::Positive => Bounds::Positive,
-        catalogue::Bounds::NotNegative => Bounds::NotNegative,
-        catalogue::Bounds::Within(from, to, words) => Bounds::Within(from, to, words),
+        catalogue::ParameterBounds::NotZero => Bounds::NotZero,
+        catalogue::ParameterBounds::Any => Bounds::Any,
+        catalogue::ParameterBounds::Positive => Bounds::Positive,
+        catalogue::ParameterBounds::NotNegative => Bounds::NotNegative,
+        catalogue::ParameterBounds::Within(from, to, words) => Bounds::Within(from, to, words),
     }
 }
 
 /// Scenario dimension of a dimension in the catalogue.
-pub(crate) fn dimension(dimension: &catalogue::Dimension) -> Dimension {
+pub(crate) fn dimension(dimension: &catalogue::Dimension) -> UnitDimension {
     use catalogue::Dimension as Of;
     match dimension {
-        Of::Time => Dimension::TIME,
-        Of::Samples => Dimension::SAMPLES,
-        Of::Frequency => Dimension::FREQUENCY,
-        Of::Angle => Dimension::ANGLE,
-        Of::SmallAngle => Dimension::SMALL_ANGLE,
-        Of::AngularRate => Dimension::ANGULAR_RATE,
-        Of::GyroBias => Dimension::GYRO_BIAS,
-        Of::AngularAcceleration => Dimension::ANGULAR_ACCELERATION,
-        Of::AngleRandomWalk => Dimension::ANGLE_RANDOM_WALK,
-        Of::RateRandomWalk => Dimension::RATE_RANDOM_WALK,
-        Of::GDependent => Dimension::G_DEPENDENT,
-        Of::Length => Dimension::LENGTH,
-        Of::Velocity => Dimension::VELOCITY,
-        Of::Acceleration => Dimension::ACCELERATION,
-        Of::AccelBias => Dimension::ACCEL_BIAS,
-        Of::VelocityRandomWalk => Dimension::VELOCITY_RANDOM_WALK,
-        Of::AccelRandomWalk => Dimension::ACCEL_RANDOM_WALK,
-        Of::Ratio => Dimension::RATIO,
-        Of::Temperature => Dimension::TEMPERATURE,
-        Of::TemperatureRate => Dimension::TEMPERATURE_RATE,
-        Of::GyroBiasPerK => Dimension::GYRO_BIAS_PER_K,
-        Of::AccelBiasPerK => Dimension::ACCEL_BIAS_PER_K,
-        Of::ScalePerK => Dimension::SCALE_PER_K,
-        Of::AccelerationPsd => Dimension::ACCELERATION_PSD,
+        Of::Time => UnitDimension::TIME,
+        Of::Samples => UnitDimension::SAMPLES,
+        Of::Frequency => UnitDimension::FREQUENCY,
+        Of::Angle => UnitDimension::ANGLE,
+        Of::SmallAngle => UnitDimension::SMALL_ANGLE,
+        Of::AngularRate => UnitDimension::ANGULAR_RATE,
+        Of::GyroBias => UnitDimension::GYRO_BIAS,
+        Of::AngularAcceleration => UnitDimension::ANGULAR_ACCELERATION,
+        Of::AngleRandomWalk => UnitDimension::ANGLE_RANDOM_WALK,
+        Of::RateRandomWalk => UnitDimension::RATE_RANDOM_WALK,
+        Of::GDependent => UnitDimension::G_DEPENDENT,
+        Of::Length => UnitDimension::LENGTH,
+        Of::Velocity => UnitDimension::VELOCITY,
+        Of::Acceleration => UnitDimension::ACCELERATION,
+        Of::AccelBias => UnitDimension::ACCEL_BIAS,
+        Of::VelocityRandomWalk => UnitDimension::VELOCITY_RANDOM_WALK,
+        Of::AccelRandomWalk => UnitDimension::ACCEL_RANDOM_WALK,
+        Of::Ratio => UnitDimension::RATIO,
+        Of::Temperature => UnitDimension::TEMPERATURE,
+        Of::TemperatureRate => UnitDimension::TEMPERATURE_RATE,
+        Of::GyroBiasPerK => UnitDimension::GYRO_BIAS_PER_K,
+        Of::AccelBiasPerK => UnitDimension::ACCEL_BIAS_PER_K,
+        Of::ScalePerK => UnitDimension::SCALE_PER_K,
+        Of::AccelerationPsd => UnitDimension::ACCELERATION_PSD,
     }
 }
 
-const SPAN: &[Dimension] = &[Dimension::TIME, Dimension::SAMPLES];
+const SPAN: &[UnitDimension] = &[UnitDimension::TIME, UnitDimension::SAMPLES];
 
 /// A time, or a number of samples, above 0.
 const fn span() -> Of<Quantity> {
@@ -288,7 +288,7 @@ keys! {
     /// Random trigger.
     pub(crate) struct PoissonKeys {
         poisson: Quantity
-            = Of::<Quantity>::kind(Kind::Quantity(&[Dimension::TIME, Dimension::FREQUENCY], Bounds::Positive)),
+            = Of::<Quantity>::kind(Kind::Quantity(&[UnitDimension::TIME, UnitDimension::FREQUENCY], Bounds::Positive)),
             required,
             "At random: the mean time from its end to its next onset, or how often it comes a second.";
         from: Quantity = delay(), "0 s", FROM;

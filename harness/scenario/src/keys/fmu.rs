@@ -4,7 +4,7 @@ use super::definition::{Bounds, Default, Key, Kind, Section, key, section};
 use super::table::{At, Of, Raw, choice, keys, number, si, time};
 use crate::channel::{Channel, answer, case, sample, truth};
 use crate::model::{InterfaceChoice, Process};
-use crate::quantity::Dimension;
+use crate::quantity::UnitDimension;
 use octant_sample::Mode;
 
 /// Keys of every FMU.
@@ -69,7 +69,7 @@ macro_rules! fmu {
 fmu! {
     /// `[source.fmu]`.
     SourceFmuKeys, SOURCE_MAP, [
-        step: At<Option<f64>> = si(&[Dimension::TIME], Bounds::Positive), derived("the sample period"),
+        step: At<Option<f64>> = si(&[UnitDimension::TIME], Bounds::Positive), derived("the sample period"),
             "Communication step: a whole part of the sample period, or of a ship a multiple of it, between which its motion is interpolated.";
     ], []
 }

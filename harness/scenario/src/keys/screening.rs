@@ -2,7 +2,7 @@
 
 use super::definition::{Bounds, Kind};
 use super::table::{Keys, Of, choice, integer, keys, number, or_text, si};
-use crate::quantity::Dimension;
+use crate::quantity::UnitDimension;
 
 keys! {
     /// `[screening]`.
@@ -52,11 +52,11 @@ keys! {
 keys! {
     /// `[screening.gate.recovery]`.
     pub(crate) struct ResetKeys {
-        attitude: f64 = si(&[Dimension::SMALL_ANGLE], Bounds::Positive), "600 arcsec",
+        attitude: f64 = si(&[UnitDimension::SMALL_ANGLE], Bounds::Positive), "600 arcsec",
             "Attitude after a reset.";
-        velocity: f64 = si(&[Dimension::VELOCITY], Bounds::Positive), "1 m/s",
+        velocity: f64 = si(&[UnitDimension::VELOCITY], Bounds::Positive), "1 m/s",
             "Velocity after a reset.";
-        position: f64 = si(&[Dimension::LENGTH], Bounds::Positive), "10 m",
+        position: f64 = si(&[UnitDimension::LENGTH], Bounds::Positive), "10 m",
             "Position after a reset.";
     }
 }

@@ -5,9 +5,9 @@
 
 use super::definition::{Bounds, Default, Key, Kind, Section, Variants, key};
 use crate::complete::complete;
-use crate::document::{self, Node, Table};
+use crate::document::{self, DocumentNode, DocumentTable};
 use crate::error::{Place, Problem, ScenarioError};
-use crate::quantity::{Dimension, Quantity};
+use crate::quantity::{Quantity, UnitDimension};
 use crate::read::reader::Reader;
 use std::ops::Deref;
 
@@ -157,7 +157,7 @@ pub(crate) trait Keys: FromTable {
     fn parse<T>(
         text: &str,
         file: &str,
-        prepare: impl FnOnce(&mut Table, &mut Vec<Problem>),
+        prepare: impl FnOnce(&mut DocumentTable, &mut Vec<Problem>),
         make: impl FnOnce(Self) -> Result<T, Problem>,
     ) -> Result<T, ScenarioError> {
         let with_file = |problems| ScenarioError { file: file.to_owned(), problems };
@@ -189,7 +189,7 @@ pub(crate) trait Value: Sized {
 /// A table that is read as a whole, by what else is known of its keys.
 #[derive(Clone, Debug)]
 pub(crate) struct Raw {
-    pub(crate) table: Table,
+    pub(crate) table: DocumentTable,
     pub(crate) path: String,
     place: Place,
 }
@@ -230,8 +230,8 @@ values! {
     u32: |table, key| table.integer(key).map(Some);
     u64: |table, key| table.integer(key).map(Some);
     usize: |table, key| table.integer(key).map(Some);
-    Vec<Vec<String>>: |table, key| Ok(Some(table.entries(key).iter().map(Node::texts).collect()));
-    Vec<Node>: |table, key| Ok(Some(table.entries(key).to_vec()));
+    Vec<Vec<String>>: |table, key| Ok(Some(table.entries(key).iter().map(DocumentNode::texts).collect()));
+    Vec<DocumentNode>: |table, key| Ok(Some(table.entries(key).to_vec()));
     Quantity: |table, key| Ok(table.optional_quantity(key));
     f64: |table, key| match table.optional_si(key) {
         None => table.number(key).map(Some),
@@ -430,12 +430,12 @@ pub(super) const fn numbers<const N: usize>() -> Of<[f64; N]> {
     Of::kind(Kind::Numbers(N))
 }
 
-pub(super) const fn si(dimensions: &'static [Dimension], bounds: Bounds) -> Of<f64> {
+pub(super) const fn si(dimensions: &'static [UnitDimension], bounds: Bounds) -> Of<f64> {
     Of::kind(Kind::Quantity(dimensions, bounds))
 }
 
 pub(super) const fn within(
-    dimensions: &'static [Dimension],
+    dimensions: &'static [UnitDimension],
     from: f64,
     to: f64,
     words: &'static str,
@@ -444,15 +444,15 @@ pub(super) const fn within(
 }
 
 pub(super) const fn time(from_s: f64, to_s: f64, words: &'static str) -> Of<f64> {
-    within(&[Dimension::TIME], from_s, to_s, words)
+    within(&[UnitDimension::TIME], from_s, to_s, words)
 }
 
-pub(super) const fn si_array<const N: usize>(dimension: Dimension) -> Of<[f64; N]> {
+pub(super) const fn si_array<const N: usize>(dimension: UnitDimension) -> Of<[f64; N]> {
     Of::kind(Kind::Quantities(dimension, N))
 }
 
 /// A list whose length differs between groups of parameters.
-pub(super) const fn si_list(dimension: Dimension, count: usize) -> Of<Vec<f64>> {
+pub(super) const fn si_list(dimension: UnitDimension, count: usize) -> Of<Vec<f64>> {
     Of::kind(Kind::Quantities(dimension, count))
 }
 

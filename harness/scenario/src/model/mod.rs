@@ -13,14 +13,16 @@ mod scenario;
 mod source;
 
 pub use drive::Drive;
-pub use endpoint::{Endpoint, Live};
+pub use endpoint::{EndpointSpec, Live};
 pub use fault::Fault;
 pub use file_name::{FileName, FileNameError};
 pub use fmu::{Fmu, InterfaceChoice, Mapped, Process};
 pub use instrument::{Instrument, Messages, Speaks};
-pub use motion::{Component, Dockside, Motion, ShipSpectrum};
+pub use motion::{DocksideSpec, MotionComponent, MotionSpec, ShipSpectrum};
 pub(crate) use motion::{MOTIONS, case_attitude};
-pub use port::{Code, Made, Port, Set, Setting, Written};
-pub use procedure::{Alignment, Calibration, Method};
-pub use scenario::{Distribution, Realtime, Record, Requirement, Scenario, UnknownFault};
-pub use source::Source;
+pub use port::{ChannelElement, Code, EntryPlace, Made, Set, Setting};
+pub use procedure::{AlignmentSpec, CalibrationSpec, Method};
+pub use scenario::{
+    ParameterDistribution, Realtime, RecordSpec, RequirementSpec, Scenario, UnknownFault,
+};
+pub use source::SourceSpec;

@@ -9,13 +9,13 @@ mod value;
 use super::reader::Reader;
 use crate::error::Problem;
 use crate::keys::{At, FaultKeys, FromTable, Raw};
-use crate::model::{Endpoint, Fault, Scenario, Source};
+use crate::model::{EndpointSpec, Fault, Scenario, SourceSpec};
 use grid::{Waiting, check_chains};
-use octant_faults::catalogue::{Acts, Kind};
+use octant_faults::catalogue::{Acts, FaultKind};
 use octant_faults::kinds::host::{FULL, STARVED};
 use octant_faults::kinds::wire::happens_on;
-use octant_faults::station::Spec;
-use octant_faults::{BuildError, Setup, Station, Values, kinds};
+use octant_faults::station::FaultSpec;
+use octant_faults::{FaultBuildError, Setup, Station, Values, kinds};
 use schedule::Timing;
 use value::value;
 
@@ -54,7 +54,7 @@ pub(super) fn read(
         let setup = Setup { id: fault.spec.id.clone(), ..scenario.fault_setup(scenario.seed) };
         (fault.spec.kind.build)(&fault.spec.values, &setup).map_err(|e| build(table, &e))?;
     }
-    let specs: Vec<Spec> = all.iter().map(|fault| fault.spec.clone()).collect();
+    let specs: Vec<FaultSpec> = all.iter().map(|fault| fault.spec.clone()).collect();
     match Station::new(&specs, &scenario.fault_setup(scenario.seed)) {
         Ok(_) => Ok(all),
         Err((id, error)) => {
@@ -67,9 +67,9 @@ pub(super) fn read(
 }
 
 /// Problem of a kind's refusal, at the parameter that it names.
-fn build(table: &Reader<'_>, error: &BuildError) -> Problem {
+fn build(table: &Reader<'_>, error: &FaultBuildError) -> Problem {
     match error {
-        BuildError::Value { parameter, problem } => table.problem(parameter, problem.clone()),
+        FaultBuildError::Value { parameter, problem } => table.problem(parameter, problem.clone()),
         other => table.problem("id", other.to_string()),
     }
 }
@@ -103,7 +103,7 @@ fn fault(table: &Reader<'_>, scenario: &Scenario, timing: &Timing) -> Result<Fau
         values.set(parameter.name, value(table, parameter)?);
     }
     let (schedule, fires) = timing.schedule(table, kind, &trigger)?;
-    Ok(Fault { spec: Spec { id, kind, values, schedule }, fires, place: table.place.clone() })
+    Ok(Fault { spec: FaultSpec { id, kind, values, schedule }, fires, place: table.place.clone() })
 }
 
 /// Id of a fault, which isn't empty.
@@ -115,7 +115,7 @@ fn named(id: &At<String>) -> Result<String, Problem> {
 }
 
 /// Reason why a kind can't act on a source.
-fn impossible(kind: &Kind, source: &Source) -> Option<&'static str> {
+fn impossible(kind: &FaultKind, source: &SourceSpec) -> Option<&'static str> {
     match kind.acts {
         Acts::Plant if source.has_plant() => None,
         Acts::Plant if source.fmu().is_some() => Some(
@@ -138,7 +138,7 @@ fn impossible(kind: &Kind, source: &Source) -> Option<&'static str> {
 }
 
 /// Reason why a kind can't act on the way to an endpoint.
-fn without_wire(kind: &Kind, endpoint: &Endpoint) -> Option<String> {
+fn without_wire(kind: &FaultKind, endpoint: &EndpointSpec) -> Option<String> {
     if kind.acts != Acts::Wire {
         return None;
     }
@@ -155,7 +155,7 @@ fn without_wire(kind: &Kind, endpoint: &Endpoint) -> Option<String> {
 
 /// Reason why a kind that acts on the host would have no effect, with its key.
 fn on_this_host(
-    kind: &Kind,
+    kind: &FaultKind,
     scenario: &Scenario,
     table: &Reader<'_>,
 ) -> Option<(&'static str, &'static str)> {

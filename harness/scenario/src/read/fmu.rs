@@ -9,7 +9,7 @@ use crate::error::Problem;
 use crate::keys::{
     At, ENDPOINT_MAP, EndpointKeys, FmuKeys, Kind, Raw, SOURCE_MAP, Section, SourceKeys,
 };
-use crate::model::{Code, Endpoint, FileName, Fmu, Mapped, Written};
+use crate::model::{Code, EndpointSpec, EntryPlace, FileName, Fmu, Mapped};
 use crate::ports;
 use octant_sample::Mode;
 
@@ -50,18 +50,23 @@ pub(super) fn source(
 }
 
 /// Reads `[endpoint]`.
-pub(super) fn endpoint(keys: &EndpointKeys, sample_period_ns: u64) -> Result<Endpoint, Problem> {
+pub(super) fn endpoint(
+    keys: &EndpointKeys,
+    sample_period_ns: u64,
+) -> Result<EndpointSpec, Problem> {
     let uri = keys.uri.as_str();
     match uri.split_once(':') {
-        None if uri == "in-process" => Ok(Endpoint::InProcess),
+        None if uri == "in-process" => Ok(EndpointSpec::InProcess),
         Some(("fmu", file)) if !file.is_empty() => {
             let of_fmu = keys.fmu.as_ref();
             let of_fmu = of_fmu.ok_or_else(|| keys.uri.problem("endpoint.fmu is missing"))?;
             let mut fmu = fmu(&keys.uri, of_fmu.common(), file, &ENDPOINT_MAP, sample_period_ns)?;
             fmu.modes = of_fmu.modes.as_ref().map(modes).unwrap_or_default();
-            Ok(Endpoint::Fmu(Box::new(fmu)))
+            Ok(EndpointSpec::Fmu(Box::new(fmu)))
         }
-        Some(_) if octant_link::Uri::is_one(uri) => Ok(Endpoint::Live(Box::new(live::live(keys)?))),
+        Some(_) if octant_link::Uri::is_one(uri) => {
+            Ok(EndpointSpec::Live(Box::new(live::live(keys)?)))
+        }
         _ => {
             Err(keys.uri.problem(format!("found {uri:?}, expected in-process, fmu:FILE or a port")))
         }
@@ -91,7 +96,7 @@ fn fmu(
         settings: settings.unwrap_or_default(),
         map: mapped,
         modes: Vec::new(),
-        at: Written { place: uri.place.clone(), path: uri.path.clone() },
+        at: EntryPlace { place: uri.place.clone(), path: uri.path.clone() },
     })
 }
 
@@ -108,7 +113,7 @@ fn channels(
                 all.push(Mapped {
                     channel,
                     ports: ports::ports(node, channel, &path)?,
-                    at: Written { place: node.place.clone(), path },
+                    at: EntryPlace { place: node.place.clone(), path },
                 });
             }
             (Kind::Table(inner), Some(_)) => channels(&table.table(key.name)?, inner, all)?,

@@ -8,8 +8,10 @@ mod decoder;
 mod encoder;
 mod load;
 
-pub use decoder::{Cause, Counters, Decoder, Event, Lost, Order, Received};
-pub use encoder::Encoder;
+pub use decoder::{
+    DecodeEvent, FrameDefect, FrameOrder, Received, SerialCounters, SerialDecoder, SkippedBytes,
+};
+pub use encoder::SerialEncoder;
 pub use load::{Baud, LineLoad};
 
 use crate::message::MAX_PAYLOAD_BYTES;

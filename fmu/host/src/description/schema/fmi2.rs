@@ -1,29 +1,42 @@
 //! The schema of FMI 2.0 (`fmi2ModelDescription.xsd`).
 
-use super::{Child, MANY, Node, Open, Type, any, may, must, node, one, optional, some};
+use super::{
+    AttributeType, Child, ElementRule, MANY, Open, any, may, must, node, one, optional, some,
+};
 
-const CAUSALITY: Type =
-    Type::Word(&["parameter", "calculatedParameter", "input", "output", "local", "independent"]);
-pub(super) const VARIABILITY: Type =
-    Type::Word(&["constant", "fixed", "tunable", "discrete", "continuous"]);
-pub(super) const INITIAL: Type = Type::Word(&["exact", "approx", "calculated"]);
-pub(super) const KINDS: Type =
-    Type::List(&Type::Word(&["dependent", "constant", "fixed", "tunable", "discrete"]));
-pub(super) const NAMING: Type = Type::Word(&["flat", "structured"]);
+const CAUSALITY: AttributeType = AttributeType::Word(&[
+    "parameter",
+    "calculatedParameter",
+    "input",
+    "output",
+    "local",
+    "independent",
+]);
+pub(super) const VARIABILITY: AttributeType =
+    AttributeType::Word(&["constant", "fixed", "tunable", "discrete", "continuous"]);
+pub(super) const INITIAL: AttributeType = AttributeType::Word(&["exact", "approx", "calculated"]);
+pub(super) const KINDS: AttributeType = AttributeType::List(&AttributeType::Word(&[
+    "dependent",
+    "constant",
+    "fixed",
+    "tunable",
+    "discrete",
+]));
+pub(super) const NAMING: AttributeType = AttributeType::Word(&["flat", "structured"]);
 
 nodes! {
     /// The root element.
     pub MODEL_DESCRIPTION "fmiModelDescription" {
-        must fmiVersion: Type::Word(&["2.0"]);
-        must modelName: Type::Text;
-        must guid: Type::Line;
-        may description author: Type::Text;
-        may version: Type::Line;
-        may copyright license: Type::Text;
-        may generationTool: Type::Line;
-        may generationDateAndTime: Type::DateTime;
+        must fmiVersion: AttributeType::Word(&["2.0"]);
+        must modelName: AttributeType::Text;
+        must guid: AttributeType::Line;
+        may description author: AttributeType::Text;
+        may version: AttributeType::Line;
+        may copyright license: AttributeType::Text;
+        may generationTool: AttributeType::Line;
+        may generationDateAndTime: AttributeType::DateTime;
         may variableNamingConvention: NAMING;
-        may numberOfEventIndicators: Type::UNSIGNED_INT;
+        may numberOfEventIndicators: AttributeType::UNSIGNED_INT;
     } -> &[
         // At least one of both, in any order.
         one(0, &MODEL_EXCHANGE), one(0, &CO_SIMULATION), optional(1, &UNIT_DEFINITIONS),
@@ -33,86 +46,86 @@ nodes! {
     ];
 
     MODEL_EXCHANGE "ModelExchange" {
-        must modelIdentifier: Type::Line;
+        must modelIdentifier: AttributeType::Line;
         may needsExecutionTool completedIntegratorStepNotNeeded canBeInstantiatedOnlyOncePerProcess
             canNotUseMemoryManagementFunctions canGetAndSetFMUstate canSerializeFMUstate
-            providesDirectionalDerivative: Type::Boolean;
+            providesDirectionalDerivative: AttributeType::Boolean;
     } -> &[optional(0, &SOURCE_FILES)];
     CO_SIMULATION "CoSimulation" {
-        must modelIdentifier: Type::Line;
+        must modelIdentifier: AttributeType::Line;
         may needsExecutionTool canHandleVariableCommunicationStepSize
-            canInterpolateInputs: Type::Boolean;
-        may maxOutputDerivativeOrder: Type::UNSIGNED_INT;
+            canInterpolateInputs: AttributeType::Boolean;
+        may maxOutputDerivativeOrder: AttributeType::UNSIGNED_INT;
         may canRunAsynchronuously canBeInstantiatedOnlyOncePerProcess
             canNotUseMemoryManagementFunctions canGetAndSetFMUstate canSerializeFMUstate
-            providesDirectionalDerivative: Type::Boolean;
+            providesDirectionalDerivative: AttributeType::Boolean;
     } -> &[optional(0, &SOURCE_FILES)];
     SOURCE_FILES "SourceFiles" {} -> &[some(0, &FILE)];
-    FILE "File" { must name: Type::Line; };
+    FILE "File" { must name: AttributeType::Line; };
 
     UNIT_DEFINITIONS "UnitDefinitions" {} -> &[some(0, &UNIT)];
-    UNIT "Unit" { must name: Type::Line; } -> &[optional(0, &BASE_UNIT), any(1, &DISPLAY_UNIT)];
+    UNIT "Unit" { must name: AttributeType::Line; } -> &[optional(0, &BASE_UNIT), any(1, &DISPLAY_UNIT)];
     pub(super) BASE_UNIT "BaseUnit" {
-        may kg m s A K mol cd rad: Type::INT;
-        may factor offset: Type::Double;
+        may kg m s A K mol cd rad: AttributeType::INT;
+        may factor offset: AttributeType::Double;
     };
-    DISPLAY_UNIT "DisplayUnit" { must name: Type::Line; may factor offset: Type::Double; };
+    DISPLAY_UNIT "DisplayUnit" { must name: AttributeType::Line; may factor offset: AttributeType::Double; };
 
     TYPE_DEFINITIONS "TypeDefinitions" {} -> &[some(0, &SIMPLE_TYPE)];
     SIMPLE_TYPE "SimpleType" {
-        must name: Type::Line;
-        may description: Type::Text;
+        must name: AttributeType::Line;
+        may description: AttributeType::Text;
     } -> &[
         one(0, &REAL_TYPE), one(0, &INTEGER_TYPE), one(0, &BOOLEAN_TYPE), one(0, &STRING_TYPE),
         one(0, &ENUMERATION_TYPE),
     ];
     REAL_TYPE "Real" {
-        may quantity unit displayUnit: Type::Line;
-        may relativeQuantity: Type::Boolean;
-        may min max nominal: Type::Double;
-        may unbounded: Type::Boolean;
+        may quantity unit displayUnit: AttributeType::Line;
+        may relativeQuantity: AttributeType::Boolean;
+        may min max nominal: AttributeType::Double;
+        may unbounded: AttributeType::Boolean;
     };
-    INTEGER_TYPE "Integer" { may quantity: Type::Line; may min max: Type::INT; };
-    ENUMERATION_TYPE "Enumeration" { may quantity: Type::Line; } -> &[some(0, &ITEM)];
-    ITEM "Item" { must name: Type::Line; must value: Type::INT; may description: Type::Text; };
+    INTEGER_TYPE "Integer" { may quantity: AttributeType::Line; may min max: AttributeType::INT; };
+    ENUMERATION_TYPE "Enumeration" { may quantity: AttributeType::Line; } -> &[some(0, &ITEM)];
+    ITEM "Item" { must name: AttributeType::Line; must value: AttributeType::INT; may description: AttributeType::Text; };
 
     LOG_CATEGORIES "LogCategories" {} -> &[some(0, &CATEGORY)];
-    CATEGORY "Category" { must name: Type::Line; may description: Type::Text; };
+    CATEGORY "Category" { must name: AttributeType::Line; may description: AttributeType::Text; };
     DEFAULT_EXPERIMENT "DefaultExperiment" {
-        may startTime stopTime tolerance stepSize: Type::Double;
+        may startTime stopTime tolerance stepSize: AttributeType::Double;
     };
     VENDOR_ANNOTATIONS "VendorAnnotations" {} -> &[some(0, &TOOL)];
     ANNOTATIONS "Annotations" {} -> &[some(0, &TOOL)];
 
     MODEL_VARIABLES "ModelVariables" {} -> &[some(0, &SCALAR_VARIABLE)];
     SCALAR_VARIABLE "ScalarVariable" {
-        must name: Type::Line;
-        must valueReference: Type::UNSIGNED_INT;
-        may description: Type::Text;
+        must name: AttributeType::Line;
+        must valueReference: AttributeType::UNSIGNED_INT;
+        may description: AttributeType::Text;
         may causality: CAUSALITY;
         may variability: VARIABILITY;
         may initial: INITIAL;
-        may canHandleMultipleSetPerTimeInstant: Type::Boolean;
+        may canHandleMultipleSetPerTimeInstant: AttributeType::Boolean;
     } -> &[
         one(0, &REAL), one(0, &INTEGER), one(0, &BOOLEAN), one(0, &STRING), one(0, &ENUMERATION),
         optional(1, &ANNOTATIONS),
     ];
     REAL "Real" {
-        may declaredType quantity unit displayUnit: Type::Line;
-        may relativeQuantity: Type::Boolean;
-        may min max nominal: Type::Double;
-        may unbounded: Type::Boolean;
-        may start: Type::Double;
-        may derivative: Type::UNSIGNED_INT;
-        may reinit: Type::Boolean;
+        may declaredType quantity unit displayUnit: AttributeType::Line;
+        may relativeQuantity: AttributeType::Boolean;
+        may min max nominal: AttributeType::Double;
+        may unbounded: AttributeType::Boolean;
+        may start: AttributeType::Double;
+        may derivative: AttributeType::UNSIGNED_INT;
+        may reinit: AttributeType::Boolean;
     };
-    INTEGER "Integer" { may declaredType quantity: Type::Line; may min max start: Type::INT; };
-    BOOLEAN "Boolean" { may declaredType: Type::Line; may start: Type::Boolean; };
-    STRING "String" { may declaredType: Type::Line; may start: Type::Text; };
+    INTEGER "Integer" { may declaredType quantity: AttributeType::Line; may min max start: AttributeType::INT; };
+    BOOLEAN "Boolean" { may declaredType: AttributeType::Line; may start: AttributeType::Boolean; };
+    STRING "String" { may declaredType: AttributeType::Line; may start: AttributeType::Text; };
     ENUMERATION "Enumeration" {
-        must declaredType: Type::Line;
-        may quantity: Type::Line;
-        may min max start: Type::INT;
+        must declaredType: AttributeType::Line;
+        may quantity: AttributeType::Line;
+        may min max start: AttributeType::INT;
     };
 
     MODEL_STRUCTURE "ModelStructure" {} -> &[
@@ -122,21 +135,21 @@ nodes! {
     DERIVATIVES "Derivatives" {} -> UNKNOWNS;
     INITIAL_UNKNOWNS "InitialUnknowns" {} -> UNKNOWNS;
     UNKNOWN "Unknown" {
-        must index: Type::UNSIGNED_INT;
-        may dependencies: Type::List(&Type::UNSIGNED_INT);
+        must index: AttributeType::UNSIGNED_INT;
+        may dependencies: AttributeType::List(&AttributeType::UNSIGNED_INT);
         may dependenciesKind: KINDS;
     };
 }
 
 // The schema gives no type at all to these two.
-static BOOLEAN_TYPE: Node =
-    Node { name: "Boolean", attributes: &[], children: &[], open: Open::Everything };
-static STRING_TYPE: Node =
-    Node { name: "String", attributes: &[], children: &[], open: Open::Everything };
+static BOOLEAN_TYPE: ElementRule =
+    ElementRule { name: "Boolean", attributes: &[], children: &[], open: Open::Everything };
+static STRING_TYPE: ElementRule =
+    ElementRule { name: "String", attributes: &[], children: &[], open: Open::Everything };
 
-static TOOL: Node = Node {
+static TOOL: ElementRule = ElementRule {
     name: "Tool",
-    attributes: &[must("name", Type::Line)],
+    attributes: &[must("name", AttributeType::Line)],
     children: &[],
     open: Open::Everything,
 };

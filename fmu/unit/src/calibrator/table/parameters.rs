@@ -8,8 +8,8 @@ mod screening;
 use super::enumerations as of;
 use crate::groups::groups;
 use crate::quantities as q;
-use crate::table::Kind::{Boolean, Count, Enumeration, Integer, Real};
-use crate::table::{Variable, concatenated, count, variables};
+use crate::table::ElementType::{Boolean, Count, Enumeration, Integer, Real};
+use crate::table::{DeclaredVariable, concatenated, count, variables};
 use octant_calibration::positions::{Degrees, EIGHT, SIXTEEN};
 use octant_calibration::sequence::STOPS_MAX;
 use octant_earth::units::{
@@ -61,7 +61,7 @@ custom; stops.count of them are used.");
     };
 }
 
-const INSTRUMENT: [Variable; 9] = variables! {
+const INSTRUMENT: [DeclaredVariable; 9] = variables! {
     parameter("imu.period_ns", Count) of(&q::NANOSECONDS) within(1.0, 1e9) start(&[5e6]):
         "Sample period, ns: the communication step.";
     parameter("imu.external_stamps", Boolean):
@@ -86,7 +86,7 @@ const INSTRUMENT: [Variable; 9] = variables! {
         nominal(10.0 * DEG) start(&[10.0 * DEG]): "Acceleration of a gimbal's move, above 0.";
 };
 
-const ALIGNMENT: [Variable; 4] = variables! {
+const ALIGNMENT: [DeclaredVariable; 4] = variables! {
     parameter("procedure.alignment.method", Enumeration(&of::ALIGNMENT)) start(&[1.0]):
         "How the initial attitude is found.";
     parameter("procedure.alignment.duration", Real) of(&q::TIME) min(0.0) nominal(60.0)
@@ -101,17 +101,17 @@ const ALIGNMENT: [Variable; 4] = variables! {
         "Velocity over ground that is handed over: north, east, down.";
 };
 
-const CALIBRATION: [Variable; 2] = variables! {
+const CALIBRATION: [DeclaredVariable; 2] = variables! {
     parameter("procedure.calibration.enabled", Boolean) start(&[1.0]):
         "There is a calibration; else the core navigates at once.";
     parameter("procedure.calibration.positions", Enumeration(&of::POSITIONS)) start(&[2.0]):
         "Sequence of positions: one that is known, or custom.";
 };
 
-const STOPS: [Variable; 4] =
+const STOPS: [DeclaredVariable; 4] =
     stops!("procedure.calibration", "procedure.calibration.positions", EIGHT);
 
-const ESTIMATION: [Variable; 4] = variables! {
+const ESTIMATION: [DeclaredVariable; 4] = variables! {
     parameter("procedure.calibration.passes", Count) within(1.0, U32_MAX) start(&[1.0]):
         "How often the sequence is walked within the duration.";
     parameter("procedure.calibration.duration", Real) of(&q::DURATION) min(0.0) nominal(14400.0)
@@ -132,7 +132,7 @@ macro_rules! estimated {
     };
 }
 
-const ESTIMATED: [Variable; 7] = estimated!(
+const ESTIMATED: [DeclaredVariable; 7] = estimated!(
     "gyro_bias" "gyro biases",
     "gyro_scale" "gyro scale factor errors",
     "gyro_misalignment" "gyro misalignments",
@@ -152,14 +152,14 @@ macro_rules! prior {
     };
 }
 
-const PRIOR_ATTITUDE: [Variable; 1] = variables! {
+const PRIOR_ATTITUDE: [DeclaredVariable; 1] = variables! {
     parameter("procedure.calibration.prior.attitude", Real) elements(3) of(&q::SMALL_ANGLE)
         min(0.0) nominal(60.0 * ARCSEC) start(&[60.0 * ARCSEC, 60.0 * ARCSEC, 0.1 * DEG]):
         "Standard deviation that the Kalman filter starts from: attitude error about north, \
          east, down.";
 };
 
-const PRIOR: [Variable; 9] = prior! {
+const PRIOR: [DeclaredVariable; 9] = prior! {
     "velocity" SMALL_VELOCITY 0.02, "velocity, each axis";
     "position" LENGTH 1.0, "position, each axis";
     "gyro_bias" GYRO_BIAS 0.005 * DEG_PER_HOUR, "each gyro bias";
@@ -171,7 +171,7 @@ const PRIOR: [Variable; 9] = prior! {
     "accel_misalignment" SMALL_ANGLE 40.0 * ARCSEC, "each accelerometer misalignment";
 };
 
-const AIDING: [Variable; 5] = variables! {
+const AIDING: [DeclaredVariable; 5] = variables! {
     parameter("procedure.calibration.refuse_above_mean_nis", Real) nominal(9.0) start(&[9.0]):
         "Mean normalized innovation squared (three axes) above which the calibration is refused.";
     parameter("procedure.calibration.aiding.reference", Enumeration(&of::AIDING)):
@@ -186,7 +186,7 @@ const AIDING: [Variable; 5] = variables! {
         start(&[1e9]): "Time between references, ns: a multiple of the sample period.";
 };
 
-const LEAST_SQUARES: [Variable; 8] = variables! {
+const LEAST_SQUARES: [DeclaredVariable; 8] = variables! {
     parameter("procedure.calibration.least_squares.gravity_given", Boolean):
         "Least squares: local gravity is as given; else it is normal gravity at the site.";
     parameter("procedure.calibration.least_squares.gravity", Real) of(&q::ACCELERATION) min(0.0)
@@ -207,7 +207,7 @@ const LEAST_SQUARES: [Variable; 8] = variables! {
         nominal(2.0) start(&[2.0]): "Least squares, intervals detected: shortest one to use.";
 };
 
-const EXTERNAL_TURNTABLE: [Variable; 2] = variables! {
+const EXTERNAL_TURNTABLE: [DeclaredVariable; 2] = variables! {
     parameter("procedure.calibration.external_turntable.attitude", Real) elements(4)
         within(-1.0, 1.0) nominal(1.0) start(&[1.0, 0.0, 0.0, 0.0]):
         "External turntable: attitude of its base from its survey, the unit quaternion q_nc (w, x, \
@@ -217,7 +217,7 @@ const EXTERNAL_TURNTABLE: [Variable; 2] = variables! {
         "External turntable: standard deviation of each of its angles.";
 };
 
-const NAVIGATION: [Variable; 4] = variables! {
+const NAVIGATION: [DeclaredVariable; 4] = variables! {
     parameter("procedure.navigation.enabled", Boolean) start(&[1.0]):
         "There is navigation after the calibration; else the core is done with it.";
     parameter("procedure.navigation.endless", Boolean) start(&[1.0]):
@@ -228,10 +228,10 @@ const NAVIGATION: [Variable; 4] = variables! {
         "Rotation of the gimbals while navigating: one that is known, or custom.";
 };
 
-const ROTATION: [Variable; 4] =
+const ROTATION: [DeclaredVariable; 4] =
     stops!("procedure.navigation", "procedure.navigation.rotation", SIXTEEN);
 
-const NAVIGATION_STOPS: [Variable; 2] = variables! {
+const NAVIGATION_STOPS: [DeclaredVariable; 2] = variables! {
     parameter("procedure.navigation.passes", Count) within(1.0, U32_MAX) start(&[1.0]):
         "Passes that the sequence of the rotation was made with. It is repeated for as long as the \
          navigation lasts.";
@@ -240,14 +240,14 @@ const NAVIGATION_STOPS: [Variable; 2] = variables! {
         "Rest at each stop of weight 1, above 0; the move to the next stop comes on top.";
 };
 
-const INITIAL: [Variable; 7] = groups!(
+const INITIAL: [DeclaredVariable; 7] = groups!(
     parameter,
     "initial_parameters",
     "Parameters to start from, of an earlier calibration: ",
     ""
 );
 
-const PARTS: &[&[Variable]] = &[
+const PARTS: &[&[DeclaredVariable]] = &[
     &INSTRUMENT,
     &ALIGNMENT,
     &CALIBRATION,
@@ -269,4 +269,4 @@ const PARTS: &[&[Variable]] = &[
     &screening::BOUNDS,
 ];
 
-pub(crate) const PARAMETERS: [Variable; count(PARTS)] = concatenated(PARTS);
+pub(crate) const PARAMETERS: [DeclaredVariable; count(PARTS)] = concatenated(PARTS);

@@ -3,15 +3,15 @@
 use super::enumerations as of;
 use crate::groups::groups;
 use crate::quantities as q;
-use crate::table::Kind::{Boolean, Count, Enumeration, Integer, Real};
-use crate::table::{Variable, variables};
+use crate::table::ElementType::{Boolean, Count, Enumeration, Integer, Real};
+use crate::table::{DeclaredVariable, variables};
 
 /// Largest angle of a gimbal that its counts can hold, rad.
 const GIMBAL_MAX_RAD: f64 = 16.0;
 /// Limit above which whole numbers are not exact as Real.
 const EXACT_MAX: f64 = 9_007_199_254_740_992.0;
 
-pub(super) const INPUTS: [Variable; 14] = variables! {
+pub(super) const INPUTS: [DeclaredVariable; 14] = variables! {
     input("gyro.delta_theta", Real) elements(3) of(&q::ANGLE_INCREMENT) nominal(1e-3):
         "Angular rate of the body against inertial space, integrated over the sample period that \
          ends at the sample; body axes x, y, z. Taken in counts of 2^-36 rad, whose remainder is \
@@ -61,20 +61,20 @@ pub(super) const INPUTS: [Variable; 14] = variables! {
          of this sample, positive where it is older.";
 };
 
-const ESTIMATES: [Variable; 7] = groups!(
+const ESTIMATES: [DeclaredVariable; 7] = groups!(
     output,
     "parameters",
     "Estimate (error: measured less true, so compensation subtracts it): ",
     ""
 );
-const SIGMAS: [Variable; 7] = groups!(
+const SIGMAS: [DeclaredVariable; 7] = groups!(
     output,
     "sigma",
     "Standard deviation of the estimate: ",
     " No number where the estimator doesn't estimate it."
 );
 
-const SOLUTION: [Variable; 16] = variables! {
+const SOLUTION: [DeclaredVariable; 16] = variables! {
     output("gimbal_command.azimuth", Real) of(&q::ANGLE) nominal(1.0):
         "Set point of the inner gimbal, about body z, cumulative. It acts from the end of the next \
          sample period on.";
@@ -115,7 +115,7 @@ const SOLUTION: [Variable; 16] = variables! {
         "Number of times that the estimated parameters have changed.";
 };
 
-pub(crate) const OUTPUTS: [Variable; SOLUTION.len() + 2 * 7] =
+pub(crate) const OUTPUTS: [DeclaredVariable; SOLUTION.len() + 2 * 7] =
     crate::table::concatenated(&[&SOLUTION, &ESTIMATES, &SIGMAS]);
 
 #[cfg(test)]

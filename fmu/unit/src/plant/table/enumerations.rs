@@ -1,6 +1,6 @@
 //! Types with named values.
 
-use crate::table::{Enumeration, enumerations, same};
+use crate::table::{DeclaredEnumeration, enumerations, same};
 use octant_faults::catalogue::Acts;
 use octant_faults::kinds::KINDS;
 
@@ -23,7 +23,7 @@ enumerations! {
 
 /// Kinds of faults that can act inside the plant. The values are the positions in the catalogue,
 /// from 1.
-pub static FAULT_KIND: Enumeration = Enumeration {
+pub static FAULT_KIND: DeclaredEnumeration = DeclaredEnumeration {
     name: "FaultKind",
     description: "Kind of a fault, with its name in the catalogue. Those that restart the unit \
                   under test, or deliver several samples at once, are not among them: a plant has \
@@ -37,7 +37,7 @@ static ITEMS: [(i32, &str, &str); COUNT] = items();
 const ONE_AT_A_TIME: &[&str] = &["dropout"];
 
 /// Returns whether a kind can act inside the plant.
-pub(crate) const fn acts_in_plant(kind: &octant_faults::Kind) -> bool {
+pub(crate) const fn acts_in_plant(kind: &octant_faults::FaultKind) -> bool {
     match kind.acts {
         Acts::Plant | Acts::Command | Acts::Samples => true,
         Acts::Delivery => {

@@ -2,8 +2,8 @@
 
 use super::enumerations as of;
 use crate::quantities as q;
-use crate::table::Kind::{Boolean, Count, Enumeration, Real};
-use crate::table::{Variable, concatenated, variables};
+use crate::table::ElementType::{Boolean, Count, Enumeration, Real};
+use crate::table::{DeclaredVariable, concatenated, variables};
 
 /// Largest number of faults.
 pub const FAULT_SLOTS: usize = 4;
@@ -66,6 +66,6 @@ macro_rules! parameters {
     };
 }
 
-pub(super) const INPUTS: [Variable; FAULT_SLOTS] = inputs!("1" "2" "3" "4");
-pub(super) const OUTPUTS: [Variable; 4 * FAULT_SLOTS] = outputs!("1" "2" "3" "4");
-pub(super) const PARAMETERS: [Variable; 6 * FAULT_SLOTS] = parameters!("1" "2" "3" "4");
+pub(super) const INPUTS: [DeclaredVariable; FAULT_SLOTS] = inputs!("1" "2" "3" "4");
+pub(super) const OUTPUTS: [DeclaredVariable; 4 * FAULT_SLOTS] = outputs!("1" "2" "3" "4");
+pub(super) const PARAMETERS: [DeclaredVariable; 6 * FAULT_SLOTS] = parameters!("1" "2" "3" "4");

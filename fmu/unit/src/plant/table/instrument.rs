@@ -2,23 +2,23 @@
 
 use crate::groups::groups;
 use crate::quantities as q;
-use crate::table::Kind::{Boolean, Count, Real};
-use crate::table::{Variable, concatenated, count, variables};
+use crate::table::ElementType::{Boolean, Count, Real};
+use crate::table::{DeclaredVariable, concatenated, count, variables};
 use octant_earth::units::{DEG, DEG_PER_HOUR, DEG_PER_SQRT_HOUR, MICRO_G, PPM};
 
-const PERIOD: [Variable; 1] = variables! {
+const PERIOD: [DeclaredVariable; 1] = variables! {
     parameter("imu.period_ns", Count) of(&q::NANOSECONDS) within(10_000.0, 1e9) start(&[5e6]):
         "Sample period, ns: the communication step.";
 };
 
-const TRUE_PARAMETERS: [Variable; 7] = groups!(
+const TRUE_PARAMETERS: [DeclaredVariable; 7] = groups!(
     parameter,
     "imu.parameters",
     "True coefficients of the error model (measured less true): ",
     ""
 );
 
-const NOISE: [Variable; 2] = variables! {
+const NOISE: [DeclaredVariable; 2] = variables! {
     parameter("imu.angle_random_walk", Real) of(&q::ANGLE_RANDOM_WALK) min(0.0)
         nominal(0.0007 * DEG_PER_SQRT_HOUR) start(&[0.0007 * DEG_PER_SQRT_HOUR]):
         "Angle random walk of the gyros.";
@@ -43,12 +43,12 @@ filter doesn't model.");
     };
 }
 
-const WANDERING: [Variable; 6] = concatenated(&[
+const WANDERING: [DeclaredVariable; 6] = concatenated(&[
     &gauss_markov!("gyro_gauss_markov", GYRO_BIAS, 0.001 * DEG_PER_HOUR, "gyro biases"),
     &gauss_markov!("accel_gauss_markov", ACCEL_BIAS, 10.0 * MICRO_G, "accelerometer biases"),
 ]);
 
-const LIMITS: [Variable; 5] = variables! {
+const LIMITS: [DeclaredVariable; 5] = variables! {
     parameter("imu.gyro_rate_random_walk", Real) of(&q::RATE_RANDOM_WALK) min(0.0) nominal(1e-9):
         "Rate random walk of the gyros; 0: none.";
     parameter("imu.gyro_quantization", Real) of(&q::ANGLE_INCREMENT) min(0.0) nominal(1e-6):
@@ -61,7 +61,7 @@ const LIMITS: [Variable; 5] = variables! {
         "Range of the accelerometers; 0: that of the counts.";
 };
 
-const TEMPERATURE: [Variable; 7] = variables! {
+const TEMPERATURE: [DeclaredVariable; 7] = variables! {
     parameter("imu.temperature.enabled", Boolean):
         "Temperature departs along a ramp, and biases and scale factors with it.";
     parameter("imu.temperature.ramp", Real) of(&q::TEMPERATURE_RATE) nominal(1e-3):
@@ -78,7 +78,7 @@ const TEMPERATURE: [Variable; 7] = variables! {
         "Temperature: sensitivity of the accelerometer scale factors, x, y, z.";
 };
 
-const VIBRATION: [Variable; 5] = variables! {
+const VIBRATION: [DeclaredVariable; 5] = variables! {
     parameter("imu.vibration.enabled", Boolean):
         "The sensor block vibrates sinusoidally against the gimballed body.";
     parameter("imu.vibration.frequency", Real) of(&q::FREQUENCY) min(0.0) nominal(50.0)
@@ -91,7 +91,7 @@ const VIBRATION: [Variable; 5] = variables! {
         "Vibration: phase of the rotation against the displacement.";
 };
 
-const PLACE: [Variable; 2] = variables! {
+const PLACE: [DeclaredVariable; 2] = variables! {
     parameter("imu.lever_arm", Real) elements(9) of(&q::LENGTH) within(-10.0, 10.0) nominal(0.03):
         "Position of each accelerometer's proof mass from the centre of rotation, in body axes: \
          that of the x accelerometer (x, y, z), then of the y and the z accelerometer.";
@@ -99,7 +99,7 @@ const PLACE: [Variable; 2] = variables! {
         "Stamp less true time of validity of gyros and accelerometers: they lag the gimbal angles.";
 };
 
-const PARTS: &[&[Variable]] =
+const PARTS: &[&[DeclaredVariable]] =
     &[&PERIOD, &TRUE_PARAMETERS, &NOISE, &WANDERING, &LIMITS, &TEMPERATURE, &VIBRATION, &PLACE];
 
-pub(super) const PARAMETERS: [Variable; count(PARTS)] = concatenated(PARTS);
+pub(super) const PARAMETERS: [DeclaredVariable; count(PARTS)] = concatenated(PARTS);

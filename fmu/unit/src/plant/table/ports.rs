@@ -2,13 +2,13 @@
 
 use super::enumerations as of;
 use crate::quantities as q;
-use crate::table::Kind::{Boolean, Count, Enumeration, Integer, Real};
-use crate::table::{Variable, variables};
+use crate::table::ElementType::{Boolean, Count, Enumeration, Integer, Real};
+use crate::table::{DeclaredVariable, variables};
 
 /// Largest angle of a gimbal that its counts can hold, rad.
 const GIMBAL_MAX_RAD: f64 = 16.0;
 
-pub(super) const INPUTS: [Variable; 2] = variables! {
+pub(super) const INPUTS: [DeclaredVariable; 2] = variables! {
     input("gimbal_command.azimuth", Real) of(&q::ANGLE) within(-GIMBAL_MAX_RAD, GIMBAL_MAX_RAD)
         nominal(1.0):
         "Set point of the inner gimbal, about body z, cumulative. It acts from the beginning of \
@@ -19,7 +19,7 @@ pub(super) const INPUTS: [Variable; 2] = variables! {
          the step on. Taken in counts of 2^-27 rad.";
 };
 
-pub(super) const OUTPUTS: [Variable; 21] = variables! {
+pub(super) const OUTPUTS: [DeclaredVariable; 21] = variables! {
     output("gyro.delta_theta", Real) elements(3) of(&q::ANGLE_INCREMENT) nominal(1e-3):
         "Measured angular rate of the body against inertial space, integrated over the sample \
          period that ends at the sample; body axes x, y, z. Whole counts of 2^-36 rad.";

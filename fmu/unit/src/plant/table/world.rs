@@ -5,8 +5,8 @@
 
 use super::enumerations as of;
 use crate::quantities as q;
-use crate::table::Kind::{Boolean, Count, Enumeration, Integer, Real};
-use crate::table::{Variable, concatenated, count, variables};
+use crate::table::ElementType::{Boolean, Count, Enumeration, Integer, Real};
+use crate::table::{DeclaredVariable, concatenated, count, variables};
 use octant_earth::units::{ARCSEC, DEG};
 
 /// Largest number of sinusoids of each motion of a ship.
@@ -15,7 +15,7 @@ pub const SINUSOIDS_MAX: usize = 64;
 /// Limit above which whole numbers are not exact as Real.
 const EXACT_MAX: f64 = 9_007_199_254_740_992.0;
 
-const RANDOM: [Variable; 4] = variables! {
+const RANDOM: [DeclaredVariable; 4] = variables! {
     parameter("random.seed", Count) within(0.0, EXACT_MAX) start(&[1.0]):
         "Seed of every random stream: the same seed gives the same noise.";
     parameter("random.seed_high", Count) within(0.0, u32::MAX as f64):
@@ -29,7 +29,7 @@ const RANDOM: [Variable; 4] = variables! {
          navigation, from its first sample; the reference comes during the calibration only.";
 };
 
-const SITE: [Variable; 3] = variables! {
+const SITE: [DeclaredVariable; 3] = variables! {
     parameter("site.latitude", Real) of(&q::ANGLE) within(-1.57, 1.57) nominal(1.0)
         start(&[30.5 * DEG]): "Geodetic latitude of the dock or the ground, north positive.";
     parameter("site.longitude", Real) of(&q::ANGLE) nominal(1.0) start(&[114.4 * DEG]):
@@ -38,7 +38,7 @@ const SITE: [Variable; 3] = variables! {
         "Height of the dock or the ground above the ellipsoid.";
 };
 
-const MOTION: [Variable; 5] = variables! {
+const MOTION: [DeclaredVariable; 5] = variables! {
     parameter("motion.kind", Enumeration(&of::MOTION)): "How the case of the instrument moves.";
     parameter("motion.mean.heading", Real) of(&q::ANGLE) nominal(1.0):
         "Mean heading of the case. c_nc = Rz(heading) Ry(pitch) Rx(roll).";
@@ -72,7 +72,7 @@ count of them are used.");
     };
 }
 
-const SWAY: [Variable; 24] = concatenated(&[
+const SWAY: [DeclaredVariable; 24] = concatenated(&[
     &sinusoids!("roll", ANGLE, 0.05, "the ship's roll"),
     &sinusoids!("pitch", ANGLE, 0.05, "the ship's pitch"),
     &sinusoids!("yaw", ANGLE, 0.05, "the ship's yaw"),
@@ -81,7 +81,7 @@ const SWAY: [Variable; 24] = concatenated(&[
     &sinusoids!("heave", LENGTH, 0.2, "the ship's heave, positive down"),
 ]);
 
-const TURNTABLE: [Variable; 5] = variables! {
+const TURNTABLE: [DeclaredVariable; 5] = variables! {
     parameter("turntable.rate", Real) of(&q::TURN_RATE) within(0.0, 100.0) nominal(10.0 * DEG)
         start(&[10.0 * DEG]): "Largest rate of a gimbal's move, above 0.";
     parameter("turntable.acceleration", Real) of(&q::ANGULAR_ACCELERATION) min(0.0)
@@ -99,7 +99,7 @@ const TURNTABLE: [Variable; 5] = variables! {
          encoders sit on the drives and don't see it.";
 };
 
-const REFERENCE: [Variable; 5] = variables! {
+const REFERENCE: [DeclaredVariable; 5] = variables! {
     parameter("aiding.reference", Enumeration(&of::AIDING)):
         "What the reference of the calibration measures.";
     parameter("aiding.velocity_sigma", Real) of(&q::SMALL_VELOCITY) min(0.0) nominal(1e-3)
@@ -112,6 +112,6 @@ const REFERENCE: [Variable; 5] = variables! {
         "The outputs of truth are computed in every step; else they stay as they are at the start.";
 };
 
-const PARTS: &[&[Variable]] = &[&RANDOM, &SITE, &MOTION, &SWAY, &TURNTABLE, &REFERENCE];
+const PARTS: &[&[DeclaredVariable]] = &[&RANDOM, &SITE, &MOTION, &SWAY, &TURNTABLE, &REFERENCE];
 
-pub(super) const PARAMETERS: [Variable; count(PARTS)] = concatenated(PARTS);
+pub(super) const PARAMETERS: [DeclaredVariable; count(PARTS)] = concatenated(PARTS);

@@ -2,7 +2,7 @@
 
 use crate::error::Problem;
 use crate::keys::{At, FromTable, LastingKeys, RepeatKeys, TriggerKeys};
-use crate::quantity::{Dimension, Quantity};
+use crate::quantity::{Quantity, UnitDimension};
 use crate::read::reader::Reader;
 use octant_base::names::suggestion;
 use octant_faults::catalogue::Lasts;
@@ -23,7 +23,11 @@ impl Grid {
 
     /// Converts a time, or a number of samples, to epochs.
     pub(super) fn epochs(&self, quantity: Quantity) -> u64 {
-        if quantity.is(Dimension::SAMPLES) { quantity.si as u64 } else { self.of_time(quantity.si) }
+        if quantity.is(UnitDimension::SAMPLES) {
+            quantity.si as u64
+        } else {
+            self.of_time(quantity.si)
+        }
     }
 
     pub(super) fn of_time(&self, time_s: f64) -> u64 {
@@ -95,7 +99,7 @@ impl Grid {
                 last: last(&keys.until, keys.from)?,
             },
             TriggerKeys::Poisson(keys) => {
-                let is_time = keys.poisson.is(Dimension::TIME);
+                let is_time = keys.poisson.is(UnitDimension::TIME);
                 let mean_s = if is_time { keys.poisson.si } else { 1.0 / keys.poisson.si };
                 Trigger::Poisson {
                     first: first(keys.from),

@@ -4,12 +4,12 @@ use super::grid::Grid;
 use crate::condition;
 use crate::error::Problem;
 use crate::keys::{At, TriggerKeys};
-use crate::model::{Alignment, Calibration, Fault, Method, Scenario};
+use crate::model::{AlignmentSpec, CalibrationSpec, Fault, Method, Scenario};
 use crate::read::reader::Reader;
 use octant_calibration::config::TurntableRates;
 use octant_calibration::schedule::move_between_s;
 use octant_calibration::sequence::{Sequence, Stop};
-use octant_faults::catalogue::Kind;
+use octant_faults::catalogue::FaultKind;
 use octant_faults::trigger::{Schedule, Trigger};
 use octant_sample::Mode;
 
@@ -46,7 +46,7 @@ impl<'a> Timing<'a> {
     pub(super) fn schedule(
         &self,
         table: &Reader<'_>,
-        kind: &Kind,
+        kind: &FaultKind,
         trigger: &At<TriggerKeys>,
     ) -> Result<(Schedule, Vec<u64>), Problem> {
         let (read, fires) = match self.grid.trigger(trigger)? {
@@ -133,7 +133,7 @@ impl<'a> Timing<'a> {
             _ => return Ok(()),
         };
         let there = match mode {
-            Mode::Aligning => matches!(self.scenario.alignment, Alignment::Coarse { .. }),
+            Mode::Aligning => matches!(self.scenario.alignment, AlignmentSpec::Coarse { .. }),
             Mode::Calibrating => self.scenario.calibration.is_some(),
             _ => self.scenario.navigation.is_some(),
         };
@@ -247,7 +247,9 @@ impl<'a> Timing<'a> {
     fn start(&self, mode: Mode) -> u64 {
         match (mode, self.scenario.alignment) {
             (Mode::Navigating, _) => self.calibration_samples,
-            (Mode::Calibrating, Alignment::Coarse { duration_s }) => self.grid.of_time(duration_s),
+            (Mode::Calibrating, AlignmentSpec::Coarse { duration_s }) => {
+                self.grid.of_time(duration_s)
+            }
             _ => 0,
         }
     }
@@ -276,7 +278,7 @@ impl Walk<'_> {
     }
 }
 
-fn positions(calibration: &Calibration) -> u64 {
+fn positions(calibration: &CalibrationSpec) -> u64 {
     calibration.sequence.stops().len() as u64 * u64::from(calibration.sequence.passes())
 }
 

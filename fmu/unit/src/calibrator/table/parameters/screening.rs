@@ -2,8 +2,8 @@
 
 use crate::calibrator::table::enumerations as of;
 use crate::quantities as q;
-use crate::table::Kind::{Boolean, Count, Enumeration, Real};
-use crate::table::{Variable, variables};
+use crate::table::ElementType::{Boolean, Count, Enumeration, Real};
+use crate::table::{DeclaredVariable, variables};
 use octant_calibration::config::{Base, Gate, Screening};
 use octant_earth::units::ARCSEC;
 
@@ -13,7 +13,7 @@ const HARDENED_GATE: Gate = HARDENED.gate.expect("it has a gate");
 const HARDENED_STUCK_SAMPLES: u32 = HARDENED.stuck_samples.expect("it has a test");
 const HARDENED_DRIFT_SIGMAS: f64 = HARDENED.drift_sigmas.expect("it has a limit");
 
-pub(super) const GATE: [Variable; 7] = variables! {
+pub(super) const GATE: [DeclaredVariable; 7] = variables! {
     parameter("screening.gate.enabled", Boolean) start(&[1.0]):
         "Innovations are gated; else every measurement is used.";
     parameter("screening.gate.nis", Real) min(0.0) nominal(36.0) start(&[HARDENED_GATE.nis]):
@@ -32,7 +32,7 @@ pub(super) const GATE: [Variable; 7] = variables! {
         start(&[10.0]): "Gate, recovery by reset: standard deviation of position.";
 };
 
-pub(super) const SCREENS: [Variable; 9] = variables! {
+pub(super) const SCREENS: [DeclaredVariable; 9] = variables! {
     parameter("screening.stuck.enabled", Boolean) start(&[1.0]):
         "Channels that give identical counts are flagged as stuck.";
     parameter("screening.stuck.samples", Count) within(0.0, u32::MAX as f64)
@@ -65,12 +65,12 @@ macro_rules! bounds {
     };
 }
 
-pub(super) const BASE: [Variable; 1] = variables! {
+pub(super) const BASE: [DeclaredVariable; 1] = variables! {
     parameter("screening.base.kind", Enumeration(&of::BASE)):
         "What the instrument's case stands on: the limits of the screens follow from it.";
 };
 
-pub(super) const BOUNDS: [Variable; 10] = bounds! {
+pub(super) const BOUNDS: [DeclaredVariable; 10] = bounds! {
     "base.angle" ANGLE 0.1, 0.0, "Moving base: largest angle from the mean attitude.";
     "base.rate" TURN_RATE 0.1, 0.0, "Moving base: largest angular rate.";
     "base.acceleration" ANGULAR_ACCELERATION 0.1, 0.0, "Moving base: largest angular acceleration.";
